@@ -1,0 +1,1 @@
+//! A thin door to the generator.

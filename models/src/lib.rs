@@ -1,0 +1,2 @@
+//! Ready-made mechanisms.
+#![no_std]

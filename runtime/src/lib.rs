@@ -1,0 +1,4 @@
+//! Impact with friction in three dimensions.
+#![no_std]
+#[cfg(feature = "std")]
+extern crate std;
