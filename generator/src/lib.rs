@@ -1,1 +1,20 @@
-//! From the text of a model to Rust code, in stages.
+//! From the text of a model to Rust code, in stages:
+//!
+//! ```text
+//! source text -> syntax      tokens and an untyped tree, with the place of everything
+//!             -> model       names resolved, dimensions and physics checked, all mistakes collected
+//!             -> kinematics  frames, points, velocities, contact bases            (feature `derive`)
+//!             -> kane        partial velocities, generalized forces, constraints  (feature `derive`)
+//!             -> program     straight-line operations: shared, hoisted, factorised
+//!             -> emit        Rust tokens
+//!              | interpret   numbers
+//!              | explain     equations to read
+//!              | artifact    the checked-in derivation
+//! ```
+//!
+//! Only `algebra` (feature `derive`) names the algebra engine; everything else builds without it.
+
+pub mod diagnostics;
+pub mod model;
+pub mod number;
+pub mod program;

@@ -1,0 +1,469 @@
+//! A mechanism with every name resolved: what the front end hands to the derivation.
+//!
+//! Invariants that the front end guarantees: ids are in range; definitions, frames and points are acyclic; dimensions agree;
+//! every expression is in SI units (a symbol declared in another unit appears multiplied by its factor); constraints are
+//! linear in the speeds and kinematical equations linear in rates and speeds; normals and gaps are free of speeds.
+
+use crate::diagnostics::Span;
+use crate::number::Number;
+
+macro_rules! ids {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub usize);
+    )*};
+}
+
+ids! {
+    /// Index into [`Mechanism::parameters`].
+    ParameterId,
+    /// Index into [`Mechanism::inputs`].
+    InputId,
+    /// Index into [`Mechanism::coordinates`].
+    CoordinateId,
+    /// Index into [`Mechanism::speeds`].
+    SpeedId,
+    /// Index into [`Mechanism::definitions`].
+    DefinitionId,
+    /// Index into [`Mechanism::frames`]; 0 is N.
+    FrameId,
+    /// Index into [`Mechanism::points`]; 0 is O.
+    PointId,
+    /// Index into [`Mechanism::bodies`].
+    BodyId,
+}
+
+impl FrameId {
+    /// The inertial frame N.
+    pub const N: FrameId = FrameId(0);
+}
+
+impl PointId {
+    /// The point O, fixed in N.
+    pub const O: PointId = PointId(0);
+}
+
+/// A mechanism, resolved and checked.
+#[derive(Clone, Debug)]
+pub struct Mechanism {
+    /// its name as spelled
+    pub name: String,
+    /// its documentation, lines joined by newlines
+    pub docs: String,
+    /// parameters in file order
+    pub parameters: Vec<Quantity>,
+    /// inputs in file order
+    pub inputs: Vec<Quantity>,
+    /// coordinates in file order
+    pub coordinates: Vec<Quantity>,
+    /// independent speeds in file order, then dependent ones in file order
+    pub speeds: Vec<Quantity>,
+    /// named subexpressions
+    pub definitions: Vec<Definition>,
+    /// frames; the first is N
+    pub frames: Vec<Frame>,
+    /// points; the first is O
+    pub points: Vec<Point>,
+    /// bodies in file order, then particles in file order
+    pub bodies: Vec<Body>,
+    /// what acts on the mechanism
+    pub loads: Vec<Load>,
+    /// kinematical equations
+    pub kinematics: Vec<Equation>,
+    /// velocity constraints
+    pub constraints: Vec<Equation>,
+    /// configuration constraints
+    pub configuration: Vec<Equation>,
+    /// contacts in file order
+    pub contacts: Vec<Contact>,
+}
+
+/// A parameter, input, coordinate or speed.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// name as spelled
+    pub name: String,
+    /// documentation
+    pub docs: String,
+    /// unit as written, for instance `kg*m^2`
+    pub unit: String,
+    /// value or initial value in that unit, if one is given
+    pub value: Option<f64>,
+    /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it appears as
+    /// its number; it is kept here so that doors can name it.
+    pub fixed: bool,
+    /// `dependent` (of a coordinate or a speed)
+    pub dependent: bool,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// A named subexpression.
+#[derive(Clone, Debug)]
+pub struct Definition {
+    /// name as spelled
+    pub name: String,
+    /// documentation
+    pub docs: String,
+    /// what it stands for
+    pub value: DefinitionValue,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// What a definition stands for.
+#[derive(Clone, Debug)]
+pub enum DefinitionValue {
+    /// a scalar
+    Scalar(Scalar),
+    /// a vector
+    Vector(Vector),
+}
+
+/// An axis of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// x
+    X,
+    /// y
+    Y,
+    /// z
+    Z,
+}
+
+/// A frame.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// name as spelled
+    pub name: String,
+    /// documentation
+    pub docs: String,
+    /// the frame it is oriented in; `None` for N alone. Never a frame made by `spin`.
+    pub parent: Option<FrameId>,
+    /// how it is oriented in its parent
+    pub orientation: Orientation,
+    /// the declared angular velocity: in which frame, and what it is
+    pub angular_velocity: Option<(FrameId, Vector)>,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// How a frame is oriented in its parent.
+#[derive(Clone, Debug)]
+pub enum Orientation {
+    /// the same axes
+    Aligned,
+    /// right-handed simple rotation about an axis of the parent, negated if `negative`
+    Simple {
+        /// the axis
+        axis: Axis,
+        /// rotation about the opposite of the axis
+        negative: bool,
+        /// the angle, rad
+        angle: Scalar,
+    },
+    /// right-handed rotation about a unit vector with these components in the parent
+    About {
+        /// components of the unit vector
+        axis: Box<[Scalar; 3]>,
+        /// the angle, rad
+        angle: Scalar,
+    },
+    /// three rotations about the new axes (`body`) or about the parent's (`space`)
+    Euler {
+        /// the axes, in order
+        axes: [Axis; 3],
+        /// the angles, in order, rad
+        angles: Box<[Scalar; 3]>,
+        /// about the new axes; else about the parent's
+        body_fixed: bool,
+    },
+    /// unit quaternion, scalar part first
+    Quaternion([CoordinateId; 4]),
+    /// no orientation: the angle is ignorable, and this is the angular velocity in the parent
+    Spin(Vector),
+}
+
+/// A point.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// name as spelled
+    pub name: String,
+    /// documentation
+    pub docs: String,
+    /// how its position or velocity is known
+    pub place: Place,
+    /// declared velocity in N
+    pub velocity: Option<Vector>,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// How a point's position or velocity is known.
+#[derive(Clone, Debug)]
+pub enum Place {
+    /// O itself
+    Origin,
+    /// position from another point; velocity by differentiation
+    Offset {
+        /// the other point
+        from: PointId,
+        /// the position from there
+        by: Vector,
+    },
+    /// as `Offset`, but a material point of `frame`, as `from` is: velocity by the rigid-body rule
+    Material {
+        /// the frame of which it is a point
+        frame: FrameId,
+        /// the other point
+        from: PointId,
+        /// the position from there
+        by: Vector,
+    },
+    /// only the velocity in N is known
+    Velocity(Vector),
+}
+
+/// A rigid body, or a particle (without frame).
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// name as spelled
+    pub name: String,
+    /// documentation
+    pub docs: String,
+    /// the frame fixed in it; `None`: a particle
+    pub frame: Option<FrameId>,
+    /// its mass centre
+    pub centre: PointId,
+    /// its mass, kg
+    pub mass: Scalar,
+    /// its inertia; `None`: a particle
+    pub inertia: Option<Inertia>,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// Inertia of a body.
+#[derive(Clone, Debug)]
+pub struct Inertia {
+    /// xx, yy, zz, xy, yz, zx of the inertia matrix (products with a plus sign), kg m^2
+    pub components: Box<[Scalar; 6]>,
+    /// the frame of the components
+    pub frame: FrameId,
+    /// the point it is about; `None`: the mass centre
+    pub about: Option<PointId>,
+}
+
+/// What acts on the mechanism.
+#[derive(Clone, Debug)]
+pub struct Load {
+    /// what it is
+    pub kind: LoadKind,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// The kinds of load.
+#[derive(Clone, Debug)]
+pub enum LoadKind {
+    /// acceleration of gravity, on all bodies and particles
+    Gravity(Vector),
+    /// a force at a point, with its opposite at another
+    Force {
+        /// where it acts
+        on: PointId,
+        /// where its opposite acts
+        from: Option<PointId>,
+        /// the force, N
+        force: Vector,
+    },
+    /// a torque on a frame, with its opposite on another
+    Torque {
+        /// where it acts
+        on: FrameId,
+        /// where its opposite acts
+        from: Option<FrameId>,
+        /// the torque, N m
+        torque: Vector,
+    },
+    /// a spring and damper along the line of two points
+    Spring {
+        /// one end
+        a: PointId,
+        /// other end
+        b: PointId,
+        /// N/m
+        stiffness: Scalar,
+        /// m
+        length: Scalar,
+        /// N s/m
+        damping: Scalar,
+    },
+    /// a torsional spring and damper
+    Torsion {
+        /// where it acts
+        on: FrameId,
+        /// where its opposite acts
+        from: Option<FrameId>,
+        /// unit vector
+        axis: Vector,
+        /// rad
+        angle: Scalar,
+        /// rad
+        rest: Scalar,
+        /// N m/rad
+        stiffness: Scalar,
+        /// N m s/rad
+        damping: Scalar,
+    },
+}
+
+/// An equation between scalars or vectors.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    /// the two sides
+    pub sides: EquationSides,
+    /// where it stands
+    pub span: Span,
+}
+
+/// The two sides of an equation.
+#[derive(Clone, Debug)]
+pub enum EquationSides {
+    /// left = right
+    Scalar(Scalar, Scalar),
+    /// left = right
+    Vector(Vector, Vector),
+}
+
+/// A contact.
+#[derive(Clone, Debug)]
+pub struct Contact {
+    /// name as spelled
+    pub name: String,
+    /// documentation
+    pub docs: String,
+    /// the point P that strikes
+    pub point: PointId,
+    /// the body it belongs to, if said
+    pub body: Option<BodyId>,
+    /// what is struck
+    pub against: Against,
+    /// unit vector n from what is struck to what strikes
+    pub normal: Vector,
+    /// distance, m
+    pub gap: Option<Scalar>,
+    /// where it is declared
+    pub span: Span,
+}
+
+/// What a contact strikes.
+#[derive(Clone, Debug)]
+pub enum Against {
+    /// a point fixed in N
+    Fixed,
+    /// a named point P', of a body if said
+    Point(PointId, Option<BodyId>),
+    /// the material point of a body that coincides with P
+    Body(BodyId),
+    /// a surface with this velocity in N
+    Velocity(Vector),
+}
+
+/// A scalar expression.
+#[derive(Clone, Debug)]
+pub enum Scalar {
+    /// an exact number
+    Number(Number),
+    /// pi
+    Pi,
+    /// time, s
+    Time,
+    /// a parameter that is not fixed
+    Parameter(ParameterId),
+    /// an input
+    Input(InputId),
+    /// a coordinate
+    Coordinate(CoordinateId),
+    /// a speed
+    Speed(SpeedId),
+    /// a scalar definition
+    Definition(DefinitionId),
+    /// time derivative of an expression free of speeds
+    Rate(Box<Scalar>),
+    /// opposite
+    Neg(Box<Scalar>),
+    /// sum
+    Add(Vec<Scalar>),
+    /// product
+    Mul(Vec<Scalar>),
+    /// quotient, and where it stands (for messages about a vanishing divisor)
+    Div(Box<Scalar>, Box<Scalar>, Span),
+    /// power
+    Pow(Box<Scalar>, Box<Scalar>),
+    /// a function of one or two scalars
+    Call(Function, Vec<Scalar>),
+    /// dot product
+    Dot(Box<Vector>, Box<Vector>),
+    /// magnitude
+    Norm(Box<Vector>),
+}
+
+/// A function of scalars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Atan2,
+    Sqrt,
+    Exp,
+    Log,
+    Abs,
+    /// 1 if the argument is not negative, else -1
+    Sign,
+    Min,
+    Max,
+}
+
+/// A vector expression.
+#[derive(Clone, Debug)]
+pub enum Vector {
+    /// the zero vector
+    Zero,
+    /// components along the axes of a frame
+    Components(FrameId, Box<[Scalar; 3]>),
+    /// a vector definition
+    Definition(DefinitionId),
+    /// opposite
+    Neg(Box<Vector>),
+    /// sum
+    Add(Vec<Vector>),
+    /// scalar times vector
+    Scale(Box<Scalar>, Box<Vector>),
+    /// cross product
+    Cross(Box<Vector>, Box<Vector>),
+    /// unit vector along, and where it stands
+    Unit(Box<Vector>, Span),
+    /// position of one point from another
+    Position {
+        /// to this point
+        of: PointId,
+        /// from this point
+        from: PointId,
+    },
+    /// velocity of a point in N
+    Velocity(PointId),
+    /// angular velocity of a frame in another
+    AngularVelocity {
+        /// of this frame
+        of: FrameId,
+        /// in this frame
+        in_frame: FrameId,
+    },
+}

@@ -1,0 +1,46 @@
+//! Exact numbers: what a decimal in a model means, until code is emitted.
+
+use num_bigint::BigInt;
+use num_rational::BigRational;
+use num_traits::{One, Signed, ToPrimitive, Zero};
+
+/// An exact rational number.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Number(pub BigRational);
+
+impl Number {
+    /// The integer `n`.
+    pub fn integer(n: i64) -> Self {
+        Number(BigRational::from_integer(BigInt::from(n)))
+    }
+
+    /// The quotient `n / d`; `d` must not be zero.
+    pub fn ratio(n: i64, d: i64) -> Self {
+        Number(BigRational::new(BigInt::from(n), BigInt::from(d)))
+    }
+
+    /// Is it 0?
+    pub fn is_zero(&self) -> bool {
+        self.0.is_zero()
+    }
+
+    /// Is it 1?
+    pub fn is_one(&self) -> bool {
+        self.0.is_one()
+    }
+
+    /// Is it below 0?
+    pub fn is_negative(&self) -> bool {
+        self.0.is_negative()
+    }
+
+    /// The integer it is, if it is one that fits.
+    pub fn to_integer(&self) -> Option<i64> {
+        if self.0.is_integer() { self.0.to_integer().to_i64() } else { None }
+    }
+
+    /// The nearest double (infinite where it is out of range).
+    pub fn to_f64(&self) -> f64 {
+        self.0.to_f64().unwrap_or(f64::NAN)
+    }
+}

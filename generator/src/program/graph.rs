@@ -1,0 +1,199 @@
+//! The value graph that a derivation builds: sums, products and functions, each once.
+//!
+//! Nodes refer only to earlier nodes, so the order of the nodes is an order of evaluation. Equal expressions are one node.
+
+use std::collections::HashMap;
+
+use crate::model::mechanism::Function;
+use crate::number::Number;
+
+/// A node of a [`Graph`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Node(pub u32);
+
+/// Where a number comes in from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Input {
+    /// run-time parameter (index into `Mechanism::parameters`)
+    Parameter(u32),
+    /// time
+    Time,
+    /// coordinate
+    Coordinate(u32),
+    /// independent speed
+    Speed(u32),
+    /// named input
+    Input(u32),
+    /// derivative of an independent speed (for inverse dynamics)
+    Acceleration(u32),
+}
+
+/// What a node is.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Value {
+    /// exact number
+    Number(Number),
+    /// pi
+    Pi,
+    /// from outside
+    Input(Input),
+    /// sum of two or more
+    Sum(Vec<Node>),
+    /// product of two or more; a number, if any, stands first
+    Product(Vec<Node>),
+    /// integer power, neither 0 nor 1; negative: the base is a divisor
+    Power(Node, i32),
+    /// function of one or two nodes
+    Call(Function, Vec<Node>),
+}
+
+/// The graph.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    values: Vec<Value>,
+    known: HashMap<Value, Node>,
+}
+
+impl Graph {
+    /// An empty graph.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// The values, in an order of evaluation.
+    pub fn values(&self) -> &[Value] {
+        &self.values
+    }
+
+    /// What a node is.
+    pub fn value(&self, node: Node) -> &Value {
+        &self.values[node.0 as usize]
+    }
+
+    fn intern(&mut self, value: Value) -> Node {
+        if let Some(&node) = self.known.get(&value) {
+            return node;
+        }
+        let node = Node(self.values.len() as u32);
+        self.values.push(value.clone());
+        self.known.insert(value, node);
+        node
+    }
+
+    /// An exact number.
+    pub fn number(&mut self, number: Number) -> Node {
+        self.intern(Value::Number(number))
+    }
+
+    /// An integer.
+    pub fn integer(&mut self, n: i64) -> Node {
+        self.number(Number::integer(n))
+    }
+
+    /// pi.
+    pub fn pi(&mut self) -> Node {
+        self.intern(Value::Pi)
+    }
+
+    /// A number from outside.
+    pub fn input(&mut self, input: Input) -> Node {
+        self.intern(Value::Input(input))
+    }
+
+    /// The number a node is, if it is one.
+    pub fn as_number(&self, node: Node) -> Option<&Number> {
+        match self.value(node) {
+            Value::Number(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// Is the node the number 0?
+    pub fn is_zero(&self, node: Node) -> bool {
+        self.as_number(node).is_some_and(Number::is_zero)
+    }
+
+    /// The sum of `terms`, numbers collected and zeros dropped.
+    pub fn sum(&mut self, terms: impl IntoIterator<Item = Node>) -> Node {
+        let mut constant = Number::integer(0);
+        let mut rest = Vec::new();
+        for term in terms {
+            match self.value(term) {
+                Value::Number(number) => constant = Number(constant.0 + &number.0),
+                _ => rest.push(term),
+            }
+        }
+        if !constant.is_zero() || rest.is_empty() {
+            let constant = self.number(constant);
+            rest.push(constant);
+        }
+        rest.sort_unstable();
+        if let [only] = rest[..] { only } else { self.intern(Value::Sum(rest)) }
+    }
+
+    /// The product of `factors`, numbers collected, ones dropped; 0 if one of them is 0.
+    pub fn product(&mut self, factors: impl IntoIterator<Item = Node>) -> Node {
+        let mut constant = Number::integer(1);
+        let mut rest = Vec::new();
+        for factor in factors {
+            match self.value(factor) {
+                Value::Number(number) => constant = Number(constant.0 * &number.0),
+                Value::Product(inner) => {
+                    for &factor in &inner.clone() {
+                        match self.value(factor) {
+                            Value::Number(number) => constant = Number(constant.0 * &number.0),
+                            _ => rest.push(factor),
+                        }
+                    }
+                }
+                _ => rest.push(factor),
+            }
+        }
+        if constant.is_zero() {
+            return self.integer(0);
+        }
+        rest.sort_unstable();
+        if !constant.is_one() || rest.is_empty() {
+            let constant = self.number(constant);
+            rest.insert(0, constant);
+        }
+        if let [only] = rest[..] { only } else { self.intern(Value::Product(rest)) }
+    }
+
+    /// `-a`.
+    pub fn neg(&mut self, a: Node) -> Node {
+        let minus = self.integer(-1);
+        self.product([minus, a])
+    }
+
+    /// `a - b`.
+    pub fn sub(&mut self, a: Node, b: Node) -> Node {
+        let b = self.neg(b);
+        self.sum([a, b])
+    }
+
+    /// `a^n`.
+    pub fn power(&mut self, a: Node, n: i32) -> Node {
+        match (n, self.value(a)) {
+            (0, _) => self.integer(1),
+            (1, _) => a,
+            (_, Value::Number(number)) if !(n < 0 && number.is_zero()) => {
+                let number = Number(number.0.pow(n));
+                self.number(number)
+            }
+            (_, &Value::Power(base, m)) if m.checked_mul(n).is_some() => self.power(base, m * n),
+            _ => self.intern(Value::Power(a, n)),
+        }
+    }
+
+    /// `a / b`.
+    pub fn div(&mut self, a: Node, b: Node) -> Node {
+        let b = self.power(b, -1);
+        self.product([a, b])
+    }
+
+    /// A function of one or two nodes.
+    pub fn call(&mut self, function: Function, arguments: Vec<Node>) -> Node {
+        self.intern(Value::Call(function, arguments))
+    }
+}
