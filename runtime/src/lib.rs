@@ -1,4 +1,26 @@
 //! Impact with friction in three dimensions.
+//!
+//! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse and the velocity
+//! of separation under Coulomb's law of friction and Newton's, Poisson's or Stronge's hypothesis of restitution. The equation numbers in these
+//! pages are those of Djerassi, *Three-dimensional, one-point collision with friction* (2012).
 #![no_std]
 #[cfg(feature = "std")]
 extern crate std;
+
+mod error;
+mod impact;
+mod law;
+mod reduced;
+mod scalar;
+mod solve;
+mod surface;
+
+pub use crate::{
+    error::ImpactError,
+    impact::{Impact, Path},
+    law::Law,
+    reduced::ReducedMatrix,
+    scalar::Scalar,
+    solve::solve,
+    surface::Surface,
+};

@@ -1,0 +1,54 @@
+//! The outcome of a collision.
+
+use nalgebra::Vector3;
+
+/// The phases a collision went through. A phase that lasts no impulse is left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Path {
+    /// Slip from beginning to end (section 3.1).
+    Sliding,
+    /// Slip, then no slip until the end (section 3.2; mu >= mu_c).
+    SlidingThenSticking,
+    /// Slip that stops and is renewed at once in the direction phi_hat (section 3.3; mu < mu_c).
+    SlidingThenRenewal,
+    /// No slip at any time (it began without, and mu >= mu_c).
+    Sticking,
+    /// Slip that starts from none, in the direction phi_hat (mu < mu_c).
+    Renewal,
+}
+
+impl Path {
+    /// The names of the phases in order.
+    #[inline]
+    pub const fn phases(self) -> &'static [&'static str] {
+        match self {
+            Self::Sliding => &["sliding"],
+            Self::SlidingThenSticking => &["sliding", "sticking"],
+            Self::SlidingThenRenewal => &["sliding", "renewal"],
+            Self::Sticking => &["sticking"],
+            Self::Renewal => &["renewal"],
+        }
+    }
+}
+
+/// The outcome of a collision, in the axes n, t, s of the input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Impact<T: nalgebra::Scalar> {
+    /// Impulse (n, t, s) on the striking point, in N s.
+    pub impulse: Vector3<T>,
+    /// Velocity of separation (n, t, s), in m/s.
+    pub velocity: Vector3<T>,
+    /// Work of the contact impulse (23), in J: the change of mechanical energy unless motion is prescribed.
+    pub contact_work: T,
+    /// Work of the normal impulse alone, the integral of v_n dI_n (35b), in J.
+    pub normal_work: T,
+    /// The phases gone through.
+    pub path: Path,
+    /// How often compression ended: 1, or 2 if the bodies approached again during restitution.
+    pub compressions: u32,
+}

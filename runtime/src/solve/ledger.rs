@@ -1,0 +1,172 @@
+//! What a collision has accumulated, and when a law ends it.
+
+use nalgebra::Vector2;
+
+use crate::{Law, Scalar, scalar::constant, scalar::larger};
+
+/// The quantities that grow along a collision, in units where m_nn = 1 and v_n1 = -1.
+#[derive(Clone, Copy)]
+pub(super) struct State<T: Scalar> {
+    /// Normal impulse I_n.
+    pub normal: T,
+    /// Tangential impulse (I_t, I_s).
+    pub tangential: Vector2<T>,
+    /// Normal velocity v_n.
+    pub velocity: T,
+    /// Normal work (35b).
+    pub work: T,
+}
+
+impl<T: Scalar> State<T> {
+    #[inline]
+    pub fn approach() -> Self {
+        Self {
+            normal: T::zero(),
+            tangential: Vector2::zeros(),
+            velocity: -T::one(),
+            work: T::zero(),
+        }
+    }
+}
+
+/// The law, and where it ends restitution. Compression ends at each upward zero of v_n.
+#[derive(Clone, Copy)]
+pub(super) struct Ledger<T: Scalar> {
+    law: Law,
+    e: T,
+    /// v_n, I_n or the normal work at which restitution ends, whichever the law speaks of.
+    pub target: T,
+    least_work: T,
+    pub compressions: u32,
+}
+
+impl<T: Scalar> Ledger<T> {
+    #[inline]
+    pub fn new(law: Law, e: T) -> Self {
+        Self {
+            law,
+            e,
+            target: e,
+            least_work: T::zero(),
+            compressions: 0,
+        }
+    }
+
+    /// Compression ends here: v_n = 0 and rising. True if restitution ends with it.
+    #[inline]
+    pub fn compressed(&mut self, normal: T, work: T) -> bool {
+        self.compressions += 1;
+        if work < self.least_work {
+            self.least_work = work;
+        }
+        match self.law {
+            Law::Newton => {}
+            Law::Poisson => self.target = (T::one() + self.e) * normal,
+            Law::Stronge => self.target = (T::one() - self.e * self.e) * self.least_work,
+        }
+        self.e <= T::zero()
+    }
+
+    #[inline]
+    pub fn law(&self) -> Law {
+        self.law
+    }
+
+    /// The quantity that the law watches.
+    #[inline]
+    pub fn watched(&self, state: &State<T>) -> T {
+        match self.law {
+            Law::Newton => state.velocity,
+            Law::Poisson => state.normal,
+            Law::Stronge => state.work,
+        }
+    }
+
+    /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`).
+    #[inline]
+    pub fn follow_line(&mut self, from: &State<T>, rate: T, length: Option<T>) -> Line<T> {
+        let (mut impulse, mut velocity, mut work) = (T::zero(), from.velocity, from.work);
+        let half = constant::<T>(0.5);
+        let within = |d: T| length.is_none_or(|l| d <= l);
+        if velocity < T::zero() {
+            let to_rest = -velocity / rate;
+            if rate <= T::zero() || !within(to_rest) {
+                return Line::on(length);
+            }
+            impulse = to_rest;
+            work += velocity * to_rest * half;
+            velocity = T::zero();
+            if self.compressed(from.normal + impulse, work) {
+                return Line::Ended {
+                    impulse,
+                    velocity,
+                    work,
+                };
+            }
+        }
+        let (more, end) = match self.law {
+            Law::Newton => {
+                if rate <= T::zero() {
+                    return Line::on(length);
+                }
+                (
+                    larger((self.target - velocity) / rate, T::zero()),
+                    self.target,
+                )
+            }
+            Law::Poisson => {
+                let more = larger(self.target - from.normal - impulse, T::zero());
+                (more, velocity + rate * more)
+            }
+            Law::Stronge => {
+                let missing = larger(self.target - work, T::zero());
+                let square = velocity * velocity + (missing + missing) * rate;
+                if square < T::zero() || (square <= T::zero() && missing > T::zero()) {
+                    return Line::on(length);
+                }
+                if missing <= T::zero() {
+                    (T::zero(), velocity)
+                } else {
+                    let end = square.sqrt();
+                    ((missing + missing) / (velocity + end), end)
+                }
+            }
+        };
+        if end < T::zero() || !within(impulse + more) {
+            return Line::on(length);
+        }
+        work += (velocity + end) * more * half;
+        Line::Ended {
+            impulse: impulse + more,
+            velocity: end,
+            work,
+        }
+    }
+}
+
+/// What became of a linear arc.
+pub(super) enum Line<T> {
+    /// The law ended the collision after this impulse.
+    Ended {
+        /// I_n since the beginning of the arc.
+        impulse: T,
+        /// v_n at the end.
+        velocity: T,
+        /// Normal work since the collision began.
+        work: T,
+    },
+    /// The arc came to its own end first, after this impulse.
+    Passed(T),
+    /// The arc has no end, and the law none either.
+    Endless,
+}
+
+impl<T> Line<T> {
+    #[inline]
+    fn on(length: Option<T>) -> Self {
+        match length {
+            Some(l) => Self::Passed(l),
+            None => Self::Endless,
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The exact solver: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
+
+mod chart;
+mod ledger;
+mod sliding;
+mod terminal;
+
+use nalgebra::{Vector2, Vector3};
+
+use self::{
+    ledger::{Ledger, Line, State},
+    sliding::{Slide, slide},
+    terminal::Contact,
+};
+use crate::{Impact, ImpactError, Path, ReducedMatrix, Scalar, Surface, scalar::constant};
+
+/// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
+///
+/// t and s are any orthonormal pair in the contact plane. No slip at the start, straight hodographs, singular matrices and
+/// repeated compression are all ordinary input.
+///
+/// # Errors
+/// Every reason is a variant of [`ImpactError`]; a result is never NaN.
+#[inline]
+pub fn solve<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<Impact<T>, ImpactError<T>> {
+    check(matrix, approach, surface)?;
+    let unit = T::one() / matrix.nn;
+    let speed = -approach.x;
+    let contact = Contact {
+        mu: surface.mu,
+        b: Vector2::new(matrix.nt, matrix.ns) * unit,
+        tt: matrix.tt * unit,
+        ts: matrix.ts * unit,
+        ss: matrix.ss * unit,
+    };
+    let tangential = Vector2::new(approach.y, approach.z) / speed;
+    let slip = tangential.norm();
+    let mut ledger = Ledger::new(surface.law, surface.e);
+    let eps = T::default_epsilon();
+    let slips = slip > eps * eps * eps * eps;
+    let wedged = |v: T| ImpactError::Wedged {
+        normal_velocity: v * speed,
+        law: surface.law,
+    };
+
+    let (state, velocity, path) = 'done: {
+        let mut state = State::approach();
+        if slips {
+            match slide(&contact, tangential, slip, &mut ledger) {
+                Slide::Ended(state, velocity) => break 'done (state, velocity, Path::Sliding),
+                Slide::Endless(state) => return Err(wedged(state.velocity)),
+                Slide::Stopped(stopped) => state = stopped,
+            }
+        }
+        let hold = contact.hold();
+        if hold.norm() <= contact.mu {
+            let path = if slips {
+                Path::SlidingThenSticking
+            } else {
+                Path::Sticking
+            };
+            let mut rate = T::one() - contact.b.dot(&hold);
+            if rate <= constant::<T>(64.0) * eps {
+                // The contact can no longer move along the normal.
+                rate = T::zero();
+                let scale = T::one() + state.normal * (T::one() + contact.mu * contact.b.norm());
+                if state.velocity.abs() <= constant::<T>(4096.0) * eps * scale {
+                    state.velocity = T::zero();
+                    if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
+                        let path = if slips { Path::Sliding } else { path };
+                        break 'done (state, Vector2::zeros(), path);
+                    }
+                }
+            }
+            match ledger.follow_line(&state, rate, None) {
+                Line::Ended {
+                    impulse,
+                    velocity,
+                    work,
+                } => {
+                    let end = State {
+                        normal: state.normal + impulse,
+                        tangential: state.tangential - hold * impulse,
+                        velocity,
+                        work,
+                    };
+                    (end, Vector2::zeros(), path)
+                }
+                _ => return Err(wedged(state.velocity)),
+            }
+        } else {
+            let path = if slips {
+                Path::SlidingThenRenewal
+            } else {
+                Path::Renewal
+            };
+            let d = contact.renewal();
+            let g = contact.slip_rate(&d).dot(&d);
+            match ledger.follow_line(&state, contact.normal_rate(&d), None) {
+                Line::Ended {
+                    impulse,
+                    velocity,
+                    work,
+                } => {
+                    let end = State {
+                        normal: state.normal + impulse,
+                        tangential: state.tangential - d * (contact.mu * impulse),
+                        velocity,
+                        work,
+                    };
+                    (end, d * (g * impulse), path)
+                }
+                _ => return Err(wedged(state.velocity)),
+            }
+        }
+    };
+    let scale = speed * unit;
+    let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * scale;
+    let separation = Vector3::new(state.velocity, velocity.x, velocity.y) * speed;
+    Ok(Impact {
+        impulse,
+        velocity: separation,
+        contact_work: impulse.dot(&(separation + approach)) * constant(0.5),
+        normal_work: state.work * scale * speed,
+        path,
+        compressions: ledger.compressions,
+    })
+}
+
+/// Names what is wrong with the input.
+#[inline]
+fn check<T: Scalar>(
+    m: &ReducedMatrix<T>,
+    v: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<(), ImpactError<T>> {
+    for value in [
+        m.nn, m.nt, m.ns, m.tt, m.ts, m.ss, v.x, v.y, v.z, surface.mu, surface.e,
+    ] {
+        if !value.is_finite() {
+            return Err(ImpactError::NotFinite { value });
+        }
+    }
+    if surface.mu < T::zero() {
+        return Err(ImpactError::NegativeFriction { mu: surface.mu });
+    }
+    if surface.e < T::zero() || surface.e > T::one() {
+        return Err(ImpactError::RestitutionOutOfRange { e: surface.e });
+    }
+    let slack = -T::default_epsilon().sqrt() * constant(0.0625);
+    for minor in [m.nn, m.tt, m.ss] {
+        if minor < T::zero() {
+            return Err(ImpactError::NotPositiveSemidefinite { minor });
+        }
+    }
+    // Correlations, so that units and mixed magnitudes do not matter.
+    let part = |x: T, p: T, q: T| {
+        let scale = (p * q).sqrt();
+        if scale > T::zero() {
+            Some(x / scale)
+        } else if x == T::zero() {
+            Some(T::zero())
+        } else {
+            None
+        }
+    };
+    let (nt, ns, ts) = (
+        part(m.nt, m.nn, m.tt),
+        part(m.ns, m.nn, m.ss),
+        part(m.ts, m.tt, m.ss),
+    );
+    if m.nn == T::zero() && nt.is_some() && ns.is_some() {
+        return Err(ImpactError::NoNormalMobility { nn: m.nn });
+    }
+    let (Some(nt), Some(ns), Some(ts)) = (nt, ns, ts) else {
+        return Err(ImpactError::NotPositiveSemidefinite { minor: -T::one() });
+    };
+    let one = T::one();
+    let det = one - nt * nt - ns * ns - ts * ts + (nt + nt) * ns * ts;
+    for minor in [one - nt * nt, one - ns * ns, one - ts * ts, det] {
+        if minor < slack {
+            return Err(ImpactError::NotPositiveSemidefinite { minor });
+        }
+    }
+    if v.x >= T::zero() {
+        return Err(ImpactError::NotApproaching {
+            normal_velocity: v.x,
+        });
+    }
+    Ok(())
+}
+
+/// Both real roots of a x^2 + b x + c, without cancellation; roots that do not exist come out as zero.
+#[inline]
+pub(crate) fn quadratic<T: Scalar>(a: T, b: T, c: T) -> [T; 2] {
+    let disc = b * b - constant::<T>(4.0) * a * c;
+    if disc < T::zero() {
+        return [T::zero(); 2];
+    }
+    let root = disc.sqrt();
+    let q = if b < T::zero() { root - b } else { -root - b } * constant(0.5);
+    let first = if q != T::zero() { c / q } else { T::zero() };
+    let second = if a != T::zero() { q / a } else { T::zero() };
+    [first, second]
+}

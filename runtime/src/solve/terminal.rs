@@ -1,0 +1,89 @@
+//! The arc after slip has stopped: sticking (45) or sliding in the direction phi_hat (46). Both are linear in I_n.
+
+use nalgebra::Vector2;
+
+use crate::{Scalar, scalar::constant, scalar::larger};
+
+/// The tangential part of a contact, in units where m_nn = 1: b = (m_nt, m_ns) and T.
+#[derive(Clone, Copy)]
+pub(super) struct Contact<T: Scalar> {
+    pub mu: T,
+    pub b: Vector2<T>,
+    pub tt: T,
+    pub ts: T,
+    pub ss: T,
+}
+
+impl<T: Scalar> Contact<T> {
+    /// b - mu T d: the rate of the tangential velocity while sliding along d.
+    #[inline]
+    pub fn slip_rate(&self, d: &Vector2<T>) -> Vector2<T> {
+        Vector2::new(
+            self.b.x - self.mu * (self.tt * d.x + self.ts * d.y),
+            self.b.y - self.mu * (self.ts * d.x + self.ss * d.y),
+        )
+    }
+
+    /// f (31).
+    #[inline]
+    pub fn normal_rate(&self, d: &Vector2<T>) -> T {
+        T::one() - self.mu * self.b.dot(d)
+    }
+
+    /// The least-norm solution of T x = b by elimination from the larger pivot; a pivot lost to rounding counts as zero.
+    #[inline]
+    pub fn hold(&self) -> Vector2<T> {
+        let swap = self.ss > self.tt;
+        let (p, q, b) = if swap {
+            (self.ss, self.tt, Vector2::new(self.b.y, self.b.x))
+        } else {
+            (self.tt, self.ss, self.b)
+        };
+        if p <= T::zero() {
+            return Vector2::zeros();
+        }
+        let l = self.ts / p;
+        let pivot = q - l * self.ts;
+        let x = if pivot > constant::<T>(64.0) * T::default_epsilon() * p {
+            let y = (b.y - l * b.x) / pivot;
+            Vector2::new(b.x / p - l * y, y)
+        } else {
+            let scale = (b.x + l * b.y) / (p * (T::one() + l * l) * (T::one() + l * l));
+            Vector2::new(scale, l * scale)
+        };
+        if swap { Vector2::new(x.y, x.x) } else { x }
+    }
+
+    /// The direction phi_hat of renewed sliding for mu < mu_c: (mu T + g) d = b with g > 0.
+    ///
+    /// Newton's method on 1 / |(mu T + g)^-1 b| = 1, from below, where it rises to the root without crossing it.
+    #[inline]
+    pub fn renewal(&self) -> Vector2<T> {
+        let (tt, ts, ss) = (self.mu * self.tt, self.mu * self.ts, self.mu * self.ss);
+        let size = self.b.norm();
+        let mut g = larger(size - (tt + ss), T::default_epsilon() * size);
+        let mut d = self.b / size;
+        let mut settled = false;
+        for _ in 0..48 {
+            let (p, q) = (tt + g, ss + g);
+            let det = p * q - ts * ts;
+            let y = Vector2::new(q * self.b.x - ts * self.b.y, p * self.b.y - ts * self.b.x) / det;
+            let norm = y.norm();
+            d = y / norm;
+            // d|y|/dg = -d . (mu T + g)^-1 y
+            let z = Vector2::new(q * d.x - ts * d.y, p * d.y - ts * d.x) / det;
+            let step = (norm - T::one()) / (norm * d.dot(&z));
+            if settled {
+                break;
+            }
+            let next = g + step;
+            if next <= T::zero() {
+                g *= constant(0.5);
+            } else {
+                settled = step.abs() <= constant::<T>(4.0) * T::default_epsilon() * next;
+                g = next;
+            }
+        }
+        d
+    }
+}
