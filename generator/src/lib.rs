@@ -14,7 +14,9 @@
 //!
 //! Only `algebra` (feature `derive`) names the algebra engine; everything else builds without it.
 
+pub mod artifact;
 pub mod diagnostics;
+pub mod interpret;
 pub mod model;
 pub mod number;
 pub mod program;

@@ -1,0 +1,67 @@
+//! The checked-in derivation: a program as lines of text, beside the model that it belongs to.
+//!
+//! ```text
+//! hodograph derivation 1
+//! generator 0.1.0
+//! model 51b0c2..                      content hash of the model
+//! structures general                  per contact
+//! 0 coordinate 2                      operations: index, word, operands
+//! 1 sincos 0
+//! 2 sine 1
+//! 3 number 0.75
+//! 4 mul 2 3
+//! output mass_matrix 1 1 : 4          quantity, rows, columns, values
+//! guard 4 scale 3 : the arm is stretched
+//! end 5
+//! ```
+//!
+//! Numbers are the shortest decimals that read back exactly. The same program gives the same bytes.
+
+mod decode;
+mod encode;
+
+pub use decode::{DecodeError, decode};
+pub use encode::encode;
+
+use crate::model::mechanism::Function;
+use crate::program::Program;
+
+/// The version of the format. It changes when a program of one version would mean something else in another.
+pub const FORMAT: u32 = 1;
+
+/// A derivation as read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Artifact {
+    /// version of the generator that wrote it
+    pub generator: String,
+    /// content hash of the model that it was derived from
+    pub model: String,
+    /// the program
+    pub program: Program,
+}
+
+/// Words for functions.
+const FUNCTIONS: [(Function, &str); 14] = [
+    (Function::Sin, "sin"),
+    (Function::Cos, "cos"),
+    (Function::Tan, "tan"),
+    (Function::Asin, "asin"),
+    (Function::Acos, "acos"),
+    (Function::Atan, "atan"),
+    (Function::Atan2, "atan2"),
+    (Function::Sqrt, "sqrt"),
+    (Function::Exp, "exp"),
+    (Function::Log, "log"),
+    (Function::Abs, "abs"),
+    (Function::Sign, "sign"),
+    (Function::Min, "min"),
+    (Function::Max, "max"),
+];
+
+/// Does the function take two values?
+fn is_binary(function: Function) -> bool {
+    matches!(function, Function::Atan2 | Function::Min | Function::Max)
+}
+
+#[cfg(test)]
+mod tests;

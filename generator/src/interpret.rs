@@ -1,0 +1,183 @@
+//! The reference meaning of a program, in doubles.
+//!
+//! Generated code computes the same bits under the same floating-point backend: it consists of the same operations.
+
+use std::fmt;
+
+use crate::program::arithmetic::{call, call2, mul_add};
+use crate::program::graph::Input;
+use crate::program::operation::Operation;
+use crate::program::routine::Quantity;
+use crate::program::slice::Slice;
+use crate::program::{Guard, Program, VANISHING};
+
+/// The numbers from outside, each in the unit that the model declares, in file order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Inputs {
+    /// all parameters, also those that are `fixed` (which are not read)
+    pub parameters: Vec<f64>,
+    /// time, s
+    pub time: f64,
+    /// coordinates
+    pub coordinates: Vec<f64>,
+    /// independent speeds
+    pub speeds: Vec<f64>,
+    /// named inputs
+    pub inputs: Vec<f64>,
+    /// derivatives of the independent speeds; only inverse dynamics reads them
+    pub accelerations: Vec<f64>,
+}
+
+impl Inputs {
+    /// One of the numbers; what is not there is not a number.
+    pub fn get(&self, input: Input) -> f64 {
+        let (list, index) = match input {
+            Input::Time => return self.time,
+            Input::Parameter(index) => (&self.parameters, index),
+            Input::Coordinate(index) => (&self.coordinates, index),
+            Input::Speed(index) => (&self.speeds, index),
+            Input::Input(index) => (&self.inputs, index),
+            Input::Acceleration(index) => (&self.accelerations, index),
+        };
+        list.get(index as usize).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// The numbers of a quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Array {
+    /// what it is
+    pub quantity: Quantity,
+    /// number of rows
+    pub rows: usize,
+    /// number of columns
+    pub columns: usize,
+    /// rows * columns numbers, by rows
+    pub values: Vec<f64>,
+}
+
+impl Array {
+    /// The number in a row and a column.
+    pub fn at(&self, row: usize, column: usize) -> f64 {
+        self.values.get(row * self.columns + column).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The rows.
+    pub fn rows(&self) -> impl Iterator<Item = &[f64]> {
+        self.values.chunks(self.columns.max(1))
+    }
+}
+
+/// Why a program has no result at some inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// something vanishes that must not
+    Singular {
+        /// what that means
+        message: String,
+        /// the value that counts as zero
+        value: f64,
+    },
+    /// a result, or a value that must not vanish, is infinite or not a number
+    NotFinite,
+    /// the program does not compute this
+    Absent(Quantity),
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Failure::Singular { message, .. } => write!(out, "the state is singular: {message}"),
+            Failure::NotFinite => {
+                write!(out, "a result is infinite or not a number: check the state and the parameters")
+            }
+            Failure::Absent(quantity) => write!(out, "this mechanism has no {quantity:?}"),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// Evaluates a program.
+#[derive(Clone, Debug)]
+pub struct Evaluator<'a> {
+    program: &'a Program,
+}
+
+impl<'a> Evaluator<'a> {
+    /// An evaluator of a program.
+    pub fn new(program: &'a Program) -> Self {
+        Evaluator { program }
+    }
+
+    /// The quantities asked for, in that order.
+    pub fn evaluate(&self, inputs: &Inputs, quantities: &[Quantity]) -> Result<Vec<Array>, Failure> {
+        if let Some(&absent) = quantities.iter().find(|&&quantity| self.program.output(quantity).is_none()) {
+            return Err(Failure::Absent(absent));
+        }
+        let slice = self.program.slice(quantities);
+        let numbers = self.numbers(inputs, &slice);
+        for guard in &slice.guards {
+            check(guard, &numbers)?;
+        }
+        let mut arrays = Vec::with_capacity(slice.outputs.len());
+        for output in &slice.outputs {
+            let values: Vec<f64> = output.values.iter().map(|value| numbers[value.index()].0).collect();
+            if !values.iter().all(|value| value.is_finite()) {
+                return Err(Failure::NotFinite);
+            }
+            arrays.push(Array {
+                quantity: output.quantity,
+                rows: output.rows,
+                columns: output.columns,
+                values,
+            });
+        }
+        Ok(arrays)
+    }
+
+    /// Every value of the slice; of a sine-cosine pair both, else the second is 0.
+    fn numbers(&self, inputs: &Inputs, slice: &Slice<'_>) -> Vec<(f64, f64)> {
+        let mut numbers = vec![(0.0, 0.0); self.program.operations.len()];
+        for &value in &slice.order {
+            use Operation::*;
+            let operation = self.program.operation(value);
+            let of = |value: crate::program::operation::Value| numbers[value.index()].0;
+            let number = match operation {
+                Constant(bits) => bits.get(),
+                Input(input) => inputs.get(input),
+                Neg(a) => -of(a),
+                Add(a, b) => of(a) + of(b),
+                Sub(a, b) => of(a) - of(b),
+                Mul(a, b) => of(a) * of(b),
+                Div(a, b) => of(a) / of(b),
+                Recip(a) => 1.0 / of(a),
+                MulAdd(a, b, c) => mul_add(of(a), of(b), of(c)),
+                MulSub(a, b, c) => mul_add(of(a), of(b), -of(c)),
+                NegMulAdd(a, b, c) => mul_add(-of(a), of(b), of(c)),
+                SinCos(a) => {
+                    numbers[value.index()] = of(a).sin_cos();
+                    continue;
+                }
+                Sine(a) => of(a),
+                Cosine(a) => numbers[a.index()].1,
+                Call(function, a) => call(function, of(a)),
+                Call2(function, a, b) => call2(function, of(a), of(b)),
+            };
+            numbers[value.index()].0 = number;
+        }
+        numbers
+    }
+}
+
+fn check(guard: &Guard, numbers: &[(f64, f64)]) -> Result<(), Failure> {
+    let value = numbers[guard.value.index()].0;
+    let bound = guard.scale.map_or(0.0, |scale| VANISHING * numbers[scale.index()].0.abs());
+    if !value.is_finite() || !bound.is_finite() {
+        Err(Failure::NotFinite)
+    } else if value.abs() <= bound {
+        Err(Failure::Singular { message: guard.message.clone(), value })
+    } else {
+        Ok(())
+    }
+}
