@@ -1,0 +1,72 @@
+//! `hodograph import`: a URDF becomes a model.
+
+use std::path::PathBuf;
+
+use clap::ValueEnum;
+
+use crate::import::{Options, import};
+use crate::output;
+use crate::stop::{Outcome, Stop};
+
+/// Turn a robot description (URDF) into a model file, written to standard output
+///
+///   hodograph import robot.urdf > robot.mech
+///
+/// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have becomes `_`. A root link
+/// that moves freely has the coordinates q_base_x .. z, the quaternion q_base_e0 .. e3 and the speeds u_base_x .. z and
+/// u_base_rx .. rz along its own axes. What is ignored is said on standard error.
+#[derive(Clone, Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// the URDF file
+    file: PathBuf,
+    /// make a contact of the origin of this link with the plane through O across N.z (may be repeated)
+    #[arg(long, value_name = "LINK")]
+    contact: Vec<String>,
+    /// is the root link fixed to the ground, or free? [default: free if it has an inertia]
+    #[arg(long, value_enum)]
+    base: Option<Base>,
+    /// declare all parameters `fixed`: folded in at build time
+    #[arg(long)]
+    fixed: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Base {
+    Fixed,
+    Floating,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// The file cannot be read ([`Stop::Call`]) or imported ([`Stop::Said`]).
+pub fn run(arguments: &Arguments) -> Outcome {
+    let file = arguments.file.display().to_string();
+    let bytes = std::fs::read(&arguments.file).map_err(|error| Stop::unreadable(&arguments.file, &error))?;
+    let source = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Stop::Fault(format!("{file}: this is no UTF-8 at byte {at}: save it as UTF-8"))
+    })?;
+    let options = Options {
+        contacts: arguments.contact.clone(),
+        floating: arguments.base.map(|base| base == Base::Floating),
+        fixed_parameters: arguments.fixed,
+    };
+    let name = arguments.file.file_name().map_or(file.clone(), |name| name.to_string_lossy().into_owned());
+    match import(&source, &name, &options) {
+        Ok(imported) => {
+            for note in imported.notes {
+                eprintln!("note: {note}");
+            }
+            output::text(&imported.model)
+        }
+        Err(problems) => {
+            for problem in problems {
+                eprintln!("error: {problem}");
+            }
+            Err(Stop::Said)
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! `hodograph solve`: JSON lines in, JSON lines out.
+
+use std::io::{self, BufRead, IsTerminal};
+
+use clap::ValueEnum;
+use hodograph::{ReducedMatrix, Surface};
+use nalgebra::Vector3;
+
+use crate::json::answer::Answer;
+use crate::json::{Failure, Fields, Json};
+use crate::output;
+use crate::stop::{Outcome, Stop};
+use crate::surface;
+
+/// A line longer than this is no collision.
+const LONGEST_LINE: usize = 1 << 20;
+
+/// Solve collisions: one JSON object per line from standard input, one answer per line
+///
+/// A line gives the reduced mass matrix, the velocity of approach and the surfaces:
+///
+///   {"m":[nn,nt,ns,tt,ts,ss],"v":[n,t,s],"mu":0.6,"e":0.8,"law":"stronge"}
+///
+/// Its answer is {"impulse":[n,t,s],"v":[n,t,s],"dE":..,"dEn":..,"path":[..],"compressions":1} or
+/// {"error":{"kind":"..","message":".."}}. Blank lines are skipped, other fields are left alone. Exit 0 if every line was
+/// solved, 1 if one had an error.
+#[derive(Clone, Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// how to solve
+    #[arg(long, value_enum, default_value_t = Method::Exact)]
+    pub method: Method,
+}
+
+/// The roads to an outcome.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Method {
+    /// the exact solver
+    Exact,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Stop::Said`] if a line had an error.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let mut input = io::stdin().lock();
+    if io::stdin().is_terminal() {
+        eprintln!(
+            "reading collisions from the terminal, one JSON object per line; `hodograph solve --help` shows one"
+        );
+    }
+    let (mut all_solved, mut line) = (true, Vec::new());
+    while let Some(complete) = read_line(&mut input, &mut line)? {
+        let answer = if complete {
+            if line.iter().all(u8::is_ascii_whitespace) {
+                continue;
+            }
+            answer(&line, arguments)
+        } else {
+            Err(Failure::bad_json(format!(
+                "the line is longer than {LONGEST_LINE} bytes: give one collision per line"
+            )))
+        };
+        match answer {
+            Ok(answer) => output::json(&answer)?,
+            Err(failure) => {
+                all_solved = false;
+                output::line(&failure.to_line())?;
+            }
+        }
+    }
+    if all_solved { Ok(()) } else { Err(Stop::Said) }
+}
+
+/// Reads the next line; `Some(false)` if it was too long to keep, `None` at the end.
+fn read_line(input: &mut impl BufRead, line: &mut Vec<u8>) -> Outcome<Option<bool>> {
+    line.clear();
+    let (mut any, mut complete) = (false, true);
+    loop {
+        let chunk = match input.fill_buf() {
+            Ok(chunk) => chunk,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return Err(Stop::Fault(format!("cannot read standard input: {error}"))),
+        };
+        if chunk.is_empty() {
+            return Ok(any.then_some(complete));
+        }
+        any = true;
+        let end = chunk.iter().position(|&byte| byte == b'\n');
+        let piece = &chunk[..end.unwrap_or(chunk.len())];
+        complete = complete && line.len() + piece.len() <= LONGEST_LINE;
+        if complete {
+            line.extend_from_slice(piece);
+        }
+        let used = end.map_or(chunk.len(), |end| end + 1);
+        input.consume(used);
+        if end.is_some() {
+            return Ok(Some(complete));
+        }
+    }
+}
+
+fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
+    let text = std::str::from_utf8(line)
+        .map_err(|error| Failure::bad_json(format!("this is no UTF-8 at byte {}", error.valid_up_to())))?;
+    let case = Fields::new(Json::parse(text)?, "a collision")?;
+    let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
+    let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
+    let mu = case.number("mu", "the coefficient of friction")?;
+    let e = case.number("e", "the coefficient of restitution")?;
+    let law = match case.need("law", "\"newton\", \"poisson\" or \"stronge\"")? {
+        Json::String(name) => surface::law(name)?,
+        other => {
+            return Err(Failure::bad_json(format!(
+                "`law` must be \"newton\", \"poisson\" or \"stronge\", not {}",
+                other.sort()
+            )));
+        }
+    };
+    let surface = Surface { mu, e, law };
+    let matrix = ReducedMatrix::from(matrix);
+    let velocity = Vector3::from(velocity);
+    let impact = match arguments.method {
+        Method::Exact => hodograph::solve(&matrix, &velocity, &surface),
+    }?;
+    Ok(Answer::from(&impact))
+}

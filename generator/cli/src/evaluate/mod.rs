@@ -1,0 +1,151 @@
+//! A model in a state: numbers for all that `eval` writes.
+
+pub mod complete;
+pub mod contact;
+pub mod report;
+
+use hodograph_generator::interpret::{self, Evaluator, Inputs};
+use hodograph_generator::model::mechanism::{Mechanism, Orientation};
+use hodograph_generator::program::Program;
+use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+
+use crate::json::state::State;
+use crate::json::{Failure, Kind};
+
+/// A model and its program.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// the model
+    pub mechanism: Mechanism,
+    /// its equations
+    pub program: Program,
+}
+
+/// Numbers for some quantities.
+#[derive(Clone, Debug, Default)]
+pub struct Numbers {
+    arrays: Vec<interpret::Array>,
+}
+
+impl Numbers {
+    /// A quantity by rows; empty if the mechanism has none (no dependent speeds, say).
+    pub fn get(&self, quantity: Quantity) -> &[f64] {
+        self.arrays.iter().find(|array| array.quantity == quantity).map_or(&[], |array| &array.values)
+    }
+
+    /// The rows of a quantity.
+    pub fn rows(&self, quantity: Quantity) -> Vec<&[f64]> {
+        self.arrays
+            .iter()
+            .find(|array| array.quantity == quantity)
+            .map_or(Vec::new(), |array| array.rows().collect())
+    }
+
+    /// A quantity of a contact.
+    pub fn of_contact(&self, contact: usize, quantity: ContactQuantity) -> &[f64] {
+        self.get(Quantity::Contact(contact as u32, quantity))
+    }
+
+    /// A quantity of a contact that has three components.
+    pub fn three(&self, contact: usize, quantity: ContactQuantity) -> [f64; 3] {
+        let mut three = [0.0; 3];
+        for (slot, &number) in three.iter_mut().zip(self.of_contact(contact, quantity)) {
+            *slot = number;
+        }
+        three
+    }
+}
+
+impl Machine {
+    /// Numbers for those of the quantities that the mechanism has.
+    ///
+    /// # Errors
+    ///
+    /// `singular_state`.
+    pub fn evaluate(&self, state: &State, quantities: &[Quantity]) -> Result<Numbers, Failure> {
+        let inputs = Inputs {
+            parameters: state.parameters.clone(),
+            time: state.time,
+            coordinates: state.coordinates.clone(),
+            speeds: state.speeds.clone(),
+            inputs: state.inputs.clone(),
+            accelerations: Vec::new(),
+        };
+        let there: Vec<Quantity> = quantities
+            .iter()
+            .copied()
+            .filter(|&quantity| self.program.output(quantity).is_some_and(|output| !output.values.is_empty()))
+            .collect();
+        let arrays = Evaluator::new(&self.program).evaluate(&inputs, &there).map_err(|failure| match failure {
+            interpret::Failure::Singular { message, value } => {
+                Failure::new(Kind::SingularState, format!("{message} (a divisor is {value}): choose another state"))
+            }
+            other => Failure::new(Kind::SingularState, other.to_string()),
+        })?;
+        Ok(Numbers { arrays })
+    }
+
+    /// Index of the contact of that name; without a name, of the only one.
+    ///
+    /// # Errors
+    ///
+    /// `unknown_name`.
+    pub fn contact(&self, name: Option<&str>) -> Result<usize, Failure> {
+        let contacts = &self.mechanism.contacts;
+        let names = || contacts.iter().map(|contact| contact.name.as_str());
+        let unknown = |message: String| Failure::new(Kind::UnknownName, message);
+        match name {
+            Some(name) => names().position(|other| other == name).ok_or_else(|| {
+                let hint = crate::spelling::hint(name, names().collect::<Vec<_>>());
+                unknown(format!("{} has no contact `{name}`: {hint}", self.mechanism.name))
+            }),
+            None if contacts.len() == 1 => Ok(0),
+            None => {
+                let hint = crate::spelling::hint("", names().collect::<Vec<_>>());
+                let (name, count) = (&self.mechanism.name, contacts.len());
+                Err(unknown(format!("{name} has {count} contacts: say which with --contact; {hint}")))
+            }
+        }
+    }
+
+    /// A state as read: quaternions checked, dependent coordinates completed.
+    ///
+    /// # Errors
+    ///
+    /// `bad_json`, `unknown_name`, `not_finite`, `inconsistent_state`, `singular_state`.
+    pub fn state(&self, text: Option<&str>) -> Result<State, Failure> {
+        let mut state = match text {
+            Some(text) => State::read(text, &self.mechanism)?,
+            None => State::initial(&self.mechanism),
+        };
+        self.check_quaternions(&state)?;
+        complete::complete(self, &mut state)?;
+        Ok(state)
+    }
+
+    /// The equations hold for unit quaternions only; which one was meant cannot be guessed.
+    fn check_quaternions(&self, state: &State) -> Result<(), Failure> {
+        for frame in &self.mechanism.frames {
+            let Orientation::Quaternion(parts) = frame.orientation else { continue };
+            let numbers = parts.map(|part| state.coordinates[part.0]);
+            let norm = numbers.iter().map(|number| number * number).sum::<f64>().sqrt();
+            if (norm - 1.0).abs() > 1e-10 {
+                let names = parts.map(|part| self.mechanism.coordinates[part.0].name.as_str()).join(", ");
+                let advice = match norm > 0.0 && norm.is_finite() {
+                    true => format!("divided by it they are {:?}", numbers.map(|number| number / norm)),
+                    false => "1, 0, 0, 0 is no rotation".to_owned(),
+                };
+                return Err(Failure::new(
+                    Kind::InconsistentState,
+                    format!("the quaternion {names} of frame {} has norm {norm}, not 1: {advice}", frame.name),
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Some of the names, for messages.
+pub fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    names.into_iter().collect::<Vec<_>>().join(", ")
+}

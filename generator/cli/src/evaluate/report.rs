@@ -1,0 +1,121 @@
+//! What `eval` writes.
+
+use hodograph_generator::program::routine::Quantity;
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::contact::{self, Contact};
+use super::{Machine, Numbers};
+use crate::json::Failure;
+use crate::json::state::State;
+
+/// Values under names, in their order.
+#[derive(Clone, Debug)]
+pub struct Named<'a, T>(pub Vec<(&'a str, T)>);
+
+impl<T: Serialize> Serialize for Named<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, value) in &self.0 {
+            map.serialize_entry(name, value)?;
+        }
+        map.end()
+    }
+}
+
+/// Numbers under the names of quantities of a model.
+pub fn named<'a>(
+    quantities: impl IntoIterator<Item = &'a hodograph_generator::model::mechanism::Quantity>,
+    numbers: impl IntoIterator<Item = f64>,
+) -> Named<'a, f64> {
+    Named(quantities.into_iter().map(|quantity| quantity.name.as_str()).zip(numbers).collect())
+}
+
+/// All of it.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct Report<'a> {
+    speeds: Vec<&'a str>,
+    q: Named<'a, f64>,
+    mass_matrix: Vec<Vec<f64>>,
+    forcing: Vec<f64>,
+    udot: Named<'a, f64>,
+    qdot: Named<'a, f64>,
+    dependent: Named<'a, f64>,
+    kinetic_energy: f64,
+    contacts: Named<'a, ContactReport>,
+}
+
+#[derive(Clone, Debug, serde::Serialize)]
+struct ContactReport {
+    gap: Option<f64>,
+    normal: [f64; 3],
+    tangent: [f64; 3],
+    binormal: [f64; 3],
+    velocity: [f64; 3],
+    #[serde(rename = "V")]
+    partials: [Vec<f64>; 3],
+    remainder: [f64; 3],
+    reduced: [f64; 6],
+    v: [f64; 3],
+}
+
+impl From<Contact> for ContactReport {
+    fn from(contact: Contact) -> Self {
+        let [normal, tangent, binormal] = contact.axes.map(Into::into);
+        ContactReport {
+            gap: contact.gap,
+            normal,
+            tangent,
+            binormal,
+            velocity: contact.velocity.into(),
+            partials: contact.partials,
+            remainder: contact.remainder.into(),
+            reduced: contact.reduced,
+            v: contact.slip.into(),
+        }
+    }
+}
+
+/// The quantities that do not belong to a contact.
+const QUANTITIES: [Quantity; 7] = [
+    Quantity::MassMatrix,
+    Quantity::Forcing,
+    Quantity::Accelerations,
+    Quantity::DependentAccelerations,
+    Quantity::CoordinateRates,
+    Quantity::DependentSpeeds,
+    Quantity::KineticEnergy,
+];
+
+/// Evaluates the model in a state.
+///
+/// # Errors
+///
+/// `singular_state`.
+pub fn report<'a>(machine: &'a Machine, state: &State) -> Result<Report<'a>, Failure> {
+    let mechanism = &machine.mechanism;
+    let of_contacts = (0..mechanism.contacts.len())
+        .flat_map(|index| contact::QUANTITIES.map(|quantity| Quantity::Contact(index as u32, quantity)));
+    let wanted: Vec<Quantity> = QUANTITIES.into_iter().chain(of_contacts).collect();
+    let numbers: Numbers = machine.evaluate(state, &wanted)?;
+    let (independent, dependent) = mechanism.speeds.split_at(state.speeds.len());
+    let get = |quantity| numbers.get(quantity).to_vec();
+    let udot = get(Quantity::Accelerations).into_iter().chain(get(Quantity::DependentAccelerations));
+    Ok(Report {
+        speeds: independent.iter().map(|speed| speed.name.as_str()).collect(),
+        q: named(&mechanism.coordinates, state.coordinates.iter().copied()),
+        mass_matrix: numbers.rows(Quantity::MassMatrix).into_iter().map(<[f64]>::to_vec).collect(),
+        forcing: get(Quantity::Forcing),
+        udot: named(&mechanism.speeds, udot),
+        qdot: named(&mechanism.coordinates, get(Quantity::CoordinateRates)),
+        dependent: named(dependent, get(Quantity::DependentSpeeds)),
+        kinetic_energy: get(Quantity::KineticEnergy).first().copied().unwrap_or(0.0),
+        contacts: Named(
+            mechanism
+                .contacts
+                .iter()
+                .enumerate()
+                .map(|(index, contact)| (contact.name.as_str(), Contact::new(&numbers, index, &state.speeds).into()))
+                .collect(),
+        ),
+    })
+}

@@ -1,0 +1,129 @@
+//! The XML of a robot description: where its elements stand, and which of them are not used.
+
+use std::collections::{BTreeMap, HashMap};
+
+use roxmltree::{Document, Node};
+
+/// A robot description with the places of its elements.
+pub struct Robot {
+    /// the file's name, for messages
+    pub file: String,
+    /// what it describes
+    pub robot: urdf_rs::Robot,
+    places: HashMap<(&'static str, usize), Place>,
+}
+
+struct Place {
+    at: String,
+    has_inertial: bool,
+}
+
+impl Robot {
+    /// Where the link stands: `robot.urdf:3:1`.
+    pub fn link(&self, index: usize) -> &str {
+        self.places.get(&("link", index)).map_or(&self.file, |place| &place.at)
+    }
+
+    /// Where the joint stands.
+    pub fn joint(&self, index: usize) -> &str {
+        self.places.get(&("joint", index)).map_or(&self.file, |place| &place.at)
+    }
+
+    /// Does the link have an `<inertial>`?
+    pub fn has_inertial(&self, index: usize) -> bool {
+        self.places.get(&("link", index)).is_some_and(|place| place.has_inertial)
+    }
+}
+
+/// Reads the file.
+///
+/// # Errors
+///
+/// What is wrong with the XML, or with it as a robot description.
+pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, Vec<String>> {
+    let xml = Document::parse(source).map_err(|error| {
+        let at = error.pos();
+        vec![format!("{file}:{}:{}: this is no XML: {error}", at.row, at.col)]
+    })?;
+    let at = |node: Node| {
+        let position = xml.text_pos_at(node.range().start);
+        format!("{file}:{}:{}", position.row, position.col)
+    };
+    let root = xml.root_element();
+    if root.tag_name().name() != "robot" {
+        let found = root.tag_name().name();
+        return Err(vec![format!("{}: this is no URDF: its root is <{found}>, not <robot>", at(root))]);
+    }
+    let xacro = |node: &Node| node.tag_name().namespace().is_some_and(|name| name.contains("xacro"));
+    if let Some(node) = xml.descendants().find(xacro) {
+        return Err(vec![format!(
+            "{}: this is xacro, not yet URDF: expand it first (`xacro {file} > robot.urdf`)",
+            at(node)
+        )]);
+    }
+    let mut problems = Vec::new();
+    let mut places = HashMap::new();
+    let (mut links, mut joints) = (0, 0);
+    let mut ignored: BTreeMap<String, (usize, String)> = BTreeMap::new();
+    let mut ignore = |what: String, node: Node| ignored.entry(what).or_insert_with(|| (0, at(node))).0 += 1;
+    for node in root.children().filter(Node::is_element) {
+        match node.tag_name().name() {
+            "link" => {
+                let has_inertial = check_inertial(node, &at, &mut problems);
+                for part in node.children().filter(|part| part.is_element() && !is(part, "inertial")) {
+                    ignore(format!("<{}> of a link", part.tag_name().name()), part);
+                }
+                places.insert(("link", links), Place { at: at(node), has_inertial });
+                links += 1;
+            }
+            "joint" => {
+                let used = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
+                for part in node.children().filter(Node::is_element) {
+                    let name = part.tag_name().name();
+                    if !used.contains(&name) {
+                        ignore(format!("<{name}> of a joint"), part);
+                    }
+                }
+                places.insert(("joint", joints), Place { at: at(node), has_inertial: false });
+                joints += 1;
+            }
+            other => ignore(format!("<{other}>"), node),
+        }
+    }
+    for (what, (count, first)) in ignored {
+        notes.push(match count {
+            1 => format!("{first}: ignored {what}"),
+            _ => format!("{first}: ignored {what}, {count} times"),
+        });
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let robot = urdf_rs::read_from_string(source)
+        .map_err(|error| vec![format!("{file}: this is no valid URDF: {}", one_line(&error.to_string()))])?;
+    if robot.links.len() != links || robot.joints.len() != joints {
+        return Err(vec![format!("{file}: some links or joints could not be read")]);
+    }
+    Ok(Robot { file: file.to_owned(), robot, places })
+}
+
+/// An `<inertial>` needs its mass and its inertia: a missing number must not count as zero.
+fn check_inertial(link: Node, at: &dyn Fn(Node) -> String, problems: &mut Vec<String>) -> bool {
+    let Some(inertial) = link.children().find(|part| is(part, "inertial")) else { return false };
+    let name = link.attribute("name").unwrap_or_default();
+    for part in ["mass", "inertia"] {
+        if !inertial.children().any(|node| is(&node, part)) {
+            problems.push(format!("{}: <inertial> of link `{name}` has no <{part}>: add it", at(inertial)));
+        }
+    }
+    true
+}
+
+fn is(node: &Node, name: &str) -> bool {
+    node.is_element() && node.tag_name().name() == name
+}
+
+/// A message of another library on one line.
+fn one_line(message: &str) -> String {
+    message.split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,226 @@
+//! Links that do not move against each other become one body.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+use super::document::Robot;
+use super::tree::{Motion, Tree};
+
+/// The inertia of a body.
+#[derive(Clone, Debug)]
+pub struct Lump {
+    /// kg
+    pub mass: f64,
+    /// mass centre in the axes of the link, from its origin, m
+    pub centre: Vector3<f64>,
+    /// central inertia matrix in the axes of the link, kg m^2
+    pub inertia: Matrix3<f64>,
+}
+
+/// A link that moves, with all that is fixed to it.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// the link that gives it its name and axes (index into `Tree::links`)
+    pub link: usize,
+    /// the links fixed to it
+    pub fixed: Vec<usize>,
+    /// its inertia; `None`: it has none, or is the ground
+    pub lump: Option<Lump>,
+    /// is it the ground?
+    pub ground: bool,
+}
+
+/// The groups of a robot in the order of their links, and which one each link belongs to.
+#[derive(Clone, Debug)]
+pub struct Groups {
+    /// the groups
+    pub groups: Vec<Group>,
+    /// index into `groups`, per link
+    pub of_link: Vec<usize>,
+}
+
+/// Sine and cosine of an angle, exact at right angles given to 10 digits.
+fn sine_cosine(angle: f64) -> (f64, f64) {
+    let quarters = angle / std::f64::consts::FRAC_PI_2;
+    if (quarters - quarters.round()).abs() > 1e-10 || quarters.abs() > 1e9 {
+        return angle.sin_cos();
+    }
+    [(0.0, 1.0), (1.0, 0.0), (0.0, -1.0), (-1.0, 0.0)][(quarters.round() as i64).rem_euclid(4) as usize]
+}
+
+/// The matrix of roll, pitch and yaw: columns are the turned axes.
+pub fn turned(rpy: &Vector3<f64>) -> Matrix3<f64> {
+    let [(sr, cr), (sp, cp), (sy, cy)] = [rpy.x, rpy.y, rpy.z].map(sine_cosine);
+    let roll = Matrix3::new(1.0, 0.0, 0.0, 0.0, cr, -sr, 0.0, sr, cr);
+    let pitch = Matrix3::new(cp, 0.0, sp, 0.0, 1.0, 0.0, -sp, 0.0, cp);
+    let yaw = Matrix3::new(cy, -sy, 0.0, sy, cy, 0.0, 0.0, 0.0, 1.0);
+    yaw * pitch * roll
+}
+
+/// Makes the groups.
+///
+/// # Errors
+///
+/// Inertias that no body can have, and links that would move without inertia.
+pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Groups, Vec<String>> {
+    let mut problems = Vec::new();
+    let mut groups: Vec<Group> = Vec::new();
+    let mut of_link = Vec::new();
+    let mut poses: Vec<(Matrix3<f64>, Vector3<f64>)> = Vec::new();
+    let mut parts: Vec<Vec<Lump>> = Vec::new();
+    for (here, link) in tree.links.iter().enumerate() {
+        let fixed_to = match link.joint.motion {
+            Motion::Fixed => link.parent,
+            _ => None,
+        };
+        let (group, pose) = match fixed_to {
+            Some(parent) => {
+                let (axes, origin) = poses[parent];
+                let group: usize = of_link[parent];
+                groups[group].fixed.push(here);
+                (group, (axes * turned(&link.joint.rpy), origin + axes * link.joint.offset))
+            }
+            None => {
+                let ground = link.joint.motion == Motion::Fixed;
+                groups.push(Group { link: here, fixed: Vec::new(), lump: None, ground });
+                parts.push(Vec::new());
+                (groups.len() - 1, (Matrix3::identity(), Vector3::zeros()))
+            }
+        };
+        of_link.push(group);
+        poses.push(pose);
+        let part = read_inertial(tree, here, document, notes, &mut problems);
+        if let Some(part) = part {
+            match groups[group].ground {
+                true => notes.push(format!(
+                    "{}: ignored the inertia of link `{}`, which is fixed to the ground",
+                    document.link(link.index),
+                    link.name
+                )),
+                false => parts[group].push(carried(&part, &pose)),
+            }
+        }
+    }
+    for (group, parts) in groups.iter_mut().zip(&parts) {
+        group.lump = joined(parts);
+    }
+    for (index, group) in groups.iter().enumerate() {
+        if group.lump.is_some() || group.ground {
+            continue;
+        }
+        let link = &tree.links[group.link];
+        let place = document.link(link.index);
+        let carries_more = tree.links.iter().enumerate().any(|(other, link)| {
+            link.parent.is_some_and(|parent| of_link[parent] == index) && of_link[other] != index
+        });
+        match carries_more {
+            true => notes.push(format!("{place}: link `{}` moves, but has no inertia of its own", link.name)),
+            false => problems.push(format!(
+                "{place}: link `{}` moves, but neither it nor what is fixed to it has a mass: give it an <inertial>, \
+                 or make its joint fixed",
+                link.name
+            )),
+        }
+    }
+    if groups.iter().all(|group| group.ground) {
+        problems.push(format!("{}: nothing moves: there is no joint but fixed ones", document.file));
+    }
+    if problems.is_empty() { Ok(Groups { groups, of_link }) } else { Err(problems) }
+}
+
+/// The inertia of a link in its own axes, if it has one.
+fn read_inertial(
+    tree: &Tree,
+    here: usize,
+    document: &Robot,
+    notes: &mut Vec<String>,
+    problems: &mut Vec<String>,
+) -> Option<Lump> {
+    let link = &tree.links[here];
+    if !document.has_inertial(link.index) {
+        return None;
+    }
+    let place = document.link(link.index);
+    let given = &document.robot.links[link.index].inertial;
+    let i = &given.inertia;
+    let inertia = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
+    let (centre, rpy) = (Vector3::from(given.origin.xyz.0), Vector3::from(given.origin.rpy.0));
+    let mass = given.mass.value;
+    let mut problem = |message: String| {
+        problems.push(format!("{place}: link `{}`: {message}", link.name));
+        None
+    };
+    if !inertia.iter().chain(centre.iter()).chain(rpy.iter()).chain([&mass]).all(|number| number.is_finite())
+    {
+        return problem("its inertia is not finite".to_owned());
+    }
+    if mass < 0.0 {
+        return problem(format!("its mass is {mass}: give a positive one"));
+    }
+    if mass == 0.0 {
+        if inertia.iter().all(|&number| number == 0.0) {
+            notes.push(format!("{place}: link `{}` has mass 0: taken as massless", link.name));
+            return None;
+        }
+        return problem("its mass is 0, but its inertia is not: give a mass".to_owned());
+    }
+    let principal = inertia.symmetric_eigenvalues();
+    let (least, total) = (principal.min(), principal.sum());
+    let slack = 1e-9 * total.abs().max(inertia.amax());
+    if least < -slack {
+        return problem(format!("its inertia has the principal moment {least}: none may be negative"));
+    }
+    if 2.0 * principal.max() > total + slack {
+        return problem(format!(
+            "no body has the principal moments of inertia {:?}: the largest is above the sum of the others",
+            principal.as_slice()
+        ));
+    }
+    let turn = turned(&rpy);
+    Some(Lump { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
+}
+
+/// The inertia in the axes of the group.
+fn carried(part: &Lump, (axes, origin): &(Matrix3<f64>, Vector3<f64>)) -> Lump {
+    Lump {
+        mass: part.mass,
+        centre: origin + axes * part.centre,
+        inertia: symmetric(axes * part.inertia * axes.transpose()),
+    }
+}
+
+/// All parts as one body, by the parallel-axis theorem.
+fn joined(parts: &[Lump]) -> Option<Lump> {
+    if let [only] = parts {
+        return Some(only.clone());
+    }
+    let mass: f64 = parts.iter().map(|part| part.mass).sum();
+    if parts.is_empty() {
+        return None;
+    }
+    let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector3<f64>>() / mass;
+    let inertia = parts
+        .iter()
+        .map(|part| {
+            let arm = part.centre - centre;
+            part.inertia + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * part.mass
+        })
+        .sum();
+    Some(Lump { mass, centre, inertia: symmetric(inertia) })
+}
+
+fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {
+    (matrix + matrix.transpose()) * 0.5
+}
+
+/// Two unit vectors across a third, right-handed: for x they are y and z, and so on round.
+pub fn across(axis: &Vector3<f64>) -> [Vector3<f64>; 2] {
+    for (index, unit) in [Vector3::x(), Vector3::y(), Vector3::z()].iter().enumerate() {
+        if (axis - unit).norm() < 1e-12 {
+            let round = [Vector3::y(), Vector3::z(), Vector3::x()];
+            return [round[index], round[(index + 1) % 3]];
+        }
+    }
+    let turn = Rotation3::rotation_between(&Vector3::z(), axis)
+        .unwrap_or_else(|| Rotation3::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI));
+    [turn * Vector3::x(), turn * Vector3::y()]
+}

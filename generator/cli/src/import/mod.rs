@@ -1,0 +1,52 @@
+//! A robot description (URDF) becomes the text of a model.
+//!
+//! ```text
+//! URDF -> document  the XML, places of its elements, what is not used
+//!      -> tree      links and joints that hang together, checked
+//!      -> lumps     what is fixed to a moving link becomes part of it
+//!      -> text      the model
+//! ```
+
+mod document;
+mod lump;
+mod names;
+mod text;
+mod tree;
+
+#[cfg(test)]
+mod tests;
+
+/// How to import.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// links at whose origins there is to be a contact
+    pub contacts: Vec<String>,
+    /// is the root link free to move? `None`: if it has an inertia
+    pub floating: Option<bool>,
+    /// should parameters be folded in at build time?
+    pub fixed_parameters: bool,
+}
+
+/// What an import delivers.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// the text of the model
+    pub model: String,
+    /// what was ignored, chosen or renamed, one sentence each
+    pub notes: Vec<String>,
+}
+
+/// Imports the text of a URDF file called `file` (for messages).
+///
+/// # Errors
+///
+/// All that is wrong with the file, one sentence with its place each.
+pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, Vec<String>> {
+    let mut notes = Vec::new();
+    let document = document::read(source, file, &mut notes)?;
+    let mut tree = tree::grow(&document, &mut notes)?;
+    tree.choose_base(options.floating, &mut notes);
+    let groups = lump::lump(&tree, &document, &mut notes)?;
+    let model = text::write(&tree, &groups, &document, options, &mut notes)?;
+    Ok(Imported { model, notes })
+}

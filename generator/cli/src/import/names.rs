@@ -1,0 +1,94 @@
+//! Names of links and joints as names of the model language.
+
+use std::collections::HashSet;
+
+/// Words that a model must not declare: what the language gives, and Rust's keywords.
+const TAKEN: &[&str] = &[
+    "N", "O", "time", "pi", "_", "as", "break", "const", "continue", "crate", "else", "enum", "extern",
+    "false", "fn", "for", "if", "impl", "in", "let", "loop", "match", "mod", "move", "mut", "pub", "ref",
+    "return", "self", "Self", "static", "struct", "super", "trait", "true", "type", "unsafe", "use", "where",
+    "while", "async", "await", "dyn", "abstract", "become", "box", "do", "final", "gen", "macro", "override",
+    "priv", "try", "typeof", "unsized", "virtual", "yield",
+];
+
+/// Hands out names, none twice.
+#[derive(Debug)]
+pub struct Names {
+    taken: HashSet<String>,
+    folded: HashSet<String>,
+    /// what had to be changed beyond replacing letters
+    pub renamed: Vec<String>,
+}
+
+impl Names {
+    /// Nothing is taken but what the language gives.
+    pub fn new() -> Self {
+        let taken = TAKEN.iter().map(|word| (*word).to_owned()).collect();
+        Names { taken, folded: HashSet::new(), renamed: Vec::new() }
+    }
+
+    /// A free name that is as like `wish` as can be. Names that differ only by case and underscores count as one, because
+    /// they may become one in generated code.
+    pub fn give(&mut self, wish: &str) -> String {
+        let first = identifier(wish);
+        let mut name = first.clone();
+        let mut count = 1;
+        while self.taken.contains(&name) || self.folded.contains(&folded(&name)) {
+            count += 1;
+            name = format!("{first}_n{count}");
+        }
+        if name != first {
+            self.renamed.push(format!("`{first}` is called `{name}`, because that name is taken"));
+        }
+        self.taken.insert(name.clone());
+        self.folded.insert(folded(&name));
+        name
+    }
+}
+
+/// `text` with `_` for all that an identifier cannot have.
+pub fn identifier(text: &str) -> String {
+    let name: String = text.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    match name.chars().next() {
+        None => "unnamed".to_owned(),
+        Some(first) if first.is_ascii_digit() => format!("_{name}"),
+        Some(_) if name.chars().all(|c| c == '_') => "unnamed".to_owned(),
+        Some(_) => name,
+    }
+}
+
+/// `two sleds` as the name of a mechanism: `TwoSleds`.
+pub fn mechanism(text: &str) -> String {
+    let mut name = String::new();
+    for word in text.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty()) {
+        let mut letters = word.chars();
+        name.extend(letters.next().map(|c| c.to_ascii_uppercase()));
+        name.extend(letters);
+    }
+    match name.chars().next() {
+        None => "Robot".to_owned(),
+        Some(first) if first.is_ascii_digit() => format!("Robot{name}"),
+        Some(_) => name,
+    }
+}
+
+fn folded(name: &str) -> String {
+    name.chars().filter(|&c| c != '_').map(|c| c.to_ascii_lowercase()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_identifiers_and_distinct() {
+        let mut names = Names::new();
+        assert_eq!(names.give("q_left-hip.roll"), "q_left_hip_roll");
+        assert_eq!(names.give("q_left_hip_roll"), "q_left_hip_roll_n2");
+        assert_eq!(names.give("7up"), "_7up");
+        assert_eq!(names.give("N"), "N_n2");
+        assert_eq!(names.give("Étage"), "_tage");
+        assert_eq!(mechanism("anymal_c v2"), "AnymalCV2");
+        assert_eq!(mechanism("3d"), "Robot3d");
+    }
+}

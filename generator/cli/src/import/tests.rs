@@ -1,0 +1,151 @@
+//! Imports of small robots, and what is refused.
+
+use super::{Options, import};
+
+fn robot(body: &str) -> String {
+    format!("<robot name=\"two\">\n{body}\n</robot>")
+}
+
+fn link(name: &str) -> String {
+    format!(
+        "<link name=\"{name}\"><inertial><origin xyz=\"0 0 0.5\"/><mass value=\"2\"/>\
+         <inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"0.02\"/></inertial></link>\n"
+    )
+}
+
+fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
+    format!(
+        "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>{more}</joint>\n"
+    )
+}
+
+/// The problems of a robot, all of them.
+fn refused(body: &str) -> String {
+    import(&robot(body), "r.urdf", &Options::default()).unwrap_err().join("\n")
+}
+
+fn model(body: &str, options: &Options) -> (String, String) {
+    let imported = import(&robot(body), "r.urdf", options).unwrap();
+    (imported.model, imported.notes.join("\n"))
+}
+
+fn has(model: &str, line: &str) {
+    assert!(model.lines().any(|other| other.trim() == line), "no line `{line}` in\n{model}");
+}
+
+#[test]
+fn joints_become_frames_points_and_loads() {
+    let axis = "<origin xyz=\"0 0 0.25\" rpy=\"1.5707963267948966 0 0\"/><axis xyz=\"0 -1 0\"/>";
+    let body = "<link name=\"base\"/>".to_owned()
+        + &link("arm")
+        + &link("hand")
+        + &joint("hip-1", "revolute", "base", "arm", &format!("{axis}<dynamics damping=\"0.5\"/>"))
+        + &joint("slide", "prismatic", "arm", "hand", "<axis xyz=\"1 0 0\"/>");
+    let (model, notes) = model(&body, &Options { contacts: vec!["hand".into()], ..Options::default() });
+    has(&model, "hip_1_base = N.rotate(x, pi/2);");
+    has(&model, "arm_axes = hip_1_base.rotate(-y, q_hip_1);");
+    has(&model, "arm_origin = O + oz_hip_1*N.z;");
+    has(&model, "arm_centre = arm_origin + cz_arm*arm_axes.z;");
+    has(&model, "hand_origin = arm_origin + q_slide*arm_axes.x;");
+    has(&model, "torque on arm_axes: -(tau_hip_1 - d_hip_1*u_hip_1)*arm_axes.y;");
+    has(&model, "force on hand_origin from arm_origin: tau_slide*arm_axes.x;");
+    has(
+        &model,
+        "arm { frame: arm_axes, centre: arm_centre, mass: m_arm, inertia: [Ixx_arm, Iyy_arm, Izz_arm] },",
+    );
+    has(
+        &model,
+        "contact_hand { point: hand_origin of hand, normal: N.z, gap: dot(position(hand_origin), N.z) },",
+    );
+    assert!(notes.contains("root link `base` has no inertia"), "{notes}");
+}
+
+#[test]
+fn a_base_with_inertia_is_free() {
+    let body = link("trunk")
+        + &link("tail")
+        + &joint("j", "continuous", "trunk", "tail", "<axis xyz=\"0.6 0 0.8\"/>");
+    let (free, _) = model(&body, &Options::default());
+    has(&free, "trunk_axes = N.quaternion(q_base_e0, q_base_e1, q_base_e2, q_base_e3);");
+    has(&free, "trunk_origin = u_base_x*trunk_axes.x + u_base_y*trunk_axes.y + u_base_z*trunk_axes.z;");
+    has(&free, "tail_axes = trunk_axes.rotate([0.6, 0, 0.8], q_j);");
+    let (fixed, notes) = model(&body, &Options { floating: Some(false), ..Options::default() });
+    assert!(!fixed.contains("quaternion"), "{fixed}");
+    assert!(notes.contains("ignored the inertia of link `trunk`"), "{notes}");
+}
+
+#[test]
+fn what_is_fixed_becomes_one_body() {
+    let body = link("base")
+        + &link("tool")
+        + &joint("weld", "fixed", "base", "tool", "<origin xyz=\"0 0 1\" rpy=\"3.141592653589793 0 0\"/>");
+    let (model, _) = model(&body, &Options::default());
+    // Two equal links end to end: the centre is where the second one's is mirrored to.
+    has(&model, "m_base: kg = 4,");
+    has(&model, "cz_base: m = 0.5,");
+    has(&model, "Ixx_base: kg*m^2 = 0.2,");
+    has(&model, "tool_axes = base_axes.rotate(x, pi);");
+}
+
+#[test]
+fn mistakes_are_named_with_their_place() {
+    let two = |name: &str| "<link name=\"base\"/>\n".to_owned() + &link("arm") + name;
+    let cases = [
+        (two(&joint("j", "revolute", "base", "arms", "")), "unknown link `arms`: did you mean `arm`?"),
+        (two(&joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 2\"/>")), "length 2, not 1"),
+        (two(&joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 0\"/>")), "give its direction"),
+        (
+            two(&joint("j", "revolute", "base", "arm", "<mimic joint=\"k\"/>")),
+            "r.urdf:4:1: joint `j`: it mimics `k`",
+        ),
+        (two(&joint("j", "fixed", "base", "arm", "")), "nothing moves"),
+        (two(""), "link `arm` hangs on no joint"),
+        (
+            two(&(joint("a", "revolute", "base", "arm", "") + &joint("b", "revolute", "arm", "base", ""))),
+            "the links form a cycle",
+        ),
+        (
+            two(&(joint("a", "revolute", "base", "arm", "") + &joint("b", "revolute", "base", "arm", ""))),
+            "which joint `a` (r.urdf:4:1) carries already",
+        ),
+        (
+            "<link name=\"base\"/><link name=\"arm\"/>".to_owned()
+                + &joint("a", "revolute", "base", "arm", ""),
+            "link `arm` moves, but neither it nor what is fixed to it has a mass",
+        ),
+        (link("a") + &link("a"), "a second link `a`; the first is at r.urdf:2:1"),
+        (
+            two("").replace("value=\"2\"", "value=\"-2\"") + &joint("j", "revolute", "base", "arm", ""),
+            "its mass is -2",
+        ),
+        (
+            two("").replace("izz=\"0.02\"", "izz=\"9\"") + &joint("j", "revolute", "base", "arm", ""),
+            "no body has",
+        ),
+        (two("").replace("<mass value=\"2\"/>", ""), "has no <mass>"),
+        ("<link name=\"a\">".to_owned(), "this is no XML"),
+        (two("").replace("value=\"2\"", "value=\"two\""), "this is no valid URDF"),
+        (String::new(), "there is no link"),
+    ];
+    for (body, message) in cases {
+        let problems = refused(&body);
+        assert!(problems.contains(message), "`{message}` not in\n{problems}");
+        assert!(problems.starts_with("r.urdf"), "{problems}");
+    }
+    let other = import("<sdf/>", "r.urdf", &Options::default()).unwrap_err().join("\n");
+    assert!(other.contains("its root is <sdf>"), "{other}");
+}
+
+#[test]
+fn names_that_clash_give_way() {
+    let body = "<link name=\"N\"/>".to_owned()
+        + &link("for")
+        + &link("q_a")
+        + &joint("a", "revolute", "N", "for", "")
+        + &joint("a.b", "planar", "for", "q_a", "<axis xyz=\"0 0 1\"/>");
+    let (model, notes) = model(&body, &Options::default());
+    has(&model, "q_a: rad,");
+    assert!(notes.contains("`q_a` is called `q_a_n2`"), "{notes}");
+    assert!(model.contains("for_n2 { frame: for_axes"), "{model}");
+    has(&model, "q_a_origin = O + q_a_b_x*for_axes.x + q_a_b_y*for_axes.y;");
+}

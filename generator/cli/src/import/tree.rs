@@ -1,0 +1,269 @@
+//! Links and joints as a tree.
+
+use std::collections::HashMap;
+
+use nalgebra::Vector3;
+use urdf_rs::JointType;
+
+use super::document::Robot;
+
+/// How a joint lets its child move.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// not at all
+    Fixed,
+    /// about the axis
+    Turn,
+    /// along the axis
+    Slide,
+    /// in the plane across the axis
+    Planar,
+    /// freely
+    Free,
+}
+
+/// A joint.
+#[derive(Clone, Debug)]
+pub struct Joint {
+    /// its name as spelled; `None` for what connects the root with the ground
+    pub name: Option<String>,
+    /// how it moves
+    pub motion: Motion,
+    /// its origin in the parent link, m
+    pub offset: Vector3<f64>,
+    /// roll, pitch and yaw of its axes in the parent link, rad
+    pub rpy: Vector3<f64>,
+    /// unit vector in the joint's axes
+    pub axis: Vector3<f64>,
+    /// N m s/rad or N s/m
+    pub damping: f64,
+}
+
+/// A link and the joint that carries it.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// its name as spelled
+    pub name: String,
+    /// index of its description in the file
+    pub index: usize,
+    /// the link that carries it (index into [`Tree::links`], always a lower one); `None`: the root
+    pub parent: Option<usize>,
+    /// the joint that carries it
+    pub joint: Joint,
+}
+
+/// A robot: every link after the one that carries it, branch by branch.
+#[derive(Clone, Debug)]
+pub struct Tree {
+    /// the links
+    pub links: Vec<Link>,
+    /// does the root have an inertia?
+    root_has_inertial: bool,
+}
+
+impl Tree {
+    /// Decides whether the root is free.
+    pub fn choose_base(&mut self, floating: Option<bool>, notes: &mut Vec<String>) {
+        let root = &mut self.links[0];
+        let free = floating.unwrap_or(self.root_has_inertial);
+        root.joint.motion = if free { Motion::Free } else { Motion::Fixed };
+        if floating.is_none() {
+            notes.push(match free {
+                true => format!(
+                    "the root link `{}` has an inertia and so moves freely; `--base fixed` would fix it to the ground",
+                    root.name
+                ),
+                false => format!(
+                    "the root link `{}` has no inertia and so is fixed to the ground; `--base floating` would free it",
+                    root.name
+                ),
+            });
+        }
+    }
+}
+
+/// Makes the tree.
+///
+/// # Errors
+///
+/// All that keeps it from being one, and all joints that cannot be imported.
+pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<String>> {
+    let robot = &document.robot;
+    let mut problems = Vec::new();
+    let mut known: HashMap<&str, usize> = HashMap::new();
+    for (index, link) in robot.links.iter().enumerate() {
+        if let Some(first) = known.insert(&link.name, index) {
+            let (at, first) = (document.link(index), document.link(first));
+            problems
+                .push(format!("{at}: a second link `{}`; the first is at {first}: rename one", link.name));
+        }
+    }
+    if robot.links.is_empty() {
+        problems.push(format!("{}: there is no link", document.file));
+    }
+    let mut carried_by: HashMap<usize, usize> = HashMap::new();
+    let mut carries: Vec<Vec<usize>> = vec![Vec::new(); robot.links.len()];
+    let mut joints = Vec::new();
+    let mut names: HashMap<&str, usize> = HashMap::new();
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let at = document.joint(index);
+        if let Some(first) = names.insert(&joint.name, index) {
+            let first = document.joint(first);
+            problems
+                .push(format!("{at}: a second joint `{}`; the first is at {first}: rename one", joint.name));
+        }
+        joints.push(read_joint(joint, at, notes, &mut problems));
+        let mut end = |role: &str, name: &str| {
+            let found = known.get(name).copied();
+            if found.is_none() {
+                let hint = crate::spelling::hint(name, known.keys().copied());
+                problems.push(format!(
+                    "{at}: {role} of joint `{}` is the unknown link `{name}`: {hint}",
+                    joint.name
+                ));
+            }
+            found
+        };
+        let (parent, child) = (end("parent", &joint.parent.link), end("child", &joint.child.link));
+        let (Some(parent), Some(child)) = (parent, child) else { continue };
+        if let Some(&other) = carried_by.get(&child) {
+            problems.push(format!(
+                "{at}: joint `{}` carries link `{}`, which joint `{}` ({}) carries already: a URDF is a tree, so cut \
+                 the loop here and close it by constraints in the model",
+                joint.name,
+                joint.child.link,
+                robot.joints[other].name,
+                document.joint(other)
+            ));
+            continue;
+        }
+        carried_by.insert(child, index);
+        carries[parent].push(index);
+    }
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let roots: Vec<usize> = (0..robot.links.len()).filter(|link| !carried_by.contains_key(link)).collect();
+    let root = match roots[..] {
+        [root] => root,
+        [] => {
+            return Err(vec![format!(
+                "{}: the links form a cycle (every one is carried by a joint): one link must be the root",
+                document.link(0)
+            )]);
+        }
+        [first, second, ..] => {
+            return Err(vec![format!(
+                "{}: link `{}` hangs on no joint, nor does `{}` ({}): connect all but one",
+                document.link(second),
+                robot.links[second].name,
+                robot.links[first].name,
+                document.link(first)
+            )]);
+        }
+    };
+    let ground = Joint {
+        name: None,
+        motion: Motion::Fixed,
+        offset: Vector3::zeros(),
+        rpy: Vector3::zeros(),
+        axis: Vector3::z(),
+        damping: 0.0,
+    };
+    let mut links = Vec::new();
+    let mut reached = vec![false; robot.links.len()];
+    let mut open = vec![(root, None, ground)];
+    while let Some((link, parent, joint)) = open.pop() {
+        reached[link] = true;
+        let here = links.len();
+        links.push(Link { name: robot.links[link].name.clone(), index: link, parent, joint });
+        for &index in carries[link].iter().rev() {
+            let child = known[robot.joints[index].child.link.as_str()];
+            open.push((child, Some(here), joints[index].clone()));
+        }
+    }
+    if let Some(lost) = reached.iter().position(|reached| !reached) {
+        let name = &robot.links[lost].name;
+        return Err(vec![format!(
+            "{}: link `{name}` is part of a cycle of joints that the root `{}` does not reach: cut the cycle",
+            document.link(lost),
+            robot.links[root].name
+        )]);
+    }
+    Ok(Tree { links, root_has_inertial: document.has_inertial(root) })
+}
+
+fn read_joint(
+    joint: &urdf_rs::Joint,
+    at: &str,
+    notes: &mut Vec<String>,
+    problems: &mut Vec<String>,
+) -> Joint {
+    let name = &joint.name;
+    let mut problem = |message: String| problems.push(format!("{at}: joint `{name}`: {message}"));
+    let motion = match joint.joint_type {
+        JointType::Fixed => Motion::Fixed,
+        JointType::Revolute | JointType::Continuous => Motion::Turn,
+        JointType::Prismatic => Motion::Slide,
+        JointType::Planar => Motion::Planar,
+        JointType::Floating => Motion::Free,
+        JointType::Spherical => {
+            problem(
+                "`spherical` is no joint type of URDF: write three revolute joints, or a floating one"
+                    .to_owned(),
+            );
+            Motion::Fixed
+        }
+    };
+    if let Some(mimic) = &joint.mimic {
+        problem(format!(
+            "it mimics `{}`, which cannot be imported: make it fixed or free, and write the relation as a constraint",
+            mimic.joint
+        ));
+    }
+    let vector = |three: &urdf_rs::Vec3| Vector3::from(three.0);
+    let (offset, rpy) = (vector(&joint.origin.xyz), vector(&joint.origin.rpy));
+    let mut damping = joint.dynamics.as_ref().map_or(0.0, |dynamics| dynamics.damping);
+    if joint.dynamics.as_ref().is_some_and(|dynamics| dynamics.friction != 0.0) {
+        notes.push(format!("{at}: ignored the friction of joint `{name}`: only its damping is linear"));
+    }
+    if !offset.iter().chain(rpy.iter()).all(|number| number.is_finite()) {
+        problem("its origin is not finite".to_owned());
+    }
+    if !(damping.is_finite() && damping >= 0.0) {
+        problem(format!("its damping is {damping}: give a number that is not negative"));
+    }
+    if damping != 0.0 && !matches!(motion, Motion::Turn | Motion::Slide) {
+        notes.push(format!(
+            "{at}: ignored the damping of joint `{name}`, which neither turns nor slides about one axis"
+        ));
+        damping = 0.0;
+    }
+    for (word, angle) in ["roll", "pitch", "yaw"].into_iter().zip(rpy.iter()) {
+        let off = (angle / std::f64::consts::FRAC_PI_2).fract().abs();
+        let off = off.min(1.0 - off) * std::f64::consts::FRAC_PI_2;
+        if off > 1e-10 && off < 2e-3 {
+            notes.push(format!(
+                "{at}: the {word} {angle} of joint `{name}` is kept as it is; if a right angle is meant, write pi/2 in the \
+                 model: exact right angles make shorter equations"
+            ));
+        }
+    }
+    let mut axis = vector(&joint.axis.xyz);
+    if matches!(motion, Motion::Turn | Motion::Slide | Motion::Planar) {
+        let length = axis.norm();
+        // Six digits are what exporters write; anything further off is another axis or a mistake.
+        let is_unit = (length - 1.0).abs() <= 1e-5;
+        if !is_unit {
+            let [x, y, z] = joint.axis.xyz.0;
+            let unit = axis / length;
+            let advice = match length > 0.0 && length.is_finite() {
+                true => format!("for this direction write `{} {} {}`", unit.x, unit.y, unit.z),
+                false => "give its direction".to_owned(),
+            };
+            problem(format!("its axis `{x} {y} {z}` has length {length}, not 1: {advice}"));
+        }
+        axis /= length;
+    }
+    Joint { name: Some(name.clone()), motion, offset, rpy, axis, damping }
+}

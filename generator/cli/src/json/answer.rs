@@ -1,0 +1,36 @@
+//! What `solve` and `collide` write of an impact.
+
+use hodograph::Impact;
+use serde::Serialize;
+
+/// The outcome of an impact.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// impulse on the striking point along n, t, s, N s
+    pub impulse: [f64; 3],
+    /// velocity of separation along n, t, s, m/s
+    pub v: [f64; 3],
+    /// work of the contact impulse (23), J
+    #[serde(rename = "dE")]
+    pub contact_work: f64,
+    /// work of the normal impulse (35b), J
+    #[serde(rename = "dEn")]
+    pub normal_work: f64,
+    /// the phases gone through
+    pub path: &'static [&'static str],
+    /// how often compression ended
+    pub compressions: u32,
+}
+
+impl From<&Impact<f64>> for Answer {
+    fn from(impact: &Impact<f64>) -> Self {
+        Answer {
+            impulse: impact.impulse.into(),
+            v: impact.velocity.into(),
+            contact_work: impact.contact_work,
+            normal_work: impact.normal_work,
+            path: impact.path.phases(),
+            compressions: impact.compressions,
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! The JSON door: reading lines and states, writing answers and error objects (`docs/json.md` is the contract).
+
+pub mod answer;
+pub mod failure;
+pub mod fields;
+pub mod value;
+
+pub use failure::{Failure, Kind};
+pub use fields::Fields;
+pub use value::Json;

@@ -1,0 +1,148 @@
+//! The state in which a model is evaluated: names to numbers.
+
+use hodograph_generator::model::mechanism::{Mechanism, Orientation, Quantity};
+
+use super::fields::number;
+use super::{Failure, Fields, Json, Kind};
+use crate::spelling;
+
+/// Numbers for everything that a model leaves open.
+#[derive(Clone, Debug)]
+pub struct State {
+    /// s
+    pub time: f64,
+    /// per parameter of the mechanism, in its declared unit (fixed ones too)
+    pub parameters: Vec<f64>,
+    /// per input
+    pub inputs: Vec<f64>,
+    /// per coordinate
+    pub coordinates: Vec<f64>,
+    /// per independent speed
+    pub speeds: Vec<f64>,
+}
+
+/// Number of independent speeds, which stand first in `Mechanism::speeds`.
+pub fn independent(mechanism: &Mechanism) -> usize {
+    mechanism.speeds.iter().filter(|speed| !speed.dependent).count()
+}
+
+fn values(quantities: &[Quantity]) -> Vec<f64> {
+    quantities.iter().map(|quantity| quantity.value.unwrap_or(0.0)).collect()
+}
+
+impl State {
+    /// The file's values, 0 where it has none, and unit quaternions.
+    pub fn initial(mechanism: &Mechanism) -> Self {
+        let mut state = State {
+            time: 0.0,
+            parameters: values(&mechanism.parameters),
+            inputs: values(&mechanism.inputs),
+            coordinates: values(&mechanism.coordinates),
+            speeds: values(&mechanism.speeds[..independent(mechanism)]),
+        };
+        for frame in &mechanism.frames {
+            if let Orientation::Quaternion([scalar, ..]) = frame.orientation
+                && mechanism.coordinates[scalar.0].value.is_none()
+            {
+                state.coordinates[scalar.0] = 1.0;
+            }
+        }
+        state
+    }
+
+    /// Reads `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional.
+    ///
+    /// # Errors
+    ///
+    /// `bad_json`, `unknown_name`, `not_finite`.
+    pub fn read(text: &str, mechanism: &Mechanism) -> Result<Self, Failure> {
+        let mut state = State::initial(mechanism);
+        let mut given = std::collections::HashSet::new();
+        for (name, value) in Fields::new(Json::parse(text)?, "the state")?.into_inner() {
+            match name.as_str() {
+                "t" => state.time = number(&value, "t")?,
+                "parameters" | "inputs" | "q" | "u" => {
+                    let fields = Fields::new(value, &format!("`{name}`"))?;
+                    for (entry, value) in fields.into_inner() {
+                        let value = number(&value, &format!("{name}.{entry}"))?;
+                        *state.slot(mechanism, &name, &entry)? = value;
+                        if given.contains(&entry) {
+                            return Err(Failure::bad_json(format!(
+                                "`{entry}` stands under `parameters` and under `inputs`: give it once"
+                            )));
+                        }
+                        given.insert(entry);
+                    }
+                }
+                other => {
+                    let hint = spelling::hint(other, ["parameters", "t", "q", "u", "inputs"]);
+                    return Err(Failure::new(Kind::UnknownName, format!("a state has no field `{other}`: {hint}")));
+                }
+            }
+        }
+        Ok(state)
+    }
+
+    /// Where the number of that name belongs.
+    fn slot(&mut self, mechanism: &Mechanism, section: &str, name: &str) -> Result<&mut f64, Failure> {
+        let unknown = |message: String| Err(Failure::new(Kind::UnknownName, message));
+        let find = |list: &[Quantity]| list.iter().position(|quantity| quantity.name == name);
+        let parameter = find(&mechanism.parameters);
+        let input = find(&mechanism.inputs);
+        let coordinate = find(&mechanism.coordinates);
+        let speed = find(&mechanism.speeds);
+        let loads = section == "parameters" || section == "inputs";
+        match (section, parameter, input, coordinate, speed) {
+            (_, Some(index), ..) if loads => {
+                let parameter = &mechanism.parameters[index];
+                if parameter.fixed {
+                    return unknown(format!(
+                        "parameter `{name}` is `fixed` in the model: its value {} is built in; take out `fixed` there to \
+                         give another",
+                        parameter.value.unwrap_or(0.0)
+                    ));
+                }
+                Ok(&mut self.parameters[index])
+            }
+            (_, _, Some(index), ..) if loads => Ok(&mut self.inputs[index]),
+            ("q", _, _, Some(index), _) => Ok(&mut self.coordinates[index]),
+            ("u", _, _, _, Some(index)) if index < self.speeds.len() => Ok(&mut self.speeds[index]),
+            ("u", _, _, _, Some(_)) => unknown(format!(
+                "`{name}` is a dependent speed: it follows from the constraints; give the independent ones ({})",
+                names(&mechanism.speeds[..self.speeds.len()]).collect::<Vec<_>>().join(", ")
+            )),
+            (_, Some(_), ..) | (_, _, Some(_), ..) => {
+                unknown(format!("`{name}` is no {}: give it under `parameters`", what(section)))
+            }
+            (_, _, _, Some(_), _) => unknown(format!("`{name}` is a coordinate: give it under `q`")),
+            (_, _, _, _, Some(_)) => unknown(format!("`{name}` is a speed: give it under `u`")),
+            _ => {
+                let hint = match section {
+                    "q" => spelling::hint(name, names(&mechanism.coordinates)),
+                    "u" => spelling::hint(name, names(&mechanism.speeds[..self.speeds.len()])),
+                    _ => spelling::hint(
+                        name,
+                        names(&mechanism.parameters)
+                            .zip(&mechanism.parameters)
+                            .filter(|(_, parameter)| !parameter.fixed)
+                            .map(|(name, _)| name)
+                            .chain(names(&mechanism.inputs)),
+                    ),
+                };
+                unknown(format!("{} has no {} `{name}`: {hint}", mechanism.name, what(section)))
+            }
+        }
+    }
+}
+
+fn names(quantities: &[Quantity]) -> impl Iterator<Item = &str> + Clone {
+    quantities.iter().map(|quantity| quantity.name.as_str())
+}
+
+fn what(section: &str) -> &'static str {
+    match section {
+        "q" => "coordinate",
+        "u" => "speed",
+        _ => "parameter or input",
+    }
+}

@@ -1,0 +1,61 @@
+//! "Did you mean": the name most like one that is not there.
+
+/// The name in `names` that is most like `name`, if one is near enough to be what was meant.
+pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let limit = match name.chars().count() {
+        0..=2 => 0,
+        length => (length / 3).max(1),
+    };
+    names
+        .into_iter()
+        .map(|other| (distance(&name.to_lowercase(), &other.to_lowercase()), other))
+        .filter(|&(distance, _)| distance <= limit)
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, other)| other)
+}
+
+/// The end of a message about an unknown name: a near one if there is one, else the first few that there are.
+pub fn hint<'a>(name: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    if let Some(other) = nearest(name, names.clone()) {
+        return format!("did you mean `{other}`?");
+    }
+    let all: Vec<&str> = names.into_iter().collect();
+    match all.len() {
+        0 => "there are none".to_owned(),
+        1..=12 => format!("there are: {}", all.join(", ")),
+        more => format!("there are: {}, and {} more", all[..10].join(", "), more - 10),
+    }
+}
+
+/// How many letters must be put in, taken out, changed or swapped with their neighbour.
+fn distance(a: &str, b: &str) -> usize {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
+    let mut before: Vec<usize> = vec![0; b.len() + 1];
+    let mut last: Vec<usize> = (0..=b.len()).collect();
+    for i in 1..=a.len() {
+        let mut now = vec![i];
+        for j in 1..=b.len() {
+            let change = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = change.min(last[j] + 1).min(now[j - 1] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(before[j - 2] + 1);
+            }
+            now.push(least);
+        }
+        before = std::mem::replace(&mut last, now);
+    }
+    last[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn near_names_are_found() {
+        assert_eq!(nearest("gama", ["delta", "gamma"]), Some("gamma"));
+        assert_eq!(nearest("BCAC", ["BcAc"]), Some("BcAc"));
+        assert_eq!(nearest("q12", ["u1", "q21"]), Some("q21"));
+        assert_eq!(nearest("mass", ["l", "k"]), None);
+    }
+}

@@ -1,0 +1,45 @@
+//! The laws by name, and what the two surfaces are like.
+
+use hodograph::{Law, Surface};
+
+use crate::json::{Failure, Kind};
+
+/// The names of the laws, as the JSON door spells them.
+pub const LAWS: [(&str, Law); 3] =
+    [("newton", Law::Newton), ("poisson", Law::Poisson), ("stronge", Law::Stronge)];
+
+/// The law of that name.
+///
+/// # Errors
+///
+/// `unknown_name`.
+pub fn law(name: &str) -> Result<Law, Failure> {
+    LAWS.iter().find(|(spelling, _)| *spelling == name).map(|&(_, law)| law).ok_or_else(|| {
+        Failure::new(Kind::UnknownName, format!("there is no law `{name}`: give newton, poisson or stronge"))
+    })
+}
+
+/// The surfaces as they stand on the command line.
+#[derive(Clone, Debug, clap::Args)]
+pub struct SurfaceArguments {
+    /// Coulomb's coefficient of friction, not negative
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    pub mu: f64,
+    /// coefficient of restitution, between 0 and 1
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    pub e: f64,
+    /// hypothesis of restitution: newton, poisson or stronge
+    #[arg(long, value_name = "LAW")]
+    pub law: String,
+}
+
+impl SurfaceArguments {
+    /// The surfaces; the solver checks the numbers.
+    ///
+    /// # Errors
+    ///
+    /// `unknown_name`.
+    pub fn surface(&self) -> Result<Surface<f64>, Failure> {
+        Ok(Surface { mu: self.mu, e: self.e, law: law(&self.law)? })
+    }
+}
