@@ -16,6 +16,7 @@
 
 pub mod artifact;
 pub mod diagnostics;
+pub mod emit;
 pub mod interpret;
 pub mod model;
 pub mod number;

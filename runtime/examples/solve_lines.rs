@@ -24,11 +24,7 @@ fn main() -> std::io::Result<()> {
             _ => Law::Stronge,
         };
         let number = |key: &str| case[key].as_f64().unwrap_or(f64::NAN);
-        let surface = Surface {
-            mu: number("mu"),
-            e: number("e"),
-            law,
-        };
+        let surface = Surface { mu: number("mu"), e: number("e"), law };
         let matrix = ReducedMatrix::from(numbers::<6>(&case["m"]));
         let approach = Vector3::from(numbers::<3>(&case["v"]));
         let answer = match solve(&matrix, &approach, &surface) {

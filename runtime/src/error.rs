@@ -75,16 +75,10 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
                 "an input is not finite ({value}): check the state and the parameters for overflow or division by zero"
             ),
             Self::NegativeFriction { mu } => {
-                write!(
-                    out,
-                    "the coefficient of friction is {mu}: it must not be negative"
-                )
+                write!(out, "the coefficient of friction is {mu}: it must not be negative")
             }
             Self::RestitutionOutOfRange { e } => {
-                write!(
-                    out,
-                    "the coefficient of restitution is {e}: it must lie between 0 and 1"
-                )
+                write!(out, "the coefficient of restitution is {e}: it must lie between 0 and 1")
             }
             Self::NotApproaching { normal_velocity } => write!(
                 out,
@@ -100,10 +94,7 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
                 out,
                 "m_nn is {nn}: no impulse along the normal can move the contact point; check the normal and the constraints"
             ),
-            Self::Wedged {
-                normal_velocity,
-                law,
-            } => write!(
+            Self::Wedged { normal_velocity, law } => write!(
                 out,
                 "the contact wedges at normal velocity {normal_velocity}: no impulse ends the collision under {law:?}'s hypothesis; \
                  lower the friction or, if the bodies merely jam, use Poisson's hypothesis"

@@ -8,6 +8,8 @@
 extern crate std;
 
 mod error;
+#[doc(hidden)]
+pub mod generated;
 mod impact;
 mod law;
 mod reduced;
@@ -17,6 +19,7 @@ mod surface;
 
 pub use crate::{
     error::ImpactError,
+    generated::{CollisionError, ParameterError, StateError},
     impact::{Impact, Path},
     law::Law,
     reduced::ReducedMatrix,
@@ -24,3 +27,6 @@ pub use crate::{
     solve::solve,
     surface::Surface,
 };
+
+#[doc(hidden)]
+pub use nalgebra;

@@ -31,14 +31,7 @@ impl<T> ReducedMatrix<T> {
     /// From the entries in the order nn, nt, ns, tt, ts, ss.
     #[inline]
     pub const fn new(nn: T, nt: T, ns: T, tt: T, ts: T, ss: T) -> Self {
-        Self {
-            nn,
-            nt,
-            ns,
-            tt,
-            ts,
-            ss,
-        }
+        Self { nn, nt, ns, tt, ts, ss }
     }
 }
 

@@ -18,11 +18,7 @@ pub(crate) fn constant<T: Scalar>(value: f64) -> T {
 /// `a * b + c`, fused only where the target has the instruction and the standard library reaches it.
 #[inline(always)]
 pub(crate) fn fma<T: Scalar>(a: T, b: T, c: T) -> T {
-    if cfg!(all(feature = "std", target_feature = "fma")) {
-        a.mul_add(b, c)
-    } else {
-        a * b + c
-    }
+    if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// The larger of two numbers, by comparison alone (no order is defined beyond `PartialOrd`).

@@ -11,19 +11,10 @@ fn every_reference_case_is_within_its_bound() {
     assert_eq!(cases.len(), 106);
     let mut worst = (0.0, String::new());
     for case in &cases {
-        let Case {
-            matrix,
-            approach,
-            surface,
-            ..
-        } = case;
+        let Case { matrix, approach, surface, .. } = case;
         let hit = solve(matrix, approach, surface).unwrap_or_else(|e| panic!("{}: {e}", case.line));
         let (error, bound) = (case.error(&hit), case.bound());
-        assert!(
-            error <= bound,
-            "error {error:e}, bound {bound:e}: {}",
-            case.line
-        );
+        assert!(error <= bound, "error {error:e}, bound {bound:e}: {}", case.line);
         // On the boundary between two paths either is right.
         if case.family != "near_mu_c" && case.family != "straight" {
             assert_eq!(hit.path.phases().join("+"), case.path, "{}", case.line);

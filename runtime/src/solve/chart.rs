@@ -35,19 +35,8 @@ impl<T: Scalar> Chart<T> {
         let delta = two * (m11 - m22);
         let mb1 = c.mu * b1;
         Self {
-            h: [
-                b2 - m12,
-                delta - two * b1,
-                constant::<T>(6.0) * m12,
-                -delta - two * b1,
-                -b2 - m12,
-            ],
-            k: [
-                b1 - m11,
-                b2 - constant::<T>(3.0) * m12,
-                b1 + m11 - two * m22,
-                b2 + m12,
-            ],
+            h: [b2 - m12, delta - two * b1, constant::<T>(6.0) * m12, -delta - two * b1, -b2 - m12],
+            k: [b1 - m11, b2 - constant::<T>(3.0) * m12, b1 + m11 - two * m22, b2 + m12],
             f: [T::one() - mb1, -two * c.mu * b2, T::one() + mb1],
         }
     }
@@ -113,10 +102,7 @@ impl<T: Scalar> Series<T> {
                 return Some(s);
             }
             if tail <= eps * constant(1e8) {
-                return Some(Self {
-                    limit: constant(0.5),
-                    ..s
-                });
+                return Some(Self { limit: constant(0.5), ..s });
             }
             q *= constant(4.0);
         }
@@ -128,15 +114,11 @@ impl<T: Scalar> Series<T> {
         let [.., r1, r2] = &self.rows;
         let [_, first, ..] = &self.rows;
         let big = first[0].abs();
-        let lanes = larger(
-            r1[0].abs() + r2[0].abs(),
-            larger(r1[2].abs() + r2[2].abs(), r1[1].abs() + r2[1].abs()),
-        ) / big;
+        let lanes =
+            larger(r1[0].abs() + r2[0].abs(), larger(r1[2].abs() + r2[2].abs(), r1[1].abs() + r2[1].abs()))
+                / big;
         let [.., w1, w2] = &self.works;
-        larger(
-            lanes + r1[3].abs() + r2[3].abs(),
-            (w1.abs() + w2.abs()) / (big * big),
-        )
+        larger(lanes + r1[3].abs() + r2[3].abs(), (w1.abs() + w2.abs()) / (big * big))
     }
 
     #[inline]
@@ -149,12 +131,7 @@ impl<T: Scalar> Series<T> {
         let [h0, h1, h2, h3, h4] = chart.h;
         let step = [h1 * scale[0], h2 * scale[1], h3 * scale[2], h4 * scale[3]];
         let [k0, k1, k2, k3] = chart.k;
-        let k = [
-            two * k0 * scale[0],
-            two * k1 * scale[1],
-            two * k2 * scale[2],
-            two * k3 * scale[3],
-        ];
+        let k = [two * k0 * scale[0], two * k1 * scale[1], two * k2 * scale[2], two * k3 * scale[3]];
         let mut s = Self {
             rows: [[zero; 4]; TERMS],
             works: [zero; TERMS],
@@ -173,12 +150,7 @@ impl<T: Scalar> Series<T> {
         let (mut r1, mut r2, mut r3) = ([zero; 4], [zero; 4], [zero; 4]);
         let (mut w0, mut w1, mut w2, mut w3) = (zero, zero, zero, zero);
         let mut v = [zero; 5];
-        let mut m = [
-            k[0],
-            k[1] - step[1],
-            k[2] - two * step[2],
-            k[3] - constant::<T>(3.0) * step[3],
-        ];
+        let mut m = [k[0], k[1] - step[1], k[2] - two * step[2], k[3] - constant::<T>(3.0) * step[3]];
         let t = two * iq;
         let mut source = [
             [t, zero, zero],
@@ -202,21 +174,11 @@ impl<T: Scalar> Series<T> {
             for (lane, out) in new.iter_mut().enumerate() {
                 let pick = |r: &[T; 4]| r.get(lane).copied().unwrap_or(zero);
                 let add = src.get(lane).copied().unwrap_or(zero);
-                *out = (add
-                    - m[0] * pick(&r0)
-                    - m[1] * pick(&r1)
-                    - m[2] * pick(&r2)
-                    - m[3] * pick(&r3))
+                *out = (add - m[0] * pick(&r0) - m[1] * pick(&r1) - m[2] * pick(&r2) - m[3] * pick(&r3))
                     * inverse;
             }
             // v_n of the previous order feeds the work of this one.
-            v = [
-                s.f[0] * r0[0] + s.f[1] * r0[1] + s.f[2] * r0[2],
-                v[0],
-                v[1],
-                v[2],
-                v[3],
-            ];
+            v = [s.f[0] * r0[0] + s.f[1] * r0[1] + s.f[2] * r0[2], v[0], v[1], v[2], v[3]];
             let new_work = (t * (v[0] + two * x2 * v[2] + x2 * x2 * v[4])
                 - (m[0] + k[0]) * w0
                 - (m[1] + k[1]) * w1
@@ -259,8 +221,7 @@ impl<T: Scalar> Series<T> {
                         along * self.d.x - across * self.d.y,
                         along * self.d.y + across * self.d.x,
                     ),
-                velocity: self.start.velocity
-                    + slip * (self.f[0] * a + self.f[1] * b + self.f[2] * c),
+                velocity: self.start.velocity + slip * (self.f[0] * a + self.f[1] * b + self.f[2] * c),
                 work: self.start.work + self.start.velocity * normal + slip * slip * work,
             },
             sigma,
@@ -281,11 +242,7 @@ impl<T: Scalar> Series<T> {
     /// The first theta in (0, limit) where f changes sign, if there is one.
     #[inline]
     pub fn turning(&self) -> Option<T> {
-        let [c, b, a] = [
-            self.f[0],
-            self.f[1] * self.reach,
-            self.f[2] * self.reach * self.reach,
-        ];
+        let [c, b, a] = [self.f[0], self.f[1] * self.reach, self.f[2] * self.reach * self.reach];
         if b.abs() + a.abs() < c.abs() {
             return None;
         }

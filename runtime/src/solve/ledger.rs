@@ -20,12 +20,7 @@ pub(super) struct State<T: Scalar> {
 impl<T: Scalar> State<T> {
     #[inline]
     pub fn approach() -> Self {
-        Self {
-            normal: T::zero(),
-            tangential: Vector2::zeros(),
-            velocity: -T::one(),
-            work: T::zero(),
-        }
+        Self { normal: T::zero(), tangential: Vector2::zeros(), velocity: -T::one(), work: T::zero() }
     }
 }
 
@@ -43,13 +38,7 @@ pub(super) struct Ledger<T: Scalar> {
 impl<T: Scalar> Ledger<T> {
     #[inline]
     pub fn new(law: Law, e: T) -> Self {
-        Self {
-            law,
-            e,
-            target: e,
-            least_work: T::zero(),
-            compressions: 0,
-        }
+        Self { law, e, target: e, least_work: T::zero(), compressions: 0 }
     }
 
     /// Compression ends here: v_n = 0 and rising. True if restitution ends with it.
@@ -97,11 +86,7 @@ impl<T: Scalar> Ledger<T> {
             work += velocity * to_rest * half;
             velocity = T::zero();
             if self.compressed(from.normal + impulse, work) {
-                return Line::Ended {
-                    impulse,
-                    velocity,
-                    work,
-                };
+                return Line::Ended { impulse, velocity, work };
             }
         }
         let (more, end) = match self.law {
@@ -109,10 +94,7 @@ impl<T: Scalar> Ledger<T> {
                 if rate <= T::zero() {
                     return Line::on(length);
                 }
-                (
-                    larger((self.target - velocity) / rate, T::zero()),
-                    self.target,
-                )
+                (larger((self.target - velocity) / rate, T::zero()), self.target)
             }
             Law::Poisson => {
                 let more = larger(self.target - from.normal - impulse, T::zero());
@@ -136,11 +118,7 @@ impl<T: Scalar> Ledger<T> {
             return Line::on(length);
         }
         work += (velocity + end) * more * half;
-        Line::Ended {
-            impulse: impulse + more,
-            velocity: end,
-            work,
-        }
+        Line::Ended { impulse: impulse + more, velocity: end, work }
     }
 }
 

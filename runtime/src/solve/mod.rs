@@ -42,10 +42,7 @@ pub fn solve<T: Scalar>(
     let mut ledger = Ledger::new(surface.law, surface.e);
     let eps = T::default_epsilon();
     let slips = slip > eps * eps * eps * eps;
-    let wedged = |v: T| ImpactError::Wedged {
-        normal_velocity: v * speed,
-        law: surface.law,
-    };
+    let wedged = |v: T| ImpactError::Wedged { normal_velocity: v * speed, law: surface.law };
 
     let (state, velocity, path) = 'done: {
         let mut state = State::approach();
@@ -58,11 +55,7 @@ pub fn solve<T: Scalar>(
         }
         let hold = contact.hold();
         if hold.norm() <= contact.mu {
-            let path = if slips {
-                Path::SlidingThenSticking
-            } else {
-                Path::Sticking
-            };
+            let path = if slips { Path::SlidingThenSticking } else { Path::Sticking };
             let mut rate = T::one() - contact.b.dot(&hold);
             if rate <= constant::<T>(64.0) * eps {
                 // The contact can no longer move along the normal.
@@ -77,11 +70,7 @@ pub fn solve<T: Scalar>(
                 }
             }
             match ledger.follow_line(&state, rate, None) {
-                Line::Ended {
-                    impulse,
-                    velocity,
-                    work,
-                } => {
+                Line::Ended { impulse, velocity, work } => {
                     let end = State {
                         normal: state.normal + impulse,
                         tangential: state.tangential - hold * impulse,
@@ -93,19 +82,11 @@ pub fn solve<T: Scalar>(
                 _ => return Err(wedged(state.velocity)),
             }
         } else {
-            let path = if slips {
-                Path::SlidingThenRenewal
-            } else {
-                Path::Renewal
-            };
+            let path = if slips { Path::SlidingThenRenewal } else { Path::Renewal };
             let d = contact.renewal();
             let g = contact.slip_rate(&d).dot(&d);
             match ledger.follow_line(&state, contact.normal_rate(&d), None) {
-                Line::Ended {
-                    impulse,
-                    velocity,
-                    work,
-                } => {
+                Line::Ended { impulse, velocity, work } => {
                     let end = State {
                         normal: state.normal + impulse,
                         tangential: state.tangential - d * (contact.mu * impulse),
@@ -138,9 +119,7 @@ fn check<T: Scalar>(
     v: &Vector3<T>,
     surface: &Surface<T>,
 ) -> Result<(), ImpactError<T>> {
-    for value in [
-        m.nn, m.nt, m.ns, m.tt, m.ts, m.ss, v.x, v.y, v.z, surface.mu, surface.e,
-    ] {
+    for value in [m.nn, m.nt, m.ns, m.tt, m.ts, m.ss, v.x, v.y, v.z, surface.mu, surface.e] {
         if !value.is_finite() {
             return Err(ImpactError::NotFinite { value });
         }
@@ -168,11 +147,7 @@ fn check<T: Scalar>(
             None
         }
     };
-    let (nt, ns, ts) = (
-        part(m.nt, m.nn, m.tt),
-        part(m.ns, m.nn, m.ss),
-        part(m.ts, m.tt, m.ss),
-    );
+    let (nt, ns, ts) = (part(m.nt, m.nn, m.tt), part(m.ns, m.nn, m.ss), part(m.ts, m.tt, m.ss));
     if m.nn == T::zero() && nt.is_some() && ns.is_some() {
         return Err(ImpactError::NoNormalMobility { nn: m.nn });
     }
@@ -187,9 +162,7 @@ fn check<T: Scalar>(
         }
     }
     if v.x >= T::zero() {
-        return Err(ImpactError::NotApproaching {
-            normal_velocity: v.x,
-        });
+        return Err(ImpactError::NotApproaching { normal_velocity: v.x });
     }
     Ok(())
 }

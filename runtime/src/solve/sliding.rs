@@ -37,8 +37,7 @@ pub(super) fn slide<T: Scalar>(
     for _ in 0..STEPS {
         let chart = Chart::about(c, &d);
         let [h0, h1, ..] = chart.h;
-        let noise =
-            eps * (chart.h[1].abs() + chart.h[2].abs() + chart.h[3].abs() + chart.h[4].abs());
+        let noise = eps * (chart.h[1].abs() + chart.h[2].abs() + chart.h[3].abs() + chart.h[4].abs());
         let settled = h1 < T::zero() && h0.abs() <= noise * constant(2.0);
         if settled || h0.abs() <= noise * constant(0.25) {
             return straight(c, d, slip, state, ledger);
@@ -88,11 +87,9 @@ fn straight<T: Scalar>(
         work,
     };
     match ledger.follow_line(&state, f, length) {
-        Line::Ended {
-            impulse,
-            velocity,
-            work,
-        } => Slide::Ended(moved(impulse, velocity, work), d * (slip + g * impulse)),
+        Line::Ended { impulse, velocity, work } => {
+            Slide::Ended(moved(impulse, velocity, work), d * (slip + g * impulse))
+        }
         Line::Passed(impulse) => {
             let velocity = state.velocity + f * impulse;
             let work = state.work + (state.velocity + velocity) * impulse * constant(0.5);
@@ -120,11 +117,7 @@ fn follow<T: Scalar>(
             return Err(last);
         }
         let (rate, f) = series.rates(zero, &series.at(zero));
-        let guess = if f > zero {
-            -begin.velocity / (f * rate)
-        } else {
-            end
-        };
+        let guess = if f > zero { -begin.velocity / (f * rate) } else { end };
         from = find(series, zero, zero, end, guess, |p| p.velocity, |v| v);
         let point = series.at(from);
         if ledger.compressed(point.state.normal, point.state.work) {
@@ -134,18 +127,10 @@ fn follow<T: Scalar>(
     } else if last.state.velocity < zero {
         // v_n falls through zero: the law must end before.
         let (rate, f) = series.rates(zero, &series.at(zero));
-        let guess = if f < zero {
-            -begin.velocity / (f * rate)
-        } else {
-            end
-        };
+        let guess = if f < zero { -begin.velocity / (f * rate) } else { end };
         hi = find(series, zero, zero, end, guess, |p| -p.velocity, |v| -v);
     }
-    let top = if hi < end {
-        series.at(hi).state
-    } else {
-        last.state
-    };
+    let top = if hi < end { series.at(hi).state } else { last.state };
     let law = ledger.law();
     let target = ledger.target;
     if ledger.watched(&top) < target || (law == Law::Newton && ledger.watched(&begin) >= target) {
@@ -163,15 +148,9 @@ fn follow<T: Scalar>(
             |p| p.velocity,
             |v| v,
         ),
-        Law::Poisson => find(
-            series,
-            target,
-            from,
-            hi,
-            from + (target - begin.normal) / rate,
-            |p| p.normal,
-            |_| T::one(),
-        ),
+        Law::Poisson => {
+            find(series, target, from, hi, from + (target - begin.normal) / rate, |p| p.normal, |_| T::one())
+        }
         Law::Stronge => {
             let missing = target - begin.work;
             let square = begin.velocity * begin.velocity + (missing + missing) * f;
@@ -195,11 +174,7 @@ fn find<T: Scalar>(
     _slope: impl Fn(T) -> T,
 ) -> T {
     let half = constant::<T>(0.5);
-    let mut theta = if guess > lo && guess < hi {
-        guess
-    } else {
-        (lo + hi) * half
-    };
+    let mut theta = if guess > lo && guess < hi { guess } else { (lo + hi) * half };
     for _ in 0..64 {
         let point = series.at(theta);
         let miss = quantity(&point.state) - target;
@@ -215,11 +190,7 @@ fn find<T: Scalar>(
         if step <= constant::<T>(2.0) * T::default_epsilon() * hi {
             return next;
         }
-        theta = if next > lo && next < hi {
-            next
-        } else {
-            (lo + hi) * half
-        };
+        theta = if next > lo && next < hi { next } else { (lo + hi) * half };
         if hi - lo <= T::default_epsilon() * hi {
             return theta;
         }

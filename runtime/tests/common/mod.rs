@@ -22,10 +22,7 @@ pub struct Case {
 
 /// A JSON number, or the decimal text of one.
 fn number(value: &Value) -> f64 {
-    value
-        .as_f64()
-        .or_else(|| value.as_str().and_then(|s| s.parse().ok()))
-        .expect("a number")
+    value.as_f64().or_else(|| value.as_str().and_then(|s| s.parse().ok())).expect("a number")
 }
 
 fn numbers<const N: usize>(value: &Value) -> [f64; N] {
@@ -51,11 +48,7 @@ impl Case {
             family: case["family"].as_str().expect("family").to_owned(),
             matrix: ReducedMatrix::from(numbers::<6>(&case["m"])),
             approach: Vector3::from(numbers::<3>(&case["v"])),
-            surface: Surface {
-                mu: number(&case["mu"]),
-                e: number(&case["e"]),
-                law,
-            },
+            surface: Surface { mu: number(&case["mu"]), e: number(&case["e"]), law },
             impulse: Vector3::from(numbers::<3>(&expect["impulse"])),
             velocity: Vector3::from(numbers::<3>(&expect["v"])),
             contact_work: number(&expect["dE"]),
@@ -69,11 +62,7 @@ impl Case {
     /// The largest error: of the impulse over its largest component, of the velocity over approach plus separation, of the works over
     /// impulse times velocity.
     pub fn error(&self, hit: &Impact<f64>) -> f64 {
-        let impulse = if top(&self.impulse) > 0.0 {
-            top(&self.impulse)
-        } else {
-            1.0
-        };
+        let impulse = if top(&self.impulse) > 0.0 { top(&self.impulse) } else { 1.0 };
         let velocity = top(&self.velocity) + top(&self.approach);
         (top(&(hit.impulse - self.impulse)) / impulse)
             .max(top(&(hit.velocity - self.velocity)) / velocity)
@@ -89,8 +78,5 @@ impl Case {
 
 /// All reference collisions.
 pub fn reference_cases() -> Vec<Case> {
-    include_str!("../../../tests/data/impact_cases.jsonl")
-        .lines()
-        .map(Case::read)
-        .collect()
+    include_str!("../../../tests/data/impact_cases.jsonl").lines().map(Case::read).collect()
 }

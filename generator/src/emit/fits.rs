@@ -1,0 +1,78 @@
+//! Is a program one of a mechanism? Derivations can be edited; generated code must compile all the same.
+
+use crate::model::mechanism::Mechanism;
+use crate::program::Program;
+use crate::program::graph::Input;
+use crate::program::operation::Operation;
+use crate::program::routine::{ContactQuantity, PointQuantity, Quantity};
+
+/// Checks that every input, contact, point and frame exists and that every quantity has its shape.
+pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
+    let independent = mechanism.speeds.iter().filter(|speed| !speed.dependent).count();
+    let dependent = mechanism.speeds.len() - independent;
+    for operation in &program.operations {
+        let Operation::Input(input) = *operation else { continue };
+        let exists = match input {
+            Input::Time => true,
+            Input::Parameter(index) => {
+                mechanism.parameters.get(index as usize).is_some_and(|parameter| !parameter.fixed)
+            }
+            Input::Coordinate(index) => (index as usize) < mechanism.coordinates.len(),
+            Input::Speed(index) | Input::Acceleration(index) => (index as usize) < independent,
+            Input::Input(index) => (index as usize) < mechanism.inputs.len(),
+        };
+        if !exists {
+            return Err(format!("the derivation uses {input:?}, which the model does not have"));
+        }
+    }
+    if program.structures.len() > mechanism.contacts.len() {
+        return Err("the derivation has more contacts than the model".to_string());
+    }
+    for output in &program.outputs {
+        let shape = shape(mechanism, output.quantity, independent, dependent);
+        let right = match shape {
+            Some((rows, columns)) => output.rows * output.columns == rows * columns,
+            None => false,
+        };
+        if !right {
+            return Err(format!(
+                "the derivation's {} is {} x {}, which does not fit the model",
+                output.quantity, output.rows, output.columns
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The shape of a quantity, if the mechanism can have it.
+fn shape(mechanism: &Mechanism, quantity: Quantity, p: usize, d: usize) -> Option<(usize, usize)> {
+    let c = mechanism.coordinates.iter().filter(|coordinate| coordinate.dependent).count();
+    Some(match quantity {
+        Quantity::CoordinateRates => (mechanism.coordinates.len(), 1),
+        Quantity::DependentSpeeds | Quantity::DependentAccelerations | Quantity::ConstraintResidual => (d, 1),
+        Quantity::MassMatrix => (p, p),
+        Quantity::Forcing | Quantity::Accelerations | Quantity::InverseDynamics => (p, 1),
+        Quantity::KineticEnergy | Quantity::PotentialEnergy => (1, 1),
+        Quantity::ConfigurationResidual => (c, 1),
+        Quantity::ConfigurationJacobian => (c, c),
+        Quantity::Contact(index, quantity) => {
+            mechanism.contacts.get(index as usize)?;
+            match quantity {
+                ContactQuantity::PartialVelocities => (3, p),
+                ContactQuantity::Reduced => (6, 1),
+                ContactQuantity::Response => (p, 3),
+                ContactQuantity::DependentResponse => (d, 3),
+                ContactQuantity::Gap => (1, 1),
+                _ => (3, 1),
+            }
+        }
+        Quantity::Point(index, quantity) => {
+            mechanism.points.get(index as usize)?;
+            if quantity == PointQuantity::Jacobian { (3, p) } else { (3, 1) }
+        }
+        Quantity::Orientation(index) => {
+            mechanism.frames.get(index as usize)?;
+            (3, 3)
+        }
+    })
+}

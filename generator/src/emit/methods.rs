@@ -1,0 +1,186 @@
+//! A method per quantity of the mechanism, its points and frames.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Emitter;
+use super::names::snake_case;
+use super::record::Record;
+use super::values::local;
+use crate::program::Output;
+use crate::program::routine::{PointQuantity, Quantity};
+
+impl Emitter<'_> {
+    /// All methods that do not belong to a contact.
+    pub fn methods(&self) -> TokenStream {
+        let methods = self.program.outputs.iter().filter_map(|output| self.method(output));
+        quote! { #(#methods)* }
+    }
+
+    fn method(&self, output: &Output) -> Option<TokenStream> {
+        if output.values.is_empty() {
+            return None;
+        }
+        let (name, docs) = self.describe(output.quantity)?;
+        let (result, value) = self.shaped(output);
+        Some(self.routine(&name, &docs, &[output.quantity], result, value))
+    }
+
+    /// A routine that answers with the expression `value` of type `result`, made of the values of some quantities.
+    pub fn routine(
+        &self,
+        name: &str,
+        docs: &str,
+        quantities: &[Quantity],
+        result: TokenStream,
+        value: TokenStream,
+    ) -> TokenStream {
+        let krate = self.krate;
+        let name = super::names::ident(name);
+        let docs = super::names::docs(&format!(
+            "{docs}\n\n# Errors\n\nWhere the state is singular, or a result is not finite."
+        ));
+        let signature = self.signature(self.arguments(quantities));
+        let body = self.compute(quantities);
+        quote! {
+            #docs
+            #[inline]
+            pub fn #name(#signature) -> ::core::result::Result<#result, #krate::StateError> {
+                #body
+                ::core::result::Result::Ok(#value)
+            }
+        }
+    }
+
+    /// The type and the expression of an output.
+    pub fn shaped(&self, output: &Output) -> (TokenStream, TokenStream) {
+        let values: Vec<TokenStream> =
+            output.values.iter().map(|&value| local(value)).map(|value| quote!(#value)).collect();
+        let record = |record: &Record| {
+            let name = record.name();
+            (quote!(#name<T>), record.construct(&values))
+        };
+        match output.quantity {
+            Quantity::CoordinateRates if values.len() == self.coordinates.len() => record(&self.coordinates),
+            Quantity::Accelerations if values.len() == self.speeds.len() => record(&self.speeds),
+            Quantity::DependentSpeeds | Quantity::DependentAccelerations
+                if values.len() == self.dependent.len() =>
+            {
+                record(&self.dependent)
+            }
+            _ if values.len() == 1 && is_scalar(output.quantity) => (quote!(T), quote!(#(#values)*)),
+            _ => self.matrix(output),
+        }
+    }
+
+    /// An output as a matrix of static size.
+    pub fn matrix(&self, output: &Output) -> (TokenStream, TokenStream) {
+        let krate = self.krate;
+        let (rows, columns) =
+            (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(output.columns));
+        let entry = |row: usize, column: usize| {
+            output.values.get(row * output.columns + column).map(|&value| local(value))
+        };
+        let columns_of = (0..output.columns).map(|column| {
+            let entries = (0..output.rows).filter_map(|row| entry(row, column));
+            quote!([#(#entries),*])
+        });
+        let data = quote!([#(#columns_of),*]);
+        (
+            quote!(#krate::nalgebra::SMatrix<T, #rows, #columns>),
+            quote!(#krate::nalgebra::SMatrix::from(#data)),
+        )
+    }
+
+    /// Name and documentation of the method of a quantity; contacts have their own.
+    fn describe(&self, quantity: Quantity) -> Option<(String, String)> {
+        let plain = |name: &str, docs: &str| Some((name.to_string(), docs.to_string()));
+        match quantity {
+            Quantity::CoordinateRates => {
+                plain("coordinate_rates", "Rates q' of the generalized coordinates, per second.")
+            }
+            Quantity::DependentSpeeds => {
+                plain("dependent_speeds", "Dependent generalized speeds, from the constraints (4).")
+            }
+            Quantity::MassMatrix => plain(
+                "mass_matrix",
+                "Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite; the paper's -M.",
+            ),
+            Quantity::Forcing => {
+                plain("forcing", "Forcing: M u' = forcing. Loads and inertia terms quadratic in the speeds.")
+            }
+            Quantity::Accelerations => {
+                plain("accelerations", "Rates u' of the independent speeds, per second.")
+            }
+            Quantity::DependentAccelerations => {
+                plain("dependent_accelerations", "Rates of the dependent speeds, per second.")
+            }
+            Quantity::InverseDynamics => plain(
+                "inverse_dynamics",
+                "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing.",
+            ),
+            Quantity::KineticEnergy => plain("kinetic_energy", "Kinetic energy in N, in J."),
+            Quantity::PotentialEnergy => {
+                plain("potential_energy", "Potential energy of gravity and springs, in J.")
+            }
+            Quantity::ConfigurationResidual => plain(
+                "configuration_residual",
+                "Residual of the configuration equations; zero where the loops are closed.",
+            ),
+            Quantity::ConfigurationJacobian => plain(
+                "configuration_jacobian",
+                "Derivatives of the configuration equations (rows) with respect to the dependent coordinates (columns).",
+            ),
+            Quantity::ConstraintResidual => plain(
+                "constraint_residual",
+                "Residual of the velocity constraints with the dependent speeds inserted; zero up to rounding.",
+            ),
+            Quantity::Contact(..) => None,
+            Quantity::Point(index, quantity) => {
+                let point = self.mechanism.points.get(index as usize)?;
+                let (name, docs) = (snake_case(&point.name), about(&point.name, &point.docs));
+                Some(match quantity {
+                    PointQuantity::Position => (
+                        format!("position_{name}"),
+                        format!("Position of {docs} from O along N.x, N.y, N.z, in m."),
+                    ),
+                    PointQuantity::Velocity => (
+                        format!("velocity_{name}"),
+                        format!("Velocity of {docs} in N along N.x, N.y, N.z, in m/s."),
+                    ),
+                    PointQuantity::Jacobian => (
+                        format!("jacobian_{name}"),
+                        format!(
+                            "Partial velocities of {docs} along N.x, N.y, N.z (rows) for the independent speeds (columns)."
+                        ),
+                    ),
+                })
+            }
+            Quantity::Orientation(index) => {
+                let frame = self.mechanism.frames.get(index as usize)?;
+                let docs = about(&frame.name, &frame.docs);
+                Some((
+                    format!("orientation_{}", snake_case(&frame.name)),
+                    format!("Orientation of {docs}: the columns are its x, y, z along N.x, N.y, N.z."),
+                ))
+            }
+        }
+    }
+
+    /// `Ident` of a method of a contact.
+    pub fn contact_method(&self, prefix: &str, contact: usize) -> String {
+        let name = self.mechanism.contacts.get(contact).map_or("", |contact| contact.name.as_str());
+        format_ident!("{prefix}_{}", snake_case(name)).to_string()
+    }
+}
+
+/// A name with its documentation: `P (the end that strikes)`.
+pub fn about(name: &str, docs: &str) -> String {
+    let docs = docs.trim().trim_end_matches('.');
+    if docs.is_empty() { format!("`{name}`") } else { format!("`{name}` ({docs})") }
+}
+
+fn is_scalar(quantity: Quantity) -> bool {
+    use crate::program::routine::ContactQuantity::Gap;
+    matches!(quantity, Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::Contact(_, Gap))
+}

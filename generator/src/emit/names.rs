@@ -1,0 +1,124 @@
+//! How the names of a model are written in Rust.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::quote;
+
+/// Words that Rust keeps for itself.
+const KEYWORDS: &[&str] = &[
+    "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn",
+    "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop",
+    "macro", "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "Self",
+    "static", "struct", "super", "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use",
+    "virtual", "where", "while", "yield",
+];
+
+/// Type names of a generated module beside the mechanism's own.
+pub const TYPES: &[&str] = &[
+    "Parameters",
+    "Coordinates",
+    "Speeds",
+    "DependentSpeeds",
+    "Inputs",
+    "Collision",
+    "T",
+    "Result",
+    "Ok",
+    "Err",
+];
+
+/// Is it a Rust keyword?
+pub fn is_keyword(name: &str) -> bool {
+    KEYWORDS.contains(&name)
+}
+
+/// `BcAc` -> `bc_ac`, `tip_wall` -> `tip_wall`, `L2Norm` -> `l2_norm`.
+pub fn snake_case(name: &str) -> String {
+    let characters: Vec<char> = name.chars().collect();
+    let mut snake = String::new();
+    for (index, &character) in characters.iter().enumerate() {
+        if character.is_uppercase() {
+            let previous = index.checked_sub(1).map(|previous| characters[previous]);
+            let starts_word = match previous {
+                None | Some('_') => false,
+                // An acronym's last capital begins the next word: `HTTPServer` -> `http_server`.
+                Some(previous) if previous.is_uppercase() => {
+                    characters.get(index + 1).is_some_and(|next| next.is_lowercase())
+                }
+                Some(_) => true,
+            };
+            if starts_word {
+                snake.push('_');
+            }
+            snake.extend(character.to_lowercase());
+        } else {
+            snake.push(character);
+        }
+    }
+    snake
+}
+
+/// `two_sleds` -> `TwoSleds`; capitals stay.
+pub fn pascal_case(name: &str) -> String {
+    let mut pascal = String::new();
+    for word in name.split('_').filter(|word| !word.is_empty()) {
+        let mut characters = word.chars();
+        pascal.extend(characters.next().map(char::to_uppercase).into_iter().flatten());
+        pascal.push_str(characters.as_str());
+    }
+    pascal
+}
+
+/// The name of the mechanism's type: not one of the others of its module.
+pub fn type_name(mechanism: &str) -> String {
+    let name = pascal_case(mechanism);
+    let starts_well = name.starts_with(|c: char| c.is_alphabetic());
+    if TYPES.contains(&name.as_str()) || is_keyword(&name) || !starts_well {
+        format!("{name}Mechanism")
+    } else {
+        name
+    }
+}
+
+/// An identifier, raw where it is a keyword. What is no identifier becomes one.
+pub fn ident(name: &str) -> Ident {
+    let mut clean: String =
+        name.chars().map(|c| if c == '_' || c.is_alphanumeric() { c } else { '_' }).collect();
+    if clean.is_empty() || clean == "_" || clean.starts_with(|c: char| c.is_numeric()) {
+        clean.insert(0, '_');
+    }
+    match clean.as_str() {
+        "self" | "Self" | "super" | "crate" => Ident::new(&format!("{clean}_"), Span::call_site()),
+        keyword if is_keyword(keyword) => Ident::new_raw(keyword, Span::call_site()),
+        _ => Ident::new(&clean, Span::call_site()),
+    }
+}
+
+/// Documentation, an attribute per line.
+pub fn docs(text: &str) -> TokenStream {
+    let lines = text.lines().map(|line| {
+        if line.is_empty() { String::new() } else { format!(" {}", line.trim_start_matches(' ')) }
+    });
+    quote! { #(#[doc = #lines])* }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cases() {
+        let cases = [
+            ("BcAc", "bc_ac"),
+            ("tip_wall", "tip_wall"),
+            ("L", "l"),
+            ("HTTPServer", "http_server"),
+            ("A0", "a0"),
+        ];
+        for (name, snake) in cases {
+            assert_eq!(snake_case(name), snake);
+        }
+        assert_eq!(pascal_case("two_sleds"), "TwoSleds");
+        assert_eq!(type_name("speeds"), "SpeedsMechanism");
+        assert_eq!(ident("loop").to_string(), "r#loop");
+    }
+}

@@ -1,0 +1,156 @@
+//! The body of a routine: statements, checks, result.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::Emitter;
+use super::values::{Place, local};
+use crate::program::Guard;
+use crate::program::graph::Input;
+use crate::program::operation::{Operation, Stage, Value};
+use crate::program::routine::Quantity;
+
+impl Emitter<'_> {
+    /// The statements that compute quantities and check them; their values are local variables afterwards.
+    pub fn compute(&self, quantities: &[Quantity]) -> TokenStream {
+        let slice = self.program.slice(quantities);
+        let needed = self.needed(
+            &slice.outputs.iter().flat_map(|output| output.values.clone()).collect::<Vec<_>>(),
+            &slice.guards,
+        );
+        let statements = slice
+            .order
+            .iter()
+            .filter(|value| needed.contains(value))
+            .filter_map(|&value| self.statement(value, Place::Method));
+        let guards = slice
+            .guards
+            .iter()
+            .filter(|guard| self.stage(guard.value) > Stage::Parameter)
+            .map(|guard| self.guard(guard));
+        let results: BTreeSet<Value> =
+            slice.outputs.iter().flat_map(|output| output.values.iter().copied()).collect();
+        let finite = self.finite(&results);
+        quote! { #(#statements)* #(#guards)* #finite }
+    }
+
+    /// The values that a method computes: what depends on parameters alone is only fetched.
+    fn needed(&self, results: &[Value], guards: &[&Guard]) -> BTreeSet<Value> {
+        let mut needed = BTreeSet::new();
+        let mut stack: Vec<Value> = results.to_vec();
+        for guard in guards.iter().filter(|guard| self.stage(guard.value) > Stage::Parameter) {
+            stack.push(guard.value);
+            stack.extend(guard.scale);
+        }
+        while let Some(value) = stack.pop() {
+            if needed.insert(value) && self.stage(value) > Stage::Parameter {
+                stack.extend(self.program.operation(value).operands());
+            }
+        }
+        needed
+    }
+
+    /// The statement that checks a value that must not vanish.
+    pub fn guard(&self, guard: &Guard) -> TokenStream {
+        let krate = self.krate;
+        let value = local(guard.value);
+        let message = &guard.message;
+        match guard.scale {
+            Some(scale) => {
+                let scale = local(scale);
+                quote! {
+                    if #krate::generated::vanishes_beside(#value, #scale) {
+                        return ::core::result::Result::Err(#krate::generated::singular(#value, #scale, #message).into());
+                    }
+                }
+            }
+            None => quote! {
+                if #krate::generated::vanishes(#value) {
+                    return ::core::result::Result::Err(#krate::generated::singular(#value, #value, #message).into());
+                }
+            },
+        }
+    }
+
+    /// The statement that checks that results are finite; constants are.
+    fn finite(&self, results: &BTreeSet<Value>) -> TokenStream {
+        let krate = self.krate;
+        let results =
+            results.iter().filter(|&&value| self.stage(value) > Stage::Parameter).map(|&value| local(value));
+        let results: Vec<_> = results.collect();
+        if results.is_empty() {
+            return quote!();
+        }
+        quote! {
+            if !#krate::generated::all_finite([#(#results),*]) {
+                return ::core::result::Result::Err(#krate::StateError::NotFinite.into());
+            }
+        }
+    }
+
+    /// The arguments of a routine for these quantities after `&self`.
+    pub fn arguments(&self, quantities: &[Quantity]) -> Arguments {
+        let loads = quantities.iter().any(|&quantity| super::takes_loads(quantity));
+        let velocity = quantities.iter().any(|&quantity| self.takes_speeds(quantity));
+        Arguments {
+            time: self.uses_time,
+            coordinates: !self.coordinates.is_empty(),
+            speeds: velocity,
+            accelerations: quantities.contains(&Quantity::InverseDynamics),
+            inputs: !self.inputs.is_empty() && (loads || self.kinematic_inputs),
+        }
+    }
+
+    /// Does the quantity depend on speeds, by definition or in fact?
+    fn takes_speeds(&self, quantity: Quantity) -> bool {
+        use crate::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
+        let by_definition = match quantity {
+            Q::MassMatrix
+            | Q::PotentialEnergy
+            | Q::ConfigurationResidual
+            | Q::ConfigurationJacobian
+            | Q::Orientation(_) => false,
+            Q::Contact(_, C::Velocity) => true,
+            Q::Contact(..) => false,
+            Q::Point(_, P::Velocity) => true,
+            Q::Point(..) => false,
+            _ => true,
+        };
+        by_definition || self.uses(quantity, |input| matches!(input, Input::Speed(_)))
+    }
+
+    fn uses(&self, quantity: Quantity, which: impl Fn(Input) -> bool) -> bool {
+        let slice = self.program.slice(&[quantity]);
+        slice
+            .order
+            .iter()
+            .any(|&value| matches!(self.program.operation(value), Operation::Input(input) if which(input)))
+    }
+
+    /// The signature after the name: arguments in their order.
+    pub fn signature(&self, arguments: Arguments) -> TokenStream {
+        let time = arguments.time.then(|| quote!(time: T,));
+        let coordinates = arguments.coordinates.then(|| quote!(q: &Coordinates<T>,));
+        let speeds = arguments.speeds.then(|| quote!(u: &Speeds<T>,));
+        let accelerations = arguments.accelerations.then(|| quote!(acceleration: &Speeds<T>,));
+        let inputs = arguments.inputs.then(|| quote!(inputs: &Inputs<T>,));
+        quote!(&self, #time #coordinates #speeds #accelerations #inputs)
+    }
+}
+
+/// Which arguments a routine has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arguments {
+    /// time
+    pub time: bool,
+    /// coordinates
+    pub coordinates: bool,
+    /// independent speeds
+    pub speeds: bool,
+    /// derivatives of the independent speeds
+    pub accelerations: bool,
+    /// named inputs
+    pub inputs: bool,
+}

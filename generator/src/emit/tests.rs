@@ -1,0 +1,165 @@
+//! A small module under review, and the properties that every module has.
+
+use super::{Options, Program, module, skeleton};
+use quote::quote;
+
+use crate::diagnostics::Span;
+use crate::model::mechanism::*;
+use crate::number::Number;
+use crate::program::graph::{Graph, Input};
+use crate::program::routine::{
+    ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity as Q, Structure,
+};
+
+fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Quantity {
+    Quantity {
+        name: name.into(),
+        docs: docs.into(),
+        unit: unit.into(),
+        value,
+        fixed: false,
+        dependent: false,
+        span: Span::default(),
+    }
+}
+
+/// A particle on a massless rod of length l about O, whose end strikes the wall with normal -N.x.
+fn mechanism() -> Mechanism {
+    let span = Span::default();
+    let point =
+        |name: &str, place| Point { name: name.into(), docs: String::new(), place, velocity: None, span };
+    Mechanism {
+        name: "Pendulum".into(),
+        docs: "A particle on a rod, and a wall.".into(),
+        parameters: vec![
+            quantity("m", "mass", "kg", Some(2.0)),
+            quantity("l", "length of the rod", "m", Some(0.5)),
+            quantity("g", "", "m/s^2", Some(9.81)),
+        ],
+        inputs: vec![quantity("tau", "torque at the pivot", "N*m", None)],
+        coordinates: vec![quantity("q1", "angle from the vertical", "rad", Some(0.3))],
+        speeds: vec![quantity("u1", "", "rad/s", None)],
+        definitions: vec![],
+        frames: vec![Frame {
+            name: "N".into(),
+            docs: String::new(),
+            parent: None,
+            orientation: Orientation::Aligned,
+            angular_velocity: None,
+            span,
+        }],
+        points: vec![point("O", Place::Origin), point("P", Place::Velocity(Vector::Zero))],
+        bodies: vec![Body {
+            name: "Bob".into(),
+            docs: String::new(),
+            frame: None,
+            centre: PointId(1),
+            mass: Scalar::Parameter(ParameterId(0)),
+            inertia: None,
+            span,
+        }],
+        loads: vec![],
+        kinematics: vec![],
+        constraints: vec![],
+        configuration: vec![],
+        contacts: vec![Contact {
+            name: "TipWall".into(),
+            docs: "the bob strikes the wall".into(),
+            point: PointId(1),
+            body: Some(BodyId(0)),
+            against: Against::Fixed,
+            normal: Vector::Zero,
+            gap: None,
+            span,
+        }],
+    }
+}
+
+fn derived() -> Derived {
+    let mut g = Graph::new();
+    let [m, l, gravity] = [0, 1, 2].map(|i| g.input(Input::Parameter(i)));
+    let (q, u, tau) = (g.input(Input::Coordinate(0)), g.input(Input::Speed(0)), g.input(Input::Input(0)));
+    let (sine, cosine) = (g.call(Function::Sin, vec![q]), g.call(Function::Cos, vec![q]));
+    let (zero, one, minus) = (g.integer(0), g.integer(1), g.integer(-1));
+    let square = g.power(l, 2);
+    let mass = g.product([m, square]);
+    let weight = g.product([minus, m, gravity, l, sine]);
+    let forcing = g.sum([weight, tau]);
+    let acceleration = g.div(forcing, mass);
+    let half = g.number(Number::ratio(1, 2));
+    let speed = g.power(u, 2);
+    let energy = g.product([half, mass, speed]);
+    // Velocity of the bob: l u (cos, sin, 0); the basis is n = -x, first = y, second = -z.
+    let lc = g.product([l, cosine]);
+    let ls = g.product([l, sine]);
+    let normal = g.neg(lc);
+    let (vx, vy) = (g.product([lc, u]), g.product([ls, u]));
+    let vn = g.neg(vx);
+    let px = ls;
+    let py = g.neg(lc);
+    let inverse = g.power(mass, -1);
+    let products = [(normal, normal), (normal, ls), (ls, ls)].map(|(a, b)| g.product([a, b, inverse]));
+    let responses = [normal, ls].map(|a| g.product([a, inverse]));
+    let output = |quantity, rows, columns, nodes: Vec<_>| Output { quantity, rows, columns, nodes };
+    let contact = |quantity, rows, columns, nodes| output(Q::Contact(0, quantity), rows, columns, nodes);
+    let outputs = vec![
+        output(Q::CoordinateRates, 1, 1, vec![u]),
+        output(Q::MassMatrix, 1, 1, vec![mass]),
+        output(Q::Forcing, 1, 1, vec![forcing]),
+        output(Q::Accelerations, 1, 1, vec![acceleration]),
+        output(Q::KineticEnergy, 1, 1, vec![energy]),
+        output(Q::Point(1, PointQuantity::Position), 3, 1, vec![px, py, zero]),
+        contact(ContactQuantity::Normal, 3, 1, vec![minus, zero, zero]),
+        contact(ContactQuantity::First, 3, 1, vec![zero, one, zero]),
+        contact(ContactQuantity::Second, 3, 1, vec![zero, zero, minus]),
+        contact(ContactQuantity::Velocity, 3, 1, vec![vn, vy, zero]),
+        contact(
+            ContactQuantity::Reduced,
+            6,
+            1,
+            vec![products[0], products[1], zero, products[2], zero, zero],
+        ),
+        contact(ContactQuantity::Response, 1, 3, vec![responses[0], responses[1], zero]),
+    ];
+    let guards = vec![Guard { value: mass, scale: None, message: "the bob has no inertia".into() }];
+    Derived { graph: g, outputs, guards, structures: vec![Structure::Planar] }
+}
+
+fn emitted() -> String {
+    let krate = quote!(::hodograph);
+    let options = Options { krate, module: "pendulum".into(), tracked: vec![] };
+    let tokens = module(&mechanism(), &Program::new(&derived()), &options).unwrap();
+    prettyplease::unparse(&syn::parse2(tokens).expect("generated code is Rust"))
+}
+
+/// The reviewed module. `HODOGRAPH_GOLDEN=write cargo test -p hodograph-generator` rewrites it.
+#[test]
+fn the_module_is_the_reviewed_one() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/pendulum.rs");
+    let emitted = emitted();
+    if std::env::var_os("HODOGRAPH_GOLDEN").is_some() {
+        std::fs::write(path, &emitted).unwrap();
+    }
+    let reviewed = std::fs::read_to_string(path).unwrap();
+    assert!(emitted == reviewed, "{path} differs; look at the difference after HODOGRAPH_GOLDEN=write");
+}
+
+#[test]
+fn the_same_program_gives_the_same_code() {
+    assert_eq!(emitted(), emitted());
+}
+
+#[test]
+fn a_foreign_program_is_refused() {
+    let mut mechanism = mechanism();
+    mechanism.coordinates.clear();
+    let options = Options { krate: quote!(::hodograph), module: "x".into(), tracked: vec![] };
+    let error = module(&mechanism, &Program::new(&derived()), &options).unwrap_err();
+    assert!(error.contains("Coordinate(0)"), "{error}");
+}
+
+#[test]
+fn a_skeleton_is_rust() {
+    let tokens = skeleton("two_sleds", None, &[quote!("x")]);
+    syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
+}

@@ -1,0 +1,104 @@
+//! Operations of generated code. `hodograph_generator::program::arithmetic` means the same in doubles.
+
+use nalgebra::convert;
+
+use crate::Scalar;
+
+/// A number of the program.
+#[inline(always)]
+pub fn number<T: Scalar>(number: f64) -> T {
+    convert(number)
+}
+
+/// a * b + c, with one rounding where the target has the instruction (and never by a library call).
+#[inline(always)]
+pub fn mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
+    if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// a * b - c, likewise.
+#[inline(always)]
+pub fn mul_sub<T: Scalar>(a: T, b: T, c: T) -> T {
+    if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, -c) } else { a * b - c }
+}
+
+/// c - a * b, likewise.
+#[inline(always)]
+pub fn neg_mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
+    if cfg!(all(feature = "std", target_feature = "fma")) { (-a).mul_add(b, c) } else { c - a * b }
+}
+
+/// 1 / a
+#[inline(always)]
+pub fn recip<T: Scalar>(a: T) -> T {
+    T::one() / a
+}
+
+/// Sine and cosine.
+#[inline(always)]
+pub fn sin_cos<T: Scalar>(a: T) -> (T, T) {
+    a.sin_cos()
+}
+
+macro_rules! functions {
+    ($($(#[$doc:meta])* $name:ident => $method:ident),* $(,)?) => {$(
+        $(#[$doc])*
+        #[inline(always)]
+        pub fn $name<T: Scalar>(a: T) -> T {
+            a.$method()
+        }
+    )*};
+}
+
+functions! {
+    /// Sine.
+    sin => sin,
+    /// Cosine.
+    cos => cos,
+    /// Tangent.
+    tan => tan,
+    /// Arc sine.
+    asin => asin,
+    /// Arc cosine.
+    acos => acos,
+    /// Arc tangent.
+    atan => atan,
+    /// Square root.
+    sqrt => sqrt,
+    /// Exponential.
+    exp => exp,
+    /// Natural logarithm.
+    log => ln,
+    /// Magnitude.
+    abs => abs,
+}
+
+/// Angle of (b, a).
+#[inline(always)]
+pub fn atan2<T: Scalar>(a: T, b: T) -> T {
+    a.atan2(b)
+}
+
+/// 1 if a is not negative, else -1.
+#[inline(always)]
+pub fn sign<T: Scalar>(a: T) -> T {
+    if a >= T::zero() { T::one() } else { -T::one() }
+}
+
+/// The lesser.
+#[inline(always)]
+pub fn min<T: Scalar>(a: T, b: T) -> T {
+    if a < b { a } else { b }
+}
+
+/// The greater.
+#[inline(always)]
+pub fn max<T: Scalar>(a: T, b: T) -> T {
+    if a > b { a } else { b }
+}
+
+/// A power with an exponent that is not negative.
+#[inline]
+pub fn power<T: Scalar>(a: T, exponent: i32) -> T {
+    a.powi(exponent)
+}

@@ -1,0 +1,75 @@
+//! Checks that generated routines make before they answer.
+
+use super::{ParameterError, StateError, mul_add, number};
+use crate::Scalar;
+
+/// A value counts as zero where it is at most this times its scale: 2^-40.
+const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// Does a value vanish beside its scale (or is one of them not a number)?
+#[inline(always)]
+pub fn vanishes_beside<T: Scalar>(value: T, scale: T) -> bool {
+    let above = value.abs() > number::<T>(VANISHING) * scale.abs();
+    !above
+}
+
+/// Is a value zero, or not a number?
+#[inline(always)]
+pub fn vanishes<T: Scalar>(value: T) -> bool {
+    let above = value.abs() > T::zero();
+    !above
+}
+
+/// Why a state has no answer, when `value` vanishes beside `scale`.
+#[cold]
+#[inline(never)]
+pub fn singular<T: Scalar>(value: T, scale: T, what: &'static str) -> StateError {
+    if value.is_finite() && scale.is_finite() { StateError::Singular { what } } else { StateError::NotFinite }
+}
+
+/// Are all values finite? One operation each, no branch.
+#[inline(always)]
+pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
+    let mut sum = T::zero();
+    for value in values {
+        sum = mul_add(value, T::zero(), sum);
+    }
+    sum == T::zero()
+}
+
+/// Checks a mass.
+#[inline]
+pub fn check_mass<T: Scalar>(mass: T, body: &'static str) -> Result<(), ParameterError> {
+    if !mass.is_finite() {
+        Err(ParameterError::NotFinite { name: body })
+    } else if mass <= T::zero() {
+        Err(ParameterError::Mass { body })
+    } else {
+        Ok(())
+    }
+}
+
+/// Checks an inertia matrix with components xx, yy, zz, xy, yz, zx about the mass centre: it must be one of a body, that is
+/// `S = (trace / 2) 1 - I`, the second moment of its mass, must be positive semidefinite (up to rounding). The diagonal of S is
+/// a, b, c, its other entries are the opposites of xy, yz, zx.
+#[inline(never)]
+pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Result<(), ParameterError> {
+    let [xx, yy, zz, xy, yz, zx] = components;
+    if !all_finite(components) {
+        return Err(ParameterError::NotFinite { name: body });
+    }
+    let half = (xx + yy + zz) * number(0.5);
+    let size = xx.abs() + yy.abs() + zz.abs() + xy.abs() + yz.abs() + zx.abs();
+    let small = size * T::default_epsilon() * number(64.0);
+    let (a, b, c) = (half - xx, half - yy, half - zz);
+    let diagonal = a >= -small && b >= -small && c >= -small;
+    let minors = a * b - xy * xy >= -small * size
+        && b * c - yz * yz >= -small * size
+        && a * c - zx * zx >= -small * size;
+    let determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx);
+    if diagonal && minors && determinant >= -small * size * size {
+        Ok(())
+    } else {
+        Err(ParameterError::Inertia { body })
+    }
+}

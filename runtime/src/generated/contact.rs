@@ -1,0 +1,99 @@
+//! From the quantities of a contact to a solved collision.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::number;
+use crate::{Impact, ImpactError, ReducedMatrix, Scalar, Surface, solve};
+
+/// What a mechanism tells of a contact. The contact basis is `normal`, `first`, `second`, right-handed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<T> {
+    /// n along N.x, N.y, N.z
+    pub normal: Vector3<T>,
+    /// first tangential axis along N.x, N.y, N.z
+    pub first: Vector3<T>,
+    /// second tangential axis along N.x, N.y, N.z
+    pub second: Vector3<T>,
+    /// velocity of approach in the contact basis, m/s
+    pub velocity: Vector3<T>,
+    /// reduced matrix in the contact basis, 1/kg
+    pub reduced: ReducedMatrix<T>,
+    /// v_t^R in the contact basis, m/s
+    pub remainder: Vector3<T>,
+    /// work of the prescribed motion per unit impulse, in the contact basis, m/s: the sum of m v_t . dv in (24)
+    pub prescribed_work: Vector3<T>,
+}
+
+/// A solved collision of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resolved<T: nalgebra::Scalar> {
+    /// t along N.x, N.y, N.z: along the slip of approach
+    pub tangent: Vector3<T>,
+    /// s = n x t along N.x, N.y, N.z
+    pub binormal: Vector3<T>,
+    /// velocity of approach along n, t, s, m/s
+    pub approach: Vector3<T>,
+    /// reduced matrix along n, t, s, 1/kg
+    pub reduced: ReducedMatrix<T>,
+    /// the solver's answer along n, t, s
+    pub impact: Impact<T>,
+    /// impulse in the contact basis, N s
+    pub impulse: Vector3<T>,
+    /// impulse on the striking point along N.x, N.y, N.z, N s
+    pub impulse_on_point: Vector3<T>,
+    /// change of kinetic energy, J: (24)
+    pub energy_change: T,
+}
+
+/// Cosine and sine of the angle from `first` to t. t lies along the slip of approach; without slip it is the projection of the
+/// first of N.x, N.y, N.z that is not within 30 degrees of the normal.
+#[inline]
+pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
+    let along = |direction: Vector2<T>| {
+        let length = direction.x.hypot(direction.y);
+        (length > T::zero()).then(|| (direction.x / length, direction.y / length))
+    };
+    if let Some(axes) = along(Vector2::new(contact.velocity.y, contact.velocity.z)) {
+        return axes;
+    }
+    let Contact { normal, first, second, .. } = contact;
+    let far = |component: T| component * component < number(0.75);
+    let projection = if far(normal.x) {
+        Vector2::new(first.x, second.x)
+    } else if far(normal.y) {
+        Vector2::new(first.y, second.y)
+    } else {
+        Vector2::new(first.z, second.z)
+    };
+    along(projection).unwrap_or((T::one(), T::zero()))
+}
+
+/// Solves the collision of a contact.
+///
+/// # Errors
+///
+/// What [`solve`] refuses.
+#[inline]
+pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<Resolved<T>, ImpactError<T>> {
+    let (cos, sin) = contact_axes(contact);
+    let Contact { normal, first, second, velocity, .. } = contact;
+    let reduced = contact.reduced.turned(cos, sin);
+    let slip = velocity.y.hypot(velocity.z);
+    let approach = Vector3::new(velocity.x, slip, T::zero());
+    let impact = solve(&reduced, &approach, surface)?;
+    let impulse = Vector3::new(
+        impact.impulse.x,
+        impact.impulse.y * cos - impact.impulse.z * sin,
+        impact.impulse.y * sin + impact.impulse.z * cos,
+    );
+    Ok(Resolved {
+        tangent: first * cos + second * sin,
+        binormal: second * cos - first * sin,
+        approach,
+        reduced,
+        impact,
+        impulse,
+        impulse_on_point: normal * impulse.x + first * impulse.y + second * impulse.z,
+        energy_change: impact.contact_work + impulse.dot(&(contact.prescribed_work - contact.remainder)),
+    })
+}

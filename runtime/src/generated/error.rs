@@ -1,0 +1,156 @@
+//! Why a generated routine has no answer.
+
+use core::fmt;
+
+use crate::ImpactError;
+
+/// Why a mechanism has no answer in a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum StateError {
+    /// The state is singular.
+    Singular {
+        /// What is singular, in the words of the model.
+        what: &'static str,
+    },
+    /// The state, or a result, is infinite or not a number.
+    NotFinite,
+}
+
+impl StateError {
+    /// A stable lower-case name.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Singular { .. } => "singular_state",
+            Self::NotFinite => "not_finite",
+        }
+    }
+}
+
+impl fmt::Display for StateError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Singular { what } => write!(out, "the state is singular: {what}"),
+            Self::NotFinite => {
+                write!(
+                    out,
+                    "a result is infinite or not a number: check the state and the parameters for overflow"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for StateError {}
+
+/// Why parameters belong to no mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ParameterError {
+    /// A parameter, or something computed from parameters, is infinite or not a number.
+    NotFinite {
+        /// The parameter or the body.
+        name: &'static str,
+    },
+    /// The mass of a body is zero or negative.
+    Mass {
+        /// The body.
+        body: &'static str,
+    },
+    /// No body has this inertia: a moment is negative, or greater than the sum of the other two.
+    Inertia {
+        /// The body.
+        body: &'static str,
+    },
+    /// Something that must not vanish does.
+    Singular {
+        /// What it is, in the words of the model.
+        what: &'static str,
+    },
+}
+
+impl ParameterError {
+    /// A stable lower-case name.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::NotFinite { .. } => "not_finite",
+            Self::Mass { .. } => "impossible_mass",
+            Self::Inertia { .. } => "impossible_inertia",
+            Self::Singular { .. } => "singular_parameters",
+        }
+    }
+}
+
+impl fmt::Display for ParameterError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { name } => write!(out, "`{name}` is infinite or not a number"),
+            Self::Mass { body } => write!(out, "the mass of `{body}` is not positive"),
+            Self::Inertia { body } => write!(
+                out,
+                "no body has the inertia of `{body}`: its moments must not be negative, and none greater than the sum of the others"
+            ),
+            Self::Singular { what } => write!(out, "the parameters are singular: {what}"),
+        }
+    }
+}
+
+impl core::error::Error for ParameterError {}
+
+impl From<StateError> for ParameterError {
+    fn from(error: StateError) -> Self {
+        match error {
+            StateError::Singular { what } => Self::Singular { what },
+            StateError::NotFinite => Self::NotFinite { name: "a value that depends on parameters alone" },
+        }
+    }
+}
+
+/// Why a collision of a mechanism has no outcome.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum CollisionError<T> {
+    /// The mechanism has no equations of motion there.
+    State(StateError),
+    /// The collision cannot be solved.
+    Impact(ImpactError<T>),
+}
+
+impl<T> CollisionError<T> {
+    /// A stable lower-case name.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::State(error) => error.kind(),
+            Self::Impact(error) => error.kind(),
+        }
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for CollisionError<T> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State(error) => error.fmt(out),
+            Self::Impact(error) => error.fmt(out),
+        }
+    }
+}
+
+impl<T: fmt::Debug + fmt::Display> core::error::Error for CollisionError<T> {}
+
+impl<T> From<StateError> for CollisionError<T> {
+    fn from(error: StateError) -> Self {
+        Self::State(error)
+    }
+}
+
+impl<T> From<ImpactError<T>> for CollisionError<T> {
+    fn from(error: ImpactError<T>) -> Self {
+        Self::Impact(error)
+    }
+}

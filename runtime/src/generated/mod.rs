@@ -1,0 +1,21 @@
+//! What generated modules are made of. Only generated code names these functions; the errors are for everybody.
+
+mod arithmetic;
+mod checks;
+mod contact;
+mod error;
+mod serial;
+
+#[doc(hidden)]
+pub use arithmetic::*;
+#[doc(hidden)]
+pub use checks::*;
+pub use contact::{Contact, Resolved, contact_axes, resolve};
+pub use error::{CollisionError, ParameterError, StateError};
+
+#[doc(hidden)]
+pub use crate::__serialize_record as serialize_record;
+
+/// Generated code names this constant: where it is missing, the module was made by a generator that this runtime does not fit.
+#[doc(hidden)]
+pub const GENERATED_CODE_FORMAT_1: () = ();
