@@ -8,6 +8,7 @@ mod commands;
 mod import;
 mod json;
 mod output;
+mod plot;
 mod spelling;
 mod stop;
 mod surface;
@@ -26,12 +27,14 @@ struct Arguments {
 #[derive(clap::Subcommand)]
 enum Command {
     Solve(commands::solve::Arguments),
+    Plot(commands::plot::Arguments),
     Import(commands::import::Arguments),
 }
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Solve(arguments) => commands::solve::run(&arguments),
+        Command::Plot(arguments) => commands::plot::run(&arguments),
         Command::Import(arguments) => commands::import::run(&arguments),
     };
     match outcome {

@@ -1,4 +1,5 @@
 //! The commands, one file each.
 
 pub mod import;
+pub mod plot;
 pub mod solve;

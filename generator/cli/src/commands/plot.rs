@@ -1,0 +1,72 @@
+//! `hodograph plot`: the course of collisions as a drawing.
+
+use std::io::Read;
+use std::path::PathBuf;
+
+use hodograph::ReducedMatrix;
+
+use crate::json::{Fields, Json};
+use crate::output;
+use crate::plot::figure::svg;
+use crate::plot::trace::{Trace, trace};
+use crate::stop::{Outcome, Stop};
+
+/// Draw the course of a collision (SVG): the hodograph v_s over v_t, and v_n and s over I_n, as in Fig. 3 of the paper
+///
+///   hodograph plot models/two_sleds.mech --mu 0.6,1.1,1.6 --e 0.8 --output sleds.svg
+///   echo '{"m":[..],"v":[..]}' | hodograph plot --mu 0.6 --e 0.8 > one.svg
+///
+/// A circle marks where Newton's law ends the collision, a cross Poisson's, a square Stronge's.
+#[derive(Clone, Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// coefficients of friction, one curve each
+    #[arg(
+        long,
+        value_name = "NUMBER,..",
+        value_delimiter = ',',
+        required = true,
+        allow_hyphen_values = true
+    )]
+    mu: Vec<f64>,
+    /// coefficient of restitution, between 0 and 1
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    e: f64,
+    /// where to write [default: standard output]
+    #[arg(long, short, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// An error object for what is wrong with the collision.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let (title, matrix, velocity) = collision(arguments)?;
+    let traces: Vec<Trace> =
+        arguments.mu.iter().map(|&mu| trace(&matrix, velocity, mu, arguments.e)).collect();
+    for failure in traces.iter().flat_map(|trace| &trace.failures) {
+        eprintln!("note: {failure}");
+    }
+    if traces.iter().all(|trace| trace.moments.is_empty()) {
+        return Err(Stop::Fault("there is nothing to draw: no collision has an outcome".to_owned()));
+    }
+    let text = svg(&title, &traces).map_err(|error| Stop::Fault(format!("cannot draw: {error}")))?;
+    match &arguments.output {
+        Some(path) => std::fs::write(path, text).map_err(|error| Stop::unwritable(path, &error)),
+        None => output::text(&text),
+    }
+}
+
+/// What collides: a title, the reduced matrix and the velocity of approach.
+fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64; 3])> {
+    let mut text = String::new();
+    std::io::stdin()
+        .read_to_string(&mut text)
+        .map_err(|error| Stop::Call(format!("cannot read standard input: {error}")))?;
+    let case = Fields::new(Json::parse(&text)?, "a collision")?;
+    let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
+    let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
+    Ok((format!("e = {}", arguments.e), matrix.into(), velocity))
+}

@@ -1,0 +1,108 @@
+//! Running the tool.
+#![allow(dead_code)] // each test file uses a part
+
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+/// What a run of the tool left.
+pub struct Run {
+    /// exit code
+    pub code: i32,
+    /// standard output
+    pub stdout: String,
+    /// standard error
+    pub stderr: String,
+}
+
+impl Run {
+    /// The lines of standard output as JSON.
+    pub fn lines(&self) -> Vec<Value> {
+        let parse = |line: &str| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"));
+        self.stdout.lines().map(parse).collect()
+    }
+
+    /// The only line of standard output as JSON.
+    pub fn line(&self) -> Value {
+        let mut lines = self.lines();
+        assert_eq!(lines.len(), 1, "one line, not\n{}\n{}", self.stdout, self.stderr);
+        lines.remove(0)
+    }
+
+    /// The kind of the error object that is all of standard output.
+    pub fn error_kind(&self) -> String {
+        assert_eq!(self.code, 1, "{}{}", self.stdout, self.stderr);
+        kind(&self.line())
+    }
+}
+
+/// The kind of an error object, which must have a message too.
+pub fn kind(line: &Value) -> String {
+    assert!(line["error"]["message"].as_str().is_some_and(|message| message.len() > 10), "{line}");
+    line["error"]["kind"].as_str().unwrap().to_owned()
+}
+
+/// Runs the tool.
+pub fn hodograph(arguments: &[&str], stdin: &str) -> Run {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    let text = stdin.to_owned();
+    let writer = std::thread::spawn(move || {
+        let _ = pipe.write_all(text.as_bytes());
+    });
+    let output = child.wait_with_output().unwrap();
+    writer.join().unwrap();
+    Run {
+        code: output.status.code().unwrap(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// The root of the repository.
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+/// A file of `tests/data`.
+pub fn data(name: &str) -> String {
+    let path = root().join("tests/data").join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A model file.
+pub fn model(name: &str) -> String {
+    root().join("models").join(format!("{name}.mech")).display().to_string()
+}
+
+/// A number, which may be written as a string of many digits.
+pub fn number(value: &Value) -> f64 {
+    match value {
+        Value::String(text) => text.parse().unwrap(),
+        _ => value.as_f64().unwrap_or_else(|| panic!("no number: {value}")),
+    }
+}
+
+/// All numbers of nested arrays.
+pub fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(items) => items.iter().flat_map(numbers).collect(),
+        _ => vec![number(value)],
+    }
+}
+
+/// The largest difference over the largest entry of `expected` (at least `floor`).
+pub fn difference(found: &[f64], expected: &[f64], floor: f64) -> f64 {
+    assert_eq!(found.len(), expected.len(), "{found:?} {expected:?}");
+    let largest = expected.iter().fold(floor, |largest, number| largest.max(number.abs()));
+    let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if worst == 0.0 { 0.0 } else { worst / largest }
+}

@@ -1,0 +1,167 @@
+//! `hodograph solve`: the contract of its JSON lines.
+
+mod common;
+
+use std::io::{BufRead, BufReader, Write};
+use std::process::{Command, Stdio};
+
+use common::{data, difference, hodograph, kind, number, numbers};
+use serde_json::{Value, json};
+
+fn case() -> Value {
+    json!({"m": [0.25, -0.125, 0, 0.5, 0, 0.5], "v": [-1, 0.5, 0], "mu": 0.5, "e": 0.5, "law": "stronge"})
+}
+
+fn with(change: &[(&str, Value)]) -> Value {
+    let mut case = case();
+    for (name, value) in change {
+        case[*name] = value.clone();
+    }
+    case
+}
+
+#[test]
+fn every_reference_case_is_within_its_condition() {
+    let cases: Vec<Value> =
+        data("impact_cases.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let run = hodograph(&["solve"], &data("impact_cases.jsonl"));
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let answers = run.lines();
+    assert_eq!(answers.len(), cases.len());
+    for (case, answer) in cases.iter().zip(&answers) {
+        let expect = &case["expect"];
+        let largest = |value: &Value| numbers(value).iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let impulse = largest(&expect["impulse"]);
+        let velocity = largest(&expect["v"]) + largest(&case["v"]);
+        let error = [
+            difference(&numbers(&answer["impulse"]), &numbers(&expect["impulse"]), 0.0),
+            difference(&numbers(&answer["v"]), &numbers(&expect["v"]), velocity),
+            (number(&answer["dE"]) - number(&expect["dE"])).abs() / (impulse * velocity),
+            (number(&answer["dEn"]) - number(&expect["dEn"])).abs() / (impulse * velocity),
+        ];
+        let bound = f64::max(1e-12, 32.0 * number(&case["cond"]) * 2.2e-16);
+        assert!(error.iter().all(|&error| error <= bound), "{error:?} {bound}\n{case}\n{answer}");
+        let path: Vec<&str> =
+            answer["path"].as_array().unwrap().iter().map(|word| word.as_str().unwrap()).collect();
+        if !["near_mu_c", "straight"].contains(&case["family"].as_str().unwrap()) {
+            assert_eq!(path.join("+"), expect["phase"].as_str().unwrap(), "{case}");
+        }
+        if let Some(compressions) = expect.get("compressions") {
+            assert_eq!(&answer["compressions"], compressions, "{case}");
+        }
+    }
+}
+
+#[test]
+fn answers_have_the_fields_of_the_contract_in_order() {
+    let run = hodograph(&["solve"], &case().to_string());
+    assert_eq!(run.code, 0);
+    let names = ["\"impulse\":[", "\"v\":[", "\"dE\":", "\"dEn\":", "\"path\":[\"", "\"compressions\":1}"];
+    let places: Vec<usize> = names.iter().map(|name| run.stdout.find(name).unwrap()).collect();
+    assert!(places.is_sorted() && run.stdout.ends_with("}\n"), "{}", run.stdout);
+}
+
+#[test]
+fn bad_lines_are_answered_and_the_next_is_solved() {
+    let mut cases = vec![
+        ("{".to_owned(), "bad_json"),
+        ("[1, 2]".to_owned(), "bad_json"),
+        ("\"solve\"".to_owned(), "bad_json"),
+        (r#"{"m":[1,0,0,1,0,1],"m":[1,0,0,1,0,1]}"#.to_owned(), "bad_json"),
+        (case().to_string().replace("-1,", "1e999,"), "not_finite"),
+        (case().to_string().replace("-1,", "NaN,"), "not_finite"),
+        ("[".repeat(100_000), "bad_json"),
+        (format!("{{\"x\":\"{}\"}}", "x".repeat(2 << 20)), "bad_json"),
+    ];
+    for (change, kind) in [
+        (("m", json!([1, 0, 0, 1, 0])), "bad_json"),
+        (("m", json!([1, 0, 0, 1, 0, "1"])), "bad_json"),
+        (("v", json!(null)), "bad_json"),
+        (("mu", json!("0.5")), "bad_json"),
+        (("law", json!(3)), "bad_json"),
+        (("law", json!("Stronger")), "unknown_name"),
+        (("mu", json!(-1)), "negative_friction"),
+        (("e", json!(1.2)), "restitution_out_of_range"),
+        (("e", json!(-0.1)), "restitution_out_of_range"),
+        (("v", json!([1, 0, 0])), "not_approaching"),
+        (("v", json!([0, 1, 0])), "not_approaching"),
+        (("m", json!([1, 2, 0, 1, 0, 1])), "not_positive_semidefinite"),
+        (("m", json!([0, 0, 0, 1, 0, 1])), "no_normal_mobility"),
+    ] {
+        cases.push((with(&[change]).to_string(), kind));
+    }
+    let slides_forever = with(&[
+        ("m", json!([1, 1, 0, 1, 0, 0])),
+        ("v", json!([-1, -0.1, 1])),
+        ("mu", json!(2)),
+        ("e", json!(0.5)),
+        ("law", json!("newton")),
+    ]);
+    cases.push((slides_forever.to_string(), "wedged"));
+    for name in ["m", "v", "mu", "e", "law"] {
+        let mut case = case();
+        case.as_object_mut().unwrap().remove(name);
+        cases.push((case.to_string(), "missing_field"));
+    }
+    let input: String = cases.iter().map(|(line, _)| format!("{line}\n\n  \n{}\r\n", case())).collect();
+    let run = hodograph(&["solve"], &input);
+    assert_eq!(run.code, 1);
+    let lines = run.lines();
+    assert_eq!(lines.len(), 2 * cases.len());
+    for (pair, (line, expected)) in lines.chunks(2).zip(&cases) {
+        assert_eq!(kind(&pair[0]), *expected, "{} {}", &line[..line.len().min(200)], pair[0]);
+        assert!(pair[1]["impulse"].is_array());
+    }
+}
+
+#[test]
+fn messages_say_what_to_do() {
+    let mistyped = case().to_string().replace("\"mu\"", "\"Mu\"");
+    let message = hodograph(&["solve"], &mistyped).line()["error"]["message"].as_str().unwrap().to_owned();
+    assert!(message.contains("no field `mu` (there is a field `Mu`)"), "{message}");
+}
+
+#[test]
+fn other_fields_are_left_alone() {
+    assert_eq!(hodograph(&["solve"], &with(&[("label", json!("a"))]).to_string()).code, 0);
+}
+
+#[test]
+fn each_answer_is_flushed() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+        .arg("solve")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let mut output = BufReader::new(child.stdout.take().unwrap());
+    for _ in 0..3 {
+        writeln!(input, "{}", case()).unwrap();
+        let mut line = String::new();
+        output.read_line(&mut line).unwrap();
+        assert!(line.contains("impulse"));
+    }
+    drop(input);
+    assert!(child.wait().unwrap().success());
+}
+
+#[test]
+fn numbers_read_back_exactly() {
+    let run = hodograph(
+        &["solve"],
+        &with(&[("mu", json!(0)), ("e", json!(1)), ("law", json!("newton"))]).to_string(),
+    );
+    assert_eq!(run.line()["impulse"], json!([8.0, 0.0, 0.0]));
+    assert_eq!(number(&run.line()["v"][0]), 1.0);
+}
+
+#[test]
+fn wrong_calls_exit_with_2() {
+    for arguments in [&["solve", "--method", "guess"][..], &["solve", "x"], &["slove"], &[]] {
+        let run = hodograph(arguments, "");
+        assert_eq!(run.code, 2, "{arguments:?}");
+        assert!(run.stdout.is_empty() && !run.stderr.is_empty());
+    }
+    assert_eq!(hodograph(&["solve"], "").code, 0);
+}
