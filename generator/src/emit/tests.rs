@@ -132,16 +132,25 @@ fn emitted() -> String {
     prettyplease::unparse(&syn::parse2(tokens).expect("generated code is Rust"))
 }
 
-/// The reviewed module. `HODOGRAPH_GOLDEN=write cargo test -p hodograph-generator` rewrites it.
+/// Compares with a reviewed file; `HODOGRAPH_GOLDEN=write cargo test -p hodograph-generator` rewrites it.
+fn reviewed(name: &str, text: &str) {
+    let path = format!("{}/tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
+    if std::env::var_os("HODOGRAPH_GOLDEN").is_some() {
+        std::fs::write(&path, text).unwrap();
+    }
+    let reviewed = std::fs::read_to_string(&path).unwrap();
+    assert!(text == reviewed, "{path} differs; look at the difference after HODOGRAPH_GOLDEN=write");
+}
+
 #[test]
 fn the_module_is_the_reviewed_one() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/golden/pendulum.rs");
-    let emitted = emitted();
-    if std::env::var_os("HODOGRAPH_GOLDEN").is_some() {
-        std::fs::write(path, &emitted).unwrap();
-    }
-    let reviewed = std::fs::read_to_string(path).unwrap();
-    assert!(emitted == reviewed, "{path} differs; look at the difference after HODOGRAPH_GOLDEN=write");
+    reviewed("pendulum.rs", &emitted());
+}
+
+/// The whole's tests evaluate this derivation beside the reviewed module.
+#[test]
+fn the_derivation_is_the_reviewed_one() {
+    reviewed("pendulum.derivation", &crate::artifact::encode(&Program::new(&derived()), "0"));
 }
 
 #[test]

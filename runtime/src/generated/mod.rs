@@ -13,6 +13,13 @@ pub use checks::*;
 pub use contact::{Contact, Resolved, contact_axes, resolve};
 pub use error::{CollisionError, ParameterError, StateError};
 
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serde;
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub use serial::{FieldIndex, FieldNames};
+
 #[doc(hidden)]
 pub use crate::__serialize_record as serialize_record;
 
