@@ -21,3 +21,5 @@ pub mod interpret;
 pub mod model;
 pub mod number;
 pub mod program;
+pub mod source;
+pub mod syntax;

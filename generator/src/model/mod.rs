@@ -1,3 +1,53 @@
 //! The meaning of a model: names resolved, dimensions and physics checked.
 
+pub mod dimension;
+mod lower;
 pub mod mechanism;
+mod names;
+mod order;
+pub mod rust_names;
+pub mod similar;
+mod typed;
+pub mod units;
+
+use crate::diagnostics::{Diagnostic, Severity};
+use crate::source::Source;
+use crate::syntax;
+use mechanism::Mechanism;
+
+/// What was found in a model.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// the mechanism; there if and only if no error was found
+    pub mechanism: Option<Mechanism>,
+    /// errors and warnings, in the order of their places
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Checked {
+    /// Was an error found?
+    pub fn has_errors(&self) -> bool {
+        self.mechanism.is_none()
+    }
+}
+
+/// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
+pub fn check(source: &Source) -> Checked {
+    let tokens = match source.tokens() {
+        Ok(tokens) => tokens,
+        Err(error) => return Checked { mechanism: None, diagnostics: vec![error] },
+    };
+    let (tree, diagnostics) = syntax::parse(&tokens);
+    // without a name nothing else could be read
+    let unread = tree.name.is_none() && tree.sections.is_empty();
+    let (mechanism, mut diagnostics) = if unread {
+        (None, diagnostics)
+    } else {
+        let (mechanism, diagnostics) = lower::lower(&tree, diagnostics);
+        (Some(mechanism), diagnostics)
+    };
+    diagnostics.sort_by_key(|d| (d.primary.span, d.code));
+    diagnostics.dedup();
+    let errors = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    Checked { mechanism: mechanism.filter(|_| !errors), diagnostics }
+}

@@ -1,0 +1,92 @@
+//! The list of all kinds of mistakes.
+
+use super::Severity;
+
+/// The kind of a mistake: `E012` for errors, `W001` for warnings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Code(pub &'static str);
+
+impl Code {
+    /// Codes of warnings begin with `W`.
+    pub fn severity(self) -> Severity {
+        if self.0.starts_with('W') { Severity::Warning } else { Severity::Error }
+    }
+
+    /// What it means, in a few words.
+    pub fn title(self) -> &'static str {
+        ALL.iter().find(|(code, _)| *code == self).map_or("", |(_, title)| title)
+    }
+}
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0)
+    }
+}
+
+macro_rules! codes {
+    ($($name:ident = $code:literal, $title:literal;)*) => {
+        $(#[doc = $title] pub const $name: Code = Code($code);)*
+        /// Every code with its title, in order.
+        pub const ALL: &[(Code, &str)] = &[$(($name, $title)),*];
+    };
+}
+
+codes! {
+    UNREADABLE = "E001", "the file cannot be read as text";
+    TOO_LARGE = "E002", "the model is too large";
+    BAD_TOKEN = "E003", "this text cannot be part of a model";
+    BAD_NUMBER = "E004", "not a decimal number";
+    UNBALANCED = "E005", "a bracket without its partner";
+    EXPECTED = "E006", "something else is expected here";
+    SECTION_UNKNOWN = "E007", "no section has this name";
+    SECTION_ORDER = "E008", "sections are out of order";
+    SECTION_TWICE = "E009", "a section appears twice";
+    STRAY_DOCS = "E010", "documentation that documents nothing";
+    TOO_DEEP = "E011", "brackets are nested too deeply";
+    BAD_EXPRESSION = "E012", "not an expression";
+    FIELD = "E013", "a field is unknown, missing or given twice";
+    EMPTY = "E014", "the model has no body or no speed";
+    UNKNOWN_NAME = "E020", "unknown name";
+    DUPLICATE_NAME = "E021", "a name is declared twice";
+    RESERVED_NAME = "E022", "a name that cannot be declared";
+    COLLISION = "E023", "two names become one in Rust";
+    CYCLE = "E024", "things are defined through each other";
+    WRONG_KIND = "E025", "a name of another kind is needed here";
+    UNKNOWN_UNIT = "E030", "unknown unit";
+    DIMENSION = "E031", "dimensions do not agree";
+    EXPONENT = "E032", "an exponent that is not allowed";
+    NUMBER_RANGE = "E033", "a number out of range";
+    ZERO_DIVISOR = "E034", "division by zero";
+    CONSTANT = "E035", "a value must be a constant";
+    NEEDS_VALUE = "E036", "a value is missing";
+    SCALAR_VECTOR = "E040", "a scalar where a vector is needed, or the reverse";
+    FUNCTION = "E041", "unknown function or wrong number of arguments";
+    NO_AXES = "E042", "a frame without axes";
+    NO_POSITION = "E043", "a point without position";
+    SPEED_DEPENDENT = "E050", "this must be free of speeds";
+    NOT_LINEAR = "E051", "this must be linear in the speeds";
+    FRAME = "E052", "a frame is not oriented correctly";
+    QUATERNION = "E053", "a quaternion is not used correctly";
+    POINT = "E054", "a point is not placed correctly";
+    MOTION_TWICE = "E055", "a motion is stated twice";
+    MATERIAL = "E056", "not a point of that body";
+    BODY = "E060", "a body or particle lacks something";
+    MASS = "E061", "a mass that no body can have";
+    INERTIA = "E062", "an inertia that no body can have";
+    LOAD = "E063", "a load is not stated correctly";
+    CONSTRAINT_COUNT = "E070", "constraints and dependent speeds differ in number";
+    CONSTRAINT_SINGULAR = "E071", "the constraints do not determine the dependent speeds";
+    CONFIGURATION_COUNT = "E072", "configuration equations and dependent coordinates differ in number";
+    NO_RATE = "E073", "a coordinate without a kinematical equation";
+    KINEMATICS_SINGULAR = "E074", "the kinematical equations do not determine the rates";
+    INCONSISTENT = "E075", "a declared velocity contradicts the positions";
+    NO_INERTIA = "E076", "a degree of freedom without inertia";
+    EMPTY_EQUATION = "E077", "an equation that says nothing";
+    NORMAL = "E080", "the normal is no unit vector";
+    CONTACT_STILL = "E081", "a contact that never moves";
+    CONTACT = "E082", "a contact is not stated correctly";
+    UNUSED_PARAMETER = "W001", "a parameter is never used";
+    UNUSED_INPUT = "W002", "an input is never used";
+    UNUSED_DEFINITION = "W003", "a definition is never used";
+}

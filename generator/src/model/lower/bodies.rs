@@ -1,0 +1,275 @@
+//! Bodies and particles.
+
+use super::super::dimension::Dimension;
+use super::super::mechanism::{Body, FrameId, Inertia, PointId, Scalar};
+use super::super::similar;
+use super::Lowering;
+use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::number::Number;
+use crate::syntax::tree::{Expr, ExprKind, Field, Name, Record};
+
+impl Lowering<'_> {
+    pub(super) fn bodies(&mut self) {
+        let tree = self.tree;
+        for record in &tree.bodies {
+            self.body(record);
+        }
+        for record in &tree.particles {
+            self.particle(record);
+        }
+        let no_body = tree.bodies.is_empty() && tree.particles.is_empty();
+        let no_speed = tree.speeds.is_empty();
+        let place = tree.name.as_ref().map_or(Span::default(), |name| name.span);
+        if no_body && !self.diagnostics.iter().any(|d| d.code == codes::EXPECTED) {
+            let error = Diagnostic::new(codes::EMPTY, place, "the mechanism has no body and no particle")
+                .help("add `bodies { .. }` or `particles { .. }`");
+            self.report(error);
+        }
+        if no_speed && !self.diagnostics.iter().any(|d| d.code == codes::EXPECTED) {
+            let error = Diagnostic::new(codes::EMPTY, place, "the mechanism has no speed")
+                .help("add `speeds { u1: rad/s }`");
+            self.report(error);
+        }
+    }
+
+    /// The fields of a record by name; unknown, repeated and missing ones are reported.
+    pub(super) fn record<'r, const N: usize>(
+        &mut self,
+        what: &str,
+        owner: &Name,
+        fields: &'r [Field],
+        known: [&str; N],
+        needed: &[&str],
+    ) -> [Option<&'r Field>; N] {
+        let mut found: [Option<&Field>; N] = [None; N];
+        for field in fields {
+            let Some(i) = known.iter().position(|name| *name == field.name.text) else {
+                let message = format!("{what} has no field `{}`", field.name.text);
+                let error = Diagnostic::new(codes::FIELD, field.name.span, message);
+                let near = similar::nearest(&field.name.text, known.into_iter());
+                let near = near.or(match field.name.text.as_str() {
+                    "center" | "com" => Some("centre").filter(|c| known.contains(c)),
+                    _ => None,
+                });
+                self.report(match near {
+                    Some(near) => error.help(format!("did you mean `{near}`?")),
+                    None => error.help(format!("its fields are {}", known.join(", "))),
+                });
+                continue;
+            };
+            if let Some(first) = found[i] {
+                let error = Diagnostic::new(
+                    codes::FIELD,
+                    field.name.span,
+                    format!("`{}` is given twice", field.name.text),
+                )
+                .related(first.name.span, "first here");
+                self.report(error);
+            } else {
+                found[i] = Some(field);
+            }
+        }
+        let missing: Vec<String> = known
+            .iter()
+            .zip(&found)
+            .filter(|(name, field)| field.is_none() && needed.contains(name))
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
+        if !missing.is_empty() {
+            let code = if what.starts_with("a body") || what.starts_with("a particle") {
+                codes::BODY
+            } else {
+                codes::FIELD
+            };
+            let message = format!("`{}` has no {}", owner.text, missing.join(" and no "));
+            let first = missing[0].trim_matches('`').to_owned();
+            let example = match first.as_str() {
+                "mass" => "mass: m",
+                "inertia" => "inertia: [Ixx, Iyy, Izz]",
+                "frame" => "frame: B",
+                "centre" => "centre: G",
+                "point" => "point: P",
+                "normal" => "normal: N.y",
+                "angle" => "angle: q1",
+                _ => "",
+            };
+            self.report(Diagnostic::new(code, owner.span, message).help(format!("add `{example}`")));
+        }
+        found
+    }
+
+    /// Words beside a value that do not belong there.
+    pub(super) fn notes(&mut self, field: &Field, allowed: &[&str]) {
+        for (i, note) in field.notes.iter().enumerate() {
+            let twice = field.notes[..i].iter().any(|other| other.word.text == note.word.text);
+            if !allowed.contains(&note.word.text.as_str()) || twice {
+                let message = format!("`{}` cannot stand here", note.word.text);
+                self.report(Diagnostic::new(codes::FIELD, note.word.span, message));
+            }
+        }
+    }
+
+    pub(super) fn note<'r>(&self, field: &'r Field, word: &str) -> Option<&'r Name> {
+        field.notes.iter().find(|note| note.word.text == word).and_then(|note| note.name.as_ref())
+    }
+
+    /// A field whose value is a name.
+    pub(super) fn name_in<'r>(&mut self, field: &'r Field, what: &str) -> Option<Name> {
+        match &field.value.kind {
+            ExprKind::Name(text) => Some(Name { text: text.clone(), span: field.value.span }),
+            ExprKind::Error => None,
+            _ => {
+                let message = format!("`{}` needs the name of {what}", field.name.text);
+                self.report(Diagnostic::new(codes::WRONG_KIND, field.value.span, message));
+                None
+            }
+        }
+    }
+
+    fn mass(&mut self, expr: &Expr) -> Option<Scalar> {
+        let (scalar, typed) = self.scalar_like(expr, Dimension::of(0, 1, 0), "a mass")?;
+        self.need_free_of_speeds(&typed, "a mass");
+        if typed.traits.moves || typed.traits.time || typed.traits.input {
+            let error = Diagnostic::new(codes::MASS, typed.span, "a mass must be constant")
+                .help("it may depend on parameters only");
+            self.report(error);
+        }
+        if typed.constant.is_some_and(|value| value < 0.0) {
+            self.error(codes::MASS, typed.span, "a mass cannot be negative");
+        }
+        Some(scalar)
+    }
+
+    fn body(&mut self, record: &Record) {
+        let [frame, centre, mass, inertia] = self.record(
+            "a body",
+            &record.name,
+            &record.fields,
+            ["frame", "centre", "mass", "inertia"],
+            &["frame", "centre", "mass", "inertia"],
+        );
+        for field in [frame, centre, mass].into_iter().flatten() {
+            self.notes(field, &[]);
+        }
+        let frame =
+            frame.and_then(|field| self.name_in(field, "a frame")).and_then(|name| self.proper_frame(&name));
+        let centre =
+            centre.and_then(|field| self.name_in(field, "a point")).and_then(|name| self.point_named(&name));
+        let mass = mass.and_then(|field| self.mass(&field.value));
+        let inertia = inertia.and_then(|field| self.inertia(field, frame));
+        let zero = || Scalar::Number(Number::integer(0));
+        self.out.bodies.push(Body {
+            name: record.name.text.clone(),
+            docs: record.docs.clone(),
+            frame: Some(frame.unwrap_or(FrameId::N)),
+            centre: centre.unwrap_or(PointId::O),
+            mass: mass.unwrap_or_else(zero),
+            inertia,
+            span: record.name.span,
+        });
+    }
+
+    /// A frame, not a body.
+    pub(super) fn proper_frame(&mut self, name: &Name) -> Option<FrameId> {
+        use super::super::names::Symbol;
+        match self.resolve(name, |s| matches!(s, Symbol::Frame(_)))? {
+            Symbol::Frame(f) => Some(FrameId(f)),
+            other => {
+                self.wrong_kind(name, "a frame", &format!("`{}` is {}", name.text, other.kind()));
+                None
+            }
+        }
+    }
+
+    fn particle(&mut self, record: &Record) {
+        let known = ["point", "mass"];
+        let [point, mass] = self.record("a particle", &record.name, &record.fields, known, &known);
+        for field in [point, mass].into_iter().flatten() {
+            self.notes(field, &[]);
+        }
+        let point =
+            point.and_then(|field| self.name_in(field, "a point")).and_then(|name| self.point_named(&name));
+        let mass = mass.and_then(|field| self.mass(&field.value));
+        self.out.bodies.push(Body {
+            name: record.name.text.clone(),
+            docs: record.docs.clone(),
+            frame: None,
+            centre: point.unwrap_or(PointId::O),
+            mass: mass.unwrap_or_else(|| Scalar::Number(Number::integer(0))),
+            inertia: None,
+            span: record.name.span,
+        });
+    }
+
+    fn inertia(&mut self, field: &Field, body_frame: Option<FrameId>) -> Option<Inertia> {
+        self.notes(field, &["in", "about"]);
+        let within =
+            self.note(field, "in").map(|name| self.proper_frame(name).map(|frame| (frame, name.span)));
+        let about = self.note(field, "about").map(|name| self.point_named(name));
+        let ExprKind::List(items) = &field.value.kind else {
+            if !matches!(field.value.kind, ExprKind::Error) {
+                let error =
+                    Diagnostic::new(codes::INERTIA, field.value.span, "an inertia is a list of components")
+                        .help("write `[xx, yy, zz]` or `[xx, yy, zz, xy, yz, zx]`");
+                self.report(error);
+            }
+            return None;
+        };
+        let mut components = Vec::new();
+        for item in items {
+            let what = "a component of inertia";
+            let Some((scalar, typed)) = self.scalar_like(item, Dimension::of(2, 1, 0), what) else {
+                continue;
+            };
+            self.need_free_of_speeds(&typed, what);
+            if typed.traits.moves || typed.traits.time || typed.traits.input {
+                let error =
+                    Diagnostic::new(codes::INERTIA, typed.span, "an inertia must be constant in its frame")
+                        .help(
+                            "its components may depend on parameters only; choose a frame in which they do",
+                        );
+                self.report(error);
+            }
+            components.push(scalar);
+        }
+        if items.len() != 3 && items.len() != 6 {
+            let message = format!("an inertia has 3 or 6 components, but {} are given", items.len());
+            let error = Diagnostic::new(codes::INERTIA, field.value.span, message)
+                .help("write `[xx, yy, zz]` or `[xx, yy, zz, xy, yz, zx]`, products with a plus sign");
+            self.report(error);
+            return None;
+        }
+        if components.len() == 3 && items.len() == 3 {
+            components.extend((0..3).map(|_| Scalar::Number(Number::integer(0))));
+        }
+        let components: [Scalar; 6] = components.try_into().ok()?;
+        let frame = match within {
+            None => {
+                let frame = body_frame?;
+                if self.frames[frame.0].no_axes {
+                    let name = self.out.frames[frame.0].name.clone();
+                    let message =
+                        format!("`{name}` has no axes, so the components of inertia need another frame");
+                    let error = Diagnostic::new(codes::NO_AXES, field.value.span, message)
+                        .related(
+                            self.out.frames[frame.0].span,
+                            "its angle is ignorable, for it is made by `spin`",
+                        )
+                        .help("say in which frame they are: `inertia: [..] in A`");
+                    self.report(error);
+                    return None;
+                }
+                frame
+            }
+            Some(within) => {
+                let (frame, span) = within?;
+                self.need_axes(frame, span)?
+            }
+        };
+        let about = match about {
+            None => None,
+            Some(point) => Some(point?),
+        };
+        Some(Inertia { components: Box::new(components), frame, about })
+    }
+}

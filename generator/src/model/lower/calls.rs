@@ -1,0 +1,480 @@
+//! Functions, axes and what is asked of points and frames.
+
+use super::super::dimension::{Dimension, Exponent};
+use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
+use super::super::names::Symbol;
+use super::super::similar;
+use super::super::typed::{Traits, Typed, Value};
+use super::Lowering;
+use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::syntax::tree::{Expr, ExprKind, Name};
+
+const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
+    ("sin", Function::Sin),
+    ("cos", Function::Cos),
+    ("tan", Function::Tan),
+    ("asin", Function::Asin),
+    ("acos", Function::Acos),
+    ("atan", Function::Atan),
+    ("atan2", Function::Atan2),
+    ("sqrt", Function::Sqrt),
+    ("exp", Function::Exp),
+    ("log", Function::Log),
+    ("abs", Function::Abs),
+    ("sign", Function::Sign),
+    ("min", Function::Min),
+    ("max", Function::Max),
+];
+
+const OTHER_FUNCTIONS: &[&str] =
+    &["pow", "dot", "cross", "norm", "unit", "position", "velocity", "angular_velocity", "d"];
+
+impl Lowering<'_> {
+    /// `function(arguments)`
+    pub(super) fn call(&mut self, name: &Name, arguments: &[Expr], span: Span) -> Typed {
+        if let Some((_, function)) = SCALAR_FUNCTIONS.iter().find(|(text, _)| *text == name.text) {
+            return self.scalar_function(*function, name, arguments, span);
+        }
+        let count = |wanted: std::ops::RangeInclusive<usize>| wanted.contains(&arguments.len());
+        let (wanted, fits) = match name.text.as_str() {
+            "pow" | "dot" | "cross" => ("two arguments", count(2..=2)),
+            "norm" | "unit" | "d" => ("one argument", count(1..=1)),
+            "position" | "velocity" | "angular_velocity" => ("one or two arguments", count(1..=2)),
+            _ => return self.unknown_function(name, arguments, span),
+        };
+        if self.constant_only && name.text != "pow" {
+            let error = Diagnostic::new(
+                codes::CONSTANT,
+                span,
+                format!("a value is a constant, not `{}(..)`", name.text),
+            );
+            self.report(error);
+            return Typed::poison(span);
+        }
+        if !fits {
+            self.wrong_count(name, wanted, arguments.len(), span);
+            return Typed::poison(span);
+        }
+        match name.text.as_str() {
+            "position" | "velocity" => return self.of_points(name, arguments, span),
+            "angular_velocity" => return self.of_frames(arguments, span),
+            _ => {}
+        }
+        let typed: Vec<Typed> = arguments.iter().map(|argument| self.expression(argument)).collect();
+        match (name.text.as_str(), &typed[..]) {
+            ("pow", [base, exponent]) => self.power(base.clone(), exponent.clone(), span),
+            ("dot", [a, b]) => {
+                let vectors = (
+                    self.need_vector(a, "an argument of `dot`"),
+                    self.need_vector(b, "an argument of `dot`"),
+                );
+                let (Some(v), Some(w)) = vectors else { return Typed::poison(span) };
+                let dimension = both(a.dimension, b.dimension);
+                let value = Scalar::Dot(Box::new(v), Box::new(w));
+                Typed::scalar(value, dimension, a.traits.times(b.traits), span)
+            }
+            ("cross", [a, b]) => {
+                let what = "an argument of `cross`";
+                let vectors = (self.need_vector(a, what), self.need_vector(b, what));
+                let (Some(v), Some(w)) = vectors else { return Typed::poison(span) };
+                let dimension = both(a.dimension, b.dimension);
+                let value = Vector::Cross(Box::new(v), Box::new(w));
+                Typed::vector(value, dimension, a.traits.times(b.traits), span)
+            }
+            ("norm", [v]) => match self.need_vector(v, "the argument of `norm`") {
+                Some(vector) => {
+                    Typed::scalar(Scalar::Norm(Box::new(vector)), v.dimension, v.traits.bent(), span)
+                }
+                None => Typed::poison(span),
+            },
+            ("unit", [v]) => {
+                if v.is_zero() {
+                    let error =
+                        Diagnostic::new(codes::ZERO_DIVISOR, v.span, "the zero vector has no direction");
+                    self.report(error);
+                    return Typed::poison(span);
+                }
+                match self.need_vector(v, "the argument of `unit`") {
+                    Some(vector) => {
+                        let value = Vector::Unit(Box::new(vector), span);
+                        Typed::vector(value, Some(Dimension::none()), v.traits.bent(), span)
+                    }
+                    None => Typed::poison(span),
+                }
+            }
+            _ => {
+                let error = Diagnostic::new(codes::BAD_EXPRESSION, span, "`d(..)` must be followed by `/dt`")
+                    .help("a time derivative is written `d(q1)/dt`");
+                self.report(error);
+                Typed::poison(span)
+            }
+        }
+    }
+
+    fn unknown_function(&mut self, name: &Name, arguments: &[Expr], span: Span) -> Typed {
+        for argument in arguments {
+            self.expression(argument);
+        }
+        let all = SCALAR_FUNCTIONS.iter().map(|(text, _)| *text).chain(OTHER_FUNCTIONS.iter().copied());
+        let error = match self.names.get(&name.text) {
+            Some(symbol) => {
+                let message = format!("`{}` is {}, not a function", name.text, symbol.kind());
+                Diagnostic::new(codes::FUNCTION, name.span, message).help("write `*` for a product")
+            }
+            None => {
+                let error = Diagnostic::new(
+                    codes::FUNCTION,
+                    name.span,
+                    format!("there is no function `{}`", name.text),
+                );
+                let habits = [
+                    ("arctan", "atan"),
+                    ("arcsin", "asin"),
+                    ("arccos", "acos"),
+                    ("ln", "log"),
+                    ("fabs", "abs"),
+                    ("sgn", "sign"),
+                ];
+                let habit = habits.iter().find(|(wrong, _)| *wrong == name.text).map(|(_, right)| *right);
+                match habit.or_else(|| similar::nearest(&name.text, all.clone())) {
+                    Some(near) => error.help(format!("did you mean `{near}`?")),
+                    None => error.help(format!("the functions are {}", all.collect::<Vec<_>>().join(", "))),
+                }
+            }
+        };
+        self.report(error);
+        Typed::poison(span)
+    }
+
+    fn wrong_count(&mut self, name: &Name, wanted: &str, found: usize, span: Span) {
+        let message = format!("`{}` takes {wanted}, but {found} are given", name.text);
+        self.report(Diagnostic::new(codes::FUNCTION, span, message));
+    }
+
+    fn scalar_function(&mut self, function: Function, name: &Name, arguments: &[Expr], span: Span) -> Typed {
+        let typed: Vec<Typed> = arguments.iter().map(|argument| self.expression(argument)).collect();
+        let binary = matches!(function, Function::Atan2 | Function::Min | Function::Max);
+        if typed.len() != 1 + usize::from(binary) {
+            self.wrong_count(name, if binary { "two arguments" } else { "one argument" }, typed.len(), span);
+            return Typed::poison(span);
+        }
+        let what = format!("the argument of `{}`", name.text);
+        let scalars: Vec<Option<Scalar>> =
+            typed.iter().map(|argument| self.need_scalar(argument, &what)).collect();
+        let Some(scalars) = scalars.into_iter().collect::<Option<Vec<Scalar>>>() else {
+            return Typed::poison(span);
+        };
+        let traits = typed.iter().fold(Traits::default(), |sum, argument| sum.plus(argument.traits.bent()));
+        let first = typed[0].dimension;
+        let dimension = match function {
+            Function::Sqrt => first.and_then(|d| d.power(Exponent::new(1, 2))),
+            Function::Abs => first,
+            Function::Sign => Some(Dimension::none()),
+            Function::Atan2 | Function::Min | Function::Max => {
+                if let (Some(a), Some(b)) = (first, typed[1].dimension)
+                    && a != b
+                {
+                    let message = format!("the arguments of `{}` have the dimensions {a} and {b}", name.text);
+                    let error = Diagnostic::new(codes::DIMENSION, typed[1].span, message)
+                        .label(format!("this is in {b}"))
+                        .related(typed[0].span, format!("this is in {a}"));
+                    self.report(error);
+                }
+                if function == Function::Atan2 {
+                    Some(Dimension::none())
+                } else {
+                    first.or(typed[1].dimension)
+                }
+            }
+            _ => {
+                self.demand(&typed[0], Dimension::none(), &what);
+                Some(Dimension::none())
+            }
+        };
+        let constants: Option<Vec<f64>> = typed.iter().map(|argument| argument.constant).collect();
+        let constant = constants.map(|values| match (function, &values[..]) {
+            (_, [a, b]) => match function {
+                Function::Atan2 => a.atan2(*b),
+                Function::Min => a.min(*b),
+                _ => a.max(*b),
+            },
+            (_, [a]) => apply(function, *a),
+            _ => f64::NAN,
+        });
+        Typed { constant, ..Typed::scalar(Scalar::Call(function, scalars), dimension, traits, span) }
+    }
+
+    fn point_argument(&mut self, argument: &Expr, of: &str) -> Option<PointId> {
+        match &argument.kind {
+            ExprKind::Name(text) => self.point_named(&Name { text: text.clone(), span: argument.span }),
+            ExprKind::Error => None,
+            _ => {
+                let message = format!("`{of}` takes the names of points");
+                let error = Diagnostic::new(codes::WRONG_KIND, argument.span, message)
+                    .help("declare the point under `points`");
+                self.report(error);
+                None
+            }
+        }
+    }
+
+    /// `position(P, Q)` and `velocity(P, Q)`
+    fn of_points(&mut self, name: &Name, arguments: &[Expr], span: Span) -> Typed {
+        let points: Vec<Option<PointId>> =
+            arguments.iter().map(|argument| self.point_argument(argument, &name.text)).collect();
+        let Some(points) = points.into_iter().collect::<Option<Vec<PointId>>>() else {
+            return Typed::poison(span);
+        };
+        let of = points[0];
+        let from = points.get(1).copied().unwrap_or(PointId::O);
+        let (a, b) = (self.points[of.0].clone(), self.points[from.0].clone());
+        if name.text == "velocity" {
+            let traits = a.velocity.plus(b.velocity).seen_from(span);
+            let dimension = Some(Dimension::of(1, 0, -1));
+            let value = match points.get(1) {
+                None => Vector::Velocity(of),
+                Some(_) => {
+                    Vector::Add(vec![Vector::Velocity(of), Vector::Neg(Box::new(Vector::Velocity(from)))])
+                }
+            };
+            return Typed::vector(value, dimension, traits, span);
+        }
+        if a.root != b.root {
+            let unknown = if a.root != 0 { a.root } else { b.root };
+            let point = &self.out.points[unknown];
+            let (place, called) = (point.span, point.name.clone());
+            let message = format!("the position of `{called}` is not known, only its velocity");
+            let error = Diagnostic::new(codes::NO_POSITION, span, message)
+                .related(place, format!("`{called}` is given by its velocity"))
+                .help(format!("positions of points placed from `{called}` may appear in differences only: `position(P, {called})`"));
+            self.report(error);
+            return Typed::poison(span);
+        }
+        let traits = a.position.plus(b.position).seen_from(span);
+        Typed::vector(Vector::Position { of, from }, Some(Dimension::of(1, 0, 0)), traits, span)
+    }
+
+    /// `angular_velocity(B, A)`
+    fn of_frames(&mut self, arguments: &[Expr], span: Span) -> Typed {
+        let mut frames = Vec::new();
+        for argument in arguments {
+            match &argument.kind {
+                ExprKind::Name(text) => {
+                    frames.push(self.frame_named(&Name { text: text.clone(), span: argument.span }));
+                }
+                ExprKind::Error => frames.push(None),
+                _ => {
+                    let message = "`angular_velocity` takes the names of frames or bodies";
+                    self.error(codes::WRONG_KIND, argument.span, message);
+                    frames.push(None);
+                }
+            }
+        }
+        let Some(frames) = frames.into_iter().collect::<Option<Vec<FrameId>>>() else {
+            return Typed::poison(span);
+        };
+        let (of, in_frame) = (frames[0], frames.get(1).copied().unwrap_or(FrameId::N));
+        let traits = self.frames[of.0].angular_velocity.plus(self.frames[in_frame.0].angular_velocity);
+        let dimension = Some(Dimension::of(0, 0, -1));
+        Typed::vector(Vector::AngularVelocity { of, in_frame }, dimension, traits.seen_from(span), span)
+    }
+
+    /// The frame before `.`, which must have axes.
+    fn frame_with_axes(&mut self, base: &Expr) -> Option<FrameId> {
+        let ExprKind::Name(text) = &base.kind else {
+            if self.expression(base).is_poison() {
+                return None;
+            }
+            let error = Diagnostic::new(codes::WRONG_KIND, base.span, "only a frame can stand before `.`")
+                .help("write `dot(v, A.x)` for a component");
+            self.report(error);
+            return None;
+        };
+        let name = Name { text: text.clone(), span: base.span };
+        let frame = match self.resolve(&name, |s| matches!(s, Symbol::Frame(_)))? {
+            Symbol::Frame(f) => FrameId(f),
+            symbol => {
+                let mut error = Diagnostic::new(
+                    codes::WRONG_KIND,
+                    name.span,
+                    format!("only a frame has axes, but `{}` is {}", name.text, symbol.kind()),
+                );
+                if let Symbol::Body(b) = symbol
+                    && let Some(frame) = super::super::order::body_frame(self.tree, b)
+                {
+                    error = error.help(format!("its frame is `{}`", frame.text));
+                }
+                self.report(error);
+                return None;
+            }
+        };
+        self.need_axes(frame, base.span)
+    }
+
+    /// A frame made by `spin` has no axes.
+    pub(super) fn need_axes(&mut self, frame: FrameId, at: Span) -> Option<FrameId> {
+        if !self.frames[frame.0].no_axes {
+            return Some(frame);
+        }
+        let (name, place) = (self.out.frames[frame.0].name.clone(), self.out.frames[frame.0].span);
+        let error =
+            Diagnostic::new(codes::NO_AXES, at, format!("`{name}` has an angular velocity but no axes"))
+                .related(place, "its angle is ignorable, for it is made by `spin`")
+                .help("use the axes of the frame that it spins in");
+        self.report(error);
+        None
+    }
+
+    /// `A.x`
+    pub(super) fn field(&mut self, base: &Expr, field: &Name, span: Span) -> Typed {
+        if self.constant_only {
+            self.error(codes::CONSTANT, span, "a value is a number, not a vector");
+            return Typed::poison(span);
+        }
+        let frame = self.frame_with_axes(base);
+        let Some(axis) = axis_named(&field.text) else {
+            let error = Diagnostic::new(
+                codes::UNKNOWN_NAME,
+                field.span,
+                format!("a frame has no axis `{}`", field.text),
+            );
+            let methods = ["vec", "rotate", "euler", "space", "quaternion", "spin"];
+            let error = if methods.contains(&field.text.as_str()) {
+                error.help(format!("`{}` needs arguments in parentheses", field.text))
+            } else {
+                error.help("the axes are `x`, `y` and `z`")
+            };
+            self.report(error);
+            return Typed::poison(span);
+        };
+        let Some(frame) = frame else { return Typed::poison(span) };
+        let traits = self.frames[frame.0].orientation.seen_from(span);
+        let mut components = [0, 0, 0].map(|n| Scalar::Number(crate::number::Number::integer(n)));
+        components[axis as usize] = Scalar::Number(crate::number::Number::integer(1));
+        Typed::vector(Vector::Components(frame, Box::new(components)), Some(Dimension::none()), traits, span)
+    }
+
+    /// `A.vec(a, b, c)`; the other operations make frames and stand under `frames` only.
+    pub(super) fn method(&mut self, base: &Expr, method: &Name, arguments: &[Expr], span: Span) -> Typed {
+        if self.constant_only {
+            self.error(codes::CONSTANT, span, "a value is a number, not a vector");
+            return Typed::poison(span);
+        }
+        let making = ["rotate", "euler", "space", "quaternion", "spin"];
+        if method.text != "vec" {
+            let text = &method.text;
+            let error =
+                Diagnostic::new(codes::WRONG_KIND, method.span, format!("`{text}` does not make a vector"));
+            let error = if making.contains(&text.as_str()) {
+                error.help("it makes a frame and stands under `frames` only")
+            } else if ["x", "y", "z"].contains(&text.as_str()) {
+                error.help("an axis takes no arguments: `A.x`; put `*` before the parenthesis for a product")
+            } else {
+                error.help("the operations of a frame are `vec(a, b, c)` and, under `frames`, rotate, euler, space, quaternion, spin")
+            };
+            self.report(error);
+            return Typed::poison(span);
+        }
+        let frame = self.frame_with_axes(base);
+        let typed: Vec<Typed> = arguments.iter().map(|argument| self.expression(argument)).collect();
+        if typed.len() != 3 {
+            self.wrong_count(method, "three arguments", typed.len(), span);
+            return Typed::poison(span);
+        }
+        let scalars: Vec<Option<Scalar>> = typed.iter().map(|c| self.need_scalar(c, "a component")).collect();
+        let mut dimension: Option<(Dimension, Span)> = None;
+        for component in &typed {
+            match (dimension, component.dimension) {
+                (Some((first, place)), Some(other)) if first != other => {
+                    let message = format!("the components have the dimensions {first} and {other}");
+                    let error = Diagnostic::new(codes::DIMENSION, component.span, message)
+                        .label(format!("this is in {other}"))
+                        .related(place, format!("this is in {first}"));
+                    self.report(error);
+                }
+                (None, Some(other)) => dimension = Some((other, component.span)),
+                _ => {}
+            }
+        }
+        let traits = typed.iter().fold(Traits::default(), |sum, c| sum.plus(c.traits));
+        let components: Option<[Scalar; 3]> =
+            scalars.into_iter().collect::<Option<Vec<_>>>().and_then(|list| list.try_into().ok());
+        let (Some(frame), Some(components)) = (frame, components) else { return Typed::poison(span) };
+        let traits = traits.times(self.frames[frame.0].orientation);
+        let dimension = dimension.map(|(dimension, _)| dimension);
+        Typed::vector(Vector::Components(frame, Box::new(components)), dimension, traits, span)
+    }
+
+    /// Demands a vector with a dimension that enters linearly: a velocity, say.
+    pub(super) fn velocity_like(
+        &mut self,
+        expr: &Expr,
+        dimension: Dimension,
+        what: &str,
+    ) -> (Option<Vector>, Traits) {
+        let typed = self.expression(expr);
+        let vector = self.need_vector(&typed, what);
+        if vector.is_some() {
+            self.demand(&typed, dimension, what);
+            self.need_linear(&typed, what);
+        }
+        (vector, typed.traits)
+    }
+
+    /// Demands a scalar of a dimension.
+    pub(super) fn scalar_like(
+        &mut self,
+        expr: &Expr,
+        dimension: Dimension,
+        what: &str,
+    ) -> Option<(Scalar, Typed)> {
+        let typed = self.expression(expr);
+        let scalar = self.need_scalar(&typed, what)?;
+        self.demand(&typed, dimension, what);
+        Some((scalar, typed))
+    }
+}
+
+/// The axis of this name.
+pub(super) fn axis_named(name: &str) -> Option<Axis> {
+    match name {
+        "x" => Some(Axis::X),
+        "y" => Some(Axis::Y),
+        "z" => Some(Axis::Z),
+        _ => None,
+    }
+}
+
+fn both(a: Option<Dimension>, b: Option<Dimension>) -> Option<Dimension> {
+    a?.times(&b?)
+}
+
+fn apply(function: Function, a: f64) -> f64 {
+    match function {
+        Function::Sin => a.sin(),
+        Function::Cos => a.cos(),
+        Function::Tan => a.tan(),
+        Function::Asin => a.asin(),
+        Function::Acos => a.acos(),
+        Function::Atan => a.atan(),
+        Function::Sqrt => a.sqrt(),
+        Function::Exp => a.exp(),
+        Function::Log => a.ln(),
+        Function::Abs => a.abs(),
+        Function::Sign => {
+            if a < 0.0 {
+                -1.0
+            } else {
+                1.0
+            }
+        }
+        Function::Atan2 | Function::Min | Function::Max => f64::NAN,
+    }
+}
+
+impl Typed {
+    /// Is its value a vector?
+    pub fn is_vector(&self) -> bool {
+        matches!(self.value, Value::Vector(_))
+    }
+}

@@ -1,0 +1,85 @@
+//! Kinematical equations, velocity constraints and configuration constraints.
+
+use super::super::mechanism::{Equation, EquationSides, Vector};
+use super::super::typed::{Typed, Value};
+use super::Lowering;
+use crate::diagnostics::{Diagnostic, codes};
+use crate::syntax::tree;
+
+impl Lowering<'_> {
+    pub(super) fn equations(&mut self) {
+        let tree = self.tree;
+        let kinematics = self.section(&tree.kinematics, "a kinematical equation", true);
+        self.out.kinematics = kinematics;
+        let constraints = self.section(&tree.constraints, "a constraint", true);
+        self.out.constraints = constraints;
+        let configuration = self.section(&tree.configuration, "a configuration equation", false);
+        self.out.configuration = configuration;
+        self.default_rates();
+    }
+
+    fn section(&mut self, equations: &[tree::Equation], what: &str, linear: bool) -> Vec<Equation> {
+        let mut out = Vec::new();
+        for equation in equations {
+            let left = self.expression(&equation.left);
+            let right = self.expression(&equation.right);
+            let Some(sides) = self.sides(&left, &right, what) else { continue };
+            for side in [&left, &right] {
+                if linear {
+                    self.need_linear(side, what);
+                } else {
+                    self.need_free_of_speeds(side, what);
+                }
+            }
+            let empty = if linear {
+                left.traits.degree == 0 && right.traits.degree == 0
+            } else {
+                !left.traits.moves && !right.traits.moves
+            };
+            if empty {
+                let message =
+                    format!("{what} without {}", if linear { "speeds or rates" } else { "coordinates" });
+                let error = Diagnostic::new(codes::EMPTY_EQUATION, equation.span(), message);
+                let error = match linear {
+                    true => error.help("an equation between coordinates belongs to `configuration`"),
+                    false => error.help("a configuration equation determines a dependent coordinate"),
+                };
+                self.report(error);
+            }
+            out.push(Equation { sides, span: equation.span() });
+        }
+        out
+    }
+
+    fn sides(&mut self, left: &Typed, right: &Typed, what: &str) -> Option<EquationSides> {
+        if left.is_poison() || right.is_poison() {
+            return None;
+        }
+        let zero = |typed: &Typed| typed.is_zero();
+        let sides = match (&left.value, &right.value) {
+            (Value::Scalar(l), Value::Scalar(r)) => EquationSides::Scalar(l.clone(), r.clone()),
+            (Value::Vector(l), Value::Vector(r)) => EquationSides::Vector(l.clone(), r.clone()),
+            (Value::Vector(l), _) if zero(right) => EquationSides::Vector(l.clone(), Vector::Zero),
+            (_, Value::Vector(r)) if zero(left) => EquationSides::Vector(Vector::Zero, r.clone()),
+            _ => {
+                let kind = |typed: &Typed| if typed.is_vector() { "a vector" } else { "a scalar" };
+                let message = format!("{what} between {} and {}", kind(left), kind(right));
+                let error = Diagnostic::new(codes::SCALAR_VECTOR, right.span, message)
+                    .label(format!("this is {}", kind(right)))
+                    .related(left.span, format!("this is {}", kind(left)))
+                    .help("take a component with `dot(v, A.x)`");
+                self.report(error);
+                return None;
+            }
+        };
+        if let (Some(l), Some(r)) = (left.dimension, right.dimension)
+            && l != r
+        {
+            let error = Diagnostic::new(codes::DIMENSION, right.span, format!("{what} between {l} and {r}"))
+                .label(format!("this is in {r}"))
+                .related(left.span, format!("this is in {l}"));
+            self.report(error);
+        }
+        Some(sides)
+    }
+}

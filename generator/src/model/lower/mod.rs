@@ -1,0 +1,390 @@
+//! From the tree to a [`Mechanism`]: every name resolved, every dimension checked, all mistakes collected.
+
+mod bodies;
+mod calls;
+mod contacts;
+mod equations;
+mod expressions;
+mod frames;
+mod loads;
+mod points;
+mod quantities;
+mod rates;
+
+use std::collections::HashSet;
+
+use super::dimension::Dimension;
+use super::mechanism::*;
+use super::names::{Names, Symbol};
+use super::order::{Item, order};
+use super::typed::{Traits, Typed, Value};
+use super::units::Unit;
+use crate::diagnostics::{Code, Diagnostic, Span, codes};
+use crate::syntax::tree::{Name, Tree};
+
+/// Lowers a tree. The mechanism is complete only if no error was reported.
+pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagnostic>) {
+    let mut diagnostics = diagnostics;
+    if let Some(error) = tree.name.as_ref().and_then(super::names::reserved) {
+        diagnostics.push(error);
+    }
+    let names = Names::collect(tree, &mut diagnostics);
+    let plan = order(tree, &names, &mut diagnostics);
+    let mut lowering = Lowering::new(tree, names, diagnostics);
+    lowering.quantities();
+    lowering.declarations();
+    for item in plan.items {
+        if plan.cyclic.contains(&item) {
+            lowering.give_up(item);
+            continue;
+        }
+        match item {
+            Item::Definition(i) => lowering.definition(i),
+            Item::Orientation(i) => lowering.orientation(i),
+            Item::AngularVelocity(i) => lowering.angular_velocity(i),
+            Item::Position(i) => lowering.position(i),
+            Item::Velocity(i) => lowering.velocity(i),
+        }
+    }
+    lowering.bodies();
+    lowering.loads();
+    lowering.equations();
+    lowering.contacts();
+    lowering.unused();
+    (lowering.out, lowering.diagnostics)
+}
+
+/// What is known of a quantity besides what the mechanism holds.
+pub(super) struct QuantityFacts {
+    /// its unit; `None` where that is a mistake
+    pub unit: Option<Unit>,
+    /// the exact value of a `fixed` parameter
+    pub fixed: Option<Typed>,
+}
+
+/// What is known of a definition.
+#[derive(Clone, Default)]
+pub(super) struct DefinitionFacts {
+    /// its value; `None` where that is a mistake
+    pub typed: Option<Typed>,
+}
+
+/// What is known of a frame.
+#[derive(Clone, Default)]
+pub(super) struct FrameFacts {
+    /// it has axes: neither itself nor what it is oriented in is made by `spin`
+    pub no_axes: bool,
+    /// on what its orientation depends
+    pub orientation: Traits,
+    /// on what its angular velocity in N depends
+    pub angular_velocity: Traits,
+}
+
+/// What is known of a point.
+#[derive(Clone, Default)]
+pub(super) struct PointFacts {
+    /// the point from which its position is known: O, or a point known by its velocity only
+    pub root: usize,
+    /// on what its position from there depends
+    pub position: Traits,
+    /// on what its velocity depends
+    pub velocity: Traits,
+}
+
+/// The state of lowering.
+pub(super) struct Lowering<'a> {
+    pub tree: &'a Tree,
+    pub names: Names,
+    pub diagnostics: Vec<Diagnostic>,
+    pub used: HashSet<Symbol>,
+    pub out: Mechanism,
+    pub parameters: Vec<QuantityFacts>,
+    pub inputs: Vec<QuantityFacts>,
+    pub coordinates: Vec<QuantityFacts>,
+    pub speeds: Vec<QuantityFacts>,
+    pub definitions: Vec<DefinitionFacts>,
+    pub frames: Vec<FrameFacts>,
+    pub points: Vec<PointFacts>,
+    /// only numbers and functions are allowed
+    pub constant_only: bool,
+}
+
+impl<'a> Lowering<'a> {
+    fn new(tree: &'a Tree, names: Names, diagnostics: Vec<Diagnostic>) -> Self {
+        let out = Mechanism {
+            name: tree.name.as_ref().map_or(String::new(), |name| name.text.clone()),
+            docs: tree.docs.clone(),
+            parameters: Vec::new(),
+            inputs: Vec::new(),
+            coordinates: Vec::new(),
+            speeds: Vec::new(),
+            definitions: Vec::new(),
+            frames: Vec::new(),
+            points: Vec::new(),
+            bodies: Vec::new(),
+            loads: Vec::new(),
+            kinematics: Vec::new(),
+            constraints: Vec::new(),
+            configuration: Vec::new(),
+            contacts: Vec::new(),
+        };
+        Lowering {
+            tree,
+            names,
+            diagnostics,
+            used: HashSet::new(),
+            out,
+            parameters: Vec::new(),
+            inputs: Vec::new(),
+            coordinates: Vec::new(),
+            speeds: Vec::new(),
+            definitions: vec![DefinitionFacts::default(); tree.definitions.len()],
+            frames: vec![FrameFacts::default(); tree.frames.len() + 1],
+            points: vec![PointFacts::default(); tree.points.len() + 1],
+            constant_only: false,
+        }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    pub fn error(&mut self, code: Code, span: Span, message: impl Into<String>) {
+        self.report(Diagnostic::new(code, span, message));
+    }
+
+    /// Places for everything, so that ids are in range whatever goes wrong later.
+    fn declarations(&mut self) {
+        let nowhere = Span::default();
+        for definition in &self.tree.definitions {
+            self.out.definitions.push(Definition {
+                name: definition.name.text.clone(),
+                docs: definition.docs.clone(),
+                value: DefinitionValue::Vector(Vector::Zero),
+                span: definition.name.span,
+            });
+        }
+        let frame = |name: &str, docs: &str, span| Frame {
+            name: name.to_owned(),
+            docs: docs.to_owned(),
+            parent: None,
+            orientation: Orientation::Aligned,
+            angular_velocity: None,
+            span,
+        };
+        self.out.frames.push(frame("N", "", nowhere));
+        for f in &self.tree.frames {
+            self.out.frames.push(frame(&f.name.text, &f.docs, f.name.span));
+        }
+        let point = |name: &str, docs: &str, span| Point {
+            name: name.to_owned(),
+            docs: docs.to_owned(),
+            place: Place::Origin,
+            velocity: None,
+            span,
+        };
+        self.out.points.push(point("O", "", nowhere));
+        for p in &self.tree.points {
+            self.out.points.push(point(&p.name.text, &p.docs, p.name.span));
+        }
+        self.stated_motions();
+    }
+
+    /// What is stated of the motion of frames and points must name some, and each once.
+    fn stated_motions(&mut self) {
+        let tree = self.tree;
+        let mut seen: std::collections::HashMap<&str, Span> = std::collections::HashMap::new();
+        for name in tree.angular_velocities.iter().map(|a| &a.frame) {
+            self.frame_named(name);
+            if let Some(first) = seen.insert(&name.text, name.span) {
+                let message = format!("the angular velocity of `{}` is stated twice", name.text);
+                self.report(
+                    Diagnostic::new(codes::MOTION_TWICE, name.span, message).related(first, "first here"),
+                );
+            }
+        }
+        seen.clear();
+        for name in tree.velocities.iter().map(|v| &v.point) {
+            self.point_named(name);
+            if let Some(first) = seen.insert(&name.text, name.span) {
+                let message = format!("the velocity of `{}` is stated twice", name.text);
+                self.report(
+                    Diagnostic::new(codes::MOTION_TWICE, name.span, message).related(first, "first here"),
+                );
+            }
+        }
+    }
+
+    /// Items of a cycle: nothing more is said of them.
+    fn give_up(&mut self, _item: Item) {}
+
+    /// The value of a definition.
+    fn definition(&mut self, i: usize) {
+        let source = &self.tree.definitions[i];
+        let mut typed = self.expression(&source.value);
+        if let Some(stated) = &source.unit
+            && let Some(unit) = self.unit(stated)
+        {
+            match typed.dimension {
+                None => typed.dimension = Some(unit.dimension),
+                Some(dimension) if dimension != unit.dimension => {
+                    let message = format!(
+                        "`{}` is stated in {}, but its value is in {dimension}",
+                        source.name.text, unit.text
+                    );
+                    let mut error = Diagnostic::new(codes::DIMENSION, source.value.span, message)
+                        .related(stated.span, "stated here");
+                    if typed.constant.is_some() {
+                        error = error.help(format!(
+                            "a plain number has no unit; declare a parameter `fixed {}: {} = ..`",
+                            source.name.text, unit.text
+                        ));
+                    }
+                    self.report(error);
+                    typed.dimension = Some(unit.dimension);
+                }
+                Some(_) => {}
+            }
+        }
+        let value = match &typed.value {
+            Value::Scalar(scalar) => DefinitionValue::Scalar(scalar.clone()),
+            Value::Vector(vector) => DefinitionValue::Vector(vector.clone()),
+            Value::Poison => return,
+        };
+        self.out.definitions[i].value = value;
+        self.definitions[i].typed = Some(typed);
+    }
+
+    /// Resolves a name; reports it if unknown. `fits` says what may be suggested instead.
+    pub fn resolve(&mut self, name: &Name, fits: impl Fn(Symbol) -> bool) -> Option<Symbol> {
+        if let Some(symbol) = self.names.get(&name.text) {
+            self.used.insert(symbol);
+            return Some(symbol);
+        }
+        let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, format!("unknown name `{}`", name.text));
+        let error = match self.names.nearest(&name.text, fits) {
+            Some(near) => {
+                let help = format!("did you mean `{near}`?");
+                match self.names.place(near) {
+                    Some(place) => error.related(place, format!("`{near}` is declared here")).help(help),
+                    None => error.help(help),
+                }
+            }
+            None => error.help("declare it, or correct the spelling"),
+        };
+        self.report(error);
+        None
+    }
+
+    /// The frame of this name; a body stands for its frame.
+    pub fn frame_named(&mut self, name: &Name) -> Option<FrameId> {
+        match self.resolve(name, |s| matches!(s, Symbol::Frame(_) | Symbol::Body(_)))? {
+            Symbol::Frame(f) => Some(FrameId(f)),
+            Symbol::Body(b) => {
+                let frame = super::order::body_frame(self.tree, b);
+                match frame.and_then(|frame| self.names.get(&frame.text)) {
+                    Some(Symbol::Frame(f)) => Some(FrameId(f)),
+                    _ if b < self.tree.bodies.len() => None,
+                    _ => {
+                        self.wrong_kind(name, "a frame or body", "a particle has no frame");
+                        None
+                    }
+                }
+            }
+            other => {
+                self.wrong_kind(name, "a frame", &format!("`{}` is {}", name.text, other.kind()));
+                None
+            }
+        }
+    }
+
+    /// The point of this name.
+    pub fn point_named(&mut self, name: &Name) -> Option<PointId> {
+        match self.resolve(name, |s| matches!(s, Symbol::Point(_)))? {
+            Symbol::Point(p) => Some(PointId(p)),
+            other => {
+                self.wrong_kind(name, "a point", &format!("`{}` is {}", name.text, other.kind()));
+                None
+            }
+        }
+    }
+
+    pub fn wrong_kind(&mut self, name: &Name, needed: &str, is: &str) {
+        let mut error =
+            Diagnostic::new(codes::WRONG_KIND, name.span, format!("{needed} is needed here, but {is}"));
+        if let Some(place) = self.names.place(&name.text) {
+            error = error.related(place, "declared here");
+        }
+        self.report(error);
+    }
+
+    /// Demands a dimension; 0 has any.
+    pub fn demand(&mut self, typed: &Typed, wanted: Dimension, what: &str) {
+        let Some(dimension) = typed.dimension else { return };
+        if dimension == wanted || typed.is_poison() {
+            return;
+        }
+        let message = format!("{what} must have the dimension {wanted}, but this has {dimension}");
+        let error = Diagnostic::new(codes::DIMENSION, typed.span, message);
+        let error = match typed.constant {
+            Some(_) => error.help("a plain number has no unit; declare a parameter with one"),
+            None => error.label(format!("this is in {dimension}")),
+        };
+        self.report(error);
+    }
+
+    /// Demands a scalar.
+    pub fn need_scalar(&mut self, typed: &Typed, what: &str) -> Option<Scalar> {
+        match &typed.value {
+            Value::Scalar(scalar) => Some(scalar.clone()),
+            Value::Poison => None,
+            Value::Vector(_) => {
+                let message = format!("{what} must be a scalar, but this is a vector");
+                let error = Diagnostic::new(codes::SCALAR_VECTOR, typed.span, message)
+                    .help("take a component with `dot(v, A.x)` or the magnitude with `norm(v)`");
+                self.report(error);
+                None
+            }
+        }
+    }
+
+    /// Demands a vector; the number 0 is one.
+    pub fn need_vector(&mut self, typed: &Typed, what: &str) -> Option<Vector> {
+        match &typed.value {
+            Value::Vector(vector) => Some(vector.clone()),
+            Value::Poison => None,
+            Value::Scalar(_) if typed.is_zero() => Some(Vector::Zero),
+            Value::Scalar(_) => {
+                let message = format!("{what} must be a vector, but this is a scalar");
+                let error = Diagnostic::new(codes::SCALAR_VECTOR, typed.span, message)
+                    .help("multiply it by an axis, for instance `s*N.x`, or write `A.vec(a, b, c)`");
+                self.report(error);
+                None
+            }
+        }
+    }
+
+    /// Demands that no speed enters.
+    pub fn need_free_of_speeds(&mut self, typed: &Typed, what: &str) {
+        if typed.traits.degree > 0 {
+            let message = format!("{what} must not depend on speeds");
+            let mut error = Diagnostic::new(codes::SPEED_DEPENDENT, typed.span, message);
+            if let Some(place) = typed.traits.speed_at {
+                error = error.related(place, "this does");
+            }
+            self.report(error);
+        }
+    }
+
+    /// Demands that speeds enter linearly at most.
+    pub fn need_linear(&mut self, typed: &Typed, what: &str) {
+        if typed.traits.degree > 1 {
+            let message = format!("{what} must be linear in the speeds");
+            let mut error = Diagnostic::new(codes::NOT_LINEAR, typed.span, message);
+            if let Some(place) = typed.traits.speed_at {
+                error = error.related(place, "this speed does not enter linearly");
+            }
+            self.report(error);
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! The names of a model: one space for all kinds.
+
+use std::collections::HashMap;
+
+use super::rust_names::{is_keyword, snake_case};
+use super::similar;
+use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::syntax::tree::{Name, Tree};
+
+/// What a name stands for. Indices as in `Mechanism`: frame 0 is N, point 0 is O, dependent speeds follow the independent ones
+/// and particles the bodies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Symbol {
+    Parameter(usize),
+    Input(usize),
+    Coordinate(usize),
+    Speed(usize),
+    Definition(usize),
+    Frame(usize),
+    Point(usize),
+    Body(usize),
+    Contact(usize),
+    Time,
+    Pi,
+}
+
+impl Symbol {
+    /// With its article, for messages.
+    pub fn kind(self) -> &'static str {
+        match self {
+            Symbol::Parameter(_) => "a parameter",
+            Symbol::Input(_) => "an input",
+            Symbol::Coordinate(_) => "a coordinate",
+            Symbol::Speed(_) => "a speed",
+            Symbol::Definition(_) => "a definition",
+            Symbol::Frame(_) => "a frame",
+            Symbol::Point(_) => "a point",
+            Symbol::Body(_) => "a body",
+            Symbol::Contact(_) => "a contact",
+            Symbol::Time => "the time",
+            Symbol::Pi => "the number pi",
+        }
+    }
+}
+
+/// All names of a model.
+pub struct Names {
+    symbols: HashMap<String, (Symbol, Option<Span>)>,
+    /// in the order of declaration, so that suggestions do not depend on hashing
+    order: Vec<(String, Symbol)>,
+}
+
+impl Names {
+    /// Collects the declarations of a model; reports names that cannot be declared.
+    pub fn collect(tree: &Tree, diagnostics: &mut Vec<Diagnostic>) -> Names {
+        let mut names = Names { symbols: HashMap::new(), order: Vec::new() };
+        for (text, symbol) in
+            [("N", Symbol::Frame(0)), ("O", Symbol::Point(0)), ("time", Symbol::Time), ("pi", Symbol::Pi)]
+        {
+            names.symbols.insert(text.to_owned(), (symbol, None));
+            names.order.push((text.to_owned(), symbol));
+        }
+        let mut add = |name: &Name, symbol: Symbol| names.declare(name, symbol, diagnostics);
+        let quantities = |list: &[crate::syntax::tree::Quantity]| -> Vec<Name> {
+            list.iter().map(|quantity| quantity.name.clone()).collect()
+        };
+        for (i, name) in quantities(&tree.parameters).iter().enumerate() {
+            add(name, Symbol::Parameter(i));
+        }
+        for (i, name) in quantities(&tree.inputs).iter().enumerate() {
+            add(name, Symbol::Input(i));
+        }
+        for (i, name) in quantities(&tree.coordinates).iter().enumerate() {
+            add(name, Symbol::Coordinate(i));
+        }
+        for (i, name) in quantities(&tree.speeds).iter().chain(&quantities(&tree.dependent)).enumerate() {
+            add(name, Symbol::Speed(i));
+        }
+        for (i, definition) in tree.definitions.iter().enumerate() {
+            add(&definition.name, Symbol::Definition(i));
+        }
+        for (i, frame) in tree.frames.iter().enumerate() {
+            add(&frame.name, Symbol::Frame(i + 1));
+        }
+        for (i, point) in tree.points.iter().enumerate() {
+            add(&point.name, Symbol::Point(i + 1));
+        }
+        for (i, body) in tree.bodies.iter().chain(&tree.particles).enumerate() {
+            add(&body.name, Symbol::Body(i));
+        }
+        for (i, contact) in tree.contacts.iter().enumerate() {
+            add(&contact.name, Symbol::Contact(i));
+        }
+        names.collisions(tree, diagnostics);
+        names
+    }
+
+    fn declare(&mut self, name: &Name, symbol: Symbol, diagnostics: &mut Vec<Diagnostic>) {
+        if let Some(error) = reserved(name) {
+            diagnostics.push(error);
+        }
+        match self.symbols.get(&name.text) {
+            None => {
+                self.symbols.insert(name.text.clone(), (symbol, Some(name.span)));
+                self.order.push((name.text.clone(), symbol));
+            }
+            Some((first, Some(place))) => diagnostics.push(
+                Diagnostic::new(
+                    codes::DUPLICATE_NAME,
+                    name.span,
+                    format!("the name `{}` is declared twice", name.text),
+                )
+                .related(*place, format!("first declared here, as {}", first.kind()))
+                .help("all names of a model live in one space: choose another name"),
+            ),
+            Some((first, None)) => diagnostics.push(
+                Diagnostic::new(
+                    codes::RESERVED_NAME,
+                    name.span,
+                    format!("`{}` is given: {}", name.text, given(*first)),
+                )
+                .help("choose another name"),
+            ),
+        }
+    }
+
+    /// Routines of the generated code are named after these, in snake case.
+    fn collisions(&self, tree: &Tree, diagnostics: &mut Vec<Diagnostic>) {
+        let kinds: [(&str, Vec<&Name>); 4] = [
+            ("contact", tree.contacts.iter().map(|c| &c.name).collect()),
+            ("point", tree.points.iter().map(|p| &p.name).collect()),
+            ("frame", tree.frames.iter().map(|f| &f.name).collect()),
+            ("body", tree.bodies.iter().chain(&tree.particles).map(|b| &b.name).collect()),
+        ];
+        for (kind, list) in kinds {
+            let mut seen: HashMap<String, &Name> = HashMap::new();
+            for name in list {
+                let rust = snake_case(&name.text);
+                match seen.get(&rust) {
+                    Some(first) if first.text != name.text => diagnostics.push(
+                        Diagnostic::new(
+                            codes::COLLISION,
+                            name.span,
+                            format!("`{}` and `{}` both become `{rust}` in Rust", first.text, name.text),
+                        )
+                        .related(first.span, format!("the other {kind}"))
+                        .help("make them differ by more than capitals and underscores"),
+                    ),
+                    Some(_) => {}
+                    None => {
+                        seen.insert(rust, name);
+                    }
+                }
+            }
+        }
+    }
+
+    /// What a name stands for, if it is declared.
+    pub fn get(&self, name: &str) -> Option<Symbol> {
+        self.symbols.get(name).map(|(symbol, _)| *symbol)
+    }
+
+    /// Where it is declared; `None` for what is given.
+    pub fn place(&self, name: &str) -> Option<Span> {
+        self.symbols.get(name).and_then(|(_, place)| *place)
+    }
+
+    /// The declared name most like this one, among those that fit.
+    pub fn nearest(&self, name: &str, fits: impl Fn(Symbol) -> bool) -> Option<&str> {
+        let candidates = self.order.iter().filter(|(_, symbol)| fits(*symbol)).map(|(text, _)| text.as_str());
+        similar::nearest(name, candidates)
+    }
+}
+
+fn given(symbol: Symbol) -> &'static str {
+    match symbol {
+        Symbol::Frame(_) => "the inertial frame",
+        Symbol::Point(_) => "a point fixed in the inertial frame",
+        Symbol::Time => "the time, in seconds",
+        _ => "3.14159..",
+    }
+}
+
+/// Says why a name cannot be declared.
+pub fn reserved(name: &Name) -> Option<Diagnostic> {
+    if is_keyword(&name.text) {
+        let message = format!("`{}` is a keyword of Rust", name.text);
+        return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help("choose another name"));
+    }
+    if name.text.chars().all(|c| c == '_') {
+        let message = "a name needs a letter";
+        return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help("choose another name"));
+    }
+    if name.text.chars().count() > 100 {
+        let message = "a name has at most 100 letters";
+        return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help("choose a shorter name"));
+    }
+    None
+}

@@ -1,0 +1,137 @@
+//! An expression with all that is known of it: scalar or vector, dimension, dependence on speeds.
+
+use num_rational::BigRational;
+
+use super::dimension::Dimension;
+use super::mechanism::{Scalar, Vector};
+use crate::diagnostics::Span;
+use crate::number::Number;
+
+/// The expression itself.
+#[derive(Clone, Debug)]
+pub enum Value {
+    /// a scalar
+    Scalar(Scalar),
+    /// a vector
+    Vector(Vector),
+    /// a mistake that is reported already; says nothing more
+    Poison,
+}
+
+/// On what an expression depends.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traits {
+    /// degree in rates of coordinates and speeds together; 2 stands for anything that is not linear
+    pub degree: u8,
+    /// where the first of them stands
+    pub speed_at: Option<Span>,
+    /// on coordinates
+    pub moves: bool,
+    /// on time
+    pub time: bool,
+    /// on inputs
+    pub input: bool,
+}
+
+impl Traits {
+    /// Of something that is linear in the speeds, such as a speed.
+    pub fn speed(at: Span) -> Self {
+        Traits { degree: 1, speed_at: Some(at), ..Traits::default() }
+    }
+
+    /// Of a sum.
+    pub fn plus(self, other: Traits) -> Traits {
+        Traits {
+            degree: self.degree.max(other.degree),
+            speed_at: self.speed_at.or(other.speed_at),
+            moves: self.moves || other.moves,
+            time: self.time || other.time,
+            input: self.input || other.input,
+        }
+    }
+
+    /// Of a product.
+    pub fn times(self, other: Traits) -> Traits {
+        Traits { degree: (self.degree + other.degree).min(2), ..self.plus(other) }
+    }
+
+    /// Of a function that is not linear.
+    pub fn bent(self) -> Traits {
+        Traits { degree: if self.degree == 0 { 0 } else { 2 }, ..self }
+    }
+
+    /// The same things mattered, but seen from another place: that is where a message must point.
+    pub fn seen_from(self, at: Span) -> Traits {
+        Traits { speed_at: self.speed_at.map(|_| at), ..self }
+    }
+
+    /// The time derivative of something free of speeds.
+    pub fn derivative(self, at: Span) -> Traits {
+        if self.moves { Traits { degree: 1, speed_at: Some(at), ..self } } else { self }
+    }
+}
+
+/// A typed expression.
+#[derive(Clone, Debug)]
+pub struct Typed {
+    /// the expression
+    pub value: Value,
+    /// its dimension; `None` fits everything: the number 0, or a mistake that is reported already
+    pub dimension: Option<Dimension>,
+    /// on what it depends
+    pub traits: Traits,
+    /// its value, if it is a constant scalar
+    pub constant: Option<f64>,
+    /// its exact value, if it is a rational constant of moderate size
+    pub exact: Option<Number>,
+    /// where it stands
+    pub span: Span,
+}
+
+impl Typed {
+    /// Says nothing more.
+    pub fn poison(span: Span) -> Self {
+        let traits = Traits::default();
+        Typed { value: Value::Poison, dimension: None, traits, constant: None, exact: None, span }
+    }
+
+    /// A scalar that is not constant.
+    pub fn scalar(value: Scalar, dimension: Option<Dimension>, traits: Traits, span: Span) -> Self {
+        Typed { value: Value::Scalar(value), dimension, traits, constant: None, exact: None, span }
+    }
+
+    /// A vector.
+    pub fn vector(value: Vector, dimension: Option<Dimension>, traits: Traits, span: Span) -> Self {
+        Typed { value: Value::Vector(value), dimension, traits, constant: None, exact: None, span }
+    }
+
+    /// A rational number.
+    pub fn number(value: BigRational, span: Span) -> Self {
+        let number = Number(value);
+        let zero = number.is_zero();
+        Typed {
+            constant: Some(number.to_f64()),
+            value: Value::Scalar(Scalar::Number(number.clone())),
+            dimension: if zero { None } else { Some(Dimension::none()) },
+            traits: Traits::default(),
+            exact: moderate(number),
+            span,
+        }
+    }
+
+    /// Is it a mistake that is reported already?
+    pub fn is_poison(&self) -> bool {
+        matches!(self.value, Value::Poison)
+    }
+
+    /// Is it the constant 0?
+    pub fn is_zero(&self) -> bool {
+        self.constant == Some(0.0)
+    }
+}
+
+/// Exact arithmetic goes on with numbers of moderate size only.
+pub fn moderate(number: Number) -> Option<Number> {
+    let small = number.0.numer().bits() <= 512 && number.0.denom().bits() <= 512;
+    small.then_some(number)
+}

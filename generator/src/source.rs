@@ -1,0 +1,175 @@
+//! The text of a model: a file, or the input of a macro.
+
+use std::borrow::Cow;
+
+use proc_macro2::{Span as RustSpan, TokenStream};
+use sha2::{Digest, Sha256};
+
+use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::syntax::token::{Token, TokenKind};
+use crate::syntax::{inline, lexer};
+
+/// A file has at most this many bytes: a model of ten thousand parameters has a tenth of it.
+pub const MAX_BYTES: usize = 4 << 20;
+/// An inline model has at most this many tokens.
+pub const MAX_TOKENS: usize = 1 << 20;
+
+/// The text of a model.
+#[derive(Clone, Debug)]
+pub struct Source {
+    name: String,
+    content: Content,
+}
+
+#[derive(Clone, Debug)]
+enum Content {
+    File(String),
+    /// not read: why
+    Unreadable(Box<Diagnostic>),
+    Inline {
+        tokens: Vec<Token>,
+        places: Vec<RustSpan>,
+    },
+}
+
+/// Line and column, both from 1; the column counts characters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Location {
+    /// line, from 1
+    pub line: usize,
+    /// column in characters, from 1
+    pub column: usize,
+}
+
+impl Source {
+    /// A model in a file. `name` is what messages call it: its path, as the user knows it.
+    pub fn file(name: impl Into<String>, text: impl Into<String>) -> Source {
+        Source { name: name.into(), content: Content::File(text.into()) }
+    }
+
+    /// A model in a file, from its bytes. Bytes that are no UTF-8 are reported by `check`.
+    pub fn bytes(name: impl Into<String>, bytes: Vec<u8>) -> Source {
+        let name = name.into();
+        match String::from_utf8(bytes) {
+            Ok(text) => Source::file(name, text),
+            Err(error) => {
+                let valid = error.utf8_error().valid_up_to();
+                let line = error.as_bytes()[..valid].iter().filter(|b| **b == b'\n').count() + 1;
+                let message =
+                    format!("the file is not UTF-8 text: byte {valid}, in line {line}, does not fit");
+                Source::unreadable(name, message, "save the file as UTF-8")
+            }
+        }
+    }
+
+    /// Reads a model from a file. What goes wrong is reported by `check`.
+    pub fn read(path: &std::path::Path) -> Source {
+        let name = path.display().to_string();
+        // do not read what is too large to be a model
+        match std::fs::metadata(path) {
+            Ok(data) if data.len() > MAX_BYTES as u64 => return Source::too_large(name),
+            _ => {}
+        }
+        match std::fs::read(path) {
+            Ok(bytes) => Source::bytes(name, bytes),
+            Err(error) => {
+                Source::unreadable(name, format!("the file cannot be read: {error}"), "check the path")
+            }
+        }
+    }
+
+    /// A model in the input of a macro. `name` is what messages call it.
+    pub fn inline(name: impl Into<String>, stream: TokenStream) -> Source {
+        let (tokens, places) = inline::tokens(stream);
+        Source { name: name.into(), content: Content::Inline { tokens, places } }
+    }
+
+    fn unreadable(name: String, message: String, help: &str) -> Source {
+        let error = Diagnostic::new(codes::UNREADABLE, Span::default(), message).help(help);
+        Source { name, content: Content::Unreadable(Box::new(error)) }
+    }
+
+    fn too_large(name: String) -> Source {
+        let message = format!("the file is larger than {} MiB", MAX_BYTES >> 20);
+        let error = Diagnostic::new(codes::TOO_LARGE, Span::default(), message).help("is it a model?");
+        Source { name, content: Content::Unreadable(Box::new(error)) }
+    }
+
+    /// What messages call it.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The text of a file.
+    pub fn text(&self) -> Option<&str> {
+        match &self.content {
+            Content::File(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// Its tokens.
+    pub fn tokens(&self) -> Result<Cow<'_, [Token]>, Diagnostic> {
+        let too_large = |message: String| Diagnostic::new(codes::TOO_LARGE, Span::default(), message);
+        match &self.content {
+            Content::File(text) if text.len() > MAX_BYTES => {
+                Err(too_large(format!("the file is larger than {} MiB", MAX_BYTES >> 20))
+                    .help("is it a model?"))
+            }
+            Content::File(text) => Ok(Cow::Owned(lexer::tokens(text))),
+            Content::Unreadable(error) => Err((**error).clone()),
+            Content::Inline { tokens, .. } if tokens.len() > MAX_TOKENS => {
+                Err(too_large(format!("the model has more than {MAX_TOKENS} tokens")))
+            }
+            Content::Inline { tokens, .. } => Ok(Cow::Borrowed(tokens)),
+        }
+    }
+
+    /// The user's tokens at a place of an inline model: the first and the last.
+    pub fn rust_spans(&self, span: Span) -> Option<(RustSpan, RustSpan)> {
+        let Content::Inline { places, .. } = &self.content else { return None };
+        let first = places.get(span.start as usize).or(places.last())?;
+        let last = (span.end as usize).checked_sub(1).and_then(|i| places.get(i)).unwrap_or(first);
+        Some((*first, *last))
+    }
+
+    /// Line and column of the beginning of a place in a file.
+    pub fn location(&self, span: Span) -> Option<Location> {
+        let text = self.text()?;
+        let start = (span.start as usize).min(text.len());
+        let before = text.get(..start)?;
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+        Some(Location { line, column })
+    }
+
+    /// A hash of what the model says: its tokens and documentation. Blanks, line ends and plain comments do not enter, and a
+    /// model has the same hash in a file and inline. 64 hexadecimal digits.
+    pub fn content_hash(&self) -> String {
+        let mut hash = Sha256::new();
+        hash.update(b"hodograph model 1\n");
+        if let Ok(tokens) = self.tokens() {
+            for token in tokens.iter() {
+                let (kind, sign) = match token.kind {
+                    TokenKind::Name => (b'n', None),
+                    TokenKind::Number => (b'0', None),
+                    TokenKind::Sign(c) | TokenKind::Open(c) | TokenKind::Close(c) => (b's', Some(c)),
+                    TokenKind::OuterDoc => (b'd', None),
+                    TokenKind::InnerDoc => (b'm', None),
+                    TokenKind::Bad(_) => (b'?', None),
+                };
+                let text: Cow<'_, str> = match sign {
+                    Some(c) => c.to_string().into(),
+                    None if kind == b'd' || kind == b'm' => {
+                        token.text.lines().map(str::trim).collect::<Vec<_>>().join("\n").into()
+                    }
+                    None => token.text.as_str().into(),
+                };
+                hash.update([kind]);
+                hash.update((text.len() as u64).to_le_bytes());
+                hash.update(text.as_bytes());
+            }
+        }
+        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}

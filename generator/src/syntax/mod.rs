@@ -1,0 +1,11 @@
+//! Text to an untyped tree. Reading never fails: it returns a tree and the mistakes found.
+
+mod expressions;
+pub mod inline;
+pub mod lexer;
+mod parser;
+mod sections;
+pub mod token;
+pub mod tree;
+
+pub use parser::{MAX_DEPTH, parse};

@@ -1,0 +1,310 @@
+//! The parser: a cursor over tokens that reports what it does not find and carries on behind it.
+
+use super::token::{Bad, Token, TokenKind};
+use super::tree::{Name, Section, Tree};
+use crate::diagnostics::{Diagnostic, Span, codes};
+
+/// Brackets, signs and exponents may be nested this deep.
+pub const MAX_DEPTH: usize = 64;
+/// After so many messages of the parser it gives up.
+const MAX_ERRORS: usize = 200;
+
+/// Reads a model. The tree holds all that could be read.
+pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
+    let mut diagnostics = Vec::new();
+    let tokens: Vec<&Token> = tokens.iter().filter(|token| readable(token, &mut diagnostics)).collect();
+    if let Err(error) = balanced(&tokens) {
+        diagnostics.push(error);
+        return (Tree::default(), diagnostics);
+    }
+    let mut parser = Parser { tokens, at: 0, depth: 0, tree: Tree::default(), diagnostics };
+    parser.model();
+    (parser.tree, parser.diagnostics)
+}
+
+/// Reports a bad token; is this one to be read?
+fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
+    let TokenKind::Bad(bad) = token.kind else { return true };
+    if diagnostics.len() >= MAX_ERRORS {
+        return false;
+    }
+    let shown: String = token.text.chars().take(40).collect();
+    let (code, message, help) = match bad {
+        Bad::Character => (
+            codes::BAD_TOKEN,
+            format!("`{}` cannot be part of a model", shown.escape_default()),
+            match shown.as_str() {
+                "°" => "write the unit `deg`",
+                "×" | "·" => "write `*` for a product, `dot(v, w)` or `cross(v, w)` for vectors",
+                "²" => "write `^2`",
+                "³" => "write `^3`",
+                "−" | "–" => "write the plain minus sign `-`",
+                _ => "names begin with a letter; comments begin with `//`",
+            },
+        ),
+        Bad::Quoted => (codes::BAD_TOKEN, "a model has no texts".to_owned(), "names stand without quotes"),
+        Bad::RawName => {
+            (codes::BAD_TOKEN, format!("`{shown}` is a raw name"), "use a name that is no Rust keyword")
+        }
+        Bad::OpenComment => {
+            (codes::UNBALANCED, "this comment is never closed".to_owned(), "close it with `*/`")
+        }
+        Bad::Number => (
+            codes::BAD_NUMBER,
+            format!("`{shown}` is not a plain decimal number"),
+            "numbers look like `3`, `0.5` or `1e-3`: decimal, without `_` and without a suffix",
+        ),
+        Bad::NumberThenName => (
+            codes::BAD_NUMBER,
+            format!("`{shown}` runs a number and a name together"),
+            "write `*` between a number and a name; a name begins with a letter; units stand in declarations only",
+        ),
+    };
+    diagnostics.push(Diagnostic::new(code, token.span, message).help(help));
+    // a number with a fault still holds the place of an expression
+    matches!(bad, Bad::Number | Bad::NumberThenName)
+}
+
+/// Brackets must have partners before anything can be said about what is between them.
+fn balanced(tokens: &[&Token]) -> Result<(), Diagnostic> {
+    let mut open: Vec<(char, Span)> = Vec::new();
+    // the last place at which, judging by the names of sections, a brace should already have been closed
+    let mut suspect = None;
+    for (i, token) in tokens.iter().enumerate() {
+        match token.kind {
+            TokenKind::Open(c) => open.push((c, token.span)),
+            TokenKind::Name if suspect.is_none() && !open.is_empty() => {
+                let opens = tokens.get(i + 1).is_some_and(|next| next.kind == TokenKind::Open('{'));
+                if opens && Section::of_word(&token.text).is_some() {
+                    suspect = open.last().map(|&(c, span)| (c, span, token.span));
+                }
+            }
+            TokenKind::Close(c) => {
+                let partner = match c {
+                    ')' => '(',
+                    ']' => '[',
+                    _ => '{',
+                };
+                match open.pop() {
+                    Some((o, _)) if o == partner => {}
+                    Some((o, span)) => {
+                        let message = format!("`{c}` does not close `{o}`");
+                        return Err(Diagnostic::new(codes::UNBALANCED, token.span, message)
+                            .label(format!("`{}` is expected before this", closing(o)))
+                            .related(span, "opened here"));
+                    }
+                    None => {
+                        return Err(Diagnostic::new(
+                            codes::UNBALANCED,
+                            token.span,
+                            format!("`{c}` without `{partner}`"),
+                        )
+                        .help("remove it, or find the bracket that is missing before it"));
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+    match (suspect, open.last()) {
+        (Some((c, span, before)), Some(_)) => {
+            Err(Diagnostic::new(codes::UNBALANCED, span, format!("this `{c}` is never closed"))
+                .related(before, format!("`{}` is missing before this section", closing(c))))
+        }
+        (None, Some(&(c, span))) => {
+            Err(Diagnostic::new(codes::UNBALANCED, span, format!("this `{c}` is never closed"))
+                .help(format!("add the missing `{}`", closing(c))))
+        }
+        (_, None) => Ok(()),
+    }
+}
+
+fn closing(open: char) -> char {
+    match open {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+/// A message is on its way; the caller finds the next place from which to read on.
+pub(super) struct Lost;
+
+pub(super) struct Parser<'a> {
+    pub(super) tokens: Vec<&'a Token>,
+    pub(super) at: usize,
+    pub(super) depth: usize,
+    pub(super) tree: Tree,
+    pub(super) diagnostics: Vec<Diagnostic>,
+}
+
+impl<'a> Parser<'a> {
+    pub(super) fn peek(&self) -> Option<&'a Token> {
+        self.tokens.get(self.at).copied()
+    }
+
+    pub(super) fn peek_at(&self, ahead: usize) -> Option<&'a Token> {
+        self.tokens.get(self.at + ahead).copied()
+    }
+
+    /// Where the next token stands; behind the last one at the end.
+    pub(super) fn here(&self) -> Span {
+        match self.peek() {
+            Some(token) => token.span,
+            None => self.tokens.last().map_or(Span::default(), |token| token.span),
+        }
+    }
+
+    /// Where the token before stands.
+    pub(super) fn before(&self) -> Span {
+        match self.at.checked_sub(1).and_then(|i| self.tokens.get(i)) {
+            Some(token) => token.span,
+            None => self.here(),
+        }
+    }
+
+    pub(super) fn found(&self) -> String {
+        self.peek().map_or("the end of the model".to_owned(), |token| token.describe())
+    }
+
+    pub(super) fn report(&mut self, diagnostic: Diagnostic) {
+        if self.diagnostics.len() < MAX_ERRORS {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    pub(super) fn is_sign(&self, sign: char) -> bool {
+        self.peek().is_some_and(|token| token.is_sign(sign))
+    }
+
+    pub(super) fn is_word(&self, word: &str) -> bool {
+        self.peek().is_some_and(|token| token.is_word(word))
+    }
+
+    pub(super) fn is_open(&self, open: char) -> bool {
+        self.peek().is_some_and(|token| token.kind == TokenKind::Open(open))
+    }
+
+    pub(super) fn is_close(&self) -> bool {
+        self.peek().is_none_or(|token| matches!(token.kind, TokenKind::Close(_)))
+    }
+
+    pub(super) fn take_sign(&mut self, sign: char) -> bool {
+        let there = self.is_sign(sign);
+        self.at += usize::from(there);
+        there
+    }
+
+    pub(super) fn take_word(&mut self, word: &str) -> Option<Name> {
+        if self.is_word(word) { self.take_name() } else { None }
+    }
+
+    pub(super) fn take_name(&mut self) -> Option<Name> {
+        let token = self.peek().filter(|token| token.kind == TokenKind::Name)?;
+        self.at += 1;
+        Some(Name { text: token.text.clone(), span: token.span })
+    }
+
+    /// `what` completes "expected ..".
+    pub(super) fn expected(&mut self, what: &str) -> Lost {
+        let message = format!("expected {what}, found {}", self.found());
+        let at_end = self.peek().is_none();
+        let error = Diagnostic::new(codes::EXPECTED, self.here(), message);
+        let error = if at_end { error.label("the model ends here") } else { error };
+        self.report(error);
+        Lost
+    }
+
+    pub(super) fn name(&mut self, what: &str) -> Result<Name, Lost> {
+        match self.take_name() {
+            Some(name) => Ok(name),
+            None => Err(self.expected(what)),
+        }
+    }
+
+    pub(super) fn sign(&mut self, sign: char, why: &str) -> Result<(), Lost> {
+        if self.take_sign(sign) {
+            return Ok(());
+        }
+        Err(self.expected(&format!("`{sign}`{why}")))
+    }
+
+    pub(super) fn open(&mut self, open: char, why: &str) -> Result<(), Lost> {
+        if self.is_open(open) {
+            self.at += 1;
+            return Ok(());
+        }
+        Err(self.expected(&format!("`{open}`{why}")))
+    }
+
+    /// Brackets are balanced, so a bracket that closes can only be the one that was opened.
+    pub(super) fn close(&mut self, why: &str) -> Result<(), Lost> {
+        match self.peek() {
+            Some(token) if matches!(token.kind, TokenKind::Close(_)) => {
+                self.at += 1;
+                Ok(())
+            }
+            _ => Err(self.expected(why)),
+        }
+    }
+
+    /// Passes over what cannot be read: to the sign that separates entries (which is passed) or to the closing bracket (which
+    /// is not).
+    pub(super) fn skip_entry(&mut self, separator: char) {
+        while let Some(token) = self.peek() {
+            match token.kind {
+                TokenKind::Open(_) => self.skip_group(),
+                TokenKind::Close(_) => return,
+                TokenKind::Sign(sign) if sign == separator => {
+                    self.at += 1;
+                    return;
+                }
+                _ => self.at += 1,
+            }
+        }
+    }
+
+    /// Passes over a bracket and all in it.
+    pub(super) fn skip_group(&mut self) {
+        let mut depth = 0_usize;
+        while let Some(token) = self.peek() {
+            self.at += 1;
+            match token.kind {
+                TokenKind::Open(_) => depth += 1,
+                TokenKind::Close(_) => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            if depth == 0 {
+                return;
+            }
+        }
+    }
+
+    /// The documentation that stands here, lines joined.
+    pub(super) fn docs(&mut self) -> String {
+        let mut docs = Docs::default();
+        while let Some(token) = self.peek().filter(|token| token.kind == TokenKind::OuterDoc) {
+            docs.line(&token.text);
+            self.at += 1;
+        }
+        if !docs.0.is_empty() && self.is_close() {
+            let error = Diagnostic::new(codes::STRAY_DOCS, self.before(), "this documents nothing")
+                .help("`///` stands before what it documents; `//` begins a plain comment");
+            self.report(error);
+        }
+        docs.0
+    }
+}
+
+/// Lines of documentation on their way to one text.
+#[derive(Default)]
+pub(super) struct Docs(pub(super) String);
+
+impl Docs {
+    pub(super) fn line(&mut self, words: &str) {
+        if !self.0.is_empty() {
+            self.0.push('\n');
+        }
+        self.0.push_str(words.strip_prefix(' ').unwrap_or(words).trim_end());
+    }
+}

@@ -1,0 +1,97 @@
+//! Correct models are accepted.
+
+use hodograph_generator::{model, source::Source};
+
+fn accept(name: &str, text: &str) -> model::mechanism::Mechanism {
+    let source = Source::file(name, text);
+    let checked = model::check(&source);
+    let messages: Vec<String> = checked.diagnostics.iter().map(|d| d.one_line(&source)).collect();
+    assert!(messages.is_empty(), "{}", messages.join("\n"));
+    checked.mechanism.expect("a mechanism")
+}
+
+const ROD: &str = "
+//! A uniform rod on a pivot, whose tip strikes a wall.
+mechanism RodAndWall;
+
+parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81 }
+coordinates { q1: rad = 0.3 }
+speeds { u1: rad/s }
+
+frames { B = N.rotate(z, q1); }
+points {
+    G = O - l/2*B.y;
+    /// the end that strikes
+    P = O - l*B.y;
+}
+bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }
+loads { gravity: -g*N.y; }
+contacts { tip_wall { point: P of Rod, normal: -N.x } }
+";
+
+const SLEDS: &str = "
+mechanism TwoSleds;
+parameters {
+    /// mass of each sled
+    m: kg = 3, l: m = 1, k: m = 0.75, p: m = 0.5,
+    gamma: rad = 0.2, delta: rad = 0.2, theta: rad = pi/3, eta: rad = 2*pi/9,
+}
+coordinates { q1: m, q2: m, q3: rad = pi/4, q4: m, q5: m, q6: rad = 7*pi/4 }
+speeds { u1: m/s = 1, u3: rad/s = 0.1, u4: m/s = 1, u6: rad/s = 0.1 }
+dependent { u2: m/s, u5: m/s }
+frames {
+    Abar = N;
+    A = Abar.rotate(z, q3);
+    Bbar = N.rotate([cos(theta), sin(theta), 0], eta);
+    B = Bbar.rotate(z, q6);
+    Ak = A.rotate(z, gamma);
+    Bk = B.rotate(z, delta);
+}
+angular_velocities { A in Abar = u3*A.z; B in Bbar = u6*B.z; }
+points {
+    A0 = O + q1*N.x + q2*N.y;
+    B0 = O + q4*Bbar.x + q5*Bbar.y;
+    As = A0 + k*A.x;
+    Bs = B0 + k*B.x;
+    Ac = A0 + p*A.x;
+    Bc = B0 + l*B.x;
+}
+velocities { A0 = u1*A.x + u2*A.y; B0 = u4*B.x + u5*B.y; }
+bodies {
+    SledA { frame: A, centre: A0, mass: m, inertia: [0, m*l^2/3, m*l^2/3] },
+    SledB { frame: B, centre: B0, mass: m, inertia: [0, m*l^2/3, m*l^2/3] },
+}
+constraints { dot(velocity(As), Ak.y) = 0; dot(velocity(Bs), Bk.y) = 0; }
+contacts { BcAc { point: Bc of SledB, against: Ac of SledA, normal: A.y } }
+";
+
+#[test]
+fn a_rod() {
+    let mechanism = accept("rod.mech", ROD);
+    assert_eq!(mechanism.kinematics.len(), 1);
+    assert_eq!(mechanism.docs, "A uniform rod on a pivot, whose tip strikes a wall.");
+    assert_eq!(mechanism.points[2].docs, "the end that strikes");
+}
+
+#[test]
+fn two_sleds() {
+    let mechanism = accept("sleds.mech", SLEDS);
+    assert_eq!(mechanism.kinematics.len(), 0);
+    assert_eq!(
+        mechanism.speeds.iter().map(|u| u.name.as_str()).collect::<Vec<_>>(),
+        ["u1", "u3", "u4", "u6", "u2", "u5"]
+    );
+}
+
+#[test]
+fn inline_and_file_agree() {
+    for text in [ROD, SLEDS] {
+        let stream: proc_macro2::TokenStream = text.parse().expect("Rust tokens");
+        let inline = Source::inline("here", stream);
+        let file = Source::file("x.mech", text);
+        assert_eq!(inline.content_hash(), file.content_hash());
+        let other = Source::file("x.mech", text.replace('\n', "\r\n").replace("    ", "\t// a comment\n"));
+        assert_eq!(other.content_hash(), file.content_hash());
+        assert!(model::check(&inline).mechanism.is_some());
+    }
+}
