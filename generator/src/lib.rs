@@ -14,12 +14,21 @@
 //!
 //! Only `algebra` (feature `derive`) names the algebra engine; everything else builds without it.
 
+#[cfg(feature = "derive")]
+pub mod algebra;
 pub mod artifact;
 pub mod diagnostics;
 pub mod emit;
 pub mod interpret;
+#[cfg(feature = "derive")]
+pub mod kane;
+#[cfg(feature = "derive")]
+pub mod kinematics;
 pub mod model;
 pub mod number;
 pub mod program;
 pub mod source;
 pub mod syntax;
+
+#[cfg(feature = "derive")]
+pub use kane::{DerivationError, derive};

@@ -7,6 +7,7 @@
 pub mod arithmetic;
 mod build;
 pub mod graph;
+pub mod linear;
 mod lower;
 pub mod operation;
 pub mod routine;

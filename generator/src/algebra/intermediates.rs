@@ -1,0 +1,498 @@
+//! Intermediate symbols: the z's that keep expressions short, and differentiation through them.
+//!
+//! Every symbol has a meaning: a number from outside, a named expression, or a function of expressions. Names are given
+//! to what would otherwise be repeated inside larger expressions; equal expressions get the same name, so that work is
+//! shared wherever it arises. The chain rule goes through names, each derivative computed once.
+
+use std::collections::HashMap;
+
+use super::expr::{Expr, SymbolId, View};
+use crate::model::mechanism::Function;
+use crate::number::Number;
+use crate::program::graph::{Graph, Input, Node};
+
+/// What a symbol stands for.
+#[derive(Clone, Debug)]
+pub enum Meaning {
+    /// a number from outside
+    Input(Input),
+    /// pi
+    Pi,
+    /// an unknown of equations that are being set up (rate of a coordinate, dependent speed), until it is defined
+    Unknown,
+    /// a named expression
+    Named(Expr),
+    /// a function of expressions
+    Call(Function, Vec<Expr>),
+}
+
+/// How inputs change along a direction of differentiation; what is not listed is constant.
+#[derive(Clone, Debug, Default)]
+pub struct Direction {
+    rates: HashMap<SymbolId, Expr>,
+    known: HashMap<SymbolId, Expr>,
+}
+
+impl Direction {
+    /// The direction in which each of these symbols changes at the given rate.
+    pub fn new(rates: impl IntoIterator<Item = (SymbolId, Expr)>) -> Self {
+        Direction { rates: rates.into_iter().collect(), known: HashMap::new() }
+    }
+
+    /// The direction of one symbol.
+    pub fn along(symbol: SymbolId) -> Self {
+        Self::new([(symbol, Expr::one())])
+    }
+}
+
+/// All symbols of a derivation and what they mean.
+#[derive(Debug, Default)]
+pub struct Intermediates {
+    meanings: Vec<Meaning>,
+    inputs: HashMap<Input, SymbolId>,
+    names: HashMap<Expr, SymbolId>,
+    calls: HashMap<(Function, Vec<Expr>), SymbolId>,
+    pi: Option<SymbolId>,
+    bounds: HashMap<SymbolId, Expr>,
+}
+
+impl Intermediates {
+    fn new_symbol(&mut self, meaning: Meaning) -> SymbolId {
+        self.meanings.push(meaning);
+        (self.meanings.len() - 1) as SymbolId
+    }
+
+    /// What a symbol means.
+    pub fn meaning(&self, symbol: SymbolId) -> &Meaning {
+        &self.meanings[symbol as usize]
+    }
+
+    /// The symbol of a number from outside.
+    pub fn input_symbol(&mut self, input: Input) -> SymbolId {
+        if let Some(&symbol) = self.inputs.get(&input) {
+            return symbol;
+        }
+        let symbol = self.new_symbol(Meaning::Input(input));
+        self.inputs.insert(input, symbol);
+        symbol
+    }
+
+    /// A number from outside.
+    pub fn input(&mut self, input: Input) -> Expr {
+        Expr::symbol(self.input_symbol(input))
+    }
+
+    /// pi, as a symbol of its own.
+    pub fn pi(&mut self) -> Expr {
+        let symbol = match self.pi {
+            Some(symbol) => symbol,
+            None => self.new_symbol(Meaning::Pi),
+        };
+        self.pi = Some(symbol);
+        Expr::symbol(symbol)
+    }
+
+    /// A symbol to solve for.
+    pub fn unknown(&mut self) -> SymbolId {
+        self.new_symbol(Meaning::Unknown)
+    }
+
+    /// Says what an unknown turned out to be.
+    pub fn define(&mut self, unknown: SymbolId, value: Expr) {
+        self.meanings[unknown as usize] = Meaning::Named(value);
+    }
+
+    /// The same expression, short: a number, a symbol, or a number times a symbol.
+    pub fn name(&mut self, expr: Expr) -> Expr {
+        match expr.view() {
+            View::Number(_) | View::Symbol(_) => expr,
+            View::Product(factors) if factors.len() == 2 && factors.iter().any(Expr::is_number) => {
+                let (number, rest) = if factors[0].is_number() {
+                    (&factors[0], &factors[1])
+                } else {
+                    (&factors[1], &factors[0])
+                };
+                if rest.as_symbol().is_some() { expr } else { number.mul(&self.name(rest.clone())) }
+            }
+            View::Product(factors) => {
+                // The numeric coefficient stays outside of the name.
+                match factors.iter().position(Expr::is_number) {
+                    Some(at) => {
+                        let number = factors[at].clone();
+                        let rest = factors.iter().enumerate().filter(|&(i, _)| i != at).map(|(_, f)| f);
+                        let rest = rest.fold(Expr::one(), |product, factor| product.mul(factor));
+                        number.mul(&self.name_exactly(rest))
+                    }
+                    None => self.name_exactly(expr),
+                }
+            }
+            View::Sum(terms) => {
+                // A sum and its opposite share a name: the sign that makes the first term positive.
+                let negative = terms.first().is_some_and(|term| leading_number(term).is_negative());
+                if negative { self.name_exactly(opposite(&terms)).neg() } else { self.name_exactly(expr) }
+            }
+            View::Power(..) => self.name_exactly(expr),
+        }
+    }
+
+    fn name_exactly(&mut self, expr: Expr) -> Expr {
+        if expr.is_number() || expr.as_symbol().is_some() {
+            return expr;
+        }
+        if let Some(&symbol) = self.names.get(&expr) {
+            return Expr::symbol(symbol);
+        }
+        let symbol = self.new_symbol(Meaning::Named(expr.clone()));
+        self.names.insert(expr, symbol);
+        Expr::symbol(symbol)
+    }
+
+    /// A function of expressions, with the simplifications that structure depends on: odd and even functions of
+    /// opposites, right angles, roots and powers of exact squares.
+    pub fn call(&mut self, function: Function, arguments: Vec<Expr>) -> Expr {
+        use Function::*;
+        let arguments: Vec<Expr> = arguments.into_iter().map(|a| self.name(a)).collect();
+        if let [argument] = &arguments[..] {
+            let negative = leading_number(argument).is_negative();
+            match function {
+                Sin | Cos => {
+                    if let Some(turns) = self.quarter_turns(argument) {
+                        let turns = if function == Cos { turns + 1 } else { turns };
+                        return Expr::integer([0, 1, 0, -1][turns.rem_euclid(4) as usize]);
+                    }
+                    if negative {
+                        let value = self.call(function, vec![argument.neg()]);
+                        return if function == Sin { value.neg() } else { value };
+                    }
+                }
+                Tan => {
+                    let sine = self.call(Sin, vec![argument.clone()]);
+                    let cosine = self.call(Cos, vec![argument.clone()]);
+                    return sine.div(&cosine);
+                }
+                Abs if negative => return self.call(Abs, vec![argument.neg()]),
+                Asin | Atan if negative => return self.call(function, vec![argument.neg()]).neg(),
+                _ => {}
+            }
+            if argument.is_zero() {
+                match function {
+                    Asin | Atan | Sqrt | Abs => return Expr::zero(),
+                    Exp => return Expr::one(),
+                    _ => {}
+                }
+            }
+            if argument.is_one() && matches!(function, Sqrt | Abs) {
+                return Expr::one();
+            }
+            if let (View::Number(number), Sqrt | Abs) = (argument.view(), function) {
+                let root = |n: &num_bigint::BigInt| Some(n.sqrt()).filter(|root| &(root * root) == n);
+                if function == Abs {
+                    return Expr::number(&Number(if number.is_negative() { -number.0 } else { number.0 }));
+                }
+                if !number.is_negative()
+                    && let (Some(n), Some(d)) = (root(number.0.numer()), root(number.0.denom()))
+                {
+                    return Expr::number(&Number(num_rational::BigRational::new(n, d)));
+                }
+            }
+        }
+        let key = (function, arguments);
+        if let Some(&symbol) = self.calls.get(&key) {
+            return Expr::symbol(symbol);
+        }
+        let symbol = self.new_symbol(Meaning::Call(key.0, key.1.clone()));
+        self.calls.insert(key, symbol);
+        Expr::symbol(symbol)
+    }
+
+    /// How many right angles an expression is, if it is a whole number of them.
+    fn quarter_turns(&mut self, argument: &Expr) -> Option<i64> {
+        if argument.is_zero() {
+            return Some(0);
+        }
+        let pi = self.pi?;
+        let ratio = argument.derivative(pi);
+        if !ratio.is_number() || !argument.sub(&ratio.mul(&Expr::symbol(pi))).is_zero() {
+            return None;
+        }
+        match ratio.mul(&Expr::integer(2)).view() {
+            View::Number(number) => number.to_integer(),
+            _ => None,
+        }
+    }
+
+    /// The derivative of an expression along a direction, through all names.
+    pub fn differentiate(&mut self, expr: &Expr, direction: &mut Direction) -> Expr {
+        let mut result = Expr::zero();
+        for symbol in expr.symbols() {
+            let rate = self.rate(symbol, direction);
+            if !rate.is_zero() {
+                result = result.add(&expr.derivative(symbol).mul(&rate));
+            }
+        }
+        result
+    }
+
+    fn rate(&mut self, symbol: SymbolId, direction: &mut Direction) -> Expr {
+        if let Some(rate) = direction.rates.get(&symbol).or_else(|| direction.known.get(&symbol)) {
+            return rate.clone();
+        }
+        let rate = match self.meanings[symbol as usize].clone() {
+            Meaning::Input(_) | Meaning::Pi | Meaning::Unknown => Expr::zero(),
+            Meaning::Named(value) => {
+                let rate = self.differentiate(&value, direction);
+                self.name(rate)
+            }
+            Meaning::Call(function, arguments) => {
+                let mut rate = Expr::zero();
+                for (i, argument) in arguments.iter().enumerate() {
+                    let inner = self.differentiate(argument, direction);
+                    if !inner.is_zero() {
+                        let inner = self.name(inner);
+                        rate = rate.add(&self.slope(symbol, function, &arguments, i).mul(&inner));
+                    }
+                }
+                self.name(rate)
+            }
+        };
+        direction.known.insert(symbol, rate.clone());
+        rate
+    }
+
+    /// Derivative of a function (whose value is `symbol`) with respect to its argument number `i`.
+    fn slope(&mut self, symbol: SymbolId, function: Function, arguments: &[Expr], i: usize) -> Expr {
+        use Function::*;
+        let value = Expr::symbol(symbol);
+        let a = arguments[0].clone();
+        let one_minus_square = |s: &mut Self| {
+            let rest = Expr::one().sub(&a.mul(&a));
+            let root = s.call(Sqrt, vec![rest]);
+            root.pow(-1)
+        };
+        match function {
+            Sin => self.call(Cos, vec![a]),
+            Cos => self.call(Sin, vec![a]).neg(),
+            Tan => Expr::one().add(&value.mul(&value)),
+            Asin => one_minus_square(self),
+            Acos => one_minus_square(self).neg(),
+            Atan => Expr::one().add(&a.mul(&a)).pow(-1),
+            Atan2 => {
+                let b = &arguments[1];
+                let square = self.name(a.mul(&a).add(&b.mul(b)));
+                if i == 0 { b.div(&square) } else { a.neg().div(&square) }
+            }
+            Sqrt => Expr::number(&Number::ratio(1, 2)).div(&value),
+            Exp => value,
+            Log => a.pow(-1),
+            Abs => self.call(Sign, vec![a]),
+            Sign => Expr::zero(),
+            Min | Max => {
+                // (1 +- sign(a - b)) / 2: the branch that is taken.
+                let sign = self.call(Sign, vec![a.sub(&arguments[1])]);
+                let sign = if (function == Max) == (i == 0) { sign } else { sign.neg() };
+                Expr::one().add(&sign).mul(&Expr::number(&Number::ratio(1, 2)))
+            }
+        }
+    }
+
+    /// The expression with products multiplied out and sin^2 + cos^2 = 1 used wherever that makes it shorter.
+    pub fn simplify(&mut self, expr: &Expr) -> Expr {
+        let mut best = expr.expand();
+        for (sine, cosine) in self.angles_squared(&best) {
+            for (square, other) in [(sine, cosine), (cosine, sine)] {
+                let other = Expr::symbol(other);
+                let reduced = reduce_square(&best, square, &Expr::one().sub(&other.mul(&other)));
+                if size(&reduced) < size(&best) {
+                    best = reduced;
+                }
+            }
+        }
+        if size(expr) <= size(&best) { expr.clone() } else { best }
+    }
+
+    /// Pairs of sine and cosine symbols of one angle of which one occurs squared.
+    fn angles_squared(&self, expr: &Expr) -> Vec<(SymbolId, SymbolId)> {
+        let mut pairs = Vec::new();
+        for symbol in expr.symbols() {
+            if let Meaning::Call(Function::Sin, arguments) = self.meaning(symbol)
+                && let Some(&cosine) = self.calls.get(&(Function::Cos, arguments.clone()))
+                && [symbol, cosine].iter().any(|&s| !expr.derivative(s).derivative(s).is_zero())
+            {
+                pairs.push((symbol, cosine));
+            }
+        }
+        pairs
+    }
+
+    /// An upper bound of the magnitude of an expression that is made of parameters wherever possible: the scale against
+    /// which a divisor counts as zero.
+    pub fn bound(&mut self, expr: &Expr) -> Expr {
+        let bound = match expr.view() {
+            View::Number(number) => {
+                Expr::number(&Number(if number.is_negative() { -number.0 } else { number.0 }))
+            }
+            View::Symbol(symbol) => self.bound_of_symbol(symbol),
+            View::Sum(terms) => {
+                let terms: Vec<_> = terms.iter().map(|term| self.bound(term)).collect();
+                Expr::sum(&terms)
+            }
+            View::Product(factors) => {
+                factors.iter().map(|f| self.bound(f)).fold(Expr::one(), |product, f| product.mul(&f))
+            }
+            View::Power(base, n) if n > 0 => self.bound(&base).pow(n),
+            View::Power(base, n) => {
+                let base = self.name(base);
+                self.call(Function::Abs, vec![base]).pow(n)
+            }
+        };
+        self.name(bound)
+    }
+
+    fn bound_of_symbol(&mut self, symbol: SymbolId) -> Expr {
+        if let Some(bound) = self.bounds.get(&symbol) {
+            return bound.clone();
+        }
+        use Function::*;
+        let bound = match self.meanings[symbol as usize].clone() {
+            Meaning::Named(value) => self.bound(&value),
+            Meaning::Call(Sin | Cos | Sign, _) => Expr::one(),
+            Meaning::Pi => Expr::symbol(symbol),
+            _ => self.call(Abs, vec![Expr::symbol(symbol)]),
+        };
+        self.bounds.insert(symbol, bound.clone());
+        bound
+    }
+
+    /// Does the expression depend, through any names, on a symbol that `matters`?
+    pub fn depends(&self, expr: &Expr, matters: &mut impl FnMut(SymbolId) -> bool) -> bool {
+        let mut seen = vec![false; self.meanings.len()];
+        let mut open = expr.symbols();
+        while let Some(symbol) = open.pop() {
+            if std::mem::replace(&mut seen[symbol as usize], true) {
+                continue;
+            }
+            if matters(symbol) {
+                return true;
+            }
+            match self.meaning(symbol) {
+                Meaning::Named(value) => open.extend(value.symbols()),
+                Meaning::Call(_, arguments) => open.extend(arguments.iter().flat_map(Expr::symbols)),
+                _ => {}
+            }
+        }
+        false
+    }
+}
+
+/// Writes expressions as nodes of a graph, each symbol once.
+#[derive(Default)]
+pub struct Export {
+    done: HashMap<SymbolId, Node>,
+}
+
+impl Export {
+    /// The node of an expression.
+    pub fn node(&mut self, intermediates: &Intermediates, graph: &mut Graph, expr: &Expr) -> Node {
+        match expr.view() {
+            View::Number(number) => graph.number(number),
+            View::Symbol(symbol) => {
+                if let Some(&node) = self.done.get(&symbol) {
+                    return node;
+                }
+                let node = match intermediates.meaning(symbol) {
+                    Meaning::Input(input) => graph.input(*input),
+                    Meaning::Pi => graph.pi(),
+                    Meaning::Unknown => unreachable!("unknowns are defined before export"),
+                    Meaning::Named(value) => self.node(intermediates, graph, value),
+                    Meaning::Call(function, arguments) => {
+                        let arguments =
+                            arguments.iter().map(|a| self.node(intermediates, graph, a)).collect();
+                        graph.call(*function, arguments)
+                    }
+                };
+                self.done.insert(symbol, node);
+                node
+            }
+            View::Sum(terms) => {
+                let terms: Vec<_> = terms.iter().map(|t| self.node(intermediates, graph, t)).collect();
+                graph.sum(terms)
+            }
+            View::Product(factors) => {
+                let factors: Vec<_> = factors.iter().map(|f| self.node(intermediates, graph, f)).collect();
+                graph.product(factors)
+            }
+            View::Power(base, n) => {
+                let base = self.node(intermediates, graph, &base);
+                graph.power(base, n)
+            }
+        }
+    }
+}
+
+/// The opposite of a sum, term by term.
+fn opposite(terms: &[Expr]) -> Expr {
+    let terms: Vec<_> = terms.iter().map(Expr::neg).collect();
+    Expr::sum(&terms)
+}
+
+/// The numeric factor of a term.
+fn leading_number(term: &Expr) -> Number {
+    match term.view() {
+        View::Number(number) => number,
+        View::Product(factors) => factors
+            .iter()
+            .find_map(|factor| match factor.view() {
+                View::Number(number) => Some(number),
+                _ => None,
+            })
+            .unwrap_or_else(|| Number::integer(1)),
+        View::Sum(terms) => terms.first().map_or_else(|| Number::integer(1), leading_number),
+        _ => Number::integer(1),
+    }
+}
+
+/// `expr` with `symbol`^2 replaced by `square`, wherever it stands in an expanded expression.
+fn reduce_square(expr: &Expr, symbol: SymbolId, square: &Expr) -> Expr {
+    if has_divisor(expr) {
+        return expr.clone();
+    }
+    let mut result = Expr::zero();
+    let mut rest = expr.clone();
+    let mut factor = Expr::one();
+    let mut order = 1i64;
+    // Taylor coefficients in `symbol`: exact for a polynomial; give up on anything of high degree or not polynomial.
+    for power in 0..8u32 {
+        let coefficient = rest.replace(symbol, &Expr::zero());
+        let coefficient = coefficient.mul(&Expr::number(&Number::ratio(1, order)));
+        result = result.add(&coefficient.mul(&factor));
+        rest = rest.derivative(symbol);
+        order *= power as i64 + 1;
+        factor = if power % 2 == 0 {
+            factor.mul(&Expr::symbol(symbol))
+        } else {
+            factor.replace(symbol, &Expr::one()).mul(square)
+        };
+        if rest.is_zero() {
+            return result.expand();
+        }
+    }
+    expr.clone()
+}
+
+/// Does a negative power of anything occur?
+fn has_divisor(expr: &Expr) -> bool {
+    match expr.view() {
+        View::Number(_) | View::Symbol(_) => false,
+        View::Sum(parts) | View::Product(parts) => parts.iter().any(has_divisor),
+        View::Power(base, n) => n < 0 || has_divisor(&base),
+    }
+}
+
+/// How many operations an expression costs, roughly.
+pub fn size(expr: &Expr) -> usize {
+    match expr.view() {
+        View::Number(_) | View::Symbol(_) => 1,
+        View::Sum(parts) | View::Product(parts) => parts.iter().map(size).sum::<usize>() + parts.len() - 1,
+        View::Power(base, n) => size(&base) + n.unsigned_abs() as usize,
+    }
+}

@@ -1,0 +1,130 @@
+//! Contacts: basis, relative velocity, and partial velocities V_n, V_t, V_s.
+
+use std::collections::BTreeMap;
+
+use crate::algebra::Expr;
+use crate::kinematics::Kinematics;
+use crate::kinematics::axes::{AxesId, AxesTree, unit};
+use crate::kinematics::linear::{self, LinearVector, Triple};
+use crate::model::mechanism::{Against, Contact, Function, PointId};
+
+/// A contact, as algebra.
+pub struct ContactForms {
+    /// normal and two tangential axes, along N
+    pub basis: [Triple; 3],
+    /// per axis of the basis: partial velocities of the independent speeds, by slot
+    pub partials: [BTreeMap<usize, Expr>; 3],
+    /// per axis of the basis: the remainder v_t^R
+    pub remainder: Triple,
+    /// distance
+    pub gap: Option<Expr>,
+    /// is there no velocity along the second tangential axis, whatever the speeds?
+    pub planar: bool,
+}
+
+/// The forms of a contact.
+pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact) -> ContactForms {
+    let normal = k.vector(&contact.normal);
+    let axes = match normal.len() {
+        1 => normal.keys().next().copied().unwrap_or(AxesTree::N),
+        _ => k.meeting(normal.keys().copied(), std::iter::empty()),
+    };
+    let normal = k.express(&normal, axes);
+    let relative = relative_velocity(k, contact, axes);
+    let relative = without_dependent(k, &relative);
+    let (first, second) = tangents(k, &normal, &relative);
+    let along: [Triple; 3] = [normal, first, second];
+    let partials: [BTreeMap<usize, Expr>; 3] = std::array::from_fn(|i| {
+        let form = relative.dot(&along[i]).map(|c| k.z.simplify(c));
+        form.terms.into_iter().map(|(slot, c)| (slot, k.z.name(c))).collect()
+    });
+    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear::dot(&relative.rest, &along[i])));
+    let planar = partials[2].is_empty() && remainder[2].is_zero();
+    let basis = along.map(|v| {
+        let v = linear::name(&mut k.z, v);
+        k.tree.convert(&mut k.z, &v, axes, AxesTree::N)
+    });
+    let gap = contact.gap.as_ref().map(|gap| k.scalar(gap));
+    ContactForms { basis, partials, remainder, gap, planar }
+}
+
+/// v^R of (3), of all speeds, along given axes.
+fn relative_velocity(k: &mut Kinematics<'_>, contact: &Contact, axes: AxesId) -> LinearVector {
+    let mechanism = k.mechanism;
+    let of_point = match contact.body.map(|body| &mechanism.bodies[body.0]) {
+        Some(body) => match body.frame {
+            Some(frame) if k.connected(contact.point, body.centre) => {
+                k.partial_velocities_of_material_point(contact.point, body.centre, frame, axes)
+            }
+            _ => k.partial_velocities(contact.point, axes),
+        },
+        None => k.partial_velocities(contact.point, axes),
+    };
+    let of_struck = match &contact.against {
+        Against::Fixed => LinearVector::zero(),
+        Against::Point(struck, body) => match body.map(|body| &mechanism.bodies[body.0]) {
+            Some(body) if body.frame.is_some() && k.connected(*struck, body.centre) => {
+                let frame = body.frame.unwrap_or(crate::model::mechanism::FrameId::N);
+                k.partial_velocities_of_material_point(*struck, body.centre, frame, axes)
+            }
+            _ => k.partial_velocities(*struck, axes),
+        },
+        Against::Body(body) => {
+            let body = &mechanism.bodies[body.0];
+            match body.frame {
+                Some(frame) if k.connected(contact.point, body.centre) => {
+                    k.partial_velocities_of_material_point(contact.point, body.centre, frame, axes)
+                }
+                _ => k.partial_velocities(body.centre, axes),
+            }
+        }
+        Against::Velocity(velocity) => {
+            let velocity = k.linear_vector(velocity);
+            k.express_linear(&velocity, axes)
+        }
+    };
+    let difference = of_point.add(&of_struck.map(|p| linear::scale(&Expr::integer(-1), p)));
+    difference.map(|p| linear::name(&mut k.z, p.clone()))
+}
+
+/// The form in independent speeds alone.
+fn without_dependent(k: &mut Kinematics<'_>, form: &LinearVector) -> LinearVector {
+    let dependent = k.dependent.clone();
+    form.substitute(|slot| dependent.get(&slot).cloned()).map(|p| {
+        let simple = p.clone().map(|c| k.z.simplify(&c));
+        linear::name(&mut k.z, simple)
+    })
+}
+
+/// Tangential axes that go with a normal, right-handed: the second is one along which nothing moves if there is one.
+fn tangents(k: &mut Kinematics<'_>, normal: &Triple, relative: &LinearVector) -> (Triple, Triple) {
+    let still = |i: usize| {
+        relative.rest[i].is_zero() && relative.terms.values().all(|partial: &Triple| partial[i].is_zero())
+    };
+    let across: Vec<usize> = (0..3).filter(|&i| normal[i].is_zero()).collect();
+    let second = across.iter().copied().find(|&i| still(i)).or(across.last().copied());
+    match second {
+        Some(i) => {
+            let second = unit(i);
+            let first = linear::cross(&second, normal);
+            (first, second)
+        }
+        None => {
+            // any right-handed basis that is smooth but for normal = -z (Duff et al. 2017)
+            let [x, y, z] = normal;
+            let sign = k.z.call(Function::Sign, vec![z.clone()]);
+            let a = k.z.name(sign.add(z)).pow(-1).neg();
+            let a = k.z.name(a);
+            let b = k.z.name(x.mul(y).mul(&a));
+            let first = [Expr::one().add(&sign.mul(x).mul(x).mul(&a)), sign.mul(&b), sign.mul(x).neg()];
+            let second = [b, sign.add(&y.mul(y).mul(&a)), y.neg()];
+            (linear::name(&mut k.z, first), linear::name(&mut k.z, second))
+        }
+    }
+}
+
+/// Partial velocities of a point along N, in independent speeds, by slot, and the remainder.
+pub fn point_jacobian(k: &mut Kinematics<'_>, point: PointId) -> LinearVector {
+    let form = k.partial_velocities(point, AxesTree::N);
+    without_dependent(k, &form)
+}

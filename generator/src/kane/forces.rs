@@ -1,0 +1,199 @@
+//! Generalized active and inertia forces, passed along the graph of velocities from the leaves back to the ground.
+//!
+//! F_r = sum of partial velocities . forces. Instead of forming every partial velocity, each force is passed from a point
+//! to the point its velocity is stated relative to, leaving its moment on the frames of the arms and its work on the
+//! speeds that enter there.
+
+use std::collections::BTreeMap;
+
+use super::accelerations::Accelerations;
+use super::order::{self, Node};
+use crate::algebra::Expr;
+use crate::kinematics::axes::entry;
+use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::vectors;
+use crate::kinematics::{Kinematics, Mixed};
+use crate::model::mechanism::{FrameId, LoadKind, PointId};
+
+/// Forces and torques, gathered on points and frames.
+#[derive(Clone, Default)]
+struct Wrenches {
+    forces: BTreeMap<PointId, Triple>,
+    torques: BTreeMap<FrameId, Triple>,
+}
+
+impl Wrenches {
+    fn force(&mut self, k: &mut Kinematics<'_>, on: PointId, force: &Mixed) {
+        let home = k.points[on.0].home;
+        let force = k.express(force, home);
+        let sum = self.forces.get(&on).map_or_else(|| force.clone(), |have| linear::add(have, &force));
+        self.forces.insert(on, sum);
+    }
+
+    fn torque(&mut self, k: &mut Kinematics<'_>, on: FrameId, torque: &Mixed) {
+        let on = k.turning(on);
+        if on == FrameId::N {
+            return;
+        }
+        let home = k.frames[on.0].home;
+        let torque = k.express(torque, home);
+        let sum = self.torques.get(&on).map_or_else(|| torque.clone(), |have| linear::add(have, &torque));
+        self.torques.insert(on, sum);
+    }
+}
+
+/// The acceleration of gravity.
+pub fn gravity(k: &mut Kinematics<'_>) -> Mixed {
+    let mut sum = Mixed::new();
+    for load in &k.mechanism.loads {
+        if let LoadKind::Gravity(g) = &load.kind {
+            let g = k.vector(g);
+            sum = vectors::add(&sum, &g);
+        }
+    }
+    sum.into_iter().map(|(axes, v)| (axes, linear::name(&mut k.z, v))).collect()
+}
+
+/// Generalized forces of all speeds (dependent ones included), active and inertia forces together, for given
+/// derivatives of all speeds.
+pub fn generalized_forces(k: &mut Kinematics<'_>, derivatives: Vec<Expr>) -> Vec<Expr> {
+    let gravity = gravity(k);
+    let ground = vectors::scale(&Expr::integer(-1), &gravity);
+    let mut accelerations = Accelerations::new(derivatives, ground);
+    let mut wrenches = Wrenches::default();
+    for body in &k.mechanism.bodies {
+        let mass = k.scalar(&body.mass);
+        let mass = k.z.name(mass);
+        if !mass.is_zero() {
+            let a = accelerations.point(k, body.centre);
+            let force = linear::scale(&mass.neg(), &a);
+            let home = k.points[body.centre.0].home;
+            wrenches.force(k, body.centre, &vectors::mixed(home, force));
+        }
+        let Some(frame) = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N)
+        else {
+            continue;
+        };
+        if let Some((inertia, axes)) = super::bodies::central_inertia(k, body) {
+            // - (I . alpha + w x I . w), along the axes of the inertia
+            let home = k.frames[frame.0].home;
+            let alpha = accelerations.angular(k, frame);
+            let alpha = k.tree.convert(&mut k.z, &alpha, home, axes);
+            let w = k.angular_velocity(frame);
+            let w = k.tree.convert(&mut k.z, &w, home, axes);
+            let times = |v: &Triple| -> Triple {
+                std::array::from_fn(|i| {
+                    linear::dot(&std::array::from_fn(|j| inertia[entry(i, j)].clone()), v)
+                })
+            };
+            let momentum = linear::name(&mut k.z, times(&w));
+            let rate = linear::add(&times(&alpha), &linear::cross(&w, &momentum));
+            let torque = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &rate));
+            wrenches.torque(k, frame, &vectors::mixed(axes, torque));
+        }
+    }
+    apply_loads(k, &mut wrenches);
+    pass_back(k, wrenches)
+}
+
+fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
+    let minus = Expr::integer(-1);
+    for load in &k.mechanism.loads {
+        match &load.kind {
+            LoadKind::Gravity(_) => {}
+            LoadKind::Force { on, from, force } => {
+                let force = k.vector(force);
+                wrenches.force(k, *on, &force);
+                if let Some(from) = from {
+                    wrenches.force(k, *from, &vectors::scale(&minus, &force));
+                }
+            }
+            LoadKind::Torque { on, from, torque } => {
+                let torque = k.vector(torque);
+                wrenches.torque(k, *on, &torque);
+                if let Some(from) = from {
+                    wrenches.torque(k, *from, &vectors::scale(&minus, &torque));
+                }
+            }
+            LoadKind::Spring { a, b, stiffness, length, damping } => {
+                let r = k.position(*a, *b);
+                let distance = k.norm(&r);
+                k.guard(&distance, "the ends of a spring coincide");
+                let along = vectors::scale(&distance.pow(-1), &r);
+                let along: Mixed =
+                    along.into_iter().map(|(axes, v)| (axes, linear::name(&mut k.z, v))).collect();
+                let (stiffness, length, damping) = (k.scalar(stiffness), k.scalar(length), k.scalar(damping));
+                let mut tension = stiffness.mul(&distance.sub(&length));
+                if !damping.is_zero() {
+                    let (axes_a, v_a) = k.velocity_value(*a);
+                    let (axes_b, v_b) = k.velocity_value(*b);
+                    let v_b = vectors::scale(&minus, &vectors::mixed(axes_b, v_b));
+                    let v = vectors::add(&vectors::mixed(axes_a, v_a), &v_b);
+                    let rate = k.dot(&v, &along);
+                    tension = tension.add(&damping.mul(&rate));
+                }
+                let tension = k.z.name(tension);
+                wrenches.force(k, *a, &vectors::scale(&tension.neg(), &along));
+                wrenches.force(k, *b, &vectors::scale(&tension, &along));
+            }
+            LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping } => {
+                let axis = k.vector(axis);
+                let (angle, rest) = (k.scalar(angle), k.scalar(rest));
+                let (stiffness, damping) = (k.scalar(stiffness), k.scalar(damping));
+                let mut moment = stiffness.mul(&angle.sub(&rest));
+                if !damping.is_zero() {
+                    let rate = k.change(&angle);
+                    moment = moment.add(&damping.mul(&rate));
+                }
+                let moment = k.z.name(moment);
+                wrenches.torque(k, *on, &vectors::scale(&moment.neg(), &axis));
+                if let Some(from) = from {
+                    wrenches.torque(k, *from, &vectors::scale(&moment, &axis));
+                }
+            }
+        }
+    }
+}
+
+/// Passes forces and torques back to the ground; what each speed meets on the way is its generalized force.
+fn pass_back(k: &mut Kinematics<'_>, mut wrenches: Wrenches) -> Vec<Expr> {
+    let mut result = vec![Expr::zero(); k.speeds.len()];
+    let points: Vec<_> = wrenches.forces.keys().copied().collect();
+    let frames: Vec<_> = wrenches.torques.keys().copied().collect();
+    for node in order::elimination_order(k, &points, &frames) {
+        match node {
+            Node::Frame(frame) => {
+                let Some(torque) = wrenches.torques.remove(&frame) else { continue };
+                let motion = k.frames[frame.0].clone();
+                let torque = linear::name(&mut k.z, torque);
+                for (&slot, a) in &motion.relative.terms {
+                    result[slot] = result[slot].add(&linear::dot(a, &torque));
+                }
+                wrenches.torque(k, motion.base, &vectors::mixed(motion.home, torque));
+            }
+            Node::Point(point) => {
+                let Some(force) = wrenches.forces.remove(&point) else { continue };
+                let motion = k.points[point.0].clone();
+                let force = linear::name(&mut k.z, force);
+                let along = vectors::mixed(motion.home, force.clone());
+                for arm in &motion.arms {
+                    let home = k.frames[arm.frame.0].home;
+                    let r = k.tree.convert(&mut k.z, &arm.arm, arm.axes, home);
+                    let force = k.express(&along, home);
+                    let moment = linear::cross(&r, &force);
+                    wrenches.torque(k, arm.frame, &vectors::mixed(home, moment));
+                }
+                for (axes, relative) in &motion.relative {
+                    for (&slot, b) in &relative.terms {
+                        let b = k.tree.convert(&mut k.z, b, *axes, motion.home);
+                        result[slot] = result[slot].add(&linear::dot(&b, &force));
+                    }
+                }
+                if let Some(base) = motion.base {
+                    wrenches.force(k, base, &along);
+                }
+            }
+        }
+    }
+    result.into_iter().map(|force| k.z.name(force)).collect()
+}

@@ -1,0 +1,371 @@
+//! The mass matrix, by passing the kinetic energy along the graph of velocities.
+//!
+//! The kinetic energy is a quadratic form in the velocities of mass centres and the angular velocities of bodies. Each
+//! relation of the graph (velocity = that of the base + ..) is inserted in turn, leaves first, until only the speeds are
+//! left: their coefficients are the mass matrix. On the way the form gathers masses, first moments and inertias of what
+//! moves together, which is the composite-body method, found here for any graph and not only for trees of joints.
+
+use std::collections::BTreeMap;
+
+use crate::algebra::Expr;
+use crate::kinematics::Kinematics;
+use crate::kinematics::axes::{Symmetric, entry};
+use crate::kinematics::linear::{self, LinearVector, Triple};
+use crate::model::mechanism::{FrameId, PointId};
+
+/// Rows along the home axes of one frame, columns along those of another.
+type Coupling = [Triple; 3];
+
+/// Coefficients of the quadratic form
+/// `1/2 sum m v.v + sum v.(w x S) + 1/2 sum w.I.w + sum w.X.w' + sum u v.p + sum u w.h + 1/2 sum M u u`.
+#[derive(Default)]
+struct Form {
+    mass: BTreeMap<PointId, Expr>,
+    moment: BTreeMap<(PointId, FrameId), Triple>,
+    inertia: BTreeMap<FrameId, Symmetric>,
+    coupling: BTreeMap<(FrameId, FrameId), Coupling>,
+    momentum: BTreeMap<(PointId, usize), Triple>,
+    angular: BTreeMap<(FrameId, usize), Triple>,
+    matrix: BTreeMap<(usize, usize), Expr>,
+}
+
+/// The mass matrix of all speeds, dependent ones included, by slots `(r, s)` with `r <= s`. The slot after the last
+/// speed stands for prescribed motion (the remainders, with speed 1).
+pub fn full_mass_matrix(k: &mut Kinematics<'_>) -> BTreeMap<(usize, usize), Expr> {
+    let mut form = Form::default();
+    for body in &k.mechanism.bodies {
+        let mass = k.scalar(&body.mass);
+        let mass = k.z.name(mass);
+        if !mass.is_zero() {
+            sum_into(&mut form.mass, body.centre, &mass);
+        }
+        if let (Some(frame), Some((inertia, axes))) = (body.frame, super::bodies::central_inertia(k, body)) {
+            let frame = k.turning(frame);
+            if frame != FrameId::N {
+                let home = k.frames[frame.0].home;
+                let inertia = k.tree.convert_symmetric(&mut k.z, &inertia, axes, home);
+                form.add_inertia(frame, &inertia);
+            }
+        }
+    }
+    let centres: Vec<_> = k.mechanism.bodies.iter().map(|body| body.centre).collect();
+    let frames: Vec<_> = k.mechanism.bodies.iter().filter_map(|body| body.frame).collect();
+    let order = super::order::elimination_order(k, &centres, &frames);
+    for node in order {
+        match node {
+            super::order::Node::Frame(frame) => form.eliminate_frame(k, frame),
+            super::order::Node::Point(point) => form.eliminate_point(k, point),
+        }
+    }
+    let mut tidy = |value: Expr| {
+        let value = k.z.simplify(&value);
+        k.z.name(value)
+    };
+    form.matrix.into_iter().map(|(at, value)| (at, tidy(value))).collect()
+}
+
+fn sum_into<K: Ord>(map: &mut BTreeMap<K, Expr>, key: K, value: &Expr) {
+    let sum = map.get(&key).map_or_else(|| value.clone(), |have| have.add(value));
+    map.insert(key, sum);
+}
+
+fn sum_triple<K: Ord>(map: &mut BTreeMap<K, Triple>, key: K, value: &Triple) {
+    if linear::is_zero(value) {
+        return;
+    }
+    let sum = map.get(&key).map_or_else(|| value.clone(), |have| linear::add(have, value));
+    map.insert(key, sum);
+}
+
+/// Partial velocities of a relation, the remainder under the slot after the last speed.
+fn slots(k: &Kinematics<'_>, form: &LinearVector) -> Vec<(usize, Triple)> {
+    let mut all: Vec<_> = form.terms.iter().map(|(&slot, p)| (slot, p.clone())).collect();
+    if !linear::is_zero(&form.rest) {
+        all.push((k.speeds.len(), form.rest.clone()));
+    }
+    all
+}
+
+/// `r.s 1 - r s'`, symmetrised.
+fn spread(r: &Triple, s: &Triple) -> Symmetric {
+    let d = linear::dot(r, s);
+    let half = Expr::number(&crate::number::Number::ratio(1, 2));
+    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+        let product = r[i].mul(&s[j]).add(&r[j].mul(&s[i])).mul(&half);
+        if i == j { d.sub(&product) } else { product.neg() }
+    })
+}
+
+/// `[r]x' C [s]x` for C = 1: the matrix of `(w x r).(w' x s)`.
+fn skew_product(r: &Triple, s: &Triple) -> Coupling {
+    let d = linear::dot(r, s);
+    std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let product = s[i].mul(&r[j]);
+            if i == j { d.sub(&product) } else { product.neg() }
+        })
+    })
+}
+
+fn times(m: &Symmetric, v: &Triple) -> Triple {
+    std::array::from_fn(|i| linear::dot(&std::array::from_fn(|j| m[entry(i, j)].clone()), v))
+}
+
+impl Form {
+    fn add_inertia(&mut self, frame: FrameId, inertia: &Symmetric) {
+        let sum = match self.inertia.get(&frame) {
+            Some(have) => std::array::from_fn(|i| have[i].add(&inertia[i])),
+            None => inertia.clone(),
+        };
+        self.inertia.insert(frame, sum);
+    }
+
+    /// Adds `value * u_r * u_s` to the form.
+    fn add_product(&mut self, r: usize, s: usize, value: &Expr) {
+        if value.is_zero() {
+            return;
+        }
+        let value = if r == s { value.mul(&Expr::integer(2)) } else { value.clone() };
+        sum_into(&mut self.matrix, (r.min(s), r.max(s)), &value);
+    }
+
+    /// Adds `w_f . X . w_g`, rows of X along f's home axes, columns along g's.
+    fn add_coupling(&mut self, k: &mut Kinematics<'_>, f: FrameId, g: FrameId, x: Coupling) {
+        if f == FrameId::N || g == FrameId::N || x.iter().all(linear::is_zero) {
+            return;
+        }
+        if f == g {
+            let both = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| x[i][j].add(&x[j][i]));
+            self.add_inertia(f, &both.map(|c| k.z.name(c)));
+            return;
+        }
+        let (key, x) = if f < g {
+            ((f, g), x)
+        } else {
+            ((g, f), std::array::from_fn(|i| std::array::from_fn(|j| x[j][i].clone())))
+        };
+        let sum = match self.coupling.get(&key) {
+            Some(have) => std::array::from_fn(|i| linear::add(&have[i], &x[i])),
+            None => x,
+        };
+        self.coupling.insert(key, sum);
+    }
+
+    /// Inserts `w = w_base + sum a u`.
+    fn eliminate_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
+        let motion = k.frames[frame.0].clone();
+        let base = k.turning(motion.base);
+        let home = motion.home;
+        let base_home = k.frames[base.0].home;
+        let partials = slots(k, &motion.relative);
+
+        for point in self.moment.keys().filter(|key| key.1 == frame).map(|key| key.0).collect::<Vec<_>>() {
+            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+            let moment = linear::name(&mut k.z, moment);
+            if base != FrameId::N {
+                let turned = k.tree.convert(&mut k.z, &moment, home, base_home);
+                sum_triple(&mut self.moment, (point, base), &turned);
+            }
+            let at = k.points[point.0].home;
+            for (slot, a) in &partials {
+                let product = linear::name(&mut k.z, linear::cross(a, &moment));
+                let turned = k.tree.convert(&mut k.z, &product, home, at);
+                sum_triple(&mut self.momentum, (point, *slot), &turned);
+            }
+        }
+        if let Some(inertia) = self.inertia.remove(&frame) {
+            let inertia = inertia.map(|c| k.z.name(c));
+            for (i, (slot, a)) in partials.iter().enumerate() {
+                let column = linear::name(&mut k.z, times(&inertia, a));
+                if base != FrameId::N {
+                    let turned = k.tree.convert(&mut k.z, &column, home, base_home);
+                    sum_triple(&mut self.angular, (base, *slot), &turned);
+                }
+                for (other, b) in &partials[..=i] {
+                    let value = linear::dot(b, &column);
+                    // 1/2 w.I.w counts the square once and a mixed product of two speeds fully.
+                    if other == slot {
+                        sum_into(&mut self.matrix, (*slot, *slot), &value);
+                    } else {
+                        self.add_product(*other, *slot, &value);
+                    }
+                }
+            }
+            if base != FrameId::N {
+                let turned = k.tree.convert_symmetric(&mut k.z, &inertia, home, base_home);
+                self.add_inertia(base, &turned);
+            }
+        }
+        for key in
+            self.coupling.keys().filter(|key| key.0 == frame || key.1 == frame).copied().collect::<Vec<_>>()
+        {
+            let Some(x) = self.coupling.remove(&key) else { continue };
+            // rows along this frame
+            let other = if key.0 == frame { key.1 } else { key.0 };
+            let x: Coupling = if key.0 == frame {
+                x
+            } else {
+                std::array::from_fn(|i| std::array::from_fn(|j| x[j][i].clone()))
+            };
+            let x = x.map(|row| linear::name(&mut k.z, row));
+            for (slot, a) in &partials {
+                let row = std::array::from_fn(|j| linear::dot(a, &std::array::from_fn(|i| x[i][j].clone())));
+                let row = linear::name(&mut k.z, row);
+                sum_triple(&mut self.angular, (other, *slot), &row);
+            }
+            if base != FrameId::N {
+                let columns: [Triple; 3] = std::array::from_fn(|j| {
+                    let column = std::array::from_fn(|i| x[i][j].clone());
+                    k.tree.convert(&mut k.z, &column, home, base_home)
+                });
+                let turned = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i].clone()));
+                if base == other {
+                    // both sides now belong to the same angular velocity
+                    self.add_coupling(k, base, base, turned);
+                } else {
+                    self.add_coupling(k, base, other, turned);
+                }
+            }
+        }
+        for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
+            let Some(h) = self.angular.remove(&(frame, slot)) else { continue };
+            let h = linear::name(&mut k.z, h);
+            if base != FrameId::N {
+                let turned = k.tree.convert(&mut k.z, &h, home, base_home);
+                sum_triple(&mut self.angular, (base, slot), &turned);
+            }
+            for (other, a) in &partials {
+                self.add_product(*other, slot, &linear::dot(a, &h));
+            }
+        }
+    }
+
+    /// Inserts `v = v_base + sum w x r + sum b u`.
+    fn eliminate_point(&mut self, k: &mut Kinematics<'_>, point: PointId) {
+        let motion = k.points[point.0].clone();
+        let home = motion.home;
+        let base = motion.base;
+        let base_home = base.map(|base| k.points[base.0].home);
+        // arms along the home axes of their frames
+        let arms: Vec<(FrameId, Triple)> = motion
+            .arms
+            .iter()
+            .map(|arm| {
+                let to = k.frames[arm.frame.0].home;
+                (arm.frame, k.tree.convert(&mut k.z, &arm.arm, arm.axes, to))
+            })
+            .collect();
+        let partials: Vec<(usize, Triple)> = {
+            let mut all: BTreeMap<usize, Triple> = BTreeMap::new();
+            for (axes, relative) in &motion.relative {
+                for (slot, b) in slots(k, relative) {
+                    let turned = k.tree.convert(&mut k.z, &b, *axes, home);
+                    sum_triple(&mut all, slot, &turned);
+                }
+            }
+            all.into_iter().map(|(slot, b)| (slot, linear::name(&mut k.z, b))).collect()
+        };
+
+        if let Some(mass) = self.mass.remove(&point) {
+            let mass = k.z.name(mass);
+            if let Some(base) = base {
+                sum_into(&mut self.mass, base, &mass);
+            }
+            for (i, (frame, arm)) in arms.iter().enumerate() {
+                let moment = linear::name(&mut k.z, linear::scale(&mass, arm));
+                if let Some(base) = base {
+                    sum_triple(&mut self.moment, (base, *frame), &moment);
+                }
+                let own = spread(&moment, arm).map(|c| k.z.name(c));
+                self.add_inertia(*frame, &own);
+                for (other, second) in &arms[..i] {
+                    self.couple_arms(k, (*frame, &moment), (*other, second));
+                }
+                self.arm_times_partials(k, *frame, &moment, &partials, home);
+            }
+            for (i, (slot, b)) in partials.iter().enumerate() {
+                let momentum = linear::name(&mut k.z, linear::scale(&mass, b));
+                if let (Some(base), Some(to)) = (base, base_home) {
+                    let turned = k.tree.convert(&mut k.z, &momentum, home, to);
+                    sum_triple(&mut self.momentum, (base, *slot), &turned);
+                }
+                for (other, c) in &partials[..=i] {
+                    let value = linear::dot(c, &momentum);
+                    if other == slot {
+                        sum_into(&mut self.matrix, (*slot, *slot), &value);
+                    } else {
+                        self.add_product(*other, *slot, &value);
+                    }
+                }
+            }
+        }
+        for frame in self.moment.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
+            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+            let moment = linear::name(&mut k.z, moment);
+            if let Some(base) = base {
+                sum_triple(&mut self.moment, (base, frame), &moment);
+            }
+            for (other, arm) in &arms {
+                if *other == frame {
+                    // v.(w x S) with v = w x r: w.(r.S 1 - r S').w, twice that of the halved form
+                    let both = spread(&moment, arm).map(|c| k.z.name(c.mul(&Expr::integer(2))));
+                    self.add_inertia(frame, &both);
+                } else {
+                    self.couple_arms(k, (frame, &moment), (*other, arm));
+                }
+            }
+            self.arm_times_partials(k, frame, &moment, &partials, home);
+        }
+        for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
+            let Some(p) = self.momentum.remove(&(point, slot)) else { continue };
+            let p = linear::name(&mut k.z, p);
+            if let (Some(base), Some(to)) = (base, base_home) {
+                let turned = k.tree.convert(&mut k.z, &p, home, to);
+                sum_triple(&mut self.momentum, (base, slot), &turned);
+            }
+            for (frame, arm) in &arms {
+                let to = k.frames[frame.0].home;
+                let turned = k.tree.convert(&mut k.z, &p, home, to);
+                sum_triple(&mut self.angular, (*frame, slot), &linear::cross(arm, &turned));
+            }
+            for (other, b) in &partials {
+                self.add_product(*other, slot, &linear::dot(b, &p));
+            }
+        }
+    }
+
+    /// `(w_f x S).(w_g x r)` for different frames.
+    fn couple_arms(
+        &mut self,
+        k: &mut Kinematics<'_>,
+        (f, moment): (FrameId, &Triple),
+        (g, arm): (FrameId, &Triple),
+    ) {
+        let (f_home, g_home) = (k.frames[f.0].home, k.frames[g.0].home);
+        // both along g's axes, then the rows back to f's
+        let turned = k.tree.convert(&mut k.z, moment, f_home, g_home);
+        let x = skew_product(&turned, arm).map(|row| linear::name(&mut k.z, row));
+        let columns: [Triple; 3] = std::array::from_fn(|j| {
+            let column = std::array::from_fn(|i| x[i][j].clone());
+            k.tree.convert(&mut k.z, &column, g_home, f_home)
+        });
+        let x = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i].clone()));
+        self.add_coupling(k, f, g, x);
+    }
+
+    /// `(w x S).(sum b u)`.
+    fn arm_times_partials(
+        &mut self,
+        k: &mut Kinematics<'_>,
+        frame: FrameId,
+        moment: &Triple,
+        partials: &[(usize, Triple)],
+        axes: usize,
+    ) {
+        let home = k.frames[frame.0].home;
+        for (slot, b) in partials {
+            let turned = k.tree.convert(&mut k.z, b, axes, home);
+            sum_triple(&mut self.angular, (frame, *slot), &linear::cross(moment, &turned));
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Kane's equations: mass matrix, generalized forces, constraints eliminated, contacts; written as a value graph.
+
+pub mod accelerations;
+pub mod bodies;
+pub mod contacts;
+pub mod energy;
+pub mod forces;
+pub mod inertia;
+pub mod order;
+mod outputs;
+
+use crate::algebra::{SessionError, exclusively};
+use crate::kinematics::{DeriveError, Kinematics};
+use crate::model::mechanism::Mechanism;
+use crate::program::routine::Derived;
+
+/// Why a mechanism could not be derived.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum DerivationError {
+    /// the model does not permit it
+    Model(DeriveError),
+    /// the algebra engine could not be used
+    Session(SessionError),
+}
+
+/// Derives the equations of a mechanism: waits for its turn at the algebra engine and works there on a thread of its own.
+pub fn derive(mechanism: &Mechanism) -> Result<Derived, DerivationError> {
+    let mechanism = mechanism.clone();
+    match exclusively(move || {
+        let mut kinematics = Kinematics::new(&mechanism)?;
+        Ok(outputs::write(&mut kinematics))
+    }) {
+        Ok(result) => result.map_err(DerivationError::Model),
+        Err(error) => Err(DerivationError::Session(error)),
+    }
+}

@@ -1,0 +1,392 @@
+//! Everything a derivation delivers, exported from algebra to nodes of a value graph.
+
+use std::collections::BTreeMap;
+
+use super::contacts::{ContactForms, contact_forms, point_jacobian};
+use super::{energy, forces, inertia};
+use crate::algebra::{Direction, Export, Expr};
+use crate::kinematics::Kinematics;
+use crate::kinematics::axes::{AxesTree, unit};
+use crate::kinematics::linear::LinearScalar;
+use crate::model::mechanism::{FrameId, Place, PointId};
+use crate::program::graph::{Graph, Input, Node};
+use crate::program::linear::{Factor, factorise};
+use crate::program::routine::{ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity, Structure};
+
+/// The graph under construction.
+struct Writer<'k, 'm> {
+    k: &'k mut Kinematics<'m>,
+    graph: Graph,
+    export: Export,
+    outputs: Vec<Output>,
+    guards: Vec<Guard>,
+    independent: Vec<usize>,
+    dependent: Vec<usize>,
+}
+
+/// Derives and writes all quantities.
+pub fn write(k: &mut Kinematics<'_>) -> Derived {
+    let (mut independent, mut dependent) = (Vec::new(), Vec::new());
+    for (slot, speed) in k.mechanism.speeds.iter().enumerate() {
+        if speed.dependent { dependent.push(slot) } else { independent.push(slot) }
+    }
+    let mut writer = Writer {
+        k,
+        graph: Graph::new(),
+        export: Export::default(),
+        outputs: Vec::new(),
+        guards: Vec::new(),
+        independent,
+        dependent,
+    };
+    writer.kinematics();
+    let (matrix, prescribed) = writer.mass_matrix();
+    let factor = factorise(&mut writer.graph, &matrix);
+    writer.guard_pivots(&factor);
+    writer.dynamics(&factor);
+    writer.energies();
+    writer.configuration();
+    let structures = writer.contacts(&factor, &prescribed);
+    writer.points();
+    writer.orientations();
+    writer.guards();
+    Derived { graph: writer.graph, outputs: writer.outputs, guards: writer.guards, structures }
+}
+
+impl Writer<'_, '_> {
+    fn node(&mut self, expr: &Expr) -> Node {
+        self.export.node(&self.k.z, &mut self.graph, expr)
+    }
+
+    fn nodes<'a>(&mut self, exprs: impl IntoIterator<Item = &'a Expr>) -> Vec<Node> {
+        exprs.into_iter().map(|expr| self.node(expr)).collect()
+    }
+
+    fn put(&mut self, quantity: Quantity, rows: usize, columns: usize, nodes: Vec<Node>) {
+        if !nodes.is_empty() {
+            self.outputs.push(Output { quantity, rows, columns, nodes });
+        }
+    }
+
+    fn kinematics(&mut self) {
+        let rates: Vec<Expr> = self.k.rates.clone().iter().map(|rate| self.k.value(rate)).collect();
+        let nodes = self.nodes(&rates);
+        self.put(Quantity::CoordinateRates, nodes.len(), 1, nodes);
+        let dependent: Vec<Expr> = self.dependent.iter().map(|&slot| self.k.speed(slot)).collect();
+        let nodes = self.nodes(&dependent);
+        self.put(Quantity::DependentSpeeds, nodes.len(), 1, nodes);
+        let mut residuals = Vec::new();
+        for equation in &self.k.mechanism.constraints {
+            for form in self.k.equation_forms(&equation.sides) {
+                let form: LinearScalar = form;
+                residuals.push(self.k.value(&form));
+            }
+        }
+        let nodes = self.nodes(&residuals);
+        self.put(Quantity::ConstraintResidual, nodes.len(), 1, nodes);
+    }
+
+    /// The mass matrix in independent speeds, and what couples them to prescribed motion.
+    fn mass_matrix(&mut self) -> (Vec<Vec<Node>>, Vec<Node>) {
+        let full = inertia::full_mass_matrix(self.k);
+        let remainder = self.k.speeds.len();
+        let entry = |r: usize, s: usize| full.get(&(r.min(s), r.max(s))).cloned().unwrap_or_else(Expr::zero);
+        let (independent, dependent) = (self.independent.clone(), self.dependent.clone());
+        // rows of the dependent speeds, with their own dependence inserted: M_d = M_di + M_dd A (and prescribed motion)
+        let mut rows: BTreeMap<(usize, usize), Expr> = BTreeMap::new();
+        for &d in &dependent {
+            for &s in independent.iter().chain([&remainder]) {
+                let mut sum = entry(d, s);
+                for &e in &dependent {
+                    let by = if s == remainder {
+                        self.k.dependent.get(&e).map_or_else(Expr::zero, |form| form.rest.clone())
+                    } else {
+                        self.k.dependence(e, s)
+                    };
+                    sum = sum.add(&entry(d, e).mul(&by));
+                }
+                let sum = self.k.z.name(sum);
+                rows.insert((d, s), sum);
+            }
+        }
+        let mut reduced = |r: usize, s: usize| {
+            let mut sum = entry(r, s);
+            for &d in &dependent {
+                // A' M_d
+                sum = sum.add(&self.k.dependence(d, r).mul(&rows[&(d, s)]));
+                // M_id A
+                let by = if s == remainder {
+                    self.k.dependent.get(&d).map_or_else(Expr::zero, |form| form.rest.clone())
+                } else {
+                    self.k.dependence(d, s)
+                };
+                sum = sum.add(&entry(r, d).mul(&by));
+            }
+            let sum = self.k.z.simplify(&sum);
+            self.k.z.name(sum)
+        };
+        let mut matrix = vec![vec![Expr::zero(); independent.len()]; independent.len()];
+        for (i, &r) in independent.iter().enumerate() {
+            for (j, &s) in independent.iter().enumerate().take(i + 1) {
+                let value = reduced(r, s);
+                matrix[i][j] = value.clone();
+                matrix[j][i] = value;
+            }
+        }
+        let prescribed: Vec<Expr> = independent.iter().map(|&r| reduced(r, remainder)).collect();
+        let matrix: Vec<Vec<Node>> = matrix.iter().map(|row| self.nodes(row)).collect();
+        let prescribed = self.nodes(&prescribed);
+        let all = matrix.iter().flatten().copied().collect();
+        self.put(Quantity::MassMatrix, independent.len(), independent.len(), all);
+        (matrix, prescribed)
+    }
+
+    fn guard_pivots(&mut self, factor: &Factor) {
+        for &(value, scale, row) in &factor.pivots {
+            let speed = &self.k.mechanism.speeds[self.independent[row]].name;
+            if self.graph.as_number(value).is_none() {
+                let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
+                self.guards.push(Guard { value, scale: Some(scale), message });
+            }
+        }
+    }
+
+    /// Generalized forces in independent speeds for given derivatives of all speeds.
+    fn reduced_forces(&mut self, derivatives: Vec<Expr>) -> Vec<Node> {
+        let forces = forces::generalized_forces(self.k, derivatives);
+        let mut result = Vec::new();
+        for &r in &self.independent.clone() {
+            let mut sum = forces[r].clone();
+            for &d in &self.dependent {
+                sum = sum.add(&self.k.dependence(d, r).mul(&forces[d]));
+            }
+            result.push(sum);
+        }
+        self.nodes(&result)
+    }
+
+    fn dynamics(&mut self, factor: &Factor) {
+        let slots = self.k.speeds.len();
+        let bias =
+            |k: &Kinematics<'_>, slot: usize| k.dependent_bias.get(&slot).cloned().unwrap_or_else(Expr::zero);
+        let at_rest: Vec<Expr> = (0..slots).map(|slot| bias(self.k, slot)).collect();
+        let forcing = self.reduced_forces(at_rest);
+        self.put(Quantity::Forcing, forcing.len(), 1, forcing.clone());
+
+        let half = factor.half_solve(&mut self.graph, &forcing);
+        let accelerations = factor.finish(&mut self.graph, &half);
+        self.put(Quantity::Accelerations, accelerations.len(), 1, accelerations.clone());
+        let mut dependent = Vec::new();
+        for &d in &self.dependent.clone() {
+            let mut terms = vec![self.node(&bias(self.k, d))];
+            for (i, &r) in self.independent.clone().iter().enumerate() {
+                let by = self.k.dependence(d, r);
+                let by = self.node(&by);
+                terms.push(self.graph.product([by, accelerations[i]]));
+            }
+            dependent.push(self.graph.sum(terms));
+        }
+        self.put(Quantity::DependentAccelerations, dependent.len(), 1, dependent);
+
+        // The same forces with accelerations from outside, with the opposite sign.
+        let given: Vec<Expr> =
+            (0..self.independent.len()).map(|i| self.k.z.input(Input::Acceleration(i as u32))).collect();
+        let mut derivatives = vec![Expr::zero(); slots];
+        for (i, &slot) in self.independent.iter().enumerate() {
+            derivatives[slot] = given[i].clone();
+        }
+        for &slot in &self.dependent {
+            let mut sum = bias(self.k, slot);
+            for (i, &r) in self.independent.iter().enumerate() {
+                sum = sum.add(&self.k.dependence(slot, r).mul(&given[i]));
+            }
+            derivatives[slot] = self.k.z.name(sum);
+        }
+        let forces = self.reduced_forces(derivatives);
+        let required = forces.into_iter().map(|force| self.graph.neg(force)).collect::<Vec<_>>();
+        self.put(Quantity::InverseDynamics, required.len(), 1, required);
+    }
+
+    fn energies(&mut self) {
+        let kinetic = energy::kinetic_energy(self.k);
+        let nodes = self.nodes([&kinetic]);
+        self.put(Quantity::KineticEnergy, 1, 1, nodes);
+        if let Some(potential) = energy::potential_energy(self.k) {
+            let nodes = self.nodes([&potential]);
+            self.put(Quantity::PotentialEnergy, 1, 1, nodes);
+        }
+    }
+
+    fn configuration(&mut self) {
+        let mut residuals = Vec::new();
+        for equation in &self.k.mechanism.configuration {
+            for form in self.k.equation_forms(&equation.sides) {
+                residuals.push(form.rest);
+            }
+        }
+        let dependent: Vec<usize> = (0..self.k.mechanism.coordinates.len())
+            .filter(|&i| self.k.mechanism.coordinates[i].dependent)
+            .collect();
+        let mut jacobian = Vec::new();
+        for residual in &residuals {
+            for &i in &dependent {
+                let symbol = self.k.coordinates[i];
+                jacobian.push(self.k.z.differentiate(residual, &mut Direction::along(symbol)));
+            }
+        }
+        let rows = residuals.len();
+        let nodes = self.nodes(&residuals);
+        self.put(Quantity::ConfigurationResidual, rows, 1, nodes);
+        let nodes = self.nodes(&jacobian);
+        self.put(Quantity::ConfigurationJacobian, rows, dependent.len(), nodes);
+    }
+
+    fn contacts(&mut self, factor: &Factor, prescribed: &[Node]) -> Vec<Structure> {
+        let mechanism = self.k.mechanism;
+        let mut structures = Vec::new();
+        for (number, contact) in mechanism.contacts.iter().enumerate() {
+            let forms = contact_forms(self.k, contact);
+            structures.push(self.contact(number as u32, &forms, factor, prescribed));
+        }
+        structures
+    }
+
+    fn contact(
+        &mut self,
+        number: u32,
+        forms: &ContactForms,
+        factor: &Factor,
+        prescribed: &[Node],
+    ) -> Structure {
+        let of = |quantity| Quantity::Contact(number, quantity);
+        for (quantity, axis) in [ContactQuantity::Normal, ContactQuantity::First, ContactQuantity::Second]
+            .into_iter()
+            .zip(&forms.basis)
+        {
+            let nodes = self.nodes(axis);
+            self.put(of(quantity), 3, 1, nodes);
+        }
+        let p = self.independent.len();
+        let partials: Vec<Vec<Node>> = forms
+            .partials
+            .iter()
+            .map(|row| {
+                let row: Vec<Expr> = self
+                    .independent
+                    .iter()
+                    .map(|slot| row.get(slot).cloned().unwrap_or_else(Expr::zero))
+                    .collect();
+                self.nodes(&row)
+            })
+            .collect();
+        let remainder = self.nodes(&forms.remainder);
+        let mut velocity = Vec::new();
+        for (row, &rest) in partials.iter().zip(&remainder) {
+            let mut terms = vec![rest];
+            for (i, &partial) in row.iter().enumerate() {
+                let speed = self.graph.input(Input::Speed(i as u32));
+                terms.push(self.graph.product([partial, speed]));
+            }
+            velocity.push(self.graph.sum(terms));
+        }
+        self.put(of(ContactQuantity::Velocity), 3, 1, velocity);
+        self.put(of(ContactQuantity::PartialVelocities), 3, p, partials.concat());
+        self.put(of(ContactQuantity::Remainder), 3, 1, remainder.clone());
+
+        let halves: Vec<Vec<Node>> =
+            partials.iter().map(|row| factor.half_solve(&mut self.graph, row)).collect();
+        let reduced: Vec<Node> = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
+            .into_iter()
+            .map(|(i, j)| factor.product(&mut self.graph, &halves[i], &halves[j]))
+            .collect();
+        let zero = |i: usize| self.graph.is_zero(reduced[i]);
+        let structure = match (zero(1), zero(2), zero(4)) {
+            _ if forms.planar => Structure::Planar,
+            (true, true, true) => Structure::Diagonal,
+            (true, true, false) => Structure::Balanced,
+            _ => Structure::General,
+        };
+        self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
+        let columns: Vec<Vec<Node>> =
+            halves.iter().map(|half| factor.finish(&mut self.graph, half)).collect();
+        let response: Vec<Node> = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        self.put(of(ContactQuantity::Response), p, 3, response);
+        let mut dependent = Vec::new();
+        for &d in &self.dependent.clone() {
+            for column in &columns {
+                let mut terms = Vec::new();
+                for (i, &r) in self.independent.clone().iter().enumerate() {
+                    let by = self.k.dependence(d, r);
+                    let by = self.node(&by);
+                    terms.push(self.graph.product([by, column[i]]));
+                }
+                dependent.push(self.graph.sum(terms));
+            }
+        }
+        self.put(of(ContactQuantity::DependentResponse), self.dependent.len(), 3, dependent);
+        if let Some(gap) = &forms.gap {
+            let nodes = self.nodes([gap]);
+            self.put(of(ContactQuantity::Gap), 1, 1, nodes);
+        }
+        let work: Vec<Node> = columns
+            .iter()
+            .map(|column| {
+                let terms: Vec<Node> =
+                    column.iter().zip(prescribed).map(|(&c, &m)| self.graph.product([c, m])).collect();
+                self.graph.sum(terms)
+            })
+            .collect();
+        self.put(of(ContactQuantity::PrescribedWork), 3, 1, work);
+        structure
+    }
+
+    fn points(&mut self) {
+        for id in 1..self.k.mechanism.points.len() {
+            let of = |quantity| Quantity::Point(id as u32, quantity);
+            let point = PointId(id);
+            let located = self.k.connected(point, PointId::O)
+                && !matches!(self.k.mechanism.points[id].place, Place::Velocity(_));
+            if located {
+                let position = self.k.position(point, PointId::O);
+                let position = self.k.express(&position, AxesTree::N);
+                let nodes = self.nodes(&position);
+                self.put(of(PointQuantity::Position), 3, 1, nodes);
+            }
+            let (axes, velocity) = self.k.velocity_value(point);
+            let velocity = self.k.tree.convert(&mut self.k.z, &velocity, axes, AxesTree::N);
+            let nodes = self.nodes(&velocity);
+            self.put(of(PointQuantity::Velocity), 3, 1, nodes);
+            let form = point_jacobian(self.k, point);
+            let mut entries = Vec::new();
+            for i in 0..3 {
+                for slot in &self.independent {
+                    entries.push(form.terms.get(slot).map_or_else(Expr::zero, |partial| partial[i].clone()));
+                }
+            }
+            let nodes = self.nodes(&entries);
+            self.put(of(PointQuantity::Jacobian), 3, self.independent.len(), nodes);
+        }
+    }
+
+    fn orientations(&mut self) {
+        for id in 1..self.k.mechanism.frames.len() {
+            let Some(axes) = self.k.frame_axes[FrameId(id).0] else { continue };
+            let columns: Vec<_> =
+                (0..3).map(|i| self.k.tree.convert(&mut self.k.z, &unit(i), axes, AxesTree::N)).collect();
+            let rows: Vec<Expr> =
+                (0..3).flat_map(|i| columns.iter().map(move |column| column[i].clone())).collect();
+            let nodes = self.nodes(&rows);
+            self.put(Quantity::Orientation(id as u32), 3, 3, nodes);
+        }
+    }
+
+    fn guards(&mut self) {
+        for guard in self.k.guards.clone() {
+            let value = self.node(&guard.value);
+            let scale = Some(self.node(&guard.scale));
+            if self.graph.as_number(value).is_none() {
+                self.guards.push(Guard { value, scale, message: guard.message });
+            }
+        }
+    }
+}

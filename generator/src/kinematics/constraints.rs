@@ -1,0 +1,86 @@
+//! Velocity constraints: the dependent speeds as forms in the independent ones, and how both change.
+
+use super::linear::LinearScalar;
+use super::solve::{SolveError, Solver};
+use super::{DeriveError, Kinematics};
+use crate::algebra::Expr;
+
+impl Kinematics<'_> {
+    /// Solves the constraints for the dependent speeds, and their time derivatives for those of the dependent speeds.
+    pub(super) fn find_dependent_speeds(&mut self) -> Result<(), DeriveError> {
+        let mechanism = self.mechanism;
+        let mut equations = Vec::new();
+        for equation in &mechanism.constraints {
+            for form in self.equation_forms(&equation.sides) {
+                if form.is_zero() {
+                    continue;
+                }
+                equations.push(form.map(|c| self.z.name(c.clone())));
+            }
+        }
+        let unknowns: Vec<usize> =
+            (0..mechanism.speeds.len()).filter(|&slot| mechanism.speeds[slot].dependent).collect();
+        if equations.len() != unknowns.len() {
+            let span = mechanism.constraints.first().map_or_else(Default::default, |equation| equation.span);
+            return Err(DeriveError {
+                span,
+                message: format!(
+                    "the constraints amount to {} equations, but there are {} dependent speeds",
+                    equations.len(),
+                    unknowns.len()
+                ),
+                help: "declare as many speeds in `dependent` as there are independent constraints".into(),
+            });
+        }
+        let solver = Solver::new(&mut self.z, &equations, &unknowns).map_err(|error| {
+            let (slot, what) = match &error {
+                SolveError::Undetermined(slot) => (*slot, "no constraint determines"),
+                SolveError::Dependent(block) => {
+                    (block[0], "the constraints repeat each other; they do not determine")
+                }
+                SolveError::TooLarge(block) => {
+                    (block[0], "too many constraints hang together, among them that of")
+                }
+            };
+            DeriveError {
+                span: mechanism.speeds[slot].span,
+                message: format!("{what} the dependent speed `{}`", mechanism.speeds[slot].name),
+                help: "make another speed dependent, or state the constraint that is missing".into(),
+            }
+        })?;
+        for (determinant, block) in &solver.determinants {
+            let names: Vec<_> = block.iter().map(|&slot| mechanism.speeds[slot].name.as_str()).collect();
+            self.guard(determinant, format!("the constraints cannot be solved for {}", names.join(", ")));
+        }
+        let z = &mut self.z;
+        self.dependent = solver.solve(&equations, |c| z.name(c));
+        for (&slot, form) in &self.dependent.clone() {
+            let value = self.value(form);
+            self.z.define(self.speeds[slot], value);
+        }
+        // d/dt (sum J u + j) = sum J u' + (sum J' u + j') = 0, for u' of the independent speeds 0.
+        let changes: Vec<LinearScalar> = equations
+            .iter()
+            .map(|form| {
+                let mut change = self.change(&form.rest);
+                for (&slot, coefficient) in &form.terms {
+                    let rate = self.change(coefficient);
+                    change = change.add(&rate.mul(&self.speed(slot)));
+                }
+                let mut bias = LinearScalar::constant(self.z.name(change));
+                bias.terms = form.terms.iter().map(|(&slot, c)| (slot, c.clone())).collect();
+                bias.terms.retain(|slot, _| unknowns.contains(slot));
+                bias
+            })
+            .collect();
+        let z = &mut self.z;
+        let biases = solver.solve(&changes, |c| z.name(c));
+        self.dependent_bias = biases.into_iter().map(|(slot, form)| (slot, form.rest)).collect();
+        Ok(())
+    }
+
+    /// Coefficient of an independent speed in a dependent one.
+    pub fn dependence(&self, dependent: usize, independent: usize) -> Expr {
+        self.dependent.get(&dependent).map_or_else(Expr::zero, |form| form.coefficient(independent))
+    }
+}
