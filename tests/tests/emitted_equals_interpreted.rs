@@ -47,10 +47,7 @@ fn a_collision_changes_speeds_and_energy() {
     let pendulum = Pendulum::<f64>::default();
     let (q, u) = (Coordinates { q1: 0.4 }, Speeds { u1: 3.0 });
     let hit = pendulum.collide_tip_wall(&q, &u, &Surface { mu: 0.2, e: 0.5, law: Law::Newton }).unwrap();
-    assert!(
-        (hit.separation.x + 0.5 * hit.approach.x).abs() < 1e-12,
-        "Newton: v_n2 = -e v_n1"
-    );
+    assert!((hit.separation.x + 0.5 * hit.approach.x).abs() < 1e-12, "Newton: v_n2 = -e v_n1");
     let energy = pendulum.kinetic_energy(&q, &hit.speeds).unwrap() - pendulum.kinetic_energy(&q, &u).unwrap();
     assert!((energy - hit.energy_change).abs() < 1e-12, "{energy} {}", hit.energy_change);
     assert_eq!(hit.impulse_on_point, -hit.impulse_on_struck);
