@@ -26,6 +26,7 @@ pub mod kane;
 pub mod kinematics;
 pub mod model;
 pub mod number;
+pub mod numeric;
 pub mod program;
 pub mod source;
 pub mod syntax;

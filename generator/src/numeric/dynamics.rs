@@ -1,0 +1,297 @@
+//! Kane's equations in numbers: mass matrix and forcing as sums over bodies and loads.
+
+use super::evaluator::{Evaluator, Level};
+use super::hyper::*;
+use super::motion::{Instant, Maps};
+use super::{ContactEvaluation, Evaluation, Failure, State};
+use crate::model::mechanism::*;
+
+type Vector3 = [f64; 3];
+
+fn values(v: Triple) -> Vector3 {
+    v.map(|c| c.re)
+}
+
+fn accelerations(v: Triple) -> Vector3 {
+    v.map(|c| c.e2)
+}
+
+fn dot3(a: Vector3, b: Vector3) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn sub3(a: Vector3, b: Vector3) -> Vector3 {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn cross3(a: Vector3, b: Vector3) -> Vector3 {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn apply3(m: &[Vector3; 3], v: Vector3) -> Vector3 {
+    m.map(|row| dot3(row, v))
+}
+
+/// The state seen from all sides: as it is, per unit of each speed, and as it goes on.
+struct Views<'m> {
+    /// as it is
+    now: Evaluator<'m>,
+    /// with all independent speeds 0
+    rest: Evaluator<'m>,
+    /// with one independent speed 1, the others 0
+    units: Vec<Evaluator<'m>>,
+    /// as it is, with e2 the rate of everything while the independent speeds stay
+    onward: Evaluator<'m>,
+}
+
+impl Views<'_> {
+    /// Partial velocities: what each unit of speed adds.
+    fn partials<'v>(
+        &'v self,
+        of: impl Fn(&Evaluator<'v>) -> Result<Triple, Failure>,
+    ) -> Result<Vec<Vector3>, Failure>
+    where
+        Self: 'v,
+    {
+        let rest = values(of(&self.rest)?);
+        self.units.iter().map(|unit| Ok(sub3(values(of(unit)?), rest))).collect()
+    }
+}
+
+/// Everything at a state.
+pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
+    let at = |time: Hyper, coordinates: Vec<Hyper>| Instant { m, state, time, coordinates };
+    let still =
+        at(Hyper::constant(state.time), state.coordinates.iter().map(|q| Hyper::constant(*q)).collect());
+    let maps = still.maps()?;
+    let view = |maps: &Maps, independent: &[Hyper]| {
+        let speeds = maps.speeds(independent);
+        (maps.rates(&speeds), speeds)
+    };
+    let independent: Vec<Hyper> = state.speeds.iter().map(|u| Hyper::constant(*u)).collect();
+    let p = independent.len();
+    let (rates, speeds) = view(&maps, &independent);
+    let onward = at(
+        Hyper { re: state.time, e2: 1.0, ..Hyper::ZERO },
+        state
+            .coordinates
+            .iter()
+            .zip(&rates)
+            .map(|(q, r)| Hyper { re: *q, e2: r.re, ..Hyper::ZERO })
+            .collect(),
+    );
+    let onward_maps = onward.maps()?;
+    let (onward_rates, onward_speeds) = view(&onward_maps, &independent);
+    let evaluator_at = |w: &[Hyper]| {
+        let (rates, speeds) = view(&maps, w);
+        still.evaluator(&rates, speeds)
+    };
+    let mut unit = vec![Hyper::ZERO; p];
+    let rest = evaluator_at(&unit);
+    let mut units = Vec::new();
+    for r in 0..p {
+        unit[r] = Hyper::ONE;
+        units.push(evaluator_at(&unit));
+        unit[r] = Hyper::ZERO;
+    }
+    let views = Views {
+        now: still.evaluator(&rates, speeds.clone()),
+        rest,
+        units,
+        onward: onward.evaluator(&onward_rates, onward_speeds.clone()),
+    };
+    let mut out = Evaluation {
+        mass_matrix: vec![vec![0.0; p]; p],
+        forcing: vec![0.0; p],
+        rates: rates.iter().map(|r| r.re).collect(),
+        speeds: speeds.iter().map(|u| u.re).collect(),
+        kinetic_energy: 0.0,
+        power: 0.0,
+        contacts: Vec::new(),
+        positions: Vec::new(),
+        velocities: Vec::new(),
+        orientations: Vec::new(),
+        angular_velocities: Vec::new(),
+        configuration: Vec::new(),
+        dependent_accelerations: onward_speeds[p.min(onward_speeds.len())..].iter().map(|u| u.e2).collect(),
+    };
+    for body in &m.bodies {
+        add_body(&views, body, &mut out)?;
+    }
+    for load in &m.loads {
+        add_load(m, &views, &load.kind, &mut out)?;
+    }
+    for contact in &m.contacts {
+        out.contacts.push(contact_values(&views, contact)?);
+    }
+    geometry(m, &views.now, &mut out)?;
+    let finite = out.mass_matrix.iter().flatten().chain(&out.forcing).all(|v| v.is_finite());
+    if finite { Ok(out) } else { Err(Failure::Unsupported("a state at which the equations are singular")) }
+}
+
+/// Inertia about the mass centre, along N's axes.
+pub fn central_inertia(values: &Evaluator<'_>, body: &Body) -> Result<Option<[Vector3; 3]>, Failure> {
+    let Some(inertia) = &body.inertia else { return Ok(None) };
+    let mut components = [Hyper::ZERO; 6];
+    for (c, scalar) in components.iter_mut().zip(inertia.components.iter()) {
+        *c = values.scalar(scalar, Level::Motion)?;
+    }
+    let [xx, yy, zz, xy, yz, zx] = components;
+    let local = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
+    let axes = values.orientation(inertia.frame)?;
+    let mut out = product(&product(&axes, &local), &transposed(&axes)).map(|row| row.map(|c| c.re));
+    if let Some(point) = inertia.about {
+        let mass = values.scalar(&body.mass, Level::Motion)?.re;
+        let d = sub(values.position(body.centre)?, values.position(point)?).map(|c| c.re);
+        for (i, row) in out.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                let unit = if i == j { dot3(d, d) } else { 0.0 };
+                *entry -= mass * (unit - d[i] * d[j]);
+            }
+        }
+    }
+    Ok(Some(out))
+}
+
+fn add_body(views: &Views<'_>, body: &Body, out: &mut Evaluation) -> Result<(), Failure> {
+    let mass = views.now.scalar(&body.mass, Level::Motion)?.re;
+    let partial = views.partials(|values| values.velocity(body.centre))?;
+    let velocity = values(views.now.velocity(body.centre)?);
+    let acceleration = accelerations(views.onward.velocity(body.centre)?);
+    let p = partial.len();
+    out.kinetic_energy += 0.5 * mass * dot3(velocity, velocity);
+    for r in 0..p {
+        for s in 0..p {
+            out.mass_matrix[r][s] += mass * dot3(partial[r], partial[s]);
+        }
+        out.forcing[r] -= mass * dot3(partial[r], acceleration);
+    }
+    let (Some(frame), Some(inertia)) = (body.frame, central_inertia(&views.now, body)?) else {
+        return Ok(());
+    };
+    let turning = views.partials(|values| values.angular_velocity(frame))?;
+    let omega = values(views.now.angular_velocity(frame)?);
+    let alpha = accelerations(views.onward.angular_velocity(frame)?);
+    let momentum = apply3(&inertia, omega);
+    out.kinetic_energy += 0.5 * dot3(omega, momentum);
+    let gyroscopic = cross3(omega, momentum);
+    let torque = apply3(&inertia, alpha);
+    for r in 0..p {
+        for s in 0..p {
+            out.mass_matrix[r][s] += dot3(turning[r], apply3(&inertia, turning[s]));
+        }
+        out.forcing[r] -= dot3(turning[r], torque) + dot3(turning[r], gyroscopic);
+    }
+    Ok(())
+}
+
+/// Adds a force on a point.
+fn add_force(views: &Views<'_>, point: PointId, force: Vector3, out: &mut Evaluation) -> Result<(), Failure> {
+    let partial = views.partials(|values| values.velocity(point))?;
+    for (entry, v) in out.forcing.iter_mut().zip(partial) {
+        *entry += dot3(v, force);
+    }
+    out.power += dot3(values(views.now.velocity(point)?), force);
+    Ok(())
+}
+
+/// Adds a torque on a frame.
+fn add_torque(
+    views: &Views<'_>,
+    frame: FrameId,
+    torque: Vector3,
+    out: &mut Evaluation,
+) -> Result<(), Failure> {
+    let partial = views.partials(|values| values.angular_velocity(frame))?;
+    for (entry, w) in out.forcing.iter_mut().zip(partial) {
+        *entry += dot3(w, torque);
+    }
+    out.power += dot3(values(views.now.angular_velocity(frame)?), torque);
+    Ok(())
+}
+
+fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluation) -> Result<(), Failure> {
+    let now = &views.now;
+    let level = Level::Motion;
+    match load {
+        LoadKind::Gravity(vector) => {
+            let g = values(now.vector(vector, level)?);
+            for body in &m.bodies {
+                let mass = now.scalar(&body.mass, level)?.re;
+                add_force(views, body.centre, g.map(|c| mass * c), out)?;
+            }
+        }
+        LoadKind::Force { on, from, force } => {
+            let force = values(now.vector(force, level)?);
+            add_force(views, *on, force, out)?;
+            if let Some(from) = from {
+                add_force(views, *from, force.map(|c| -c), out)?;
+            }
+        }
+        LoadKind::Torque { on, from, torque } => {
+            let torque = values(now.vector(torque, level)?);
+            add_torque(views, *on, torque, out)?;
+            if let Some(from) = from {
+                add_torque(views, *from, torque.map(|c| -c), out)?;
+            }
+        }
+        LoadKind::Spring { a, b, stiffness, length, damping } => {
+            let line = sub(now.position(*b)?, now.position(*a)?);
+            let distance = dot(line, line).sqrt();
+            if distance.re == 0.0 {
+                return Err(Failure::DivisionByZero(m.points[a.0].span));
+            }
+            let [k, rest, c] = [stiffness, length, damping].map(|s| now.scalar(s, level));
+            let tension = k?.re * (distance.re - rest?.re) + c?.re * distance.e1;
+            let pull = values(line).map(|c| tension * c / distance.re);
+            add_force(views, *a, pull, out)?;
+            add_force(views, *b, pull.map(|c| -c), out)?;
+        }
+        LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping } => {
+            let axis = values(now.vector(axis, level)?);
+            let angle = now.scalar(angle, Level::Geometry)?;
+            let [rest, k, c] = [rest, stiffness, damping].map(|s| now.scalar(s, level));
+            let size = -(k?.re * (angle.re - rest?.re) + c?.re * angle.e1);
+            let torque = axis.map(|c| size * c);
+            add_torque(views, *on, torque, out)?;
+            if let Some(from) = from {
+                add_torque(views, *from, torque.map(|c| -c), out)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn contact_values(views: &Views<'_>, contact: &Contact) -> Result<ContactEvaluation, Failure> {
+    let partial_velocities = views.partials(|values| values.contact_velocity(contact))?;
+    Ok(ContactEvaluation {
+        normal: values(views.now.vector(&contact.normal, Level::Motion)?),
+        velocity: values(views.now.contact_velocity(contact)?),
+        remainder: values(views.rest.contact_velocity(contact)?),
+        partial_velocities,
+        gap: match &contact.gap {
+            Some(gap) => Some(views.now.scalar(gap, Level::Motion)?.re),
+            None => None,
+        },
+    })
+}
+
+fn geometry(m: &Mechanism, now: &Evaluator<'_>, out: &mut Evaluation) -> Result<(), Failure> {
+    for i in 0..m.points.len() {
+        let known = now.root(PointId(i)) == PointId::O;
+        out.positions.push(if known { Some(values(now.position(PointId(i))?)) } else { None });
+        out.velocities.push(values(now.velocity(PointId(i))?));
+    }
+    for i in 0..m.frames.len() {
+        out.orientations.push(match now.orientation(FrameId(i)) {
+            Ok(axes) => Some(axes.map(values)),
+            Err(Failure::Unsupported(_)) => None,
+            Err(other) => return Err(other),
+        });
+        out.angular_velocities.push(values(now.angular_velocity(FrameId(i))?));
+    }
+    for equation in &m.configuration {
+        out.configuration.extend(now.residual(equation, Level::Geometry)?.into_iter().map(|r| r.re));
+    }
+    Ok(())
+}

@@ -1,0 +1,100 @@
+//! Linear equations, more than unknowns if they agree.
+
+use super::hyper::Hyper;
+
+/// What became of a system of equations.
+pub struct Solved {
+    /// the unknowns, each as a row of right sides
+    pub unknowns: Vec<Vec<Hyper>>,
+    /// the equation that contradicts the others most, and by how much relative to its terms
+    pub contradiction: (usize, f64),
+}
+
+/// Why there is no solution.
+pub struct Undetermined {
+    /// the unknown that no equation determines
+    pub unknown: usize,
+}
+
+/// Solves `A x = B` for `count` unknowns. Each row holds the coefficients of the unknowns and then the right sides.
+///
+/// Gaussian elimination with the largest pivots; equations are scaled to their largest coefficient.
+pub fn solve(mut rows: Vec<Vec<Hyper>>, count: usize) -> Result<Solved, Undetermined> {
+    let width = rows.first().map_or(count, Vec::len);
+    let size = |row: &Vec<Hyper>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
+    // what is this small beside the other equations is the rounding error of an equation that says 0 = 0
+    let noise = 1e-12 * rows.iter().map(size).fold(0.0_f64, f64::max);
+    let mut numbered: Vec<(usize, Vec<Hyper>)> = Vec::new();
+    for (i, row) in rows.drain(..).enumerate() {
+        let largest = size(&row);
+        if largest > noise && largest.is_finite() {
+            let scale = Hyper::constant(1.0 / largest);
+            numbered.push((i, row.into_iter().map(|c| c * scale).collect()));
+        }
+    }
+    // columns in the order in which they were eliminated, so that the largest coefficient can always be taken
+    let mut order: Vec<usize> = Vec::new();
+    for step in 0..count {
+        let mut best = (0.0, step, 0);
+        for (r, (_, row)) in numbered.iter().enumerate().skip(step) {
+            for c in (0..count).filter(|c| !order.contains(c)) {
+                if row[c].re.abs() > best.0 {
+                    best = (row[c].re.abs(), r, c);
+                }
+            }
+        }
+        let (size, pivot, column) = best;
+        if size < 1e-9 {
+            let unknown = (0..count).find(|c| !order.contains(c)).unwrap_or(0);
+            return Err(Undetermined { unknown });
+        }
+        numbered.swap(step, pivot);
+        order.push(column);
+        let row = numbered[step].1.clone();
+        for (r, (_, other)) in numbered.iter_mut().enumerate() {
+            if r != step && other[column] != Hyper::ZERO {
+                let factor = other[column] / row[column];
+                for (entry, above) in other.iter_mut().zip(&row) {
+                    *entry = *entry - factor * *above;
+                }
+            }
+        }
+    }
+    let mut unknowns = vec![vec![Hyper::ZERO; width - count]; count];
+    for (step, &column) in order.iter().enumerate() {
+        let row = &numbered[step].1;
+        unknowns[column] = row[count..].iter().map(|right| *right / row[column]).collect();
+    }
+    let mut contradiction = (0, 0.0);
+    for (i, row) in numbered.iter().skip(count) {
+        let left = row[count..].iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
+        if left > contradiction.1 {
+            contradiction = (*i, left);
+        }
+    }
+    Ok(Solved { unknowns, contradiction })
+}
+
+/// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is.
+pub fn singular_column(matrix: &[Vec<f64>]) -> Option<usize> {
+    let n = matrix.len();
+    let largest = (0..n).fold(0.0_f64, |m, i| m.max(matrix[i][i].abs()));
+    let scale: Vec<f64> = (0..n).map(|i| matrix[i][i].max(0.0).sqrt()).collect();
+    if let Some(i) = (0..n).find(|&i| matrix[i][i] <= 1e-18 * largest || matrix[i][i] <= 0.0) {
+        return Some(i);
+    }
+    let mut a: Vec<Vec<f64>> =
+        (0..n).map(|i| (0..n).map(|j| matrix[i][j] / (scale[i] * scale[j])).collect()).collect();
+    for k in 0..n {
+        if a[k][k] < 1e-11 {
+            return Some(k);
+        }
+        for i in k + 1..n {
+            let factor = a[i][k] / a[k][k];
+            for j in k..n {
+                a[i][j] -= factor * a[k][j];
+            }
+        }
+    }
+    None
+}

@@ -1,0 +1,188 @@
+//! Rates of coordinates and dependent speeds as functions of the independent speeds.
+
+use super::evaluator::{Evaluator, Level};
+use super::hyper::*;
+use super::linear::solve;
+use super::{Failure, State};
+use crate::diagnostics::Span;
+use crate::model::mechanism::*;
+
+/// Declared motions may contradict the positions by this much, relative to their terms.
+const CONSISTENT: f64 = 1e-7;
+
+/// The state as the second infinitesimal sees it: coordinates and time may move with it.
+pub struct Instant<'m> {
+    /// the mechanism
+    pub m: &'m Mechanism,
+    /// the state
+    pub state: &'m State,
+    /// time, with its e2
+    pub time: Hyper,
+    /// coordinates, with their e2
+    pub coordinates: Vec<Hyper>,
+}
+
+/// Affine maps: the last entry of each row is the constant.
+pub struct Maps {
+    /// rates of coordinates from all speeds
+    rates: Vec<Vec<Hyper>>,
+    /// all speeds from the independent ones
+    speeds: Vec<Vec<Hyper>>,
+}
+
+fn affine(row: &[Hyper], arguments: &[Hyper]) -> Hyper {
+    let Some((constant, coefficients)) = row.split_last() else { return Hyper::ZERO };
+    coefficients.iter().zip(arguments).fold(*constant, |sum, (c, a)| sum + *c * *a)
+}
+
+impl Maps {
+    /// All speeds, given the independent ones.
+    pub fn speeds(&self, independent: &[Hyper]) -> Vec<Hyper> {
+        self.speeds.iter().map(|row| affine(row, independent)).collect()
+    }
+
+    /// Rates of the coordinates, given all speeds.
+    pub fn rates(&self, speeds: &[Hyper]) -> Vec<Hyper> {
+        self.rates.iter().map(|row| affine(row, speeds)).collect()
+    }
+}
+
+/// A basis of affine maps in `n` arguments: 0, then each unit.
+fn probes(n: usize) -> Vec<Vec<Hyper>> {
+    let mut list = vec![vec![Hyper::ZERO; n]];
+    for i in 0..n {
+        let mut probe = vec![Hyper::ZERO; n];
+        probe[i] = Hyper::ONE;
+        list.push(probe);
+    }
+    list
+}
+
+impl<'m> Instant<'m> {
+    /// All values, for these rates and speeds.
+    pub fn evaluator(&self, rates: &[Hyper], speeds: Vec<Hyper>) -> Evaluator<'m> {
+        let coordinates =
+            self.coordinates.iter().zip(rates).map(|(q, rate)| Hyper::moving(*q, *rate)).collect();
+        let time = Hyper::moving(self.time, Hyper::ONE);
+        Evaluator::new(self.m, &self.state.parameters, &self.state.inputs, time, coordinates, speeds)
+    }
+
+    /// Solves the kinematical equations and the constraints.
+    pub fn maps(&self) -> Result<Maps, Failure> {
+        let rates = self.solve_rates()?;
+        let count = self.m.speeds.len();
+        let identity: Vec<Vec<Hyper>> = (0..count)
+            .map(|i| (0..=count).map(|j| if i == j { Hyper::ONE } else { Hyper::ZERO }).collect())
+            .collect();
+        let mut maps = Maps { rates, speeds: identity };
+        maps.speeds = self.solve_speeds(&maps)?;
+        Ok(maps)
+    }
+
+    /// Coefficients of affine residuals: one row per residual, one entry per argument, the constant last.
+    fn coefficients(
+        &self,
+        arguments: usize,
+        residuals: impl Fn(&[Hyper]) -> Result<Vec<(Hyper, Span)>, Failure>,
+    ) -> Result<(Vec<Vec<Hyper>>, Vec<Span>), Failure> {
+        let mut probes = probes(arguments).into_iter();
+        let zero = residuals(&probes.next().unwrap_or_default())?;
+        let mut rows: Vec<Vec<Hyper>> = vec![Vec::new(); zero.len()];
+        for probe in probes {
+            for ((row, (value, _)), (constant, _)) in rows.iter_mut().zip(residuals(&probe)?).zip(&zero) {
+                row.push(value - *constant);
+            }
+        }
+        for (row, (constant, _)) in rows.iter_mut().zip(&zero) {
+            row.push(*constant);
+        }
+        if let Some((_, (_, span))) =
+            rows.iter().zip(&zero).find(|(row, _)| !row.iter().all(|c| c.is_finite()))
+        {
+            return Err(Failure::NotFinite(*span));
+        }
+        Ok((rows, zero.into_iter().map(|(_, span)| span).collect()))
+    }
+
+    fn solve_rates(&self) -> Result<Vec<Vec<Hyper>>, Failure> {
+        let (q, u) = (self.m.coordinates.len(), self.m.speeds.len());
+        let (rows, spans) = self.coefficients(q + u, |arguments| {
+            let (rates, speeds) = arguments.split_at(q);
+            self.kinematical_residuals(&self.evaluator(rates, speeds.to_vec()))
+        })?;
+        let rows = rows.into_iter().map(|row| negate_from(row, q)).collect();
+        let solved = solve(rows, q).map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
+        if solved.contradiction.1 > CONSISTENT {
+            return Err(Failure::MotionInconsistent(spans[solved.contradiction.0], solved.contradiction.1));
+        }
+        Ok(solved.unknowns)
+    }
+
+    /// What must vanish: the stated equations, declared motions less those that follow from positions, and for each quaternion
+    /// that its length stays.
+    fn kinematical_residuals(&self, values: &Evaluator<'_>) -> Result<Vec<(Hyper, Span)>, Failure> {
+        let mut out = Vec::new();
+        for equation in &self.m.kinematics {
+            out.extend(values.residual(equation, Level::Motion)?.into_iter().map(|r| (r, equation.span)));
+        }
+        for (i, frame) in self.m.frames.iter().enumerate() {
+            if let Some((within, value)) = &frame.angular_velocity {
+                let declared = values.vector(value, Level::Motion)?;
+                let found = values.turning_by_geometry(FrameId(i), *within)?;
+                out.extend(sub(declared, found).map(|r| (r, frame.span)));
+            }
+            if let Orientation::Quaternion(ids) = &frame.orientation {
+                let at = |id: CoordinateId| Scalar::Coordinate(id);
+                let mut sum = Hyper::ZERO;
+                for id in ids {
+                    let value = values.scalar(&at(*id), Level::Geometry)?;
+                    sum = sum + value.still() * value.rate();
+                }
+                out.push((sum, frame.span));
+            }
+        }
+        for (i, point) in self.m.points.iter().enumerate() {
+            if let (Some(value), Place::Offset { .. } | Place::Material { .. }) =
+                (&point.velocity, &point.place)
+            {
+                let declared = values.vector(value, Level::Motion)?;
+                let found = values.velocity_by_position(PointId(i))?;
+                out.extend(sub(declared, found).map(|r| (r, point.span)));
+            }
+        }
+        Ok(out)
+    }
+
+    fn solve_speeds(&self, maps: &Maps) -> Result<Vec<Vec<Hyper>>, Failure> {
+        let count = self.m.speeds.len();
+        let independent = self.m.speeds.iter().filter(|u| !u.dependent).count();
+        let dependent = count - independent;
+        // dependent speeds first: they are the unknowns
+        let (rows, spans) = self.coefficients(count, |arguments| {
+            let (unknown, given) = arguments.split_at(dependent);
+            let speeds: Vec<Hyper> = given.iter().chain(unknown).copied().collect();
+            let values = self.evaluator(&maps.rates(&speeds), speeds);
+            let mut out = Vec::new();
+            for equation in &self.m.constraints {
+                out.extend(values.residual(equation, Level::Motion)?.into_iter().map(|r| (r, equation.span)));
+            }
+            Ok(out)
+        })?;
+        let rows: Vec<Vec<Hyper>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
+        let solved = solve(rows, dependent)
+            .map_err(|e| Failure::SpeedsUndetermined(SpeedId(independent + e.unknown)))?;
+        if solved.contradiction.1 > CONSISTENT {
+            return Err(Failure::ConstraintsInconsistent(spans[solved.contradiction.0]));
+        }
+        let units = (0..independent)
+            .map(|i| (0..=independent).map(|j| if i == j { Hyper::ONE } else { Hyper::ZERO }).collect());
+        // no equation at all leaves the rows of the unknowns without entries
+        Ok(units.chain(solved.unknowns).collect())
+    }
+}
+
+/// Moves all but the unknowns to the right side.
+fn negate_from(mut row: Vec<Hyper>, unknowns: usize) -> Vec<Hyper> {
+    row.iter_mut().skip(unknowns).for_each(|c| *c = -*c);
+    row
+}
