@@ -70,7 +70,9 @@ impl Graph {
         &self.values[node.0 as usize]
     }
 
-    fn intern(&mut self, value: Value) -> Node {
+    /// A node as it is: nothing is collected or flattened. Operands must be nodes of this graph. The passes use it to say which
+    /// factors or terms belong together.
+    pub fn intern(&mut self, value: Value) -> Node {
         if let Some(&node) = self.known.get(&value) {
             return node;
         }

@@ -10,6 +10,7 @@ pub mod graph;
 pub mod linear;
 mod lower;
 pub mod operation;
+pub mod passes;
 pub mod routine;
 pub mod slice;
 mod words;
@@ -60,7 +61,11 @@ pub const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
 impl Program {
     /// The program of a derivation. The same derivation gives the same program.
     pub fn new(derived: &Derived) -> Self {
-        lower::lower(derived)
+        let mut derived = passes::prune(derived);
+        for pass in passes::PASSES {
+            derived = (pass.run)(&derived);
+        }
+        passes::fuse::fuse(&lower::lower(&derived))
     }
 
     /// What a value is.

@@ -1,0 +1,111 @@
+//! Collects like terms of sums; opens sums that only one sum uses; makes the first coefficient positive.
+
+use std::collections::BTreeMap;
+
+use super::terms::{coefficient, terms};
+use super::{Survey, rebuild, rewrite};
+use crate::number::Number;
+use crate::program::graph::{Graph, Node, Value};
+use crate::program::routine::Derived;
+
+/// Collects like terms.
+pub fn collect(derived: &Derived) -> Derived {
+    let survey = Survey::new(derived);
+    rewrite(derived, &survey, |graph, old, renamed| match derived.graph.value(old) {
+        Value::Sum(old_terms) => {
+            let mut collected = Collected::default();
+            for &old_term in old_terms {
+                let once = survey.is_used_once(old_term) && opens(&derived.graph, &survey, old_term);
+                collected.add(graph, renamed.of(old_term), once);
+            }
+            collected.finish(graph)
+        }
+        value => rebuild(graph, value, renamed),
+    })
+}
+
+/// May the sum in a term be opened: is it used by this term alone?
+fn opens(graph: &Graph, survey: &Survey, term: Node) -> bool {
+    match graph.value(term) {
+        Value::Sum(_) => true,
+        Value::Product(factors) => match factors[..] {
+            [number, sum] => {
+                graph.as_number(number).is_some_and(|number| Number(-number.0.clone()).is_one())
+                    && survey.is_used_once(sum)
+            }
+            _ => false,
+        },
+        _ => false,
+    }
+}
+
+#[derive(Default)]
+struct Collected {
+    constant: Option<Number>,
+    terms: BTreeMap<Node, Number>,
+}
+
+impl Collected {
+    fn add(&mut self, graph: &mut Graph, term: Node, open: bool) {
+        let (number, rest) = coefficient(graph, term);
+        let Some(rest) = rest else {
+            return self.constant(number);
+        };
+        let unit = number.is_one() || Number(-number.0.clone()).is_one();
+        if open && unit && matches!(graph.value(rest), Value::Sum(_)) {
+            for inner in terms(graph, rest) {
+                let (coefficient, inner) = coefficient(graph, inner);
+                let product = Number(&number.0 * coefficient.0);
+                match inner {
+                    Some(inner) => self.term(inner, product),
+                    None => self.constant(product),
+                }
+            }
+        } else {
+            self.term(rest, number);
+        }
+    }
+
+    fn constant(&mut self, number: Number) {
+        let sum = self.constant.take().map_or(number.0.clone(), |constant| constant.0 + &number.0);
+        self.constant = Some(Number(sum));
+    }
+
+    fn term(&mut self, node: Node, number: Number) {
+        let sum = self.terms.remove(&node).map_or(number.0.clone(), |known| known.0 + &number.0);
+        self.terms.insert(node, Number(sum));
+    }
+
+    /// The sum, with a common magnitude of all coefficients and the sign of the first in front.
+    fn finish(self, graph: &mut Graph) -> Node {
+        let mut parts: Vec<(Number, Option<Node>)> =
+            self.terms.into_iter().map(|(node, number)| (number, Some(node))).collect();
+        parts.extend(self.constant.map(|constant| (constant, None)));
+        parts.retain(|(number, _)| !number.is_zero());
+        let Some((first, _)) = parts.first().cloned() else {
+            return graph.integer(0);
+        };
+        let magnitude =
+            |number: &Number| if number.is_negative() { Number(-number.0.clone()) } else { number.clone() };
+        let common =
+            parts.len() > 1 && parts.iter().all(|(number, _)| magnitude(number) == magnitude(&first));
+        let front = match (common, first.is_negative() && parts.len() > 1) {
+            (true, _) => first,
+            (false, true) => Number::integer(-1),
+            (false, false) => Number::integer(1),
+        };
+        let terms: Vec<Node> = parts
+            .into_iter()
+            .map(|(number, node)| {
+                let number = graph.number(Number(number.0 / &front.0));
+                match node {
+                    Some(node) => graph.product([number, node]),
+                    None => number,
+                }
+            })
+            .collect();
+        let sum = graph.sum(terms);
+        let front = graph.number(front);
+        graph.product([front, sum])
+    }
+}

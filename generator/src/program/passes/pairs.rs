@@ -1,0 +1,161 @@
+//! Finds pairs of items that many lists have, most frequent first: the shared parts of sums and products.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
+
+/// An item of a list: an id, and for terms of sums whether it is subtracted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Item {
+    /// what it is
+    pub id: u32,
+    /// does it count negative?
+    pub negative: bool,
+}
+
+/// Two items, the second relative to the first: both signs turned over mean the opposite of the same pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Pair {
+    /// the lesser id
+    pub first: u32,
+    /// the other
+    pub second: u32,
+    /// have they opposite signs?
+    pub opposite: bool,
+}
+
+impl Pair {
+    fn new(a: Item, b: Item) -> Self {
+        let (a, b) = if a.id <= b.id { (a, b) } else { (b, a) };
+        Pair { first: a.id, second: b.id, opposite: a.negative != b.negative }
+    }
+}
+
+/// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` names the item of a pair.
+pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
+    let mut found = Found::default();
+    for (index, list) in lists.iter().enumerate() {
+        found.enter(index, list);
+    }
+    let mut heap: BinaryHeap<(usize, Reverse<Pair>)> = found
+        .pairs
+        .iter()
+        .filter(|(_, at)| at.len() > 1)
+        .map(|(pair, at)| (at.len(), Reverse(*pair)))
+        .collect();
+    while let Some((count, Reverse(pair))) = heap.pop() {
+        let Some(at) = found.pairs.get(&pair) else { continue };
+        if at.len() != count {
+            // Out of date: it has lost occurrences since, and is worth another look at its place.
+            if at.len() > 1 {
+                heap.push((at.len(), Reverse(pair)));
+            }
+            continue;
+        }
+        if count < 2 {
+            continue;
+        }
+        let item = new(pair);
+        let mut touched = BTreeSet::new();
+        for index in at.clone() {
+            let Some(list) = lists.get_mut(index) else { continue };
+            found.leave(index, list);
+            replace(list, pair, item);
+            touched.extend(found.enter(index, list));
+        }
+        for pair in touched {
+            let count = found.pairs.get(&pair).map_or(0, BTreeSet::len);
+            if count > 1 {
+                heap.push((count, Reverse(pair)));
+            }
+        }
+    }
+}
+
+/// Puts the item of a pair in the place of the pair, as often as it occurs.
+fn replace(list: &mut Vec<Item>, pair: Pair, item: u32) {
+    while let Some((i, j)) = position(list, pair) {
+        let negative = if list[i].id == pair.first { list[i].negative } else { list[j].negative };
+        list.remove(i.max(j));
+        list.remove(i.min(j));
+        list.push(Item { id: item, negative });
+    }
+}
+
+fn position(list: &[Item], pair: Pair) -> Option<(usize, usize)> {
+    for (i, &a) in list.iter().enumerate() {
+        for (j, &b) in list.iter().enumerate().skip(i + 1) {
+            if Pair::new(a, b) == pair {
+                return Some((i, j));
+            }
+        }
+    }
+    None
+}
+
+/// Which lists have which pairs.
+#[derive(Default)]
+struct Found {
+    pairs: BTreeMap<Pair, BTreeSet<usize>>,
+}
+
+impl Found {
+    fn enter(&mut self, index: usize, list: &[Item]) -> BTreeSet<Pair> {
+        let pairs = pairs_of(list);
+        for &pair in &pairs {
+            self.pairs.entry(pair).or_default().insert(index);
+        }
+        pairs
+    }
+
+    fn leave(&mut self, index: usize, list: &[Item]) {
+        for pair in pairs_of(list) {
+            if let Some(at) = self.pairs.get_mut(&pair) {
+                at.remove(&index);
+            }
+        }
+    }
+}
+
+fn pairs_of(list: &[Item]) -> BTreeSet<Pair> {
+    let mut pairs = BTreeSet::new();
+    for (i, &a) in list.iter().enumerate() {
+        for &b in &list[i + 1..] {
+            pairs.insert(Pair::new(a, b));
+        }
+    }
+    pairs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn list(items: &[i32]) -> Vec<Item> {
+        items.iter().map(|&item| Item { id: item.unsigned_abs(), negative: item < 0 }).collect()
+    }
+
+    #[test]
+    fn the_most_frequent_pair_comes_out_first_with_its_sign() {
+        let mut lists = vec![list(&[1, -2, 3]), list(&[-1, 2, 4]), list(&[1, -2]), list(&[3, 4])];
+        let mut pairs = Vec::new();
+        extract(&mut lists, |pair| {
+            pairs.push(pair);
+            99 + pairs.len() as u32
+        });
+        assert_eq!(pairs, [Pair { first: 1, second: 2, opposite: true }]);
+        assert_eq!(lists, [list(&[3, 100]), list(&[4, -100]), list(&[100]), list(&[3, 4])]);
+    }
+
+    #[test]
+    fn a_pair_within_a_pair_is_found() {
+        let mut lists = vec![list(&[1, 2, 3]), list(&[1, 2, 3]), list(&[1, 1, 5])];
+        let mut count = 99;
+        extract(&mut lists, |_| {
+            count += 1;
+            count
+        });
+        assert_eq!(lists[0], lists[1]);
+        assert_eq!(lists[0].len(), 1);
+        assert_eq!(lists[2], list(&[1, 1, 5]));
+    }
+}
