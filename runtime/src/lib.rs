@@ -30,3 +30,18 @@ pub use crate::{
 
 #[doc(hidden)]
 pub use nalgebra;
+
+#[doc(hidden)]
+pub use hodograph_macros::mechanism as __mechanism;
+
+/// Makes a module of a model: `mechanism!("models/two_sleds.mech")`, or the model itself between braces.
+///
+/// The path is relative to the invoking crate's Cargo.toml; if nothing is there, to the invoking source file. The file's stem is
+/// the module's name (for an inline model the snake_case of the mechanism's name). The derivation beside the model, written by
+/// `hodograph derive` and checked in, is read; without it, the feature `derive` derives while compiling.
+#[macro_export]
+macro_rules! mechanism {
+    ($($model:tt)*) => {
+        $crate::__mechanism! { ($crate) $($model)* }
+    };
+}

@@ -98,7 +98,8 @@ impl Term {
         let mut candidates: Vec<Factor> = self.late.iter().map(|&node| Factor::Late(node)).collect();
         candidates.dedup();
         let magnitude = self.magnitude();
-        if !(self.early.is_empty() && magnitude.is_one()) && !self.late.is_empty() {
+        let trivial = self.early.is_empty() && magnitude.is_one();
+        if !trivial && !self.late.is_empty() {
             candidates.push(Factor::Coefficient(magnitude, self.early.clone()));
         }
         candidates

@@ -1,0 +1,127 @@
+//! Models in files: `mechanism!("models/two_sleds.mech")`.
+
+use std::path::{Path, PathBuf};
+
+use hodograph_generator::emit;
+use hodograph_generator::model::check;
+use hodograph_generator::source::Source;
+use proc_macro2::{Span, TokenStream, TokenTree};
+use quote::quote;
+
+use crate::{derivation, report};
+
+/// The path that the user wrote, and where.
+pub struct ModelPath {
+    text: String,
+    span: Span,
+}
+
+/// The path, if the input is one: a string, perhaps with a comma.
+pub fn path(trees: &[TokenTree]) -> Option<ModelPath> {
+    let literal = match trees {
+        [literal] => literal,
+        [literal, TokenTree::Punct(comma)] if comma.as_char() == ',' => literal,
+        _ => return None,
+    };
+    // A literal that another macro passed on stands in an invisible group.
+    let literal = match literal {
+        TokenTree::Group(group) => group.stream().into_iter().next()?,
+        literal => literal.clone(),
+    };
+    let TokenTree::Literal(literal) = literal else { return None };
+    let quoted = literal.to_string();
+    let text = match quoted.strip_prefix('r') {
+        Some(raw) => raw.trim_matches('#').strip_prefix('"')?.strip_suffix('"')?.to_string(),
+        None => quoted.strip_prefix('"')?.strip_suffix('"')?.replace("\\\\", "\\").replace("\\\"", "\""),
+    };
+    Some(ModelPath { text, span: literal.span() })
+}
+
+/// A file that was found, and the expression that names it in generated code.
+struct Place {
+    path: PathBuf,
+    /// relative to Cargo.toml, else to the invoking source file
+    in_package: bool,
+}
+
+fn find(path: &ModelPath) -> Result<Place, String> {
+    let manifest = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
+    let in_package = manifest.join(&path.text);
+    if in_package.is_file() {
+        return Ok(Place { path: in_package, in_package: true });
+    }
+    let source = path.span.unwrap().local_file();
+    let beside = source.as_deref().and_then(Path::parent).map(|folder| folder.join(&path.text));
+    match beside {
+        Some(beside) if beside.is_file() => Ok(Place { path: beside, in_package: false }),
+        _ => Err(format!(
+            "there is no model `{}`: the path is relative to the package's Cargo.toml, or to the source file that invokes \
+             the macro",
+            path.text
+        )),
+    }
+}
+
+/// The expression that names a file in generated code, without an absolute path.
+fn tracked(text: &str, in_package: bool) -> TokenStream {
+    if in_package && !Path::new(text).is_absolute() {
+        let text = format!("/{text}");
+        quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #text))
+    } else {
+        quote!(#text)
+    }
+}
+
+/// The module of a model in a file.
+pub fn expand(path: &ModelPath, krate: &TokenStream) -> TokenStream {
+    let stem = Path::new(&path.text)
+        .file_stem()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let module = emit::names::snake_case(&stem);
+    let place = match find(path) {
+        Ok(place) => place,
+        Err(message) => {
+            let error = report::error(path.span, path.span, &message);
+            let skeleton = emit::skeleton(&module, None, &[]);
+            return quote!(#error #skeleton);
+        }
+    };
+    let mut tracked_files = vec![tracked(&path.text, place.in_package)];
+    let failed = |error: TokenStream, name: Option<&str>, tracked: &[TokenStream]| {
+        let skeleton = emit::skeleton(&module, name.or(Some(&stem)), tracked);
+        quote!(#error #skeleton)
+    };
+    let bytes = match std::fs::read(&place.path) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            let message = format!("the model `{}` cannot be read: {error}", path.text);
+            return failed(report::error(path.span, path.span, &message), None, &[]);
+        }
+    };
+    let source = Source::bytes(path.text.clone(), bytes);
+    let checked = check(&source);
+    let Some(mechanism) = checked.mechanism else {
+        return failed(report::of_file(&source, &checked.diagnostics, path.span), None, &tracked_files);
+    };
+    let shown = Path::new(&path.text).with_extension("derivation").to_string_lossy().into_owned();
+    let command = format!("hodograph derive {}", path.text);
+    let found =
+        derivation::find(&source, &mechanism, &place.path.with_extension("derivation"), &shown, &command);
+    let module_of = |found: &derivation::Found, tracked: Vec<TokenStream>| {
+        let options = emit::Options { krate: krate.clone(), module: module.clone(), tracked };
+        emit::module(&mechanism, &found.program, &options)
+    };
+    let result = found.and_then(|found| {
+        let mut files = tracked_files.clone();
+        if found.checked_in {
+            files.push(tracked(&shown, place.in_package));
+        }
+        module_of(&found, files)
+    });
+    result.unwrap_or_else(|message| {
+        if place.path.with_extension("derivation").is_file() {
+            tracked_files.push(tracked(&shown, place.in_package));
+        }
+        failed(report::error(path.span, path.span, &message), Some(&mechanism.name), &tracked_files)
+    })
+}
