@@ -5,13 +5,22 @@ use std::process::ExitCode;
 use clap::Parser;
 
 mod commands;
+mod derivation;
+mod evaluate;
+mod files;
 mod import;
+mod inline;
 mod json;
+mod model;
 mod output;
 mod plot;
 mod spelling;
 mod stop;
 mod surface;
+
+use commands::{
+    check, collide, derive, derive_worker, eval, expand, import as import_urdf, plot as draw, solve,
+};
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
 ///
@@ -26,16 +35,29 @@ struct Arguments {
 
 #[derive(clap::Subcommand)]
 enum Command {
-    Solve(commands::solve::Arguments),
-    Plot(commands::plot::Arguments),
-    Import(commands::import::Arguments),
+    Solve(solve::Arguments),
+    Eval(eval::Arguments),
+    Collide(collide::Arguments),
+    Check(check::Arguments),
+    Derive(derive::Arguments),
+    Expand(expand::Arguments),
+    Plot(draw::Arguments),
+    Import(import_urdf::Arguments),
+    #[command(name = derivation::WORKER, hide = true)]
+    DeriveWorker(derive_worker::Arguments),
 }
 
 fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
-        Command::Solve(arguments) => commands::solve::run(&arguments),
-        Command::Plot(arguments) => commands::plot::run(&arguments),
-        Command::Import(arguments) => commands::import::run(&arguments),
+        Command::Solve(arguments) => solve::run(&arguments),
+        Command::Eval(arguments) => eval::run(&arguments),
+        Command::Collide(arguments) => collide::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Derive(arguments) => derive::run(&arguments),
+        Command::Expand(arguments) => expand::run(&arguments),
+        Command::Plot(arguments) => draw::run(&arguments),
+        Command::Import(arguments) => import_urdf::run(&arguments),
+        Command::DeriveWorker(arguments) => derive_worker::run(&arguments),
     };
     match outcome {
         Ok(()) => ExitCode::SUCCESS,

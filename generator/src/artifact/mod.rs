@@ -19,6 +19,7 @@
 
 mod decode;
 mod encode;
+pub mod place;
 
 pub use decode::{DecodeError, decode};
 pub use encode::encode;

@@ -6,10 +6,11 @@ use hodograph::ReducedMatrix;
 use hodograph_generator::program::routine::{ContactQuantity, Quantity};
 use serde::Serialize;
 
+use crate::derivation::Limits;
 use crate::evaluate::contact::{self, Contact};
 use crate::evaluate::report::{Named, named};
 use crate::json::answer::Answer;
-use crate::model::{self, Limits};
+use crate::model;
 use crate::output;
 use crate::stop::Outcome;
 use crate::surface::SurfaceArguments;
@@ -55,7 +56,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let surface = arguments.surface.surface()?;
     let index = machine.contact(arguments.contact.as_deref())?;
     let state = machine.state(text.as_deref())?;
-    let more = [ContactQuantity::Response, ContactQuantity::DependentResponse, ContactQuantity::PrescribedWork];
+    let more =
+        [ContactQuantity::Response, ContactQuantity::DependentResponse, ContactQuantity::PrescribedWork];
     let of_contact = contact::QUANTITIES.into_iter().chain(more);
     let mut wanted: Vec<Quantity> =
         of_contact.map(|quantity| Quantity::Contact(index as u32, quantity)).collect();
@@ -72,8 +74,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         speed + response.iter().zip(impulse.iter()).map(|(response, impulse)| response * impulse).sum::<f64>()
     });
     // (24): the contact's work, less what prescribed motion at the contact takes, and what it does in the bodies
-    let prescribed: f64 =
-        numbers.three(index, ContactQuantity::PrescribedWork).iter().zip(impulse.iter()).map(|(a, b)| a * b).sum();
+    let prescribed: f64 = numbers
+        .three(index, ContactQuantity::PrescribedWork)
+        .iter()
+        .zip(impulse.iter())
+        .map(|(a, b)| a * b)
+        .sum();
     let kinetic_energy_change = impact.contact_work - contact.remainder.dot(&impact.impulse) + prescribed;
     let u_after = named(&machine.mechanism.speeds, after);
     output::json(&Collision { answer: Answer::from(&impact), u_after, kinetic_energy_change })

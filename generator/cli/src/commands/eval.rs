@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::derivation::Limits;
 use crate::evaluate::report::report;
-use crate::model::{self, Limits};
+use crate::model;
 use crate::output;
 use crate::stop::Outcome;
 

@@ -1,5 +1,11 @@
 //! The commands, one file each.
 
+pub mod check;
+pub mod collide;
+pub mod derive;
+pub mod derive_worker;
+pub mod eval;
+pub mod expand;
 pub mod import;
 pub mod plot;
 pub mod solve;

@@ -112,11 +112,13 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
     let jacobian = DMatrix::from_row_slice(count, count, jacobian);
     let svd = jacobian.clone().svd(true, true);
     let cutoff = 1e-13 * svd.singular_values.max();
-    let step = svd
-        .solve(&-&residual, cutoff)
-        .map_err(|error| Failure::new(Kind::SingularState, format!("the configuration equations: {error}")))?;
-    let sizes =
-        dependent.iter().zip(step.iter()).map(|(&index, step)| step.abs() / state.coordinates[index].abs().max(1.0));
+    let step = svd.solve(&-&residual, cutoff).map_err(|error| {
+        Failure::new(Kind::SingularState, format!("the configuration equations: {error}"))
+    })?;
+    let sizes = dependent
+        .iter()
+        .zip(step.iter())
+        .map(|(&index, step)| step.abs() / state.coordinates[index].abs().max(1.0));
     let left = (jacobian * &step + &residual).norm();
     let left = if left > 1e-6 * residual.norm() { left } else { 0.0 };
     let size = sizes.fold(left, f64::max);

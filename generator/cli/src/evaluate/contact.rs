@@ -60,7 +60,9 @@ impl Contact {
         let turned = |a: f64, b: f64| (cos * a + sin * b, cos * b - sin * a);
         let along: Vec<(f64, f64)> = row(1).iter().zip(row(2)).map(|(&a, &b)| turned(a, b)).collect();
         let mut m = [0.0; 6];
-        m.iter_mut().zip(numbers.of_contact(index, ContactQuantity::Reduced)).for_each(|(slot, &number)| *slot = number);
+        m.iter_mut()
+            .zip(numbers.of_contact(index, ContactQuantity::Reduced))
+            .for_each(|(slot, &number)| *slot = number);
         let [nn, n1, n2, m11, m12, m22] = m;
         let (nt, ns) = turned(n1, n2);
         let reduced = [
@@ -96,8 +98,14 @@ impl Contact {
 }
 
 /// The speed of slip, and whether it is more than the rounding of what it is the sum of.
-fn tangential(velocity: &Vector3<f64>, remainder: &Vector3<f64>, rows: [&[f64]; 2], speeds: &[f64]) -> (f64, bool) {
-    let sizes = rows.map(|row| row.iter().zip(speeds).map(|(partial, speed)| (partial * speed).abs()).sum::<f64>());
+fn tangential(
+    velocity: &Vector3<f64>,
+    remainder: &Vector3<f64>,
+    rows: [&[f64]; 2],
+    speeds: &[f64],
+) -> (f64, bool) {
+    let sizes =
+        rows.map(|row| row.iter().zip(speeds).map(|(partial, speed)| (partial * speed).abs()).sum::<f64>());
     let terms = sizes[0] + sizes[1] + remainder.y.abs() + remainder.z.abs();
     let slip = velocity.y.hypot(velocity.z);
     (slip, slip > 16.0 * f64::EPSILON * terms)

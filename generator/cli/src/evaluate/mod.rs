@@ -76,12 +76,14 @@ impl Machine {
             .copied()
             .filter(|&quantity| self.program.output(quantity).is_some_and(|output| !output.values.is_empty()))
             .collect();
-        let arrays = Evaluator::new(&self.program).evaluate(&inputs, &there).map_err(|failure| match failure {
-            interpret::Failure::Singular { message, value } => {
-                Failure::new(Kind::SingularState, format!("{message} (a divisor is {value}): choose another state"))
-            }
-            other => Failure::new(Kind::SingularState, other.to_string()),
-        })?;
+        let arrays =
+            Evaluator::new(&self.program).evaluate(&inputs, &there).map_err(|failure| match failure {
+                interpret::Failure::Singular { message, value } => Failure::new(
+                    Kind::SingularState,
+                    format!("{message} (a divisor is {value}): choose another state"),
+                ),
+                other => Failure::new(Kind::SingularState, other.to_string()),
+            })?;
         Ok(Numbers { arrays })
     }
 
@@ -137,7 +139,10 @@ impl Machine {
                 };
                 return Err(Failure::new(
                     Kind::InconsistentState,
-                    format!("the quaternion {names} of frame {} has norm {norm}, not 1: {advice}", frame.name),
+                    format!(
+                        "the quaternion {names} of frame {} has norm {norm}, not 1: {advice}",
+                        frame.name
+                    ),
                 ));
             }
         }

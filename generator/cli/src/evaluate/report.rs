@@ -114,7 +114,9 @@ pub fn report<'a>(machine: &'a Machine, state: &State) -> Result<Report<'a>, Fai
                 .contacts
                 .iter()
                 .enumerate()
-                .map(|(index, contact)| (contact.name.as_str(), Contact::new(&numbers, index, &state.speeds).into()))
+                .map(|(index, contact)| {
+                    (contact.name.as_str(), Contact::new(&numbers, index, &state.speeds).into())
+                })
                 .collect(),
         ),
     })

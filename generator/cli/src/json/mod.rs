@@ -3,6 +3,7 @@
 pub mod answer;
 pub mod failure;
 pub mod fields;
+pub mod state;
 pub mod value;
 
 pub use failure::{Failure, Kind};

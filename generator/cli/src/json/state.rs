@@ -76,7 +76,10 @@ impl State {
                 }
                 other => {
                     let hint = spelling::hint(other, ["parameters", "t", "q", "u", "inputs"]);
-                    return Err(Failure::new(Kind::UnknownName, format!("a state has no field `{other}`: {hint}")));
+                    return Err(Failure::new(
+                        Kind::UnknownName,
+                        format!("a state has no field `{other}`: {hint}"),
+                    ));
                 }
             }
         }

@@ -1,0 +1,43 @@
+//! `hodograph check`: every mistake in models.
+
+use std::path::PathBuf;
+
+use hodograph_generator::model::check;
+
+use crate::files::collect;
+use crate::model::shown;
+use crate::output;
+use crate::stop::{Outcome, Stop};
+
+/// Check models: every mistake with its place
+///
+/// Exit 0 if there is no error (warnings are allowed), else 1.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// model files, Rust files with inline models, or directories of them
+    #[arg(required = true)]
+    models: Vec<PathBuf>,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Stop::Said`] if a model has an error.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let (mut models, mut wrong) = (0, 0);
+    for entry in collect(&arguments.models)? {
+        let found = check(&entry.source);
+        models += 1;
+        wrong += usize::from(found.has_errors());
+        for diagnostic in &found.diagnostics {
+            output::line(&shown(diagnostic, &entry.source))?;
+        }
+        if let Some(message) = found.mechanism.and_then(|mechanism| entry.misnamed(&mechanism.name)) {
+            output::line(&format!("{message}: `mechanism!` names its module after the file"))?;
+        }
+    }
+    let model = if models == 1 { "model" } else { "models" };
+    eprintln!("{models} {model} checked, {wrong} with errors");
+    if wrong == 0 { Ok(()) } else { Err(Stop::Said) }
+}

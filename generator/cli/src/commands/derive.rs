@@ -1,0 +1,85 @@
+//! `hodograph derive`: derivations to be checked in.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+use crate::derivation::{self, Found, Limits};
+use crate::files::{Entry, collect};
+use crate::model::{self, Model};
+use crate::output;
+use crate::stop::{Outcome, Stop};
+
+/// Derive the equations of models and keep them: beside each model file, and for inline models in `derived/`
+///
+/// With a fresh derivation checked in, building a program needs no algebra engine.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// model files, Rust files with inline models, or directories of them
+    #[arg(required = true)]
+    models: Vec<PathBuf>,
+    /// derive nothing: name the derivations that are stale or missing, and exit 1 if there are any
+    #[arg(long)]
+    check: bool,
+    /// derive also where the derivation is fresh
+    #[arg(long, conflicts_with = "check")]
+    force: bool,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Stop::Said`] if a model has an error, cannot be derived or (`--check`) is stale.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let mut all_well = true;
+    let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
+    for entry in collect(&arguments.models)? {
+        let done = model::checked(entry.source.clone()).and_then(|model| {
+            let path = entry.derivation(&model.mechanism.name)?;
+            if let Some(other) = taken.insert(path.clone(), entry.path.clone()) {
+                return Err(Stop::Fault(format!(
+                    "{} and {} would share {}: give the mechanisms different names",
+                    other.display(),
+                    entry.path.display(),
+                    path.display()
+                )));
+            }
+            one(arguments, &entry, &model, path)
+        });
+        match done {
+            Ok(well) => all_well &= well,
+            Err(Stop::Said) => all_well = false,
+            Err(Stop::Fault(message)) => {
+                eprintln!("error: {message}");
+                all_well = false;
+            }
+            Err(other) => return Err(other),
+        }
+    }
+    if all_well { Ok(()) } else { Err(Stop::Said) }
+}
+
+/// Derives or checks one model; false if it is stale.
+fn one(arguments: &Arguments, entry: &Entry, model: &Model, path: PathBuf) -> Outcome<bool> {
+    let found = derivation::find(&path, model);
+    if arguments.check {
+        let why = match found {
+            Found::Fresh(_) => return Ok(true),
+            Found::Absent => "is not there".to_owned(),
+            Found::Stale(why) => format!("is stale: {why}"),
+        };
+        let (path, model) = (path.display(), entry.path.display());
+        output::line(&format!("{path} {why}; run `hodograph derive {model}`"))?;
+        return Ok(false);
+    }
+    if matches!(found, Found::Fresh(_)) && !arguments.force {
+        eprintln!("{} is fresh", path.display());
+        return Ok(true);
+    }
+    let (_, text) = derivation::derive(model, &arguments.limits)?;
+    derivation::write(&path, &text)?;
+    eprintln!("{} written", path.display());
+    Ok(true)
+}

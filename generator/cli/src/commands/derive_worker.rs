@@ -1,0 +1,63 @@
+//! The process that uses the algebra engine. Its standard output belongs to the engine.
+
+use std::path::PathBuf;
+
+use crate::stop::Outcome;
+
+/// Derive one model in a process of its own (used by the other commands)
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// a file with the text of the model
+    input: PathBuf,
+    /// where to write the derivation
+    output: PathBuf,
+    /// what to call the model in messages
+    name: String,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// Said on stderr.
+#[cfg(feature = "derive")]
+pub fn run(arguments: &Arguments) -> Outcome {
+    use crate::stop::Stop;
+    use hodograph_generator::DerivationError;
+    use hodograph_generator::artifact;
+    use hodograph_generator::model::check;
+    use hodograph_generator::program::Program;
+    use hodograph_generator::source::Source;
+
+    let text = std::fs::read_to_string(&arguments.input)
+        .map_err(|error| Stop::unreadable(&arguments.input, &error))?;
+    let source = Source::file(arguments.name.clone(), text);
+    let mechanism = check(&source).mechanism.ok_or(Stop::Said)?;
+    let derived = hodograph_generator::derive(&mechanism).map_err(|error| match error {
+        DerivationError::Model(error) => {
+            let place = source
+                .location(error.span)
+                .map_or(String::new(), |place| format!(":{}:{}", place.line, place.column));
+            eprintln!("{}{place}: error: {}; {}", arguments.name, error.message, error.help);
+            Stop::Said
+        }
+        DerivationError::Session(error) => Stop::Fault(error.to_string()),
+    })?;
+    let text = artifact::encode(&Program::new(&derived), &source.content_hash());
+    std::fs::write(&arguments.output, text).map_err(|error| Stop::unwritable(&arguments.output, &error))
+}
+
+/// Without the engine there is nothing to do.
+///
+/// # Errors
+///
+/// Always.
+#[cfg(not(feature = "derive"))]
+pub fn run(arguments: &Arguments) -> Outcome {
+    let Arguments { input, output, name } = arguments;
+    Err(crate::stop::Stop::Fault(format!(
+        "built without the feature `derive`: cannot derive {name} from {} to {}",
+        input.display(),
+        output.display()
+    )))
+}

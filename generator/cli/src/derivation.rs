@@ -1,0 +1,164 @@
+//! Derivations: read where they are kept, made in a child process, written whole or not at all.
+
+use std::fs::{self, OpenOptions};
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use hodograph_generator::artifact::{self, Artifact};
+use hodograph_generator::program::Program;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::model::Model;
+use crate::stop::{Outcome, Stop};
+
+/// Name of the hidden command that the child process runs.
+pub const WORKER: &str = "derive-worker";
+
+/// Bounds on a derivation.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Limits {
+    /// give up a derivation after this many seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 600)]
+    pub time_limit: u64,
+}
+
+/// What was found where a derivation is kept.
+#[derive(Clone, Debug)]
+pub enum Found {
+    /// that of the model
+    Fresh(Box<Program>),
+    /// nothing
+    Absent,
+    /// something else: what
+    Stale(String),
+}
+
+/// Looks for the derivation of a model.
+pub fn find(path: &Path, model: &Model) -> Found {
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Absent,
+        Err(error) => return Found::Stale(format!("it cannot be read: {error}")),
+    };
+    match artifact::decode(&text) {
+        Ok(Artifact { model: hash, program, .. }) if hash == model.source.content_hash() => {
+            Found::Fresh(Box::new(program))
+        }
+        Ok(_) => Found::Stale("it was derived from another text of the model".to_owned()),
+        Err(error) => Found::Stale(error.to_string()),
+    }
+}
+
+/// Derives a model: the program, and the text in which it is kept.
+///
+/// The algebra engine prints on standard output and can end the process that uses it, so it runs in a process of its
+/// own. Only one at a time may run on behalf of a user; the generator waits, and says so, while another does.
+///
+/// # Errors
+///
+/// [`Stop::Said`] where the child process has said why; [`Stop::Fault`].
+pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
+    if !cfg!(feature = "derive") {
+        return Err(Stop::Fault(
+            "this build of the tool reads derivations but makes none: build it with its feature `derive`"
+                .to_owned(),
+        ));
+    }
+    let fault = |what: &str, error: std::io::Error| Stop::Fault(format!("{what}: {error}"));
+    let folder = tempfile::tempdir().map_err(|error| fault("cannot make a temporary directory", error))?;
+    let (input, output) = (folder.path().join("model"), folder.path().join("derivation"));
+    let text = model.source.text().unwrap_or_default();
+    fs::write(&input, text).map_err(|error| Stop::unwritable(&input, &error))?;
+    let tool =
+        std::env::current_exe().map_err(|error| fault("cannot find this program's own file", error))?;
+    let child = Command::new(tool)
+        .arg(WORKER)
+        .args([&input, &output])
+        .arg(model.source.name())
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .spawn()
+        .map_err(|error| fault("cannot start the process that derives", error))?;
+    let status = wait(child, model.source.name(), limits)?;
+    if !status.success() {
+        return Err(match status.code() {
+            Some(1) => Stop::Said,
+            _ => {
+                Stop::Fault(format!("deriving {} ended with {status}: please report it", model.source.name()))
+            }
+        });
+    }
+    let text = fs::read_to_string(&output).map_err(|error| Stop::unreadable(&output, &error))?;
+    let derived = artifact::decode(&text)
+        .map_err(|error| Stop::Fault(format!("the derivation of {}: {error}", model.source.name())))?;
+    Ok((derived.program, text))
+}
+
+/// Waits for the child; shows that it works after a second, and ends it at the limit.
+fn wait(mut child: Child, name: &str, limits: &Limits) -> Outcome<ExitStatus> {
+    let start = Instant::now();
+    let mut progress: Option<ProgressBar> = None;
+    let mut pause = Duration::from_millis(2);
+    loop {
+        let status = child
+            .try_wait()
+            .map_err(|error| Stop::Fault(format!("cannot wait for the derivation: {error}")))?;
+        if let Some(status) = status {
+            if let Some(progress) = progress {
+                progress.finish_and_clear();
+            }
+            return Ok(status);
+        }
+        if start.elapsed() > Duration::from_secs(limits.time_limit) {
+            let _ = child.kill();
+            let _ = child.wait();
+            return Err(Stop::Fault(format!(
+                "deriving {name} took more than {} seconds: give more with --time-limit, or simplify the model",
+                limits.time_limit
+            )));
+        }
+        if progress.is_none() && start.elapsed() > Duration::from_secs(1) {
+            progress = Some(show(name));
+        }
+        if let Some(progress) = &progress {
+            progress.tick();
+        }
+        std::thread::sleep(pause);
+        pause = (pause * 2).min(Duration::from_millis(100));
+    }
+}
+
+fn show(name: &str) -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        eprintln!("deriving {name} ..");
+    }
+    let style = ProgressStyle::with_template("{spinner} deriving {msg} [{elapsed}]");
+    let progress = ProgressBar::new_spinner().with_message(name.to_owned());
+    style.map_or(progress.clone(), |style| progress.with_style(style))
+}
+
+/// Writes a file whole or not at all: beside it first, then in its place.
+///
+/// # Errors
+///
+/// [`Stop::Fault`].
+pub fn write(path: &Path, text: &str) -> Outcome {
+    let fault = |error: std::io::Error| Stop::unwritable(path, &error);
+    let name = path.file_name().map_or("derivation".into(), |name| name.to_string_lossy());
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    fs::create_dir_all(folder).map_err(fault)?;
+    let beside = folder.join(format!(".{name}.{}.tmp", std::process::id()));
+    let written = OpenOptions::new()
+        .write(true)
+        .create(true)
+        .truncate(true)
+        .open(&beside)
+        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
+        .and_then(|()| fs::rename(&beside, path));
+    written.map_err(|error| {
+        let _ = fs::remove_file(&beside);
+        fault(error)
+    })
+}

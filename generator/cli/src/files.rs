@@ -1,0 +1,104 @@
+//! Which models a command is about: files, directories, Rust files with inline models.
+
+use std::path::{Path, PathBuf};
+
+use hodograph_generator::artifact::place;
+use hodograph_generator::emit::names::snake_case;
+use hodograph_generator::source::Source;
+
+use crate::inline;
+use crate::stop::{Outcome, Stop};
+
+/// A model and the file it is in.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// the file
+    pub path: PathBuf,
+    /// the text
+    pub source: Source,
+    /// is it inline in a Rust file?
+    pub inline: bool,
+}
+
+impl Entry {
+    /// Where its derivation is kept.
+    ///
+    /// # Errors
+    ///
+    /// An inline model outside of any package.
+    pub fn derivation(&self, mechanism: &str) -> Outcome<PathBuf> {
+        match self.inline {
+            true => Ok(place::inline(&inline::package(&self.path)?, mechanism)),
+            false => Ok(place::beside(&self.path)),
+        }
+    }
+
+    /// A model file is called like its mechanism: what to say if it is not.
+    pub fn misnamed(&self, mechanism: &str) -> Option<String> {
+        let (stem, snake) = (self.path.file_stem()?.to_string_lossy(), snake_case(mechanism));
+        (!self.inline && stem != snake).then(|| {
+            format!(
+                "{}: warning: the file of mechanism {mechanism} should be called {snake}.mech",
+                self.path.display()
+            )
+        })
+    }
+}
+
+/// All models in the files and, recursively, directories.
+///
+/// # Errors
+///
+/// A path cannot be read, or there is no model at all.
+pub fn collect(paths: &[PathBuf]) -> Outcome<Vec<Entry>> {
+    let mut entries = Vec::new();
+    for path in paths {
+        let data = std::fs::metadata(path).map_err(|error| Stop::unreadable(path, &error))?;
+        let before = entries.len();
+        if data.is_dir() {
+            walk(path, &mut entries)?;
+        } else {
+            file(path, &mut entries)?;
+        }
+        if entries.len() == before {
+            return Err(Stop::Call(format!("{} holds no model", path.display())));
+        }
+    }
+    Ok(entries)
+}
+
+fn file(path: &Path, entries: &mut Vec<Entry>) -> Outcome {
+    if path.extension().is_some_and(|extension| extension == "rs") {
+        let models = inline::models(path)?;
+        entries.extend(models.into_iter().map(|source| Entry {
+            path: path.to_path_buf(),
+            source,
+            inline: true,
+        }));
+    } else {
+        entries.push(Entry { path: path.to_path_buf(), source: Source::read(path), inline: false });
+    }
+    Ok(())
+}
+
+fn walk(folder: &Path, entries: &mut Vec<Entry>) -> Outcome {
+    let unreadable = |error: std::io::Error| Stop::unreadable(folder, &error);
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        paths.push(entry.map_err(unreadable)?.path());
+    }
+    paths.sort();
+    for path in paths {
+        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        let is_folder = path.is_dir() && !path.is_symlink();
+        match path.extension().and_then(|extension| extension.to_str()) {
+            _ if hidden => {}
+            // Build output holds copies of what was built.
+            _ if is_folder && path.join("CACHEDIR.TAG").exists() => {}
+            _ if is_folder => walk(&path, entries)?,
+            Some("mech" | "rs") if path.is_file() => file(&path, entries)?,
+            _ => {}
+        }
+    }
+    Ok(())
+}

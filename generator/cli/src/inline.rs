@@ -1,0 +1,106 @@
+//! Inline models: `mechanism! { .. }` in Rust files.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use hodograph_generator::source::Source;
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+
+use crate::stop::{Outcome, Stop};
+
+/// The inline models of a Rust file. In each source the rest of the file is blank, so that places are those in the file.
+///
+/// # Errors
+///
+/// The file cannot be read, or is no Rust.
+pub fn models(path: &Path) -> Outcome<Vec<Source>> {
+    let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
+    if !text.contains("mechanism") {
+        return Ok(Vec::new());
+    }
+    let stream = TokenStream::from_str(&text).map_err(|error| {
+        let start = error.span().start();
+        Stop::Fault(format!(
+            "{}:{}:{}: this is no Rust: {error}",
+            path.display(),
+            start.line,
+            start.column + 1
+        ))
+    })?;
+    let name = path.display().to_string();
+    let mut sources = Vec::new();
+    let mut open = vec![stream];
+    while let Some(stream) = open.pop() {
+        let trees: Vec<TokenTree> = stream.into_iter().collect();
+        for (index, tree) in trees.iter().enumerate() {
+            let TokenTree::Group(group) = tree else { continue };
+            if index >= 2 && is_invocation(&trees[index - 2], &trees[index - 1]) {
+                let first = group.stream().into_iter().next();
+                if group.delimiter() != Delimiter::None
+                    && first.is_some_and(|tree| matches!(tree, TokenTree::Ident(_) | TokenTree::Punct(_)))
+                {
+                    let (from, to) =
+                        (group.span_open().byte_range().end, group.span_close().byte_range().start);
+                    sources.push((from, Source::file(name.clone(), blanked(&text, from, to))));
+                }
+            } else {
+                open.push(group.stream());
+            }
+        }
+    }
+    sources.sort_by_key(|&(from, _)| from);
+    Ok(sources.into_iter().map(|(_, source)| source).collect())
+}
+
+fn is_invocation(name: &TokenTree, bang: &TokenTree) -> bool {
+    matches!(name, TokenTree::Ident(name) if name == "mechanism")
+        && matches!(bang, TokenTree::Punct(bang) if bang.as_char() == '!')
+}
+
+/// The text with everything outside a range blank, line by line and character by character the same length.
+fn blanked(text: &str, from: usize, to: usize) -> String {
+    let blank = |part: &str| part.chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect::<String>();
+    match (text.get(..from), text.get(from..to)) {
+        (Some(before), Some(model)) => blank(before) + model,
+        _ => String::new(),
+    }
+}
+
+/// The directory of the package that a file belongs to: the nearest above it with a `Cargo.toml`.
+///
+/// # Errors
+///
+/// There is none.
+pub fn package(path: &Path) -> Outcome<PathBuf> {
+    // As the user wrote the path, as long as that leads upwards.
+    let written = path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty());
+    let absolute = std::path::absolute(path).map_err(|error| Stop::unreadable(path, &error))?;
+    written
+        .chain(absolute.ancestors().skip(1))
+        .find(|folder| folder.join("Cargo.toml").is_file())
+        .map(Path::to_path_buf)
+        .ok_or_else(|| {
+            Stop::Call(format!("{} belongs to no package: there is no Cargo.toml above it", path.display()))
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inline_models_are_found_in_their_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("lib.rs");
+        let text = "// mechanism! { no }\nhodograph::mechanism! {\n    mechanism Té;\n}\nmod a { mechanism!(\"b.mech\"); \
+                    mechanism! { mechanism B; } }\nfn f() -> &'static str { \"mechanism! { no }\" }\n";
+        std::fs::write(&path, text).unwrap();
+        let found = models(&path).unwrap();
+        assert_eq!(found.len(), 2);
+        assert!(found[0].text().unwrap().ends_with("\n    mechanism Té;\n"));
+        assert_eq!(found[0].text().unwrap().lines().count(), 3);
+        assert_eq!(found[1].text().unwrap().trim(), "mechanism B;");
+        std::fs::write(folder.path().join("Cargo.toml"), "").unwrap();
+        assert_eq!(package(&path).unwrap(), folder.path());
+    }
+}

@@ -1,0 +1,109 @@
+//! Models from files: read, checked, and with their equations.
+
+use std::io::Read;
+use std::path::Path;
+
+use hodograph_generator::artifact::place;
+use hodograph_generator::diagnostics::Diagnostic;
+use hodograph_generator::model::check;
+use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::source::Source;
+
+use crate::derivation::{self, Found, Limits};
+use crate::evaluate::Machine;
+use crate::stop::{Outcome, Stop};
+
+/// A model without mistakes.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// its text
+    pub source: Source,
+    /// its meaning
+    pub mechanism: Mechanism,
+}
+
+/// A diagnostic as it is shown.
+pub fn shown(diagnostic: &Diagnostic, source: &Source) -> String {
+    diagnostic.one_line(source)
+}
+
+/// Reads and checks a model file; says what is wrong on stderr.
+///
+/// # Errors
+///
+/// [`Stop::Call`] where there is no such file, [`Stop::Said`] where it has mistakes.
+pub fn load(path: &Path) -> Outcome<Model> {
+    if let Err(error) = std::fs::metadata(path) {
+        return Err(Stop::unreadable(path, &error));
+    }
+    checked(Source::read(path))
+}
+
+/// Checks a model; says what is wrong on stderr.
+///
+/// # Errors
+///
+/// [`Stop::Said`] where it has mistakes.
+pub fn checked(source: Source) -> Outcome<Model> {
+    let found = check(&source);
+    for diagnostic in &found.diagnostics {
+        eprintln!("{}", shown(diagnostic, &source));
+    }
+    let mechanism = found.mechanism.ok_or(Stop::Said)?;
+    Ok(Model { source, mechanism })
+}
+
+/// A model with its equations: the derivation beside it if that is fresh, else one made now and not kept.
+///
+/// # Errors
+///
+/// As [`load`] and [`derivation::derive`].
+pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
+    let model = load(path)?;
+    let kept = place::beside(path);
+    let program = match derivation::find(&kept, &model) {
+        Found::Fresh(program) => *program,
+        Found::Absent => {
+            eprintln!(
+                "note: {} is not there: deriving in memory; `hodograph derive {}` keeps the result",
+                kept.display(),
+                path.display()
+            );
+            derivation::derive(&model, limits)?.0
+        }
+        Found::Stale(why) => {
+            eprintln!(
+                "note: {} is stale ({why}): deriving in memory; `hodograph derive {}` renews it",
+                kept.display(),
+                path.display()
+            );
+            derivation::derive(&model, limits)?.0
+        }
+    };
+    Ok(Machine { mechanism: model.mechanism, program })
+}
+
+/// The text of a state: of a file, of standard input (`-`), or the argument itself where it is an object.
+///
+/// # Errors
+///
+/// [`Stop::Call`] where it cannot be read; `bad_json` where it is no text.
+pub fn state_text(argument: Option<&str>) -> Outcome<Option<String>> {
+    let bytes = match argument {
+        None => return Ok(None),
+        Some(text) if text.trim_start().starts_with('{') => return Ok(Some(text.to_owned())),
+        Some("-") => {
+            let mut bytes = Vec::new();
+            std::io::stdin()
+                .read_to_end(&mut bytes)
+                .map_err(|error| Stop::Call(format!("cannot read standard input: {error}")))?;
+            bytes
+        }
+        Some(path) => std::fs::read(path).map_err(|error| Stop::unreadable(Path::new(path), &error))?,
+    };
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        crate::json::Failure::bad_json(format!("the state is no UTF-8 at byte {at}"))
+    })?;
+    Ok(Some(text))
+}
