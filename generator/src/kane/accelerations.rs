@@ -32,6 +32,11 @@ impl Accelerations {
         }
     }
 
+    /// Acceleration of everything at rest.
+    pub fn ground(&self) -> Mixed {
+        self.ground.clone()
+    }
+
     /// Derivative in N of the value of a form along `axes`.
     fn derivative(&self, k: &mut Kinematics<'_>, form: &LinearVector, axes: AxesId) -> Triple {
         let mut sum = k.change_of(&form.rest);
@@ -116,7 +121,7 @@ impl Accelerations {
     }
 
     /// Rows of `[alpha]x + w w' - w.w 1`, which turns an arm fixed in the frame into its part of an acceleration.
-    fn turning_matrix(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> [Triple; 3] {
+    pub fn turning_matrix(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> [Triple; 3] {
         if let Some(known) = self.turning.get(&frame) {
             return known.clone();
         }

@@ -7,9 +7,10 @@
 use std::collections::BTreeMap;
 
 use super::accelerations::Accelerations;
+use super::lumps::{Lump, Seat};
 use super::order::{self, Node};
-use crate::algebra::Expr;
-use crate::kinematics::axes::entry;
+use crate::algebra::{Expr, Intermediates};
+use crate::kinematics::axes::{Symmetric, entry};
 use crate::kinematics::linear::{self, Triple};
 use crate::kinematics::vectors;
 use crate::kinematics::{Kinematics, Mixed};
@@ -56,44 +57,71 @@ pub fn gravity(k: &mut Kinematics<'_>) -> Mixed {
 
 /// Generalized forces of all speeds (dependent ones included), active and inertia forces together, for given
 /// derivatives of all speeds.
-pub fn generalized_forces(k: &mut Kinematics<'_>, derivatives: Vec<Expr>) -> Vec<Expr> {
+pub fn generalized_forces(
+    k: &mut Kinematics<'_>,
+    lumps: &BTreeMap<Seat, Lump>,
+    derivatives: Vec<Expr>,
+) -> Vec<Expr> {
     let gravity = gravity(k);
     let ground = vectors::scale(&Expr::integer(-1), &gravity);
     let mut accelerations = Accelerations::new(derivatives, ground);
     let mut wrenches = Wrenches::default();
-    for body in &k.mechanism.bodies {
-        let mass = k.scalar(&body.mass);
-        let mass = k.z.name(mass);
-        if !mass.is_zero() {
-            let a = accelerations.point(k, body.centre);
-            let force = linear::scale(&mass.neg(), &a);
-            let home = k.points[body.centre.0].home;
-            wrenches.force(k, body.centre, &vectors::mixed(home, force));
-        }
-        let Some(frame) = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N)
-        else {
-            continue;
+    for (&(frame, point), lump) in lumps {
+        let home = k.frames[frame.0].home;
+        // acceleration of the reference point, along the home axes of the frame
+        let at_rest = accelerations.ground();
+        let a = match point {
+            Some(point) => vectors::mixed(k.points[point.0].home, accelerations.point(k, point)),
+            None => at_rest,
         };
-        if let Some((inertia, axes)) = super::bodies::central_inertia(k, body) {
-            // - (I . alpha + w x I . w), along the axes of the inertia
-            let home = k.frames[frame.0].home;
-            let alpha = accelerations.angular(k, frame);
-            let alpha = k.tree.convert(&mut k.z, &alpha, home, axes);
-            let w = k.angular_velocity(frame);
-            let w = k.tree.convert(&mut k.z, &w, home, axes);
-            let times = |v: &Triple| -> Triple {
-                std::array::from_fn(|i| {
-                    linear::dot(&std::array::from_fn(|j| inertia[entry(i, j)].clone()), v)
-                })
-            };
-            let momentum = linear::name(&mut k.z, times(&w));
-            let rate = linear::add(&times(&alpha), &linear::cross(&w, &momentum));
-            let torque = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &rate));
-            wrenches.torque(k, frame, &vectors::mixed(axes, torque));
+        if frame == FrameId::N {
+            if let Some(point) = point {
+                wrenches.force(k, point, &vectors::scale(&lump.mass.neg(), &a));
+            }
+            continue;
         }
+        let rows = accelerations.turning_matrix(k, frame);
+        if let Some(point) = point {
+            let turning: Triple = std::array::from_fn(|i| linear::dot(&rows[i], &lump.moment));
+            let turning = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &turning));
+            wrenches.force(k, point, &vectors::mixed(home, turning));
+            wrenches.force(k, point, &vectors::scale(&lump.mass.neg(), &a));
+        }
+        let a = if linear::is_zero(&lump.moment) { linear::zero() } else { k.express(&a, home) };
+        let alpha = accelerations.angular(k, frame);
+        let w = k.angular_velocity(frame);
+        let moment = inertia_moment(&mut k.z, &rows, &alpha, &w, &lump.second);
+        let moment = linear::add(&moment, &linear::cross(&lump.moment, &a));
+        let moment = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &moment));
+        wrenches.torque(k, frame, &vectors::mixed(home, moment));
     }
     apply_loads(k, &mut wrenches);
     pass_back(k, wrenches)
+}
+
+/// Moment of inertia forces about the reference point: integral of `r x U r` for second moments Sigma of r, with
+/// `U = [alpha]x + w w' - w.w 1`.
+fn inertia_moment(
+    z: &mut Intermediates,
+    u: &[Triple; 3],
+    alpha: &Triple,
+    w: &Triple,
+    second: &Symmetric,
+) -> Triple {
+    std::array::from_fn(|i| {
+        let (j, l) = ((i + 1) % 3, (i + 2) % 3);
+        let (jj, ll) = (&second[j], &second[l]);
+        // U_lj S_jj - U_jl S_ll, with U_lj = w_j w_l + alpha_i and U_jl = w_j w_l - alpha_i
+        let diagonal = if jj.is_zero() || ll.is_zero() {
+            u[l][j].mul(jj).sub(&u[j][l].mul(ll))
+        } else {
+            let (difference, sum) = (z.name(jj.sub(ll)), z.name(jj.add(ll)));
+            let product = z.name(w[j].mul(&w[l]));
+            product.mul(&difference).add(&alpha[i].mul(&sum))
+        };
+        let mixed = u[l][l].sub(&u[j][j]).mul(&second[entry(j, l)]);
+        diagonal.add(&mixed).add(&u[l][i].mul(&second[entry(i, j)])).sub(&u[j][i].mul(&second[entry(i, l)]))
+    })
 }
 
 fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {

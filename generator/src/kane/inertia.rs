@@ -7,6 +7,7 @@
 
 use std::collections::BTreeMap;
 
+use super::lumps::{Lump, Seat};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{Symmetric, entry};
@@ -31,26 +32,29 @@ struct Form {
 
 /// The mass matrix of all speeds, dependent ones included, by slots `(r, s)` with `r <= s`. The slot after the last
 /// speed stands for prescribed motion (the remainders, with speed 1).
-pub fn full_mass_matrix(k: &mut Kinematics<'_>) -> BTreeMap<(usize, usize), Expr> {
+pub fn full_mass_matrix(
+    k: &mut Kinematics<'_>,
+    lumps: &BTreeMap<Seat, Lump>,
+) -> BTreeMap<(usize, usize), Expr> {
     let mut form = Form::default();
-    for body in &k.mechanism.bodies {
-        let mass = k.scalar(&body.mass);
-        let mass = k.z.name(mass);
-        if !mass.is_zero() {
-            sum_into(&mut form.mass, body.centre, &mass);
+    let (mut points, mut frames) = (Vec::new(), Vec::new());
+    for (&(frame, point), lump) in lumps {
+        if let Some(point) = point {
+            points.push(point);
+            if !lump.mass.is_zero() {
+                sum_into(&mut form.mass, point, &lump.mass);
+            }
         }
-        if let (Some(frame), Some((inertia, axes))) = (body.frame, super::bodies::central_inertia(k, body)) {
-            let frame = k.turning(frame);
-            if frame != FrameId::N {
-                let home = k.frames[frame.0].home;
-                let inertia = k.tree.convert_symmetric(&mut k.z, &inertia, axes, home);
-                form.add_inertia(frame, &inertia);
+        if frame != FrameId::N {
+            frames.push(frame);
+            let inertia = lump.inertia(k);
+            form.add_inertia(frame, &inertia);
+            if let Some(point) = point {
+                sum_triple(&mut form.moment, (point, frame), &lump.moment);
             }
         }
     }
-    let centres: Vec<_> = k.mechanism.bodies.iter().map(|body| body.centre).collect();
-    let frames: Vec<_> = k.mechanism.bodies.iter().filter_map(|body| body.frame).collect();
-    let order = super::order::elimination_order(k, &centres, &frames);
+    let order = super::order::elimination_order(k, &points, &frames);
     for node in order {
         match node {
             super::order::Node::Frame(frame) => form.eliminate_frame(k, frame),

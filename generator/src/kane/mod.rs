@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod energy;
 pub mod forces;
 pub mod inertia;
+pub mod lumps;
 pub mod order;
 mod outputs;
 

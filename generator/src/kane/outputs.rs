@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::contacts::{ContactForms, contact_forms, point_jacobian};
+use super::lumps::{self, Lump, Seat};
 use super::{energy, forces, inertia};
 use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
@@ -22,6 +23,7 @@ struct Writer<'k, 'm> {
     guards: Vec<Guard>,
     independent: Vec<usize>,
     dependent: Vec<usize>,
+    lumps: BTreeMap<Seat, Lump>,
 }
 
 /// Derives and writes all quantities.
@@ -30,6 +32,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     for (slot, speed) in k.mechanism.speeds.iter().enumerate() {
         if speed.dependent { dependent.push(slot) } else { independent.push(slot) }
     }
+    let lumps = lumps::lumps(k);
     let mut writer = Writer {
         k,
         graph: Graph::new(),
@@ -38,6 +41,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
         guards: Vec::new(),
         independent,
         dependent,
+        lumps,
     };
     writer.kinematics();
     let (matrix, prescribed) = writer.mass_matrix();
@@ -88,7 +92,7 @@ impl Writer<'_, '_> {
 
     /// The mass matrix in independent speeds, and what couples them to prescribed motion.
     fn mass_matrix(&mut self) -> (Vec<Vec<Node>>, Vec<Node>) {
-        let full = inertia::full_mass_matrix(self.k);
+        let full = inertia::full_mass_matrix(self.k, &self.lumps);
         let remainder = self.k.speeds.len();
         let entry = |r: usize, s: usize| full.get(&(r.min(s), r.max(s))).cloned().unwrap_or_else(Expr::zero);
         let (independent, dependent) = (self.independent.clone(), self.dependent.clone());
@@ -153,7 +157,7 @@ impl Writer<'_, '_> {
 
     /// Generalized forces in independent speeds for given derivatives of all speeds.
     fn reduced_forces(&mut self, derivatives: Vec<Expr>) -> Vec<Node> {
-        let forces = forces::generalized_forces(self.k, derivatives);
+        let forces = forces::generalized_forces(self.k, &self.lumps, derivatives);
         let mut result = Vec::new();
         for &r in &self.independent.clone() {
             let mut sum = forces[r].clone();

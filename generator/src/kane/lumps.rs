@@ -1,0 +1,196 @@
+//! Inertia, lumped and regrouped: fewer parameters that mean the same.
+//!
+//! What moves rigidly with a frame is described about a reference point of that frame by mass, first moment and second
+//! moments (the matrix of `integral r r' dm`, the pseudo-inertia). Bodies that share frame and reference point become
+//! one. Then whatever lies on the axis of a revolute joint is handed to the body on the other side of the joint, of
+//! which it is a part just as well: mass, first moment and second moment along the axis. What arrives at a fixed axis does
+//! nothing at all and is dropped. (These are the base parameters of robot dynamics, found from the graph of velocities.)
+
+use std::collections::BTreeMap;
+
+use crate::algebra::Expr;
+use crate::kinematics::Kinematics;
+use crate::kinematics::axes::{Symmetric, entry, unit};
+use crate::kinematics::linear::{self, Triple};
+use crate::model::mechanism::{FrameId, PointId};
+use crate::number::Number;
+
+/// Where a lump is: the frame it turns with and its reference point (`None`: a point at rest).
+pub type Seat = (FrameId, Option<PointId>);
+
+/// Mass that moves rigidly with a frame, about its reference point, along the home axes of the frame.
+#[derive(Clone, Debug)]
+pub struct Lump {
+    /// kg
+    pub mass: Expr,
+    /// first moment, kg m
+    pub moment: Triple,
+    /// second moments xx, yy, zz, xy, yz, zx, kg m^2
+    pub second: Symmetric,
+}
+
+impl Lump {
+    fn empty() -> Self {
+        Lump { mass: Expr::zero(), moment: linear::zero(), second: std::array::from_fn(|_| Expr::zero()) }
+    }
+
+    /// Adds another lump whose reference point is at `r`, along the same axes.
+    fn add_at(&mut self, other: &Lump, r: &Triple) {
+        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)] {
+            let shift = other.mass.mul(&r[i]).mul(&r[j]);
+            let mixed = other.moment[i].mul(&r[j]).add(&other.moment[j].mul(&r[i]));
+            let at = entry(i, j);
+            self.second[at] = self.second[at].add(&other.second[at]).add(&shift).add(&mixed);
+        }
+        let shifted = linear::add(&other.moment, &linear::scale(&other.mass, r));
+        self.moment = linear::add(&self.moment, &shifted);
+        self.mass = self.mass.add(&other.mass);
+    }
+
+    fn tidy(&mut self, k: &mut Kinematics<'_>) {
+        let mut tidy = |c: &Expr| {
+            let c = k.z.simplify(c);
+            k.z.name(c)
+        };
+        self.mass = tidy(&self.mass);
+        self.moment = std::array::from_fn(|i| tidy(&self.moment[i]));
+        self.second = std::array::from_fn(|i| tidy(&self.second[i]));
+    }
+
+    /// Inertia about the reference point: trace 1 - second.
+    pub fn inertia(&self, k: &mut Kinematics<'_>) -> Symmetric {
+        std::array::from_fn(|i| {
+            let value = if i < 3 {
+                self.second[(i + 1) % 3].add(&self.second[(i + 2) % 3])
+            } else {
+                self.second[i].neg()
+            };
+            k.z.name(value)
+        })
+    }
+}
+
+/// All inertia of the mechanism.
+pub fn lumps(k: &mut Kinematics<'_>) -> BTreeMap<Seat, Lump> {
+    let mut lumps: BTreeMap<Seat, Lump> = BTreeMap::new();
+    for body in &k.mechanism.bodies {
+        let mut lump = Lump::empty();
+        let mass = k.scalar(&body.mass);
+        lump.mass = k.z.name(mass);
+        let own = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N);
+        let frame = own.or_else(|| carrier(k, body.centre)).unwrap_or(FrameId::N);
+        if own.is_some()
+            && let Some((inertia, axes)) = super::bodies::central_inertia(k, body)
+        {
+            let home = k.frames[frame.0].home;
+            let inertia = k.tree.convert_symmetric(&mut k.z, &inertia, axes, home);
+            // second moments: 1/2 trace 1 - I
+            let half = Expr::number(&Number::ratio(1, 2));
+            let trace = inertia[0].add(&inertia[1]).add(&inertia[2]).mul(&half);
+            lump.second =
+                std::array::from_fn(|i| if i < 3 { trace.sub(&inertia[i]) } else { inertia[i].neg() });
+        }
+        let (reference, r) = rigid_way(k, frame, Some(body.centre));
+        lumps.entry((frame, reference)).or_insert_with(Lump::empty).add_at(&lump, &r);
+    }
+    regroup(k, &mut lumps);
+    for lump in lumps.values_mut() {
+        lump.tidy(k);
+    }
+    lumps
+}
+
+/// The frame that carries a particle rigidly from its base point, if one does.
+fn carrier(k: &mut Kinematics<'_>, point: PointId) -> Option<FrameId> {
+    let motion = &k.points[point.0];
+    match &motion.arms[..] {
+        [arm] if motion.relative.is_empty() => Some(arm.frame),
+        _ => None,
+    }
+}
+
+/// Follows a point back as long as each step is an arm fixed in the frame: the point reached (`None`: one at rest) and
+/// the way from there, along the frame's home axes.
+fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (Option<PointId>, Triple) {
+    let home = k.frames[frame.0].home;
+    let mut way = linear::zero();
+    let mut at = from;
+    while let Some(point) = at {
+        let motion = k.points[point.0].clone();
+        if motion.base.is_none() && motion.arms.is_empty() && motion.relative.is_empty() {
+            return (None, way);
+        }
+        let mut step = linear::zero();
+        let mut rigid = motion.relative.is_empty();
+        for arm in &motion.arms {
+            rigid &= arm.frame == frame && k.turning(k.tree.owner(arm.axes)) == frame;
+            rigid = rigid && linear::is_zero(&k.change_of(&arm.arm));
+            if rigid {
+                let turned = k.tree.convert(&mut k.z, &arm.arm, arm.axes, home);
+                rigid = linear::is_zero(&k.change_of(&turned));
+                step = linear::add(&step, &turned);
+            }
+        }
+        if !rigid {
+            break;
+        }
+        way = linear::add(&way, &step);
+        at = motion.base;
+    }
+    (at, linear::name(&mut k.z, way))
+}
+
+/// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
+fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>) {
+    let mut frames: Vec<FrameId> = lumps.keys().map(|seat| seat.0).filter(|&f| f != FrameId::N).collect();
+    for frame in frames.clone() {
+        frames.extend(k.ancestry(frame).into_iter().map(|frame| k.turning(frame)));
+    }
+    frames.retain(|&frame| frame != FrameId::N);
+    frames.sort_by_key(|&frame| (std::cmp::Reverse(k.ancestry(frame).len()), frame));
+    frames.dedup();
+    for frame in frames {
+        let Some(axis) = joint_axis(k, frame) else { continue };
+        let base = k.turning(k.frames[frame.0].base);
+        let seats: Vec<Seat> = lumps.keys().copied().filter(|seat| seat.0 == frame).collect();
+        for seat in seats {
+            // Points on the axis move with the base as they do with the frame, whether the joint is fixed in the base or
+            // not; where it is, the way goes on to the base's own reference point.
+            let (target, r) =
+                if base == FrameId::N { (seat.1, linear::zero()) } else { rigid_way(k, base, seat.1) };
+            let Some(lump) = lumps.get_mut(&seat) else { continue };
+            let mut rod = Lump::empty();
+            rod.mass = std::mem::replace(&mut lump.mass, Expr::zero());
+            rod.moment[axis] = std::mem::replace(&mut lump.moment[axis], Expr::zero());
+            rod.second[axis] = std::mem::replace(&mut lump.second[axis], Expr::zero());
+            lump.tidy(k);
+            if base == FrameId::N {
+                // about an axis that keeps its direction only the mass matters
+                rod.moment[axis] = Expr::zero();
+                rod.second[axis] = Expr::zero();
+            }
+            let (home, base_home) = (k.frames[frame.0].home, k.frames[base.0].home);
+            let along = k.tree.convert(&mut k.z, &unit(axis), home, base_home);
+            let turned = Lump {
+                mass: rod.mass.clone(),
+                moment: linear::scale(&rod.moment[axis], &along),
+                second: [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]
+                    .map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
+            };
+            lumps.entry((base, target)).or_insert_with(Lump::empty).add_at(&turned, &r);
+        }
+    }
+}
+
+/// The coordinate axis about which a frame turns against its base, if it is one that is fixed in both.
+fn joint_axis(k: &mut Kinematics<'_>, frame: FrameId) -> Option<usize> {
+    let motion = k.frames[frame.0].clone();
+    let partials: Vec<&Triple> = motion.relative.terms.values().chain([&motion.relative.rest]).collect();
+    let axis = (0..3).find(|&i| partials.iter().all(|p| (0..3).all(|j| j == i || p[j].is_zero())))?;
+    let base = k.turning(motion.base);
+    let base_home = k.frames[base.0].home;
+    let along = k.tree.convert(&mut k.z, &unit(axis), motion.home, base_home);
+    let back = k.tree.owner(motion.home);
+    let fixed = linear::is_zero(&k.change_of(&along)) && k.turning(back) == frame;
+    fixed.then_some(axis)
+}
