@@ -62,8 +62,9 @@ impl Emitter<'_> {
                 quote!((#(#terms)+*))
             }
             Scalar::Mul(factors) => {
-                let factors = all(factors)?;
-                quote!((#(#factors)**))
+                let mut factors = all(factors)?.into_iter();
+                let first = factors.next()?;
+                quote!((#first #(* #factors)*))
             }
             Scalar::Div(a, b, _) => {
                 let (a, b) = (of(a)?, of(b)?);
