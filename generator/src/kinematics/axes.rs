@@ -14,9 +14,11 @@ pub enum Turn {
     Simple {
         /// 0, 1, 2
         axis: usize,
-        /// sine
+        /// the angle, rad
+        angle: Expr,
+        /// its sine
         sine: Expr,
-        /// cosine
+        /// its cosine
         cosine: Expr,
     },
     /// rows: components along the parent's axes of .. columns: the unit vectors of these axes
@@ -55,6 +57,11 @@ impl AxesTree {
         self.axes.len() - 1
     }
 
+    /// How a set of axes is turned against its parent; `None` for N.
+    pub fn turn(&self, axes: AxesId) -> Option<&Turn> {
+        self.axes[axes].parent.as_ref().map(|(_, turn)| turn)
+    }
+
     /// The frame whose angular velocity a set of axes has.
     pub fn owner(&self, axes: AxesId) -> FrameId {
         self.axes[axes].owner
@@ -83,6 +90,44 @@ impl AxesTree {
             }
         }
         a
+    }
+
+    /// Number of turns on the way from one set of axes to another.
+    pub fn distance(&self, from: AxesId, to: AxesId) -> usize {
+        let top = self.common(from, to);
+        self.axes[from].depth + self.axes[to].depth - 2 * self.axes[top].depth
+    }
+
+    /// The unit vectors of one set of axes along another; each matrix on the way is formed once, by whoever asks first.
+    pub fn columns(&self, z: &mut Intermediates, from: AxesId, to: AxesId) -> [Triple; 3] {
+        if from == to {
+            return std::array::from_fn(unit);
+        }
+        if !self.descends(to, from)
+            && let Some((parent, turn)) = &self.axes[from].parent
+        {
+            let known = self.columns(z, *parent, to);
+            return std::array::from_fn(|j| {
+                let along = up(turn, &unit(j));
+                let parts = (0..3).map(|i| scale(&along[i], &known[i]));
+                let sum = parts.fold(zero(), |sum, part| super::linear::add(&sum, &part));
+                name(z, sum)
+            });
+        }
+        let Some((parent, turn)) = &self.axes[to].parent else { return std::array::from_fn(unit) };
+        let known = self.columns(z, from, *parent);
+        known.map(|column| name(z, down(turn, &column)))
+    }
+
+    /// As `convert`, by the matrix between the axes where that is shared by many vectors on a long way.
+    pub fn convert_far(&self, z: &mut Intermediates, v: &Triple, from: AxesId, to: AxesId) -> Triple {
+        if self.distance(from, to) < 2 || super::linear::is_zero(v) {
+            return self.convert(z, v, from, to);
+        }
+        let columns = self.columns(z, from, to);
+        let parts = (0..3).map(|i| scale(&v[i], &columns[i]));
+        let sum = parts.fold(zero(), |sum, part| super::linear::add(&sum, &part));
+        name(z, sum)
     }
 
     /// The same vector along other axes, its components named on the way.
@@ -155,7 +200,7 @@ impl AxesTree {
 /// A dyadic from turned axes to the parent's, or back.
 fn up_symmetric(z: &mut Intermediates, turn: &Turn, m: &Symmetric, back: bool) -> Symmetric {
     match turn {
-        Turn::Simple { axis, sine, cosine } => {
+        Turn::Simple { axis, sine, cosine, .. } => {
             let sine = if back { sine.neg() } else { sine.clone() };
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
             let (jj, kk, jk) = (&m[j], &m[k], &m[entry(j, k)]);
@@ -196,7 +241,7 @@ impl Default for AxesTree {
 /// From turned axes to the parent's.
 fn up(turn: &Turn, v: &Triple) -> Triple {
     match turn {
-        Turn::Simple { axis, sine, cosine } => turned(*axis, sine, cosine, v),
+        Turn::Simple { axis, sine, cosine, .. } => turned(*axis, sine, cosine, v),
         Turn::Matrix(rows) => std::array::from_fn(|i| dot(&rows[i], v)),
     }
 }
@@ -204,7 +249,7 @@ fn up(turn: &Turn, v: &Triple) -> Triple {
 /// From the parent's axes to the turned ones.
 fn down(turn: &Turn, v: &Triple) -> Triple {
     match turn {
-        Turn::Simple { axis, sine, cosine } => turned(*axis, &sine.neg(), cosine, v),
+        Turn::Simple { axis, sine, cosine, .. } => turned(*axis, &sine.neg(), cosine, v),
         Turn::Matrix(rows) => {
             std::array::from_fn(|j| dot(&[rows[0][j].clone(), rows[1][j].clone(), rows[2][j].clone()], v))
         }
@@ -239,8 +284,8 @@ pub fn unit(i: usize) -> Triple {
 pub fn simple(z: &mut Intermediates, axis: Axis, negative: bool, angle: &Expr) -> Turn {
     let angle = if negative { angle.neg() } else { angle.clone() };
     let sine = z.call(Function::Sin, vec![angle.clone()]);
-    let cosine = z.call(Function::Cos, vec![angle]);
-    Turn::Simple { axis: index(axis), sine, cosine }
+    let cosine = z.call(Function::Cos, vec![angle.clone()]);
+    Turn::Simple { axis: index(axis), angle, sine, cosine }
 }
 
 /// Rotation about a unit vector `e`: cos 1 + sin [e]x + (1 - cos) e e'.

@@ -154,8 +154,9 @@ impl Kinematics<'_> {
             Orientation::Aligned => parent_axes,
             Orientation::Simple { axis, negative, angle } => {
                 let angle = self.scalar(angle);
+                let (from, angle) = self.flatten(parent_axes, *axis, *negative, angle);
                 let turn = axes::simple(&mut self.z, *axis, *negative, &angle);
-                self.turned(parent_axes, turn, id)
+                self.turned(from, turn, id)
             }
             Orientation::About { axis, angle } => {
                 let axis: Triple = std::array::from_fn(|i| self.scalar(&axis[i]));
@@ -182,6 +183,20 @@ impl Kinematics<'_> {
         };
         self.frame_axes[id.0] = Some(axes);
         Ok(())
+    }
+
+    /// Rotations about one axis that keeps its direction in N add up: in a planar chain the axes of every link are turned
+    /// against the ground by the sum of the angles, which spares the products of their sines and cosines.
+    fn flatten(&self, parent: AxesId, axis: Axis, negative: bool, angle: Expr) -> (AxesId, Expr) {
+        match (self.tree.turn(parent), self.tree.parent(parent)) {
+            (Some(Turn::Simple { axis: before, angle: first, .. }), Some(AxesTree::N))
+                if *before == axes::index(axis) && self.tree.owner(parent) != FrameId::N =>
+            {
+                let first = if negative { first.neg() } else { first.clone() };
+                (AxesTree::N, first.add(&angle))
+            }
+            _ => (parent, angle),
+        }
     }
 
     fn turned(&mut self, parent: AxesId, turn: Turn, owner: FrameId) -> AxesId {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::axes::{AxesId, AxesTree};
+use super::axes::{AxesId, AxesTree, Turn};
 use super::linear::{self, LinearVector, Triple};
 use super::vectors::{add_linear, scale_linear};
 use super::{Arm, DeriveError, FrameMotion, Kinematics, MixedLinear, PointMotion};
@@ -132,15 +132,21 @@ impl Kinematics<'_> {
         home.unwrap_or(AxesTree::N)
     }
 
+    /// Not where the frame turns about an axis that keeps its direction in N and carries no other axes.
     fn worth_turning(&self, frame: FrameId) -> bool {
         let axes = self.frames[frame.0].home;
         let carries =
             self.frames.iter().any(|other| other.home != axes && self.tree.descends(other.home, axes));
-        let motion = &self.frames[frame.0];
-        let one_axis = motion.base == FrameId::N
-            && (0..3).filter(|&i| motion.relative.component(i).terms.values().next().is_some()).count() <= 1
-            && linear::is_zero(&motion.relative.rest);
-        carries || !one_axis
+        let planar = self.tree.parent(axes) == Some(AxesTree::N)
+            && match self.tree.turn(axes) {
+                Some(Turn::Simple { axis, .. }) => self.ancestry(frame).iter().all(|frame| {
+                    let relative = &self.frames[frame.0].relative;
+                    let partials = relative.terms.values().chain([&relative.rest]);
+                    partials.into_iter().all(|p| (0..3).all(|i| i == *axis || p[i].is_zero()))
+                }),
+                _ => false,
+            };
+        carries || !planar
     }
 
     /// The frames whose relations add up to a frame's angular velocity, itself first.
@@ -191,13 +197,13 @@ impl Kinematics<'_> {
         while let Some(id) = at {
             let motion = self.points[id.0].clone();
             for arm in &motion.arms {
-                let turned = self.tree.convert(&mut self.z, &arm.arm, arm.axes, axes);
+                let turned = self.tree.convert_far(&mut self.z, &arm.arm, arm.axes, axes);
                 let total =
                     carried.get(&arm.frame).map_or_else(|| turned.clone(), |have| linear::add(have, &turned));
                 carried.insert(arm.frame, total);
             }
             for (from, relative) in &motion.relative {
-                let part = relative.map(|p| self.tree.convert(&mut self.z, p, *from, axes));
+                let part = relative.map(|p| self.tree.convert_far(&mut self.z, p, *from, axes));
                 sum = sum.add(&part);
             }
             at = motion.base;
@@ -226,7 +232,7 @@ impl Kinematics<'_> {
             let Some(arm) = carried.remove(&frame) else { continue };
             let arm = linear::name(&mut self.z, arm);
             let motion = self.frames[frame.0].clone();
-            let relative = motion.relative.map(|p| self.tree.convert(&mut self.z, p, motion.home, axes));
+            let relative = motion.relative.map(|p| self.tree.convert_far(&mut self.z, p, motion.home, axes));
             sum = sum.add(&relative.map(|w| linear::cross(w, &arm)));
             if motion.base != FrameId::N {
                 let total =
