@@ -1,6 +1,8 @@
 //! The shipped models with their derivations, and the reference data.
 #![allow(dead_code)]
 
+pub mod random;
+
 use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact;

@@ -1,0 +1,297 @@
+//! Every shipped model at random states: the derived program against the numeric evaluation of the model, which shares nothing
+//! with the derivation but the meaning of the model, and against identities of mechanics.
+
+mod common;
+
+use common::random::{Sample, samples};
+use common::{Model, models};
+use hodograph_generator::interpret::{Array, Inputs};
+use hodograph_generator::model::mechanism::LoadKind;
+use hodograph_generator::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
+use nalgebra::{DMatrix, DVector};
+
+/// Runs a check on every model at random states and reports all that fail.
+fn everywhere(check: impl Fn(&Model, &Sample) -> Result<(), String>) {
+    let mut faults = Vec::new();
+    for model in models() {
+        for (index, sample) in samples(&model, 6).iter().enumerate() {
+            if let Err(fault) = check(&model, sample) {
+                faults.push(format!("{} sample {index}: {fault}", model.name));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+fn close(what: &str, ours: &[f64], theirs: &[f64], bound: f64) -> Result<(), String> {
+    if ours.len() != theirs.len() {
+        return Err(format!("{what}: {} numbers, {} expected", ours.len(), theirs.len()));
+    }
+    // Velocities that vanish identically are compared with those of their surroundings, about 1.
+    let top = theirs.iter().fold(1e-3_f64, |top, x| top.max(x.abs()));
+    let error = ours.iter().zip(theirs).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs())) / top;
+    if error <= bound {
+        Ok(())
+    } else {
+        Err(format!("{what} is off by {error:.1e}\n  {ours:?}\n  {theirs:?}"))
+    }
+}
+
+fn matrix(array: &Array) -> DMatrix<f64> {
+    DMatrix::from_row_slice(array.rows, array.columns, &array.values)
+}
+
+fn flat(rows: &[Vec<f64>]) -> Vec<f64> {
+    rows.concat()
+}
+
+#[test]
+fn mass_matrix_is_the_sum_over_bodies_and_positive_definite() {
+    everywhere(|model, sample| {
+        let m = model.get(&sample.inputs, Q::MassMatrix);
+        close("mass matrix", &m.values, &flat(&sample.numeric.mass_matrix), 1e-11)?;
+        let m = matrix(&m);
+        if m != m.transpose() {
+            return Err(format!("the mass matrix is not symmetric: {m}"));
+        }
+        m.cholesky().map(|_| ()).ok_or("the mass matrix is not positive definite".to_string())
+    });
+}
+
+#[test]
+fn forcing_and_accelerations() {
+    everywhere(|model, sample| {
+        let forcing = model.get(&sample.inputs, Q::Forcing).values;
+        close("forcing", &forcing, &sample.numeric.forcing, 1e-9)?;
+        let m = matrix(&model.get(&sample.inputs, Q::MassMatrix));
+        let u = DVector::from_vec(model.get(&sample.inputs, Q::Accelerations).values);
+        close("M u'", (m * u).as_slice(), &forcing, 1e-9)
+    });
+}
+
+#[test]
+fn inverse_dynamics_undoes_forward_dynamics() {
+    everywhere(|model, sample| {
+        let m = matrix(&model.get(&sample.inputs, Q::MassMatrix));
+        let forcing = DVector::from_vec(model.get(&sample.inputs, Q::Forcing).values);
+        let given = DVector::from_column_slice(&sample.inputs.accelerations);
+        let expected = &m * given - forcing;
+        close(
+            "inverse dynamics",
+            &model.get(&sample.inputs, Q::InverseDynamics).values,
+            expected.as_slice(),
+            1e-9,
+        )
+    });
+}
+
+#[test]
+fn rates_and_dependent_speeds() {
+    everywhere(|model, sample| {
+        let rates = model.get(&sample.inputs, Q::CoordinateRates).values;
+        close("rates of coordinates", &rates, &sample.numeric.rates, 1e-10)?;
+        let p = model.freedom();
+        let dependent = model.get(&sample.inputs, Q::DependentSpeeds).values;
+        close("dependent speeds", &dependent, &sample.numeric.speeds[p..], 1e-10)?;
+        let residual = model.get(&sample.inputs, Q::ConstraintResidual).values;
+        let size = sample.numeric.speeds.iter().fold(1.0_f64, |size, u| size.max(u.abs()));
+        if residual.iter().any(|r| r.abs() > 1e-11 * size) {
+            return Err(format!("the constraints are left with {residual:?}"));
+        }
+        let residual = model.get(&sample.inputs, Q::ConfigurationResidual).values;
+        if residual.iter().chain(&sample.numeric.configuration).any(|r| r.abs() > 1e-12) {
+            return Err(format!("the loops are open by {residual:?}"));
+        }
+        dependent_accelerations(model, sample)
+    });
+}
+
+/// The rates of the dependent speeds: what they are with u' = 0, plus the part linear in u'.
+fn dependent_accelerations(model: &Model, sample: &Sample) -> Result<(), String> {
+    let speeds_at = |speeds: Vec<f64>| {
+        let inputs = Inputs { speeds, ..sample.inputs.clone() };
+        DVector::from_vec(model.get(&inputs, Q::DependentSpeeds).values)
+    };
+    let p = model.freedom();
+    let rest = speeds_at(vec![0.0; p]);
+    let accelerations = model.get(&sample.inputs, Q::Accelerations).values;
+    let mut expected = DVector::from_vec(sample.numeric.dependent_accelerations.clone());
+    for r in 0..p {
+        let mut unit = vec![0.0; p];
+        unit[r] = 1.0;
+        expected += (speeds_at(unit) - &rest) * accelerations[r];
+    }
+    let ours = model.get(&sample.inputs, Q::DependentAccelerations).values;
+    close("rates of dependent speeds", &ours, expected.as_slice(), 1e-8)
+}
+
+#[test]
+fn contacts() {
+    everywhere(|model, sample| {
+        let p = model.freedom();
+        let inverse =
+            matrix(&model.get(&sample.inputs, Q::MassMatrix)).try_inverse().ok_or("M is singular")?;
+        for (index, theirs) in sample.numeric.contacts.iter().enumerate() {
+            let name = &model.mechanism.contacts[index].name;
+            let get = |quantity| model.get(&sample.inputs, Q::Contact(index as u32, quantity));
+            let basis = [C::Normal, C::First, C::Second].map(|axis| DVector::from_vec(get(axis).values));
+            let basis = DMatrix::from_columns(&basis);
+            close(&format!("{name} normal"), basis.column(0).as_slice(), &theirs.normal, 1e-12)?;
+            let identity = DMatrix::<f64>::identity(3, 3);
+            let orthonormal = basis.transpose() * &basis;
+            close(&format!("{name} basis"), orthonormal.as_slice(), identity.as_slice(), 1e-13)?;
+            if (basis.determinant() - 1.0).abs() > 1e-12 {
+                return Err(format!("the basis of {name} is left-handed"));
+            }
+            let v = matrix(&get(C::PartialVelocities));
+            let partials: Vec<_> =
+                theirs.partial_velocities.iter().map(|v| DVector::from_column_slice(v)).collect();
+            let partials = DMatrix::from_columns(&partials);
+            close(&format!("{name} V"), (&basis * &v).as_slice(), partials.as_slice(), 1e-11)?;
+            let velocity = &basis * DVector::from_vec(get(C::Velocity).values);
+            close(&format!("{name} velocity"), velocity.as_slice(), &theirs.velocity, 1e-11)?;
+            let remainder = get(C::Remainder).values;
+            if !remainder.is_empty() {
+                let remainder = &basis * DVector::from_vec(remainder);
+                close(&format!("{name} remainder"), remainder.as_slice(), &theirs.remainder, 1e-11)?;
+            }
+            let response = &inverse * v.transpose();
+            close(
+                &format!("{name} response"),
+                matrix(&get(C::Response)).as_slice(),
+                response.as_slice(),
+                1e-9,
+            )?;
+            let m = &v * response;
+            let reduced = [m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 1)], m[(1, 2)], m[(2, 2)]];
+            close(&format!("{name} reduced matrix"), &get(C::Reduced).values, &reduced, 1e-9)?;
+            let gap: Vec<f64> = theirs.gap.into_iter().collect();
+            close(&format!("{name} gap"), &get(C::Gap).values, &gap, 1e-12)?;
+            debug_assert_eq!(p, v.ncols());
+        }
+        Ok(())
+    });
+}
+
+/// The state a little later or earlier, moved along the derived rates.
+fn moved(model: &Model, inputs: &Inputs, by: f64) -> Inputs {
+    let rates = model.get(inputs, Q::CoordinateRates).values;
+    let accelerations = model.get(inputs, Q::Accelerations).values;
+    let along = |from: &[f64], rates: &[f64]| from.iter().zip(rates).map(|(x, rate)| x + by * rate).collect();
+    Inputs {
+        time: inputs.time + by,
+        coordinates: along(&inputs.coordinates, &rates),
+        speeds: along(&inputs.speeds, &accelerations),
+        ..inputs.clone()
+    }
+}
+
+/// The rate of a quantity along the motion, from values on both sides.
+fn rate(model: &Model, inputs: &Inputs, quantity: Q) -> Vec<f64> {
+    let step = 1e-5;
+    let before = model.get(&moved(model, inputs, -step), quantity).values;
+    let after = model.get(&moved(model, inputs, step), quantity).values;
+    after.iter().zip(before).map(|(after, before)| (after - before) / (2.0 * step)).collect()
+}
+
+#[test]
+fn power_is_balanced() {
+    everywhere(|model, sample| {
+        let energy = model.get(&sample.inputs, Q::KineticEnergy).values;
+        close("kinetic energy", &energy, &[sample.numeric.kinetic_energy], 1e-11)?;
+        let gained = rate(model, &sample.inputs, Q::KineticEnergy)[0];
+        let scale = 1.0 + sample.numeric.power.abs() + energy[0];
+        let prescribed = model.program.operations.iter().any(|operation| {
+            use hodograph_generator::program::{graph::Input, operation::Operation};
+            matches!(operation, Operation::Input(Input::Time))
+        });
+        // What moves as prescribed does work that no load accounts for.
+        if !prescribed && (gained - sample.numeric.power).abs() > 1e-5 * scale {
+            return Err(format!("the loads have {} W, the energy grows by {gained} W", sample.numeric.power));
+        }
+        let conservative = model.mechanism.loads.iter().all(|load| matches!(load.kind, LoadKind::Gravity(_)));
+        // A mechanism whose place is ignorable (the bicycle) has no potential energy to state.
+        let lost = rate(model, &sample.inputs, Q::PotentialEnergy);
+        if let (true, false, [lost]) = (conservative, prescribed, lost[..]) {
+            if (gained + lost).abs() > 1e-5 * scale {
+                return Err(format!("kinetic energy changes by {gained} W, potential by {lost} W"));
+            }
+        }
+        Ok(())
+    });
+}
+
+#[test]
+fn velocities_are_rates_of_positions() {
+    everywhere(|model, sample| {
+        for (index, point) in model.mechanism.points.iter().enumerate() {
+            let quantity = |quantity| Q::Point(index as u32, quantity);
+            let velocity = model.get(&sample.inputs, quantity(P::Velocity)).values;
+            if velocity.is_empty() {
+                continue;
+            }
+            let what = format!("velocity of {}", point.name);
+            close(&what, &velocity, &sample.numeric.velocities[index], 1e-10)?;
+            let position = model.get(&sample.inputs, quantity(P::Position)).values;
+            if let (false, Some(theirs)) = (position.is_empty(), sample.numeric.positions[index]) {
+                close(&format!("position of {}", point.name), &position, &theirs, 1e-12)?;
+            }
+            // A material point of a rolling or spinning body is another one an instant later.
+            let material =
+                matches!(point.place, hodograph_generator::model::mechanism::Place::Material { .. });
+            if !position.is_empty() && !material {
+                let differentiated = rate(model, &sample.inputs, quantity(P::Position));
+                let size = velocity.iter().fold(1.0_f64, |size, v| size.max(v.abs()));
+                let off = differentiated.iter().zip(&velocity).any(|(a, b)| (a - b).abs() > 1e-6 * size);
+                if off {
+                    return Err(format!("{what}: {velocity:?}, the position changes by {differentiated:?}"));
+                }
+            }
+            jacobian(model, sample, index)?;
+        }
+        Ok(())
+    });
+}
+
+/// The partial velocities of a point are the change of its velocity per unit of each speed.
+fn jacobian(model: &Model, sample: &Sample, point: usize) -> Result<(), String> {
+    let quantity = |quantity| Q::Point(point as u32, quantity);
+    let partials = model.get(&sample.inputs, quantity(P::Jacobian));
+    if partials.values.is_empty() {
+        return Ok(());
+    }
+    let velocity = |speeds: Vec<f64>| {
+        let inputs = Inputs { speeds, ..sample.inputs.clone() };
+        model.get(&inputs, quantity(P::Velocity)).values
+    };
+    let p = model.freedom();
+    let rest = velocity(vec![0.0; p]);
+    let partials = matrix(&partials);
+    for r in 0..p {
+        let mut unit = vec![0.0; p];
+        unit[r] = 1.0;
+        let expected: Vec<f64> = velocity(unit).iter().zip(&rest).map(|(a, b)| a - b).collect();
+        let off = partials.column(r).iter().zip(&expected).any(|(a, b)| (a - b).abs() > 1e-11);
+        if off {
+            return Err(format!(
+                "partial velocity {r} of point {point}: {} {expected:?}",
+                partials.column(r)
+            ));
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn orientations() {
+    everywhere(|model, sample| {
+        for (index, theirs) in sample.numeric.orientations.iter().enumerate() {
+            let ours = model.get(&sample.inputs, Q::Orientation(index as u32)).values;
+            if let (Some(theirs), false) = (theirs, ours.is_empty()) {
+                let name = &model.mechanism.frames[index].name;
+                close(&format!("orientation of {name}"), &ours, &theirs.concat(), 1e-13)?;
+            }
+        }
+        Ok(())
+    });
+}
