@@ -1,10 +1,14 @@
 //! Mistakes in a model: where, what, and what to do about it.
 
 pub mod codes;
+mod compile_error;
+mod render;
 
 use std::ops::Range;
 
 pub use codes::Code;
+pub use compile_error::compile_errors;
+pub use render::render;
 
 /// A place in the source: bytes of a file, or tokens of an inline model (see `syntax`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

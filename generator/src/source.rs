@@ -109,15 +109,16 @@ impl Source {
     }
 
     /// Its tokens.
-    pub fn tokens(&self) -> Result<Cow<'_, [Token]>, Diagnostic> {
-        let too_large = |message: String| Diagnostic::new(codes::TOO_LARGE, Span::default(), message);
+    pub fn tokens(&self) -> Result<Cow<'_, [Token]>, Box<Diagnostic>> {
+        let too_large = |message: String| {
+            Box::new(Diagnostic::new(codes::TOO_LARGE, Span::default(), message).help("is it a model?"))
+        };
         match &self.content {
             Content::File(text) if text.len() > MAX_BYTES => {
-                Err(too_large(format!("the file is larger than {} MiB", MAX_BYTES >> 20))
-                    .help("is it a model?"))
+                Err(too_large(format!("the file is larger than {} MiB", MAX_BYTES >> 20)))
             }
             Content::File(text) => Ok(Cow::Owned(lexer::tokens(text))),
-            Content::Unreadable(error) => Err((**error).clone()),
+            Content::Unreadable(error) => Err(error.clone()),
             Content::Inline { tokens, .. } if tokens.len() > MAX_TOKENS => {
                 Err(too_large(format!("the model has more than {MAX_TOKENS} tokens")))
             }

@@ -178,11 +178,10 @@ fn solve(a: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     let mut rows: Vec<Vec<f64>> =
         a.iter().zip(b).map(|(r, b)| r.iter().copied().chain([*b]).collect()).collect();
     for k in 0..n {
-        for i in k + 1..n {
-            let f = rows[i][k] / rows[k][k];
-            for j in k..=n {
-                rows[i][j] -= f * rows[k][j];
-            }
+        let (above, below) = rows.split_at_mut(k + 1);
+        for row in below {
+            let factor = row[k] / above[k][k];
+            row.iter_mut().zip(&above[k]).for_each(|(entry, above)| *entry -= factor * above);
         }
     }
     let mut x = vec![0.0; n];

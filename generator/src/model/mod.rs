@@ -1,11 +1,12 @@
 //! The meaning of a model: names resolved, dimensions and physics checked.
 
+mod checks;
+mod counts;
 pub mod dimension;
 mod lower;
 pub mod mechanism;
 mod names;
 mod order;
-pub mod rust_names;
 pub mod similar;
 mod typed;
 pub mod units;
@@ -35,7 +36,7 @@ impl Checked {
 pub fn check(source: &Source) -> Checked {
     let tokens = match source.tokens() {
         Ok(tokens) => tokens,
-        Err(error) => return Checked { mechanism: None, diagnostics: vec![error] },
+        Err(error) => return Checked { mechanism: None, diagnostics: vec![*error] },
     };
     let (tree, diagnostics) = syntax::parse(&tokens);
     // without a name nothing else could be read
@@ -46,8 +47,18 @@ pub fn check(source: &Source) -> Checked {
         let (mechanism, diagnostics) = lower::lower(&tree, diagnostics);
         (Some(mechanism), diagnostics)
     };
+    // what follows looks at the mechanism as a whole, so it must be whole
+    let errors = |list: &[Diagnostic]| list.iter().any(|d| d.severity == Severity::Error);
+    if let Some(mechanism) = mechanism.as_ref().filter(|_| !errors(&diagnostics)) {
+        diagnostics.extend(counts::counts(mechanism));
+        if !errors(&diagnostics) {
+            diagnostics.extend(checks::physics(mechanism));
+        }
+    }
+    // one mistake at a place: what else is found there follows from it
+    let mut places = std::collections::HashSet::new();
+    diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
     diagnostics.sort_by_key(|d| (d.primary.span, d.code));
-    diagnostics.dedup();
-    let errors = diagnostics.iter().any(|d| d.severity == Severity::Error);
-    Checked { mechanism: mechanism.filter(|_| !errors), diagnostics }
+    let failed = errors(&diagnostics);
+    Checked { mechanism: mechanism.filter(|_| !failed), diagnostics }
 }

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::rust_names::{is_keyword, snake_case};
 use super::similar;
 use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::emit::names::{is_keyword, snake_case};
 use crate::syntax::tree::{Name, Tree};
 
 /// What a name stands for. Indices as in `Mechanism`: frame 0 is N, point 0 is O, dependent speeds follow the independent ones
@@ -23,6 +23,8 @@ pub enum Symbol {
     Contact(usize),
     Time,
     Pi,
+    /// declared by an entry that could not be read
+    Broken,
 }
 
 impl Symbol {
@@ -40,6 +42,7 @@ impl Symbol {
             Symbol::Contact(_) => "a contact",
             Symbol::Time => "the time",
             Symbol::Pi => "the number pi",
+            Symbol::Broken => "something that could not be read",
         }
     }
 }
@@ -91,6 +94,9 @@ impl Names {
         }
         for (i, contact) in tree.contacts.iter().enumerate() {
             add(&contact.name, Symbol::Contact(i));
+        }
+        for name in &tree.broken {
+            names.symbols.entry(name.text.clone()).or_insert((Symbol::Broken, Some(name.span)));
         }
         names.collisions(tree, diagnostics);
         names

@@ -1,6 +1,6 @@
 //! The order in which definitions, frames and points can be understood, and the cycles that forbid one.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::names::{Names, Symbol};
 use crate::diagnostics::{Diagnostic, Span, codes};
@@ -21,6 +21,9 @@ pub enum Item {
     Velocity(usize),
 }
 
+/// Names may refer to names that refer to names .. to this depth.
+const MAX_CHAIN: usize = 300;
+
 /// All items, each after those it refers to, and those that take part in a cycle.
 pub struct Order {
     /// in order
@@ -39,6 +42,7 @@ pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> O
     all.extend((0..counts[2]).map(Item::Position));
     all.extend((0..counts[1]).map(Item::AngularVelocity));
     all.extend((0..counts[2]).map(Item::Velocity));
+    let mut depths: HashMap<Item, usize> = HashMap::new();
     let mut out = Order { items: Vec::new(), cyclic: HashSet::new() };
     let mut done: HashSet<Item> = HashSet::new();
     // a walk with its own stack: chains of definitions may be long
@@ -52,6 +56,12 @@ pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> O
             let (item, next_reference) = (*item, references.get(*next).copied());
             *next += 1;
             let Some((reference, _)) = next_reference else {
+                let deepest = references.iter().filter_map(|(r, _)| depths.get(r)).max().map_or(0, |d| d + 1);
+                depths.insert(item, deepest);
+                if deepest == MAX_CHAIN {
+                    diagnostics.push(graph.too_deep(item));
+                    out.cyclic.insert(item);
+                }
                 open.remove(&item);
                 done.insert(item);
                 out.items.push(item);
@@ -68,7 +78,14 @@ pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> O
             let from = stack.iter().position(|(i, ..)| *i == reference).unwrap_or(0);
             let circle: Vec<(Item, Span)> =
                 stack[from..].iter().filter_map(|(i, refs, n)| Some((*i, refs.get(*n - 1)?.1))).collect();
-            if !circle.iter().any(|(item, _)| out.cyclic.contains(item)) {
+            // a motion that follows from positions in a cycle is no further mistake
+            let place = |item: &Item| match item {
+                Item::AngularVelocity(i) => Item::Orientation(*i),
+                Item::Velocity(i) => Item::Position(*i),
+                other => *other,
+            };
+            let known = |item: &Item| out.cyclic.contains(item) || out.cyclic.contains(&place(item));
+            if !circle.iter().any(|(item, _)| known(item)) {
                 diagnostics.push(graph.cycle(&circle));
             }
             out.cyclic.extend(circle.iter().map(|(item, _)| *item));
@@ -100,6 +117,21 @@ impl Graph<'_> {
             error = error.related(*place, format!("{} refers to the next here", self.name(*item)));
         }
         error.help("each must follow from what is already known")
+    }
+
+    fn too_deep(&self, item: Item) -> Diagnostic {
+        let span = match item {
+            Item::Definition(i) => self.tree.definitions[i].name.span,
+            Item::Orientation(i) | Item::AngularVelocity(i) => {
+                i.checked_sub(1).map_or(Span::default(), |i| self.tree.frames[i].name.span)
+            }
+            Item::Position(i) | Item::Velocity(i) => {
+                i.checked_sub(1).map_or(Span::default(), |i| self.tree.points[i].name.span)
+            }
+        };
+        let message = format!("{} rests on a chain of more than {MAX_CHAIN} names", self.name(item));
+        Diagnostic::new(codes::TOO_DEEP, span, message)
+            .help("refer to names nearer to the beginning of the chain")
     }
 
     fn name(&self, item: Item) -> String {

@@ -7,7 +7,7 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
     let allowed = match letters.len() {
         0 => return None,
         1..=2 => 1,
-        n => (n / 3).max(1),
+        n => ((n + 1) / 3).max(1),
     };
     candidates
         .take(20_000)

@@ -43,7 +43,12 @@ impl Traits {
     pub fn plus(self, other: Traits) -> Traits {
         Traits {
             degree: self.degree.max(other.degree),
-            speed_at: self.speed_at.or(other.speed_at),
+            // of two places the one that matters more
+            speed_at: if other.degree > self.degree {
+                other.speed_at
+            } else {
+                self.speed_at.or(other.speed_at)
+            },
             moves: self.moves || other.moves,
             time: self.time || other.time,
             input: self.input || other.input,
@@ -52,7 +57,9 @@ impl Traits {
 
     /// Of a product.
     pub fn times(self, other: Traits) -> Traits {
-        Traits { degree: (self.degree + other.degree).min(2), ..self.plus(other) }
+        let both = self.degree > 0 && other.degree > 0;
+        let speed_at = if both { other.speed_at } else { self.speed_at.or(other.speed_at) };
+        Traits { degree: (self.degree + other.degree).min(2), speed_at, ..self.plus(other) }
     }
 
     /// Of a function that is not linear.
@@ -63,6 +70,11 @@ impl Traits {
     /// The same things mattered, but seen from another place: that is where a message must point.
     pub fn seen_from(self, at: Span) -> Traits {
         Traits { speed_at: self.speed_at.map(|_| at), ..self }
+    }
+
+    /// With nothing more to be said about speeds.
+    pub fn free_of_speeds(self) -> Traits {
+        Traits { degree: 0, speed_at: None, ..self }
     }
 
     /// The time derivative of something free of speeds.

@@ -84,13 +84,12 @@ fn symbol(name: &str) -> Option<Unit> {
 }
 
 /// Reads a unit.
-pub fn read(expr: &Expr) -> Result<Unit, Option<Diagnostic>> {
+pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
     let wrong = || {
         let message = "a unit is a product or quotient of unit symbols with whole powers";
-        Some(
-            Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, message)
-                .help("for instance `kg*m^2`, `m/s`, `1/s` or `1`"),
-        )
+        let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, message)
+            .help("for instance `kg*m^2`, `m/s`, `1/s` or `1`");
+        Some(Box::new(error))
     };
     match &expr.kind {
         ExprKind::Error => Err(None),
@@ -100,7 +99,7 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Diagnostic>> {
             pi_power: 0,
             text: "1".to_owned(),
         }),
-        ExprKind::Name(name) => symbol(name).ok_or_else(|| Some(unknown(name, expr))),
+        ExprKind::Name(name) => symbol(name).ok_or_else(|| Some(Box::new(unknown(name, expr)))),
         ExprKind::Power(base, exponent) => {
             let mut unit = read(base)?;
             let (negative, exponent) = match &exponent.kind {

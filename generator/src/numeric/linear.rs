@@ -75,6 +75,31 @@ pub fn solve(mut rows: Vec<Vec<Hyper>>, count: usize) -> Result<Solved, Undeterm
     Ok(Solved { unknowns, contradiction })
 }
 
+/// How many of the equations are independent, by the coefficients of their first `count` unknowns.
+pub fn rank(mut rows: Vec<Vec<Hyper>>, count: usize) -> usize {
+    rows.iter_mut().for_each(|row| row.truncate(count));
+    let mut independent: Vec<Vec<Hyper>> = Vec::new();
+    let mut remaining = rows;
+    // each step takes the largest coefficient and clears its column
+    let scale = |row: &Vec<Hyper>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
+    let noise = 1e-9 * remaining.iter().map(scale).fold(0.0_f64, f64::max);
+    while let Some(best) =
+        (0..remaining.len()).max_by(|a, b| scale(&remaining[*a]).total_cmp(&scale(&remaining[*b])))
+    {
+        let row = remaining.swap_remove(best);
+        if scale(&row) <= noise {
+            break;
+        }
+        let column = (0..row.len()).max_by(|a, b| row[*a].re.abs().total_cmp(&row[*b].re.abs())).unwrap_or(0);
+        for other in &mut remaining {
+            let factor = Hyper::constant(other[column].re / row[column].re);
+            other.iter_mut().zip(&row).for_each(|(entry, above)| *entry = *entry - factor * *above);
+        }
+        independent.push(row);
+    }
+    independent.len()
+}
+
 /// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is.
 pub fn singular_column(matrix: &[Vec<f64>]) -> Option<usize> {
     let n = matrix.len();
@@ -89,11 +114,11 @@ pub fn singular_column(matrix: &[Vec<f64>]) -> Option<usize> {
         if a[k][k] < 1e-11 {
             return Some(k);
         }
-        for i in k + 1..n {
-            let factor = a[i][k] / a[k][k];
-            for j in k..n {
-                a[i][j] -= factor * a[k][j];
-            }
+        let (above, below) = a.split_at_mut(k + 1);
+        let pivot = &above[k];
+        for row in below {
+            let factor = row[k] / pivot[k];
+            row.iter_mut().zip(pivot).skip(k).for_each(|(entry, above)| *entry -= factor * above);
         }
     }
     None

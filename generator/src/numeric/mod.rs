@@ -20,6 +20,13 @@ pub use linear::singular_column;
 use crate::diagnostics::Span;
 use crate::model::mechanism::{CoordinateId, Mechanism, SpeedId};
 
+/// How many independent equations the constraints of a mechanism amount to at a state.
+pub fn constraint_rank(m: &Mechanism, state: &State) -> Result<usize, Failure> {
+    let coordinates = state.coordinates.iter().map(|q| hyper::Hyper::constant(*q)).collect();
+    let time = hyper::Hyper::constant(state.time);
+    motion::Instant { m, state, time, coordinates }.constraint_rank()
+}
+
 /// A state: every number in the unit of its declaration, in the order of the file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {

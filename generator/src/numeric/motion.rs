@@ -2,7 +2,7 @@
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper::*;
-use super::linear::solve;
+use super::linear::{rank, solve};
 use super::{Failure, State};
 use crate::diagnostics::Span;
 use crate::model::mechanism::*;
@@ -157,17 +157,7 @@ impl<'m> Instant<'m> {
         let count = self.m.speeds.len();
         let independent = self.m.speeds.iter().filter(|u| !u.dependent).count();
         let dependent = count - independent;
-        // dependent speeds first: they are the unknowns
-        let (rows, spans) = self.coefficients(count, |arguments| {
-            let (unknown, given) = arguments.split_at(dependent);
-            let speeds: Vec<Hyper> = given.iter().chain(unknown).copied().collect();
-            let values = self.evaluator(&maps.rates(&speeds), speeds);
-            let mut out = Vec::new();
-            for equation in &self.m.constraints {
-                out.extend(values.residual(equation, Level::Motion)?.into_iter().map(|r| (r, equation.span)));
-            }
-            Ok(out)
-        })?;
+        let (rows, spans) = self.constraint_rows(maps, dependent)?;
         let rows: Vec<Vec<Hyper>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
         let solved = solve(rows, dependent)
             .map_err(|e| Failure::SpeedsUndetermined(SpeedId(independent + e.unknown)))?;
@@ -176,8 +166,33 @@ impl<'m> Instant<'m> {
         }
         let units = (0..independent)
             .map(|i| (0..=independent).map(|j| if i == j { Hyper::ONE } else { Hyper::ZERO }).collect());
-        // no equation at all leaves the rows of the unknowns without entries
         Ok(units.chain(solved.unknowns).collect())
+    }
+
+    /// The constraints by their coefficients: dependent speeds, independent speeds, the constant.
+    fn constraint_rows(
+        &self,
+        maps: &Maps,
+        dependent: usize,
+    ) -> Result<(Vec<Vec<Hyper>>, Vec<Span>), Failure> {
+        self.coefficients(self.m.speeds.len(), |arguments| {
+            let (unknown, given) = arguments.split_at(dependent);
+            let speeds: Vec<Hyper> = given.iter().chain(unknown).copied().collect();
+            let values = self.evaluator(&maps.rates(&speeds), speeds);
+            let mut out = Vec::new();
+            for equation in &self.m.constraints {
+                out.extend(values.residual(equation, Level::Motion)?.into_iter().map(|r| (r, equation.span)));
+            }
+            Ok(out)
+        })
+    }
+
+    /// How many independent equations the constraints amount to.
+    pub fn constraint_rank(&self) -> Result<usize, Failure> {
+        let rates = self.solve_rates()?;
+        let maps = Maps { rates, speeds: Vec::new() };
+        let (rows, _) = self.constraint_rows(&maps, 0)?;
+        Ok(rank(rows, self.m.speeds.len()))
     }
 }
 

@@ -129,6 +129,7 @@ impl Parser<'_> {
                 Ok(Expr { kind: ExprKind::Number(token.text.clone()), span: start })
             }
             TokenKind::Bad(_) => {
+                // a message says so already
                 self.at += 1;
                 Ok(Expr { kind: ExprKind::Error, span: start })
             }

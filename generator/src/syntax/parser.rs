@@ -13,11 +13,16 @@ const MAX_ERRORS: usize = 200;
 pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
     let mut diagnostics = Vec::new();
     let tokens: Vec<&Token> = tokens.iter().filter(|token| readable(token, &mut diagnostics)).collect();
-    if let Err(error) = balanced(&tokens) {
-        diagnostics.push(error);
-        return (Tree::default(), diagnostics);
-    }
-    let mut parser = Parser { tokens, at: 0, depth: 0, tree: Tree::default(), diagnostics };
+    let nesting = match balanced(&tokens) {
+        Ok(nesting) => nesting,
+        Err(error) => {
+            diagnostics.push(*error);
+            return (Tree { incomplete: true, ..Tree::default() }, diagnostics);
+        }
+    };
+    let incomplete = diagnostics.iter().any(|d| d.code == codes::UNBALANCED);
+    let tree = Tree { incomplete, ..Tree::default() };
+    let mut parser = Parser { tokens, nesting, at: 0, depth: 0, tree, diagnostics };
     parser.model();
     (parser.tree, parser.diagnostics)
 }
@@ -42,7 +47,9 @@ fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
                 _ => "names begin with a letter; comments begin with `//`",
             },
         ),
-        Bad::Quoted => (codes::BAD_TOKEN, "a model has no texts".to_owned(), "names stand without quotes"),
+        Bad::Quoted => {
+            (codes::BAD_TOKEN, "a model has no quoted text".to_owned(), "names stand without quotes")
+        }
         Bad::RawName => {
             (codes::BAD_TOKEN, format!("`{shown}` is a raw name"), "use a name that is no Rust keyword")
         }
@@ -57,20 +64,28 @@ fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
         Bad::NumberThenName => (
             codes::BAD_NUMBER,
             format!("`{shown}` runs a number and a name together"),
-            "write `*` between a number and a name; a name begins with a letter; units stand in declarations only",
+            if shown.contains('·') {
+                "write `*` for a product"
+            } else {
+                "write `*` between a number and a name; a name begins with a letter; units stand in declarations only"
+            },
         ),
     };
     diagnostics.push(Diagnostic::new(code, token.span, message).help(help));
-    // a number with a fault still holds the place of an expression
-    matches!(bad, Bad::Number | Bad::NumberThenName)
+    // these hold the place of something that belongs there
+    matches!(bad, Bad::Number | Bad::NumberThenName | Bad::Quoted | Bad::RawName)
 }
 
-/// Brackets must have partners before anything can be said about what is between them.
-fn balanced(tokens: &[&Token]) -> Result<(), Diagnostic> {
+/// Brackets must have partners before anything can be said about what is between them. Gives the number of brackets around
+/// each token.
+fn balanced(tokens: &[&Token]) -> Result<Vec<u32>, Box<Diagnostic>> {
     let mut open: Vec<(char, Span)> = Vec::new();
+    let mut nesting = Vec::with_capacity(tokens.len());
     // the last place at which, judging by the names of sections, a brace should already have been closed
     let mut suspect = None;
     for (i, token) in tokens.iter().enumerate() {
+        let closes = usize::from(matches!(token.kind, TokenKind::Close(_)));
+        nesting.push(open.len().saturating_sub(closes) as u32);
         match token.kind {
             TokenKind::Open(c) => open.push((c, token.span)),
             TokenKind::Name if suspect.is_none() && !open.is_empty() => {
@@ -89,33 +104,33 @@ fn balanced(tokens: &[&Token]) -> Result<(), Diagnostic> {
                     Some((o, _)) if o == partner => {}
                     Some((o, span)) => {
                         let message = format!("`{c}` does not close `{o}`");
-                        return Err(Diagnostic::new(codes::UNBALANCED, token.span, message)
+                        let error = Diagnostic::new(codes::UNBALANCED, token.span, message)
                             .label(format!("`{}` is expected before this", closing(o)))
-                            .related(span, "opened here"));
+                            .related(span, "opened here");
+                        return Err(Box::new(error));
                     }
                     None => {
-                        return Err(Diagnostic::new(
-                            codes::UNBALANCED,
-                            token.span,
-                            format!("`{c}` without `{partner}`"),
-                        )
-                        .help("remove it, or find the bracket that is missing before it"));
+                        let message = format!("`{c}` without `{partner}`");
+                        let error = Diagnostic::new(codes::UNBALANCED, token.span, message)
+                            .help("remove it, or find the bracket that is missing before it");
+                        return Err(Box::new(error));
                     }
                 }
             }
             _ => {}
         }
     }
+    let unclosed =
+        |c: char, span: Span| Diagnostic::new(codes::UNBALANCED, span, format!("this `{c}` is never closed"));
     match (suspect, open.last()) {
         (Some((c, span, before)), Some(_)) => {
-            Err(Diagnostic::new(codes::UNBALANCED, span, format!("this `{c}` is never closed"))
-                .related(before, format!("`{}` is missing before this section", closing(c))))
+            let missing = format!("`{}` is missing before this section", closing(c));
+            Err(Box::new(unclosed(c, span).related(before, missing)))
         }
         (None, Some(&(c, span))) => {
-            Err(Diagnostic::new(codes::UNBALANCED, span, format!("this `{c}` is never closed"))
-                .help(format!("add the missing `{}`", closing(c))))
+            Err(Box::new(unclosed(c, span).help(format!("add the missing `{}`", closing(c)))))
         }
-        (_, None) => Ok(()),
+        (_, None) => Ok(nesting),
     }
 }
 
@@ -132,6 +147,7 @@ pub(super) struct Lost;
 
 pub(super) struct Parser<'a> {
     pub(super) tokens: Vec<&'a Token>,
+    pub(super) nesting: Vec<u32>,
     pub(super) at: usize,
     pub(super) depth: usize,
     pub(super) tree: Tree,
@@ -161,6 +177,15 @@ impl<'a> Parser<'a> {
             Some(token) => token.span,
             None => self.here(),
         }
+    }
+
+    fn before_is(&self, sign: char) -> bool {
+        self.at.checked_sub(1).and_then(|i| self.tokens.get(i)).is_some_and(|token| token.is_sign(sign))
+    }
+
+    /// How many brackets are around the next token.
+    pub(super) fn nesting(&self) -> u32 {
+        self.nesting.get(self.at).copied().unwrap_or(0)
     }
 
     pub(super) fn found(&self) -> String {
@@ -208,10 +233,16 @@ impl<'a> Parser<'a> {
     /// `what` completes "expected ..".
     pub(super) fn expected(&mut self, what: &str) -> Lost {
         let message = format!("expected {what}, found {}", self.found());
-        let at_end = self.peek().is_none();
         let error = Diagnostic::new(codes::EXPECTED, self.here(), message);
-        let error = if at_end { error.label("the model ends here") } else { error };
-        self.report(error);
+        self.report(match self.peek().map(|token| token.kind) {
+            // a message says so already
+            Some(TokenKind::Bad(_)) => return Lost,
+            None => error.label("the model ends here"),
+            Some(TokenKind::Sign('\'')) => error.help("a time derivative is written `d(q1)/dt`"),
+            Some(TokenKind::Sign('=')) if self.before_is('=') => error.help("an equation has one `=`"),
+            Some(TokenKind::Sign('<' | '>')) => error.help("there are no inequalities in a model"),
+            Some(_) => error,
+        });
         Lost
     }
 
@@ -248,18 +279,16 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Passes over what cannot be read: to the sign that separates entries (which is passed) or to the closing bracket (which
-    /// is not).
-    pub(super) fn skip_entry(&mut self, separator: char) {
+    /// Passes over what cannot be read: to the sign that separates entries at this nesting (which is passed) or to the bracket
+    /// that closes them (which is not).
+    pub(super) fn skip_entry(&mut self, separator: char, nesting: u32) {
         while let Some(token) = self.peek() {
-            match token.kind {
-                TokenKind::Open(_) => self.skip_group(),
-                TokenKind::Close(_) => return,
-                TokenKind::Sign(sign) if sign == separator => {
-                    self.at += 1;
-                    return;
-                }
-                _ => self.at += 1,
+            if self.nesting() < nesting {
+                return;
+            }
+            self.at += 1;
+            if token.is_sign(separator) && self.nesting[self.at - 1] == nesting {
+                return;
             }
         }
     }

@@ -75,7 +75,12 @@ impl Parser<'_> {
             self.report(error);
         }
         self.at += 1;
-        self.order(section, token.span);
+        self.body(section, token.span);
+    }
+
+    /// What follows the word of a section.
+    fn body(&mut self, section: Section, span: Span) {
+        self.order(section, span);
         if self.open('{', &format!(" after `{}`", section.word())).is_err() {
             return;
         }
@@ -94,14 +99,22 @@ impl Parser<'_> {
                 span,
                 format!("there is no section `{}`", token.text),
             );
-            let error = match similar::nearest(&token.text, words.into_iter()) {
+            let near = similar::nearest(&token.text, words.into_iter());
+            let error = match near {
                 Some(word) => error.help(format!("did you mean `{word}`?")),
                 None => error.help(format!("the sections are {}", words.join(", "))),
             };
             self.report(error);
+            // read on as if it had been written right
+            if let Some(section) = near.and_then(Section::of_word).filter(|_| opens) {
+                self.at += 1;
+                self.body(section, span);
+                return;
+            }
         } else {
             self.expected("a section such as `parameters { .. }`");
         }
+        self.tree.incomplete = true;
         self.at += usize::from(!matches!(kind, TokenKind::Open(_)));
         // pass over to behind the next braces, or to the next section
         if opens || matches!(kind, TokenKind::Open(_)) {
@@ -129,11 +142,11 @@ impl Parser<'_> {
                 .help("put all entries into one section");
             self.report(error);
         } else if let Some(&(before, place)) = self.tree.sections.iter().find(|(s, _)| *s > section) {
-            let message = format!("`{}` stands before `{}`", section.word(), before.word());
-            let words = Section::ALL.map(Section::word).join(", ");
+            let message = format!("`{}` stands after `{}`", section.word(), before.word());
             let error = Diagnostic::new(codes::SECTION_ORDER, span, message)
+                .label(format!("this belongs before `{}`", before.word()))
                 .related(place, format!("`{}` is here", before.word()))
-                .help(format!("move it up; the order is {words}"));
+                .help("sections stand in a fixed order; move this one up");
             self.report(error);
         }
         self.tree.sections.push((section, span));
@@ -146,17 +159,19 @@ impl Parser<'_> {
             Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => ',',
             _ => ';',
         };
-        while !self.is_close() {
+        let nesting = self.nesting();
+        while self.nesting() >= nesting && !self.is_close() {
             let start = self.at;
-            let result = self.entry(section);
-            let result = match result {
+            let result = match self.entry(section) {
                 Ok(()) if separator == ',' => self.comma(),
                 Ok(()) => self.semicolon(),
-                Err(lost) => Err(lost),
+                Err(lost) => {
+                    self.broken(start);
+                    Err(lost)
+                }
             };
             if result.is_err() {
-                // the separator may be what was read wrongly: take it up again from there
-                self.skip_entry(separator);
+                self.skip_entry(separator, nesting);
             }
             if self.at == start {
                 self.at += 1;
@@ -164,7 +179,30 @@ impl Parser<'_> {
         }
     }
 
+    /// An entry that could not be read still declares its name.
+    fn broken(&mut self, start: usize) {
+        let words = self.tokens[start..].iter().take(40);
+        let name = words
+            .skip_while(|t| t.kind == TokenKind::OuterDoc || t.is_word("fixed") || t.is_word("dependent"))
+            .find(|_| true)
+            .filter(|token| token.kind == TokenKind::Name);
+        if let Some(token) = name {
+            self.tree.broken.push(Name { text: token.text.clone(), span: token.span });
+        }
+    }
+
+    /// Documentation behind what it is meant for.
+    fn trailing_docs(&mut self) {
+        let documents = |token: &super::token::Token| token.kind == TokenKind::OuterDoc;
+        let ahead = self.tokens[self.at..].iter().take_while(|token| documents(token)).count();
+        let closes = self.peek_at(ahead).is_none_or(|token| matches!(token.kind, TokenKind::Close(_)));
+        if ahead > 0 && closes {
+            self.docs();
+        }
+    }
+
     fn comma(&mut self) -> Result<(), Lost> {
+        self.trailing_docs();
         if self.is_close() || self.take_sign(',') {
             return Ok(());
         }
@@ -172,6 +210,7 @@ impl Parser<'_> {
     }
 
     fn semicolon(&mut self) -> Result<(), Lost> {
+        self.trailing_docs();
         if self.take_sign(';') {
             return Ok(());
         }
@@ -328,17 +367,26 @@ impl Parser<'_> {
     fn fields(&mut self) -> Result<Vec<Field>, Lost> {
         self.open('{', " and fields such as `mass: m`")?;
         let mut fields = Vec::new();
-        while !self.is_close() {
+        let nesting = self.nesting();
+        while self.nesting() >= nesting && !self.is_close() {
             let start = self.at;
             let result = match self.field() {
                 Ok(field) => {
                     fields.push(field);
                     self.comma()
                 }
-                Err(lost) => Err(lost),
+                Err(lost) => {
+                    // a field that could not be read is not missing
+                    self.at = start;
+                    if let Some(name) = self.take_name() {
+                        let value = Expr { kind: ExprKind::Error, span: name.span };
+                        fields.push(Field { name, value, notes: Vec::new() });
+                    }
+                    Err(lost)
+                }
             };
             if result.is_err() {
-                self.skip_entry(',');
+                self.skip_entry(',', nesting);
             }
             if self.at == start {
                 self.at += 1;

@@ -126,6 +126,10 @@ pub struct Tree {
     pub configuration: Vec<Equation>,
     /// contacts
     pub contacts: Vec<Record>,
+    /// names of entries that could not be read: what refers to them is no further mistake
+    pub broken: Vec<Name>,
+    /// whole parts could not be read: that something is missing is no further mistake
+    pub incomplete: bool,
     /// where each section that is there is named
     pub sections: Vec<(Section, Span)>,
 }

@@ -19,13 +19,14 @@ impl Lowering<'_> {
         }
         let no_body = tree.bodies.is_empty() && tree.particles.is_empty();
         let no_speed = tree.speeds.is_empty();
+        let unread = tree.incomplete || !tree.broken.is_empty() || tree.name.is_none();
         let place = tree.name.as_ref().map_or(Span::default(), |name| name.span);
-        if no_body && !self.diagnostics.iter().any(|d| d.code == codes::EXPECTED) {
+        if no_body && !unread {
             let error = Diagnostic::new(codes::EMPTY, place, "the mechanism has no body and no particle")
                 .help("add `bodies { .. }` or `particles { .. }`");
             self.report(error);
         }
-        if no_speed && !self.diagnostics.iter().any(|d| d.code == codes::EXPECTED) {
+        if no_speed && !unread {
             let error = Diagnostic::new(codes::EMPTY, place, "the mechanism has no speed")
                 .help("add `speeds { u1: rad/s }`");
             self.report(error);
@@ -42,6 +43,8 @@ impl Lowering<'_> {
         needed: &[&str],
     ) -> [Option<&'r Field>; N] {
         let mut found: [Option<&Field>; N] = [None; N];
+        // what is misspelled is not missing
+        let mut meant = Vec::new();
         for field in fields {
             let Some(i) = known.iter().position(|name| *name == field.name.text) else {
                 let message = format!("{what} has no field `{}`", field.name.text);
@@ -52,7 +55,10 @@ impl Lowering<'_> {
                     _ => None,
                 });
                 self.report(match near {
-                    Some(near) => error.help(format!("did you mean `{near}`?")),
+                    Some(near) => {
+                        meant.push(near);
+                        error.help(format!("did you mean `{near}`?"))
+                    }
                     None => error.help(format!("its fields are {}", known.join(", "))),
                 });
                 continue;
@@ -72,7 +78,7 @@ impl Lowering<'_> {
         let missing: Vec<String> = known
             .iter()
             .zip(&found)
-            .filter(|(name, field)| field.is_none() && needed.contains(name))
+            .filter(|(name, field)| field.is_none() && needed.contains(name) && !meant.contains(*name))
             .map(|(name, _)| format!("`{name}`"))
             .collect();
         if !missing.is_empty() {
@@ -114,7 +120,7 @@ impl Lowering<'_> {
     }
 
     /// A field whose value is a name.
-    pub(super) fn name_in<'r>(&mut self, field: &'r Field, what: &str) -> Option<Name> {
+    pub(super) fn name_in(&mut self, field: &Field, what: &str) -> Option<Name> {
         match &field.value.kind {
             ExprKind::Name(text) => Some(Name { text: text.clone(), span: field.value.span }),
             ExprKind::Error => None,

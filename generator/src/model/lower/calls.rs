@@ -5,7 +5,7 @@ use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::similar;
 use super::super::typed::{Traits, Typed, Value};
-use super::Lowering;
+use super::{Lowering, in_words};
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::syntax::tree::{Expr, ExprKind, Name};
 
@@ -147,7 +147,7 @@ impl Lowering<'_> {
     }
 
     fn wrong_count(&mut self, name: &Name, wanted: &str, found: usize, span: Span) {
-        let message = format!("`{}` takes {wanted}, but {found} are given", name.text);
+        let message = format!("`{}` takes {wanted}, not {found}", name.text);
         self.report(Diagnostic::new(codes::FUNCTION, span, message));
     }
 
@@ -176,8 +176,8 @@ impl Lowering<'_> {
                 {
                     let message = format!("the arguments of `{}` have the dimensions {a} and {b}", name.text);
                     let error = Diagnostic::new(codes::DIMENSION, typed[1].span, message)
-                        .label(format!("this is in {b}"))
-                        .related(typed[0].span, format!("this is in {a}"));
+                        .label(format!("this is {}", in_words(b)))
+                        .related(typed[0].span, format!("this is {}", in_words(a)));
                     self.report(error);
                 }
                 if function == Function::Atan2 {
@@ -386,10 +386,10 @@ impl Lowering<'_> {
         for component in &typed {
             match (dimension, component.dimension) {
                 (Some((first, place)), Some(other)) if first != other => {
-                    let message = format!("the components have the dimensions {first} and {other}");
+                    let message = format!("the components differ in dimension: {first} and {other}");
                     let error = Diagnostic::new(codes::DIMENSION, component.span, message)
-                        .label(format!("this is in {other}"))
-                        .related(place, format!("this is in {first}"));
+                        .label(format!("this is {}", in_words(other)))
+                        .related(place, format!("this is {}", in_words(first)));
                     self.report(error);
                 }
                 (None, Some(other)) => dimension = Some((other, component.span)),

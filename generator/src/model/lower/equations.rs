@@ -2,7 +2,7 @@
 
 use super::super::mechanism::{Equation, EquationSides, Vector};
 use super::super::typed::{Typed, Value};
-use super::Lowering;
+use super::{Lowering, in_words};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::syntax::tree;
 
@@ -75,9 +75,13 @@ impl Lowering<'_> {
         if let (Some(l), Some(r)) = (left.dimension, right.dimension)
             && l != r
         {
-            let error = Diagnostic::new(codes::DIMENSION, right.span, format!("{what} between {l} and {r}"))
-                .label(format!("this is in {r}"))
-                .related(left.span, format!("this is in {l}"));
+            let error = Diagnostic::new(
+                codes::DIMENSION,
+                right.span,
+                format!("{what} between a quantity {} and one {}", in_words(l), in_words(r)),
+            )
+            .label(format!("this is {}", in_words(r)))
+            .related(left.span, format!("this is {}", in_words(l)));
             self.report(error);
         }
         Some(sides)

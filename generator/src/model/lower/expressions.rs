@@ -8,7 +8,7 @@ use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::typed::{Traits, Typed, Value, moderate};
-use super::Lowering;
+use super::{Lowering, in_words};
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::number::Number;
 use crate::syntax::tree::{Expr, ExprKind, Name};
@@ -117,6 +117,7 @@ impl Lowering<'_> {
                 constant: Some(std::f64::consts::PI),
                 ..Typed::scalar(Scalar::Pi, Some(Dimension::none()), Traits::default(), span)
             },
+            Symbol::Broken => Typed::poison(span),
             Symbol::Definition(i) => match &self.definitions[i].typed {
                 None => Typed::poison(span),
                 Some(known) => {
@@ -199,10 +200,11 @@ impl Lowering<'_> {
             }
             match (dimension, term.dimension) {
                 (Some((first, place)), Some(other)) if first != other => {
-                    let message = format!("{other} is added to {first}");
+                    let message =
+                        format!("a quantity {} is added to one {}", in_words(other), in_words(first));
                     let mut error = Diagnostic::new(codes::DIMENSION, term.span, message)
-                        .label(format!("this is in {other}"))
-                        .related(place, format!("this is in {first}"));
+                        .label(format!("this is {}", in_words(other)))
+                        .related(place, format!("this is {}", in_words(first)));
                     if term.constant.is_some() || first.is_none() {
                         error = error.help("a plain number has no unit; declare a parameter with one");
                     }
@@ -249,6 +251,7 @@ impl Lowering<'_> {
             traits = traits.times(factor_traits);
             if nonlinear_divisor {
                 traits.degree = 2;
+                traits.speed_at = typed.traits.speed_at;
             }
             if typed.is_zero() && *divides {
                 let error =
@@ -372,7 +375,7 @@ impl Lowering<'_> {
                     "the base has the dimension {d}, so the exponent must be a number such as 2 or 1/2"
                 );
                 let error = Diagnostic::new(codes::EXPONENT, exponent.span, message)
-                    .related(base.span, format!("this is in {d}"))
+                    .related(base.span, format!("this is {}", in_words(d)))
                     .help("divide the base by a quantity of its own dimension");
                 self.report(error);
                 return Typed::poison(span);

@@ -80,7 +80,7 @@ impl Lowering<'_> {
     fn angle(&mut self, expr: &Expr) -> Option<(Scalar, Traits)> {
         let (scalar, typed) = self.scalar_like(expr, Dimension::none(), "an angle")?;
         self.need_free_of_speeds(&typed, "an angle");
-        Some((scalar, typed.traits))
+        Some((scalar, typed.traits.free_of_speeds()))
     }
 
     fn rotate(
@@ -115,7 +115,7 @@ impl Lowering<'_> {
             if let Some((scalar, typed)) = self.scalar_like(item, Dimension::none(), "a component of an axis")
             {
                 self.need_free_of_speeds(&typed, "an axis");
-                traits = traits.plus(typed.traits);
+                traits = traits.plus(typed.traits.free_of_speeds());
                 components.push(scalar);
             }
         }

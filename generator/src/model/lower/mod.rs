@@ -91,12 +91,19 @@ pub(super) struct PointFacts {
     pub velocity: Traits,
 }
 
+/// `in m/s`, or that there is no dimension.
+pub(super) fn in_words(dimension: Dimension) -> String {
+    if dimension.is_none() { "a plain number".to_owned() } else { format!("in {dimension}") }
+}
+
 /// The state of lowering.
 pub(super) struct Lowering<'a> {
     pub tree: &'a Tree,
     pub names: Names,
     pub diagnostics: Vec<Diagnostic>,
     pub used: HashSet<Symbol>,
+    /// unknown names that are reported already
+    pub unknown: HashSet<String>,
     pub out: Mechanism,
     pub parameters: Vec<QuantityFacts>,
     pub inputs: Vec<QuantityFacts>,
@@ -133,6 +140,7 @@ impl<'a> Lowering<'a> {
             names,
             diagnostics,
             used: HashSet::new(),
+            unknown: HashSet::new(),
             out,
             parameters: Vec::new(),
             inputs: Vec::new(),
@@ -257,9 +265,15 @@ impl<'a> Lowering<'a> {
 
     /// Resolves a name; reports it if unknown. `fits` says what may be suggested instead.
     pub fn resolve(&mut self, name: &Name, fits: impl Fn(Symbol) -> bool) -> Option<Symbol> {
-        if let Some(symbol) = self.names.get(&name.text) {
-            self.used.insert(symbol);
-            return Some(symbol);
+        match self.names.get(&name.text) {
+            Some(Symbol::Broken) => return None,
+            Some(symbol) => {
+                self.used.insert(symbol);
+                return Some(symbol);
+            }
+            // said once, and not at all where the declaration may be in a part that could not be read
+            None if self.tree.incomplete || !self.unknown.insert(name.text.clone()) => return None,
+            None => {}
         }
         let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, format!("unknown name `{}`", name.text));
         let error = match self.names.nearest(&name.text, fits) {
@@ -324,13 +338,18 @@ impl<'a> Lowering<'a> {
         if dimension == wanted || typed.is_poison() {
             return;
         }
-        let message = format!("{what} must have the dimension {wanted}, but this has {dimension}");
-        let error = Diagnostic::new(codes::DIMENSION, typed.span, message);
-        let error = match typed.constant {
-            Some(_) => error.help("a plain number has no unit; declare a parameter with one"),
-            None => error.label(format!("this is in {dimension}")),
-        };
-        self.report(error);
+        let needed =
+            if wanted.is_none() { "in rad or a plain number".to_owned() } else { format!("in {wanted}") };
+        let message = format!("{what} must be {needed}, but this is {}", in_words(dimension));
+        let error = Diagnostic::new(codes::DIMENSION, typed.span, message)
+            .label(format!("this is {}", in_words(dimension)));
+        self.report(if dimension.is_none() {
+            error.help(format!(
+                "a number has no unit; declare a parameter with one, such as `a: {wanted} = ..`"
+            ))
+        } else {
+            error
+        });
     }
 
     /// Demands a scalar.
@@ -369,8 +388,11 @@ impl<'a> Lowering<'a> {
         if typed.traits.degree > 0 {
             let message = format!("{what} must not depend on speeds");
             let mut error = Diagnostic::new(codes::SPEED_DEPENDENT, typed.span, message);
-            if let Some(place) = typed.traits.speed_at {
-                error = error.related(place, "this does");
+            match typed.traits.speed_at {
+                Some(place) if place != typed.span => {
+                    error = error.related(place, "this is or contains a speed")
+                }
+                _ => error = error.label("this is or contains a speed"),
             }
             self.report(error);
         }
@@ -381,8 +403,11 @@ impl<'a> Lowering<'a> {
         if typed.traits.degree > 1 {
             let message = format!("{what} must be linear in the speeds");
             let mut error = Diagnostic::new(codes::NOT_LINEAR, typed.span, message);
-            if let Some(place) = typed.traits.speed_at {
-                error = error.related(place, "this speed does not enter linearly");
+            match typed.traits.speed_at {
+                Some(place) if place != typed.span => {
+                    error = error.related(place, "this does not enter linearly")
+                }
+                _ => error = error.label("this does not enter linearly"),
             }
             self.report(error);
         }

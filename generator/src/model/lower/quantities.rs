@@ -14,7 +14,7 @@ impl Lowering<'_> {
         match units::read(expr) {
             Ok(unit) => Some(unit),
             Err(error) => {
-                self.diagnostics.extend(error);
+                self.diagnostics.extend(error.map(|error| *error));
                 None
             }
         }

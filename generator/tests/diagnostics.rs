@@ -1,0 +1,69 @@
+//! What is said of malformed models, word for word: `tests/diagnostics/NAME.mech` and the expected `NAME.txt`.
+//!
+//! `UPDATE_EXPECTED=1 cargo test -p hodograph-generator --test diagnostics` writes the expectations anew; read the difference
+//! before you commit it.
+
+use std::path::{Path, PathBuf};
+
+use hodograph_generator::{diagnostics::render, model, source::Source};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics")
+}
+
+fn cases() -> Vec<PathBuf> {
+    let mut cases: Vec<PathBuf> = std::fs::read_dir(folder())
+        .expect("cases")
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|e| e == "mech"))
+        .collect();
+    cases.sort();
+    cases
+}
+
+#[test]
+fn messages_are_as_expected() {
+    let update = std::env::var_os("UPDATE_EXPECTED").is_some();
+    let mut wrong = Vec::new();
+    for path in cases() {
+        let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
+        let text = std::fs::read_to_string(&path).expect("text");
+        let source = Source::file(name.as_str(), text);
+        let checked = model::check(&source);
+        assert!(!checked.diagnostics.is_empty(), "{name} is accepted");
+        let said = render(&checked.diagnostics, &source);
+        let expected = path.with_extension("txt");
+        if update {
+            std::fs::write(&expected, &said).expect("writing");
+        } else if std::fs::read_to_string(&expected).unwrap_or_default() != said {
+            wrong.push(format!("{name}:\n{said}"));
+        }
+    }
+    assert!(wrong.is_empty(), "UPDATE_EXPECTED=1 accepts these:\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn there_are_many_cases() {
+    assert!(cases().len() >= 60);
+}
+
+/// The same model inline has the same mistakes, each at tokens of the user's.
+#[test]
+fn inline_models_have_the_same_mistakes() {
+    for path in cases() {
+        let text = std::fs::read_to_string(&path).expect("text");
+        // what is not a sequence of Rust tokens does not reach the macro
+        let Ok(stream) = text.parse::<proc_macro2::TokenStream>() else { continue };
+        let file = model::check(&Source::file("x.mech", text));
+        let source = Source::inline("here", stream);
+        let inline = model::check(&source);
+        let said = |checked: &model::Checked| -> Vec<(String, String)> {
+            checked.diagnostics.iter().map(|d| (d.code.to_string(), d.message.clone())).collect()
+        };
+        assert_eq!(said(&file), said(&inline), "{}", path.display());
+        for diagnostic in &inline.diagnostics {
+            let empty = source.tokens().is_ok_and(|tokens| tokens.is_empty());
+            assert!(empty || source.rust_spans(diagnostic.primary.span).is_some());
+        }
+    }
+}
