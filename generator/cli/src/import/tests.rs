@@ -6,17 +6,19 @@ fn robot(body: &str) -> String {
     format!("<robot name=\"two\">\n{body}\n</robot>")
 }
 
-fn link(name: &str) -> String {
-    format!(
+fn link(name: &str) -> &'static str {
+    let text = format!(
         "<link name=\"{name}\"><inertial><origin xyz=\"0 0 0.5\"/><mass value=\"2\"/>\
          <inertia ixx=\"0.1\" ixy=\"0\" ixz=\"0\" iyy=\"0.1\" iyz=\"0\" izz=\"0.02\"/></inertial></link>\n"
-    )
+    );
+    text.leak()
 }
 
-fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
-    format!(
+fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> &'static str {
+    let text = format!(
         "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>{more}</joint>\n"
-    )
+    );
+    text.leak()
 }
 
 /// The problems of a robot, all of them.
@@ -37,10 +39,10 @@ fn has(model: &str, line: &str) {
 fn joints_become_frames_points_and_loads() {
     let axis = "<origin xyz=\"0 0 0.25\" rpy=\"1.5707963267948966 0 0\"/><axis xyz=\"0 -1 0\"/>";
     let body = "<link name=\"base\"/>".to_owned()
-        + &link("arm")
-        + &link("hand")
-        + &joint("hip-1", "revolute", "base", "arm", &format!("{axis}<dynamics damping=\"0.5\"/>"))
-        + &joint("slide", "prismatic", "arm", "hand", "<axis xyz=\"1 0 0\"/>");
+        + link("arm")
+        + link("hand")
+        + joint("hip-1", "revolute", "base", "arm", &format!("{axis}<dynamics damping=\"0.5\"/>"))
+        + joint("slide", "prismatic", "arm", "hand", "<axis xyz=\"1 0 0\"/>");
     let (model, notes) = model(&body, &Options { contacts: vec!["hand".into()], ..Options::default() });
     has(&model, "hip_1_base = N.rotate(x, pi/2);");
     has(&model, "arm_axes = hip_1_base.rotate(-y, q_hip_1);");
@@ -62,9 +64,9 @@ fn joints_become_frames_points_and_loads() {
 
 #[test]
 fn a_base_with_inertia_is_free() {
-    let body = link("trunk")
-        + &link("tail")
-        + &joint("j", "continuous", "trunk", "tail", "<axis xyz=\"0.6 0 0.8\"/>");
+    let body = link("trunk").to_owned()
+        + link("tail")
+        + joint("j", "continuous", "trunk", "tail", "<axis xyz=\"0.6 0 0.8\"/>");
     let (free, _) = model(&body, &Options::default());
     has(&free, "trunk_axes = N.quaternion(q_base_e0, q_base_e1, q_base_e2, q_base_e3);");
     has(&free, "trunk_origin = u_base_x*trunk_axes.x + u_base_y*trunk_axes.y + u_base_z*trunk_axes.z;");
@@ -76,9 +78,9 @@ fn a_base_with_inertia_is_free() {
 
 #[test]
 fn what_is_fixed_becomes_one_body() {
-    let body = link("base")
-        + &link("tool")
-        + &joint("weld", "fixed", "base", "tool", "<origin xyz=\"0 0 1\" rpy=\"3.141592653589793 0 0\"/>");
+    let body = link("base").to_owned()
+        + link("tool")
+        + joint("weld", "fixed", "base", "tool", "<origin xyz=\"0 0 1\" rpy=\"3.141592653589793 0 0\"/>");
     let (model, _) = model(&body, &Options::default());
     // Two equal links end to end: the centre is where the second one's is mirrored to.
     has(&model, "m_base: kg = 4,");
@@ -89,37 +91,39 @@ fn what_is_fixed_becomes_one_body() {
 
 #[test]
 fn mistakes_are_named_with_their_place() {
-    let two = |name: &str| "<link name=\"base\"/>\n".to_owned() + &link("arm") + name;
+    let two = |name: &str| "<link name=\"base\"/>\n".to_owned() + link("arm") + name;
     let cases = [
-        (two(&joint("j", "revolute", "base", "arms", "")), "unknown link `arms`: did you mean `arm`?"),
-        (two(&joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 2\"/>")), "length 2, not 1"),
-        (two(&joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 0\"/>")), "give its direction"),
+        (two(joint("j", "revolute", "base", "arms", "")), "unknown link `arms`: did you mean `arm`?"),
+        (two(joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 2\"/>")), "length 2, not 1"),
+        (two(joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 0\"/>")), "give its direction"),
         (
-            two(&joint("j", "revolute", "base", "arm", "<mimic joint=\"k\"/>")),
+            two(joint("j", "revolute", "base", "arm", "<mimic joint=\"k\"/>")),
             "r.urdf:4:1: joint `j`: it mimics `k`",
         ),
-        (two(&joint("j", "fixed", "base", "arm", "")), "nothing moves"),
+        (two(joint("j", "fixed", "base", "arm", "")), "nothing moves"),
         (two(""), "link `arm` hangs on no joint"),
         (
-            two(&(joint("a", "revolute", "base", "arm", "") + &joint("b", "revolute", "arm", "base", ""))),
+            two(&(joint("a", "revolute", "base", "arm", "").to_owned()
+                + joint("b", "revolute", "arm", "base", ""))),
             "the links form a cycle",
         ),
         (
-            two(&(joint("a", "revolute", "base", "arm", "") + &joint("b", "revolute", "base", "arm", ""))),
+            two(&(joint("a", "revolute", "base", "arm", "").to_owned()
+                + joint("b", "revolute", "base", "arm", ""))),
             "which joint `a` (r.urdf:4:1) carries already",
         ),
         (
             "<link name=\"base\"/><link name=\"arm\"/>".to_owned()
-                + &joint("a", "revolute", "base", "arm", ""),
+                + joint("a", "revolute", "base", "arm", ""),
             "link `arm` moves, but neither it nor what is fixed to it has a mass",
         ),
-        (link("a") + &link("a"), "a second link `a`; the first is at r.urdf:2:1"),
+        (link("a").to_owned() + link("a"), "a second link `a`; the first is at r.urdf:2:1"),
         (
-            two("").replace("value=\"2\"", "value=\"-2\"") + &joint("j", "revolute", "base", "arm", ""),
+            two("").replace("value=\"2\"", "value=\"-2\"") + joint("j", "revolute", "base", "arm", ""),
             "its mass is -2",
         ),
         (
-            two("").replace("izz=\"0.02\"", "izz=\"9\"") + &joint("j", "revolute", "base", "arm", ""),
+            two("").replace("izz=\"0.02\"", "izz=\"9\"") + joint("j", "revolute", "base", "arm", ""),
             "no body has",
         ),
         (two("").replace("<mass value=\"2\"/>", ""), "has no <mass>"),
@@ -139,10 +143,10 @@ fn mistakes_are_named_with_their_place() {
 #[test]
 fn names_that_clash_give_way() {
     let body = "<link name=\"N\"/>".to_owned()
-        + &link("for")
-        + &link("q_a")
-        + &joint("a", "revolute", "N", "for", "")
-        + &joint("a.b", "planar", "for", "q_a", "<axis xyz=\"0 0 1\"/>");
+        + link("for")
+        + link("q_a")
+        + joint("a", "revolute", "N", "for", "")
+        + joint("a.b", "planar", "for", "q_a", "<axis xyz=\"0 0 1\"/>");
     let (model, notes) = model(&body, &Options::default());
     has(&model, "q_a: rad,");
     assert!(notes.contains("`q_a` is called `q_a_n2`"), "{notes}");

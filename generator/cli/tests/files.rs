@@ -1,0 +1,164 @@
+//! `check`, `derive` and `expand`: files, directories, Rust files with inline models.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{Run, hodograph, model};
+
+const ROD: &str = "mechanism Rod;\nparameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81 }\ncoordinates { q1: rad = 0.3 }\n\
+    speeds { u1: rad/s }\nframes { B = N.rotate(z, q1); }\npoints { G = O - l/2*B.y; P = O - l*B.y; }\n\
+    bodies { Rod1 { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\nloads { gravity: -g*N.y; }\n\
+    contacts { tip { point: P of Rod1, normal: -N.x } }\n";
+
+fn run(arguments: &[&str]) -> Run {
+    hodograph(arguments, "")
+}
+
+fn text(path: &Path) -> String {
+    path.display().to_string()
+}
+
+#[test]
+fn shipped_models_are_accepted_and_fresh() {
+    let models = text(&common::root().join("models"));
+    let checked = run(&["check", &models]);
+    assert_eq!(checked.code, 0, "{}", checked.stdout);
+    assert!(checked.stdout.is_empty(), "{}", checked.stdout);
+    let fresh = run(&["derive", "--check", &models]);
+    assert_eq!(fresh.code, 0, "{}", fresh.stdout);
+}
+
+#[test]
+fn all_mistakes_are_reported_with_their_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rod.mech");
+    fs::write(&path, ROD.replace("m/s^2 = 9.81", "m = 9.81").replace("mass: m,", "mass: mm,")).unwrap();
+    let checked = run(&["check", &text(&path)]);
+    assert_eq!(checked.code, 1);
+    assert!(
+        checked.stdout.contains("rod.mech:7:") && checked.stdout.contains("rod.mech:8:"),
+        "{}",
+        checked.stdout
+    );
+    let evaluated = run(&["eval", &text(&path)]);
+    assert_eq!(evaluated.code, 1);
+    assert!(evaluated.stdout.is_empty() && evaluated.stderr.contains("rod.mech:7:"), "{}", evaluated.stderr);
+    assert_eq!(run(&["check", "no/such.mech"]).code, 2);
+    assert_eq!(run(&["check", &text(folder.path())]).code, 1);
+    fs::remove_file(&path).unwrap();
+    assert_eq!(run(&["check", &text(folder.path())]).code, 2, "no model at all");
+}
+
+#[test]
+fn a_model_should_be_called_as_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("stick.mech");
+    fs::write(&path, ROD).unwrap();
+    let checked = run(&["check", &text(&path)]);
+    assert_eq!(checked.code, 0);
+    assert!(checked.stdout.contains("should be called rod.mech"), "{}", checked.stdout);
+}
+
+#[test]
+fn expand_prints_rust() {
+    let expanded = run(&["expand", &model("two_sleds")]);
+    assert_eq!(expanded.code, 0, "{}", expanded.stderr);
+    for part in ["pub mod two_sleds", "pub struct TwoSleds", "pub fn collide_bc_ac", "pub fn mass_matrix"] {
+        assert!(expanded.stdout.contains(part), "{part}");
+    }
+}
+
+#[cfg(feature = "derive")]
+mod deriving {
+    use super::*;
+
+    #[test]
+    fn derivations_are_written_beside_the_model_and_noticed_when_stale() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rod.mech");
+        fs::write(&path, ROD).unwrap();
+        let kept = folder.path().join("rod.derivation");
+        let check = || run(&["derive", "--check", &text(folder.path())]);
+
+        let absent = check();
+        assert_eq!(absent.code, 1);
+        assert!(
+            absent.stdout.contains("rod.derivation is not there; run `hodograph derive"),
+            "{}",
+            absent.stdout
+        );
+        let evaluated = run(&["eval", &text(&path)]);
+        assert_eq!(evaluated.code, 0, "{}", evaluated.stderr);
+        assert!(evaluated.stderr.contains("deriving in memory") && !kept.exists(), "{}", evaluated.stderr);
+        assert_eq!(evaluated.stdout.lines().count(), 1, "nothing but the answer");
+
+        let derived = run(&["derive", &text(folder.path())]);
+        assert_eq!(derived.code, 0, "{}", derived.stderr);
+        assert!(derived.stdout.is_empty(), "{}", derived.stdout);
+        assert_eq!(check().code, 0);
+        assert!(run(&["eval", &text(&path)]).stderr.is_empty());
+        let bytes = fs::read(&kept).unwrap();
+        run(&["derive", "--force", &text(folder.path())]);
+        assert_eq!(fs::read(&kept).unwrap(), bytes, "the same bytes every time");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "no temporary file is left");
+
+        // Plain comments and blanks do not matter, numbers do.
+        fs::write(&path, format!("// a remark\n{ROD}")).unwrap();
+        assert_eq!(check().code, 0);
+        fs::write(&path, ROD.replace("12, 0", "3, 0")).unwrap();
+        let stale = check();
+        assert_eq!(stale.code, 1);
+        assert!(stale.stdout.contains("is stale: it was derived from another text"), "{}", stale.stdout);
+        assert!(run(&["eval", &text(&path)]).stderr.contains("is stale"));
+        fs::write(&kept, "nonsense").unwrap();
+        assert!(check().stdout.contains("is stale: line 1"), "{}", check().stdout);
+    }
+
+    #[test]
+    fn inline_models_are_kept_in_derived() {
+        let folder = tempfile::tempdir().unwrap();
+        let source = folder.path().join("src/lib.rs");
+        fs::create_dir(folder.path().join("src")).unwrap();
+        fs::write(folder.path().join("Cargo.toml"), "[package]").unwrap();
+        fs::write(&source, format!("//! Rods.\nhodograph::mechanism! {{\n{ROD}}}\n")).unwrap();
+        let derived = run(&["derive", &text(&source)]);
+        assert_eq!(derived.code, 0, "{}", derived.stderr);
+        assert!(folder.path().join("derived/rod.derivation").exists());
+        assert_eq!(run(&["derive", "--check", &text(folder.path())]).code, 0);
+        fs::write(
+            &source,
+            format!("\n\nhodograph::mechanism! {{\n{}}}\n", ROD.replace("mass: m,", "mass: mm,")),
+        )
+        .unwrap();
+        let checked = run(&["check", &text(&source)]);
+        assert_eq!(checked.code, 1);
+        assert!(checked.stdout.contains("lib.rs:10:44"), "places are those of the file: {}", checked.stdout);
+    }
+
+    #[test]
+    fn a_limit_of_no_time_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("arm_7dof.mech");
+        fs::copy(model("arm_7dof"), &path).unwrap();
+        let derived = run(&["derive", "--time-limit", "0", &text(&path)]);
+        assert_eq!(derived.code, 1);
+        assert!(derived.stderr.contains("took more than 0 seconds"), "{}", derived.stderr);
+    }
+
+    #[test]
+    fn many_at_once_take_turns() {
+        let folder = tempfile::tempdir().unwrap();
+        std::thread::scope(|scope| {
+            for index in 0..4 {
+                let path = folder.path().join(format!("rod{index}.mech"));
+                fs::write(&path, ROD.replace("mechanism Rod", &format!("mechanism Rod{index}"))).unwrap();
+                scope.spawn(move || {
+                    let derived = run(&["derive", &text(&path)]);
+                    assert_eq!(derived.code, 0, "{}", derived.stderr);
+                });
+            }
+        });
+    }
+}
