@@ -18,9 +18,13 @@ use crate::model::mechanism::{FrameId, LoadKind, PointId};
 
 /// Forces and torques, gathered on points and frames.
 #[derive(Clone, Default)]
-struct Wrenches {
-    forces: BTreeMap<PointId, Triple>,
-    torques: BTreeMap<FrameId, Triple>,
+pub struct Wrenches {
+    /// forces on points, along their home axes
+    pub forces: BTreeMap<PointId, Triple>,
+    /// torques on frames that turn, along their home axes
+    pub torques: BTreeMap<FrameId, Triple>,
+    /// what acts on a speed directly
+    pub generalized: BTreeMap<usize, Expr>,
 }
 
 impl Wrenches {
@@ -43,6 +47,31 @@ impl Wrenches {
     }
 }
 
+impl Wrenches {
+    /// A torque on a frame and its opposite on another: it meets the speeds of the frames between them, and no others.
+    fn torque_between(&mut self, k: &mut Kinematics<'_>, on: FrameId, from: FrameId, torque: &Mixed) {
+        let (ahead, behind) = (k.ancestry(on), k.ancestry(from));
+        let between = |chain: &[FrameId], other: &[FrameId]| -> Vec<FrameId> {
+            chain.iter().copied().filter(|frame| !other.contains(frame)).collect()
+        };
+        for (frames, sign) in [(between(&ahead, &behind), 1), (between(&behind, &ahead), -1)] {
+            for frame in frames {
+                let motion = k.frames[frame.0].clone();
+                if motion.relative.terms.is_empty() {
+                    continue;
+                }
+                let along = k.express(torque, motion.home);
+                for (&slot, a) in &motion.relative.terms {
+                    let work = linear::dot(a, &along).mul(&Expr::integer(sign));
+                    let sum =
+                        self.generalized.get(&slot).map_or_else(|| work.clone(), |have| have.add(&work));
+                    self.generalized.insert(slot, sum);
+                }
+            }
+        }
+    }
+}
+
 /// The acceleration of gravity.
 pub fn gravity(k: &mut Kinematics<'_>) -> Mixed {
     let mut sum = Mixed::new();
@@ -55,13 +84,8 @@ pub fn gravity(k: &mut Kinematics<'_>) -> Mixed {
     sum.into_iter().map(|(axes, v)| (axes, linear::name(&mut k.z, v))).collect()
 }
 
-/// Generalized forces of all speeds (dependent ones included), active and inertia forces together, for given
-/// derivatives of all speeds.
-pub fn generalized_forces(
-    k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Seat, Lump>,
-    derivatives: Vec<Expr>,
-) -> Vec<Expr> {
+/// Forces and torques, active and inertia together, for given derivatives of all speeds.
+pub fn wrenches(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>, derivatives: Vec<Expr>) -> Wrenches {
     let gravity = gravity(k);
     let ground = vectors::scale(&Expr::integer(-1), &gravity);
     let mut accelerations = Accelerations::new(derivatives, ground);
@@ -96,6 +120,17 @@ pub fn generalized_forces(
         wrenches.torque(k, frame, &vectors::mixed(home, moment));
     }
     apply_loads(k, &mut wrenches);
+    wrenches
+}
+
+/// Generalized forces of all speeds (dependent ones included), active and inertia forces together, for given
+/// derivatives of all speeds.
+pub fn generalized_forces(
+    k: &mut Kinematics<'_>,
+    lumps: &BTreeMap<Seat, Lump>,
+    derivatives: Vec<Expr>,
+) -> Vec<Expr> {
+    let wrenches = wrenches(k, lumps, derivatives);
     pass_back(k, wrenches)
 }
 
@@ -138,9 +173,9 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
             }
             LoadKind::Torque { on, from, torque } => {
                 let torque = k.vector(torque);
-                wrenches.torque(k, *on, &torque);
-                if let Some(from) = from {
-                    wrenches.torque(k, *from, &vectors::scale(&minus, &torque));
+                match from {
+                    Some(from) => wrenches.torque_between(k, *on, *from, &torque),
+                    None => wrenches.torque(k, *on, &torque),
                 }
             }
             LoadKind::Spring { a, b, stiffness, length, damping } => {
@@ -174,9 +209,10 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
                     moment = moment.add(&damping.mul(&rate));
                 }
                 let moment = k.z.name(moment);
-                wrenches.torque(k, *on, &vectors::scale(&moment.neg(), &axis));
-                if let Some(from) = from {
-                    wrenches.torque(k, *from, &vectors::scale(&moment, &axis));
+                let torque = vectors::scale(&moment.neg(), &axis);
+                match from {
+                    Some(from) => wrenches.torque_between(k, *on, *from, &torque),
+                    None => wrenches.torque(k, *on, &torque),
                 }
             }
         }
@@ -186,6 +222,9 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
 /// Passes forces and torques back to the ground; what each speed meets on the way is its generalized force.
 fn pass_back(k: &mut Kinematics<'_>, mut wrenches: Wrenches) -> Vec<Expr> {
     let mut result = vec![Expr::zero(); k.speeds.len()];
+    for (&slot, force) in &wrenches.generalized {
+        result[slot] = force.clone();
+    }
     let points: Vec<_> = wrenches.forces.keys().copied().collect();
     let frames: Vec<_> = wrenches.torques.keys().copied().collect();
     for node in order::elimination_order(k, &points, &frames) {

@@ -1,6 +1,7 @@
 //! Kane's equations: mass matrix, generalized forces, constraints eliminated, contacts; written as a value graph.
 
 pub mod accelerations;
+pub mod articulated;
 pub mod bodies;
 pub mod contacts;
 pub mod energy;
@@ -24,8 +25,21 @@ pub enum DerivationError {
     Session(SessionError),
 }
 
+/// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with their cube.
+pub const MOST_SPEEDS: usize = 64;
+
 /// Derives the equations of a mechanism: waits for its turn at the algebra engine and works there on a thread of its own.
 pub fn derive(mechanism: &Mechanism) -> Result<Derived, DerivationError> {
+    if let Some(beyond) = mechanism.speeds.get(MOST_SPEEDS) {
+        return Err(DerivationError::Model(DeriveError {
+            span: beyond.span,
+            message: format!(
+                "the mechanism has {} speeds; at most {MOST_SPEEDS} are derived",
+                mechanism.speeds.len()
+            ),
+            help: "divide the mechanism, or lump links that hardly move against each other".into(),
+        }));
+    }
     let mechanism = mechanism.clone();
     match exclusively(move || {
         let mut kinematics = Kinematics::new(&mechanism)?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::contacts::{ContactForms, contact_forms, point_jacobian};
 use super::lumps::{self, Lump, Seat};
-use super::{energy, forces, inertia};
+use super::{articulated, energy, forces, inertia};
 use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesTree, unit};
@@ -169,16 +169,39 @@ impl Writer<'_, '_> {
         self.nodes(&result)
     }
 
+    /// Accelerations of the independent speeds by articulated inertias, where the mechanism permits.
+    fn articulated(&mut self, at_rest: &[Expr]) -> Option<(Vec<Node>, Vec<Guard>)> {
+        let wrenches = forces::wrenches(self.k, &self.lumps, at_rest.to_vec());
+        let (values, pivots) = articulated::accelerations(self.k, &self.lumps, wrenches)?;
+        let nodes = self.nodes(&values);
+        let mut guards = Vec::new();
+        for (pivot, slot) in pivots {
+            let value = self.node(&pivot);
+            if self.graph.as_number(value).is_none() {
+                let speed = &self.k.mechanism.speeds[slot].name;
+                let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
+                guards.push(Guard { value, scale: None, message });
+            }
+        }
+        Some((nodes, guards))
+    }
+
     fn dynamics(&mut self, factor: &Factor) {
         let slots = self.k.speeds.len();
         let bias =
             |k: &Kinematics<'_>, slot: usize| k.dependent_bias.get(&slot).cloned().unwrap_or_else(Expr::zero);
         let at_rest: Vec<Expr> = (0..slots).map(|slot| bias(self.k, slot)).collect();
-        let forcing = self.reduced_forces(at_rest);
+        let forcing = self.reduced_forces(at_rest.clone());
         self.put(Quantity::Forcing, forcing.len(), 1, forcing.clone());
 
         let half = factor.half_solve(&mut self.graph, &forcing);
-        let accelerations = factor.finish(&mut self.graph, &half);
+        let mut accelerations = factor.finish(&mut self.graph, &half);
+        if let Some((nodes, guards)) = self.articulated(&at_rest)
+            && self.graph.cost(&nodes) < self.graph.cost(&accelerations)
+        {
+            accelerations = nodes;
+            self.guards.extend(guards);
+        }
         self.put(Quantity::Accelerations, accelerations.len(), 1, accelerations.clone());
         let mut dependent = Vec::new();
         for &d in &self.dependent.clone() {

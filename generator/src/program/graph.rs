@@ -82,6 +82,34 @@ impl Graph {
         node
     }
 
+    /// Operations that these nodes need, roughly: a rule for choosing between two ways to the same numbers.
+    pub fn cost(&self, nodes: &[Node]) -> usize {
+        let mut seen = vec![false; self.values.len()];
+        let mut open = nodes.to_vec();
+        let mut cost = 0;
+        while let Some(node) = open.pop() {
+            if std::mem::replace(&mut seen[node.0 as usize], true) {
+                continue;
+            }
+            match self.value(node) {
+                Value::Number(_) | Value::Pi | Value::Input(_) => {}
+                Value::Sum(parts) | Value::Product(parts) => {
+                    cost += parts.len() - 1;
+                    open.extend(parts);
+                }
+                Value::Power(base, n) => {
+                    cost += n.unsigned_abs() as usize;
+                    open.push(*base);
+                }
+                Value::Call(_, parts) => {
+                    cost += 20;
+                    open.extend(parts);
+                }
+            }
+        }
+        cost
+    }
+
     /// An exact number.
     pub fn number(&mut self, number: Number) -> Node {
         self.intern(Value::Number(number))
