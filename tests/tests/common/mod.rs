@@ -1,6 +1,7 @@
 //! The shipped models with their derivations, and the reference data.
 #![allow(dead_code)]
 
+pub mod emitted;
 pub mod random;
 
 use std::path::{Path, PathBuf};

@@ -44,7 +44,12 @@ pub fn samples(model: &Model, count: usize) -> Vec<Sample> {
             break;
         }
         let mut state = State::of(m);
-        state.parameters.iter_mut().for_each(|value| *value *= 1.0 + 0.01 * random.number());
+        // Moments of inertia keep their proportions, so that a body remains one that can be.
+        let inertia = 1.0 + 0.01 * random.number();
+        for (value, parameter) in state.parameters.iter_mut().zip(&m.parameters) {
+            let alone = 1.0 + 0.01 * random.number();
+            *value *= if parameter.unit == "kg*m^2" { inertia } else { alone };
+        }
         state.inputs.iter_mut().for_each(|value| *value = 3.0 * random.number());
         state.time = random.number();
         state.coordinates.iter_mut().for_each(|value| *value += 0.4 * random.number());
