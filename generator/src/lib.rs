@@ -19,6 +19,7 @@ pub mod algebra;
 pub mod artifact;
 pub mod diagnostics;
 pub mod emit;
+pub mod explain;
 pub mod interpret;
 #[cfg(feature = "derive")]
 pub mod kane;

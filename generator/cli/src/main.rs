@@ -19,7 +19,7 @@ mod stop;
 mod surface;
 
 use commands::{
-    check, collide, derive, derive_worker, eval, expand, import as import_urdf, plot as draw, solve,
+    check, collide, derive, derive_worker, eval, expand, explain, import as import_urdf, plot as draw, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -41,6 +41,7 @@ enum Command {
     Check(check::Arguments),
     Derive(derive::Arguments),
     Expand(expand::Arguments),
+    Explain(explain::Arguments),
     Plot(draw::Arguments),
     Import(import_urdf::Arguments),
     #[command(name = derivation::WORKER, hide = true)]
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),
         Command::DeriveWorker(arguments) => derive_worker::run(&arguments),

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use hodograph_generator::artifact::place;
-use hodograph_generator::diagnostics::Diagnostic;
+use hodograph_generator::diagnostics::render;
 use hodograph_generator::model::check;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::source::Source;
@@ -20,11 +20,6 @@ pub struct Model {
     pub source: Source,
     /// its meaning
     pub mechanism: Mechanism,
-}
-
-/// A diagnostic as it is shown.
-pub fn shown(diagnostic: &Diagnostic, source: &Source) -> String {
-    diagnostic.one_line(source)
 }
 
 /// Reads and checks a model file; says what is wrong on stderr.
@@ -46,9 +41,7 @@ pub fn load(path: &Path) -> Outcome<Model> {
 /// [`Stop::Said`] where it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
     let found = check(&source);
-    for diagnostic in &found.diagnostics {
-        eprintln!("{}", shown(diagnostic, &source));
-    }
+    eprint!("{}", render(&found.diagnostics, &source));
     let mechanism = found.mechanism.ok_or(Stop::Said)?;
     Ok(Model { source, mechanism })
 }

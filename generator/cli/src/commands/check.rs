@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use hodograph_generator::diagnostics::render;
 use hodograph_generator::model::check;
 
 use crate::files::collect;
-use crate::model::shown;
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
@@ -30,9 +30,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let found = check(&entry.source);
         models += 1;
         wrong += usize::from(found.has_errors());
-        for diagnostic in &found.diagnostics {
-            output::line(&shown(diagnostic, &entry.source))?;
-        }
+        output::text(&render(&found.diagnostics, &entry.source))?;
         if let Some(message) = found.mechanism.and_then(|mechanism| entry.misnamed(&mechanism.name)) {
             output::line(&format!("{message}: `mechanism!` names its module after the file"))?;
         }

@@ -6,6 +6,7 @@ pub mod derive;
 pub mod derive_worker;
 pub mod eval;
 pub mod expand;
+pub mod explain;
 pub mod import;
 pub mod plot;
 pub mod solve;

@@ -4,8 +4,12 @@ use std::io::Read;
 use std::path::PathBuf;
 
 use hodograph::ReducedMatrix;
+use hodograph_generator::program::routine::Quantity;
 
+use crate::derivation::Limits;
+use crate::evaluate::contact::{self, Contact};
 use crate::json::{Fields, Json};
+use crate::model;
 use crate::output;
 use crate::plot::figure::svg;
 use crate::plot::trace::{Trace, trace};
@@ -20,6 +24,14 @@ use crate::stop::{Outcome, Stop};
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
+    /// the model file; without it a collision as for `solve` is read from standard input
+    model: Option<PathBuf>,
+    /// the contact; may be left out if the model has only one
+    #[arg(long, value_name = "NAME", requires = "model")]
+    contact: Option<String>,
+    /// a file with the state, `-` for standard input, or the state itself
+    #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true, requires = "model")]
+    state: Option<String>,
     /// coefficients of friction, one curve each
     #[arg(
         long,
@@ -35,6 +47,8 @@ pub struct Arguments {
     /// where to write [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    #[command(flatten)]
+    limits: Limits,
 }
 
 /// Runs the command.
@@ -61,12 +75,24 @@ pub fn run(arguments: &Arguments) -> Outcome {
 
 /// What collides: a title, the reduced matrix and the velocity of approach.
 fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64; 3])> {
-    let mut text = String::new();
-    std::io::stdin()
-        .read_to_string(&mut text)
-        .map_err(|error| Stop::Call(format!("cannot read standard input: {error}")))?;
-    let case = Fields::new(Json::parse(&text)?, "a collision")?;
-    let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
-    let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
-    Ok((format!("e = {}", arguments.e), matrix.into(), velocity))
+    let e = arguments.e;
+    let Some(path) = &arguments.model else {
+        let mut text = String::new();
+        std::io::stdin()
+            .read_to_string(&mut text)
+            .map_err(|error| Stop::Call(format!("cannot read standard input: {error}")))?;
+        let case = Fields::new(Json::parse(&text)?, "a collision")?;
+        let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
+        let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
+        return Ok((format!("e = {e}"), matrix.into(), velocity));
+    };
+    let machine = model::machine(path, &arguments.limits)?;
+    let text = model::state_text(arguments.state.as_deref())?;
+    let index = machine.contact(arguments.contact.as_deref())?;
+    let state = machine.state(text.as_deref())?;
+    let wanted = contact::QUANTITIES.map(|quantity| Quantity::Contact(index as u32, quantity));
+    let contact = Contact::new(&machine.evaluate(&state, &wanted)?, index, &state.speeds);
+    let mechanism = &machine.mechanism;
+    let title = format!("{}, {}, e = {e}", mechanism.name, mechanism.contacts[index].name);
+    Ok((title, contact.reduced.into(), contact.slip.into()))
 }
