@@ -22,7 +22,12 @@ pub fn physics(m: &Mechanism) -> Vec<Diagnostic> {
     let look = || look(m);
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, look);
-        thread.map_or(Vec::new(), |thread| thread.join().unwrap_or_default())
+        match thread.map(|thread| thread.join()) {
+            Ok(Ok(found)) => found,
+            // tests and the fuzzer must see trouble; a build must go on
+            Ok(Err(panic)) if cfg!(debug_assertions) => std::panic::resume_unwind(panic),
+            Ok(Err(_)) | Err(_) => Vec::new(),
+        }
     })
 }
 

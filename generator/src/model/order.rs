@@ -240,7 +240,12 @@ impl Graph<'_> {
     }
 
     fn frame(&self, name: &Name, item: fn(usize) -> Item, found: &mut Vec<(Item, Span)>) {
-        if let Some(Symbol::Frame(f)) = self.names.get(&name.text) {
+        let symbol = match self.names.get(&name.text) {
+            // a body stands for its frame
+            Some(Symbol::Body(b)) => body_frame(self.tree, b).and_then(|frame| self.names.get(&frame.text)),
+            symbol => symbol,
+        };
+        if let Some(Symbol::Frame(f)) = symbol {
             found.push((item(f), name.span));
         }
     }

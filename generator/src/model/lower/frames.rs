@@ -26,7 +26,7 @@ impl Lowering<'_> {
             }
             return;
         };
-        let Some(parent) = self.frame_named(&base) else { return };
+        let Some(parent) = self.proper_frame(&base) else { return };
         self.out.frames[i].parent = Some(parent);
         let ExprKind::Method(_, operation, arguments) = &value.kind else {
             if let ExprKind::Field(..) = value.kind {
