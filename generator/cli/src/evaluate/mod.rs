@@ -84,7 +84,7 @@ impl Machine {
                 ),
                 other => Failure::new(Kind::SingularState, other.to_string()),
             })?;
-        Ok(Numbers { arrays })
+        Ok(Numbers { arrays: arrays.into_iter().map(positive_zeros).collect() })
     }
 
     /// Index of the contact of that name; without a name, of the only one.
@@ -148,6 +148,12 @@ impl Machine {
         }
         Ok(())
     }
+}
+
+/// A zero has no sign for a reader.
+fn positive_zeros(mut array: interpret::Array) -> interpret::Array {
+    array.values.iter_mut().for_each(|value| *value += 0.0);
+    array
 }
 
 /// Some of the names, for messages.

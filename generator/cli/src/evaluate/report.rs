@@ -1,6 +1,7 @@
 //! What `eval` writes.
 
 use hodograph_generator::program::routine::Quantity;
+use nalgebra::Vector3;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::contact::{self, Contact};
@@ -60,17 +61,19 @@ struct ContactReport {
 
 impl From<Contact> for ContactReport {
     fn from(contact: Contact) -> Self {
-        let [normal, tangent, binormal] = contact.axes.map(Into::into);
+        // A zero has no sign for a reader.
+        let plain = |vector: Vector3<f64>| vector.map(|number| number + 0.0).into();
+        let [normal, tangent, binormal] = contact.axes.map(plain);
         ContactReport {
             gap: contact.gap,
             normal,
             tangent,
             binormal,
-            velocity: contact.velocity.into(),
-            partials: contact.partials,
-            remainder: contact.remainder.into(),
-            reduced: contact.reduced,
-            v: contact.slip.into(),
+            velocity: plain(contact.velocity),
+            partials: contact.partials.map(|row| row.into_iter().map(|number| number + 0.0).collect()),
+            remainder: plain(contact.remainder),
+            reduced: contact.reduced.map(|number| number + 0.0),
+            v: plain(contact.slip),
         }
     }
 }

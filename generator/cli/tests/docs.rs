@@ -1,0 +1,138 @@
+//! The examples of the documentation run, and answer what the pages say.
+#![cfg(unix)]
+
+mod common;
+
+use std::path::Path;
+use std::process::Command;
+
+use common::{hodograph, root};
+
+/// The commands of a page and the lines that it shows for each.
+fn examples(page: &str) -> Vec<(String, Vec<String>)> {
+    let text = std::fs::read_to_string(root().join(page)).unwrap();
+    let mut examples: Vec<(String, Vec<String>)> = Vec::new();
+    for block in text.split("```console\n").skip(1) {
+        for line in block.split("```").next().unwrap().lines() {
+            match line.strip_prefix("$ ") {
+                Some(command) => examples.push((command.to_owned(), Vec::new())),
+                None => examples.last_mut().unwrap().1.push(line.to_owned()),
+            }
+        }
+    }
+    examples
+}
+
+/// Text, and numbers to the digits that the page gives: the last ones depend on the machine.
+fn pieces(text: &str) -> Vec<String> {
+    let mut pieces: Vec<String> = vec![String::new()];
+    let is_number = |c: char| c.is_ascii_digit() || matches!(c, '.' | 'e' | '-' | '+');
+    let mut inside = false;
+    for c in text.chars() {
+        let starts = c.is_ascii_digit() || c == '-';
+        if (inside && !is_number(c)) || (!inside && starts) {
+            pieces.push(String::new());
+            inside = !inside && starts;
+        }
+        pieces.last_mut().unwrap().push(c);
+    }
+    pieces
+}
+
+fn agree(found: &str, shown: &str) -> bool {
+    let (found, shown) = (pieces(found), pieces(shown));
+    found.len() == shown.len()
+        && found.iter().zip(&shown).all(|(a, b)| match (a.parse::<f64>(), b.parse::<f64>()) {
+            (Ok(a), Ok(b)) => (a - b).abs() <= 1e-6 * b.abs().max(1e-6),
+            _ => a == b,
+        })
+}
+
+/// Does the output look as shown? `..` ends a line early, or stands for any lines.
+fn matches(output: &str, shown: &[String]) -> bool {
+    let mut lines = output.lines();
+    let mut skipping = false;
+    for wanted in shown {
+        if wanted == ".." {
+            skipping = true;
+            continue;
+        }
+        let fits = |line: &str| match wanted.strip_suffix("..") {
+            Some(beginning) => {
+                let same = pieces(beginning).len();
+                let head: String = pieces(line).into_iter().take(same).collect();
+                // A number or a word may be cut off at the end.
+                agree(&head, beginning) || line.starts_with(beginning)
+            }
+            None => agree(line, wanted),
+        };
+        let found = if skipping { lines.any(fits) } else { lines.next().is_some_and(fits) };
+        if !found {
+            return false;
+        }
+        skipping = false;
+    }
+    skipping || lines.next().is_none() || shown.is_empty()
+}
+
+#[test]
+fn examples_run_as_shown() {
+    let folder = Path::new(env!("CARGO_BIN_EXE_hodograph")).parent().unwrap();
+    let path = format!("{}:{}", folder.display(), std::env::var("PATH").unwrap_or_default());
+    std::fs::create_dir_all(root().join("target")).unwrap();
+    for page in ["docs/json.md", "docs/cli.md"] {
+        let examples = examples(page);
+        assert!(!examples.is_empty());
+        for (command, shown) in examples {
+            let output = Command::new("sh")
+                .args(["-c", &command])
+                .env("PATH", &path)
+                .current_dir(root())
+                .output()
+                .unwrap_or_else(|error| panic!("{command}: {error}"));
+            let stdout = String::from_utf8(output.stdout).unwrap();
+            let fails = shown.iter().any(|line| line.contains("\"error\""));
+            assert_eq!(
+                output.status.success(),
+                !fails,
+                "{command}\n{}",
+                String::from_utf8_lossy(&output.stderr)
+            );
+            assert!(matches(&stdout, &shown), "{page}: {command}\n{stdout}\nshown:\n{}", shown.join("\n"));
+        }
+    }
+}
+
+#[test]
+fn every_command_and_kind_is_documented() {
+    let page = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
+    let (cli, json) = (page("docs/cli.md"), page("docs/json.md"));
+    let help = hodograph(&["--help"], "").stdout;
+    let commands = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let names: Vec<&str> = commands
+        .lines()
+        .filter_map(|line| line.strip_prefix("  ").filter(|line| !line.starts_with(' ')))
+        .filter_map(|line| line.split_whitespace().next())
+        .filter(|&name| name != "help")
+        .collect();
+    assert!(names.len() >= 9, "{names:?}");
+    for name in names {
+        assert!(cli.contains(&format!("| `{name}` |")), "{name}");
+    }
+    for kind in [
+        "bad_json",
+        "missing_field",
+        "unknown_name",
+        "not_finite",
+        "negative_friction",
+        "restitution_out_of_range",
+        "not_approaching",
+        "not_positive_semidefinite",
+        "no_normal_mobility",
+        "wedged",
+        "singular_state",
+        "inconsistent_state",
+    ] {
+        assert!(json.contains(&format!("| `{kind}` |")), "{kind}");
+    }
+}
