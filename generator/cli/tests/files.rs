@@ -107,7 +107,7 @@ mod deriving {
         // Plain comments and blanks do not matter, numbers do.
         fs::write(&path, format!("// a remark\n{ROD}")).unwrap();
         assert_eq!(check().code, 0);
-        fs::write(&path, ROD.replace("12, 0", "3, 0")).unwrap();
+        fs::write(&path, ROD.replace("m = 0.5", "m = 0.6")).unwrap();
         let stale = check();
         assert_eq!(stale.code, 1);
         assert!(stale.stdout.contains("is stale: it was derived from another text"), "{}", stale.stdout);
