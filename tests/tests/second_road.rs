@@ -212,10 +212,10 @@ fn power_is_balanced() {
         let conservative = model.mechanism.loads.iter().all(|load| matches!(load.kind, LoadKind::Gravity(_)));
         // A mechanism whose place is ignorable (the bicycle) has no potential energy to state.
         let lost = rate(model, &sample.inputs, Q::PotentialEnergy);
-        if let (true, false, [lost]) = (conservative, prescribed, &lost[..]) {
-            if (gained + lost).abs() > 1e-5 * scale {
-                return Err(format!("kinetic energy changes by {gained} W, potential by {lost} W"));
-            }
+        if let (true, false, [lost]) = (conservative, prescribed, &lost[..])
+            && (gained + lost).abs() > 1e-5 * scale
+        {
+            return Err(format!("kinetic energy changes by {gained} W, potential by {lost} W"));
         }
         Ok(())
     });
