@@ -6,6 +6,7 @@
 
 pub mod arithmetic;
 mod build;
+pub mod cost;
 pub mod graph;
 pub mod linear;
 mod lower;
