@@ -4,7 +4,7 @@
 
 use std::fmt;
 
-use crate::program::arithmetic::{call, call2, mul_add};
+use crate::program::arithmetic::{call, call2, mul_add, sin_cos};
 use crate::program::graph::Input;
 use crate::program::operation::Operation;
 use crate::program::routine::Quantity;
@@ -156,7 +156,7 @@ impl<'a> Evaluator<'a> {
                 MulSub(a, b, c) => mul_add(of(a), of(b), -of(c)),
                 NegMulAdd(a, b, c) => mul_add(-of(a), of(b), of(c)),
                 SinCos(a) => {
-                    numbers[value.index()] = of(a).sin_cos();
+                    numbers[value.index()] = sin_cos(of(a));
                     continue;
                 }
                 Sine(a) => of(a),
@@ -173,11 +173,11 @@ impl<'a> Evaluator<'a> {
 fn check(guard: &Guard, numbers: &[(f64, f64)]) -> Result<(), Failure> {
     let value = numbers[guard.value.index()].0;
     let bound = guard.scale.map_or(0.0, |scale| VANISHING * numbers[scale.index()].0.abs());
-    if !value.is_finite() || !bound.is_finite() {
-        Err(Failure::NotFinite)
-    } else if value.abs() <= bound {
+    if value.abs() > bound {
+        Ok(())
+    } else if value.is_finite() && bound.is_finite() {
         Err(Failure::Singular { message: guard.message.clone(), value })
     } else {
-        Ok(())
+        Err(Failure::NotFinite)
     }
 }

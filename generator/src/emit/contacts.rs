@@ -117,8 +117,9 @@ impl Emitter<'_> {
         });
         let basis = self.contact_basis(contact);
         let reduced = self.reduced_matrix(contact);
+        let matrices = self.contact_matrices(contact);
         let collide = self.collides(contact).then(|| self.collide(contact));
-        quote! { #(#queries)* #basis #reduced #collide }
+        quote! { #(#queries)* #basis #reduced #matrices #collide }
     }
 
     fn contact_words(&self, contact: usize) -> String {
@@ -160,6 +161,30 @@ impl Emitter<'_> {
         );
         let name = self.contact_method("reduced_matrix", contact);
         Some(self.routine(&name, &docs, &[output.quantity], quote!(#krate::ReducedMatrix<T>), value))
+    }
+
+    /// Both at once, for what they share.
+    fn contact_matrices(&self, contact: usize) -> Option<TokenStream> {
+        let krate = self.krate;
+        let partial = self.contact_output(contact, ContactQuantity::PartialVelocities)?;
+        let reduced = self.contact_output(contact, ContactQuantity::Reduced)?;
+        let (shape, velocities) = self.matrix(partial);
+        let matrix = self.reduced(reduced);
+        let docs = format!(
+            "Partial velocities and reduced mass matrix at {} together, as `{}` and `{}` give them one by one.",
+            self.contact_words(contact),
+            self.contact_method("partial_velocities", contact),
+            self.contact_method("reduced_matrix", contact)
+        );
+        let name = self.contact_method("contact_matrices", contact);
+        let result = quote!((#shape, #krate::ReducedMatrix<T>));
+        Some(self.routine(
+            &name,
+            &docs,
+            &[partial.quantity, reduced.quantity],
+            result,
+            quote!((#velocities, #matrix)),
+        ))
     }
 
     fn reduced(&self, output: &Output) -> TokenStream {

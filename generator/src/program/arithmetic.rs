@@ -1,17 +1,28 @@
 //! What the operations mean in doubles. Generated code means the same (`hodograph::generated`).
 
+use super::trigonometry;
 use crate::model::mechanism::Function;
 
+/// Are a * b + c and its kin one operation, with one rounding, on this build's target?
+pub const FUSED: bool =
+    cfg!(any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon")));
+
 /// a * b + c, with one rounding where this build's target has the instruction.
+#[inline(always)]
 pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
-    if cfg!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
+}
+
+/// Sine and cosine.
+pub fn sin_cos(a: f64) -> (f64, f64) {
+    trigonometry::sin_cos(a, f64::sin_cos)
 }
 
 /// A function of one value. A function of two values gives NaN.
 pub fn call(function: Function, a: f64) -> f64 {
     match function {
-        Function::Sin => a.sin(),
-        Function::Cos => a.cos(),
+        Function::Sin => sin_cos(a).0,
+        Function::Cos => sin_cos(a).1,
         Function::Tan => a.tan(),
         Function::Asin => a.asin(),
         Function::Acos => a.acos(),
@@ -50,5 +61,37 @@ pub fn call2(function: Function, a: f64, b: f64) -> f64 {
             }
         }
         _ => f64::NAN,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sin_cos;
+
+    /// Distance in units of the last place of the expected number.
+    fn ulps(found: f64, expected: f64) -> f64 {
+        let unit = (expected.abs().to_bits() + 1).max(1);
+        (found - expected).abs() / (f64::from_bits(unit) - expected.abs())
+    }
+
+    #[test]
+    fn sines_and_cosines_are_right_to_the_last_place() {
+        let mut worst: f64 = 0.0;
+        let near = (-400..400).map(|k| f64::from(k) * std::f64::consts::FRAC_PI_2);
+        let spread = (0..200_000).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract() * 200.0 - 100.0);
+        let large = (0..20_000).map(|k| f64::from(k) * 26.214_39 + 0.1);
+        for x in near.chain(spread).chain(large).chain([0.0, 1e-300, 1e9, 1e300]) {
+            let ((s, c), (sine, cosine)) = (sin_cos(x), x.sin_cos());
+            worst = worst.max(ulps(s, sine)).max(ulps(c, cosine));
+        }
+        assert!(worst <= 2.0, "{worst}");
+        assert!(sin_cos(f64::NAN).0.is_nan() && sin_cos(f64::INFINITY).1.is_nan());
+    }
+
+    #[test]
+    fn the_runtime_has_the_same_file() {
+        let ours = include_str!("trigonometry.rs");
+        let theirs = concat!(env!("CARGO_MANIFEST_DIR"), "/../runtime/src/generated/trigonometry.rs");
+        assert_eq!(std::fs::read_to_string(theirs).unwrap(), ours);
     }
 }

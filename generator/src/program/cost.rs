@@ -42,7 +42,9 @@ impl Count {
             Operation::MulAdd(..) | Operation::MulSub(..) | Operation::NegMulAdd(..) => {
                 (count.multiplications, count.additions, count.fused) = (1, 1, 1);
             }
-            Operation::SinCos(_) | Operation::Call(Function::Sin | Function::Cos, _) => count.trigonometric = 1,
+            Operation::SinCos(_) | Operation::Call(Function::Sin | Function::Cos, _) => {
+                count.trigonometric = 1
+            }
             Operation::Call(..) | Operation::Call2(..) => count.functions = 1,
         }
         count
@@ -65,7 +67,12 @@ impl fmt::Display for Count {
         write!(
             out,
             "{} mul, {} add, {} div, {} sin/cos, {} other ({} fused)",
-            self.multiplications, self.additions, self.divisions, self.trigonometric, self.functions, self.fused
+            self.multiplications,
+            self.additions,
+            self.divisions,
+            self.trigonometric,
+            self.functions,
+            self.fused
         )
     }
 }

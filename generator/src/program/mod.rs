@@ -14,6 +14,7 @@ pub mod operation;
 pub mod passes;
 pub mod routine;
 pub mod slice;
+mod trigonometry;
 mod words;
 
 use operation::{Operation, Stage, Value};

@@ -1,8 +1,17 @@
 //! Operations of generated code. `hodograph_generator::program::arithmetic` means the same in doubles.
 
-use nalgebra::convert;
+use core::any::TypeId;
 
+use nalgebra::{ComplexField, convert};
+
+use super::trigonometry;
 use crate::Scalar;
+
+/// Are a * b + c and its kin one operation, with one rounding?
+pub(crate) const FUSED: bool = cfg!(all(
+    feature = "std",
+    any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))
+));
 
 /// A number of the program.
 #[inline(always)]
@@ -13,19 +22,19 @@ pub fn number<T: Scalar>(number: f64) -> T {
 /// a * b + c, with one rounding where the target has the instruction (and never by a library call).
 #[inline(always)]
 pub fn mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
-    if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
+    if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// a * b - c, likewise.
 #[inline(always)]
 pub fn mul_sub<T: Scalar>(a: T, b: T, c: T) -> T {
-    if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, -c) } else { a * b - c }
+    if FUSED { a.mul_add(b, -c) } else { a * b - c }
 }
 
 /// c - a * b, likewise.
 #[inline(always)]
 pub fn neg_mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
-    if cfg!(all(feature = "std", target_feature = "fma")) { (-a).mul_add(b, c) } else { c - a * b }
+    if FUSED { (-a).mul_add(b, c) } else { c - a * b }
 }
 
 /// 1 / a
@@ -34,10 +43,34 @@ pub fn recip<T: Scalar>(a: T) -> T {
     T::one() / a
 }
 
-/// Sine and cosine.
+/// Sine and cosine. Those of doubles are our own: faster than the system's, and the same everywhere.
 #[inline(always)]
 pub fn sin_cos<T: Scalar>(a: T) -> (T, T) {
-    a.sin_cos()
+    // Known at compile time; the conversions of a double to a double vanish.
+    if TypeId::of::<T>() == TypeId::of::<f64>() {
+        let (sine, cosine) = trigonometry::sin_cos(a.to_subset_unchecked(), beyond);
+        (convert(sine), convert(cosine))
+    } else {
+        a.sin_cos()
+    }
+}
+
+#[cold]
+#[inline(never)]
+fn beyond(a: f64) -> (f64, f64) {
+    ComplexField::sin_cos(a)
+}
+
+/// Sine.
+#[inline(always)]
+pub fn sin<T: Scalar>(a: T) -> T {
+    sin_cos(a).0
+}
+
+/// Cosine.
+#[inline(always)]
+pub fn cos<T: Scalar>(a: T) -> T {
+    sin_cos(a).1
 }
 
 macro_rules! functions {
@@ -51,10 +84,6 @@ macro_rules! functions {
 }
 
 functions! {
-    /// Sine.
-    sin => sin,
-    /// Cosine.
-    cos => cos,
     /// Tangent.
     tan => tan,
     /// Arc sine.

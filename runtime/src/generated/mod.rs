@@ -5,6 +5,7 @@ mod checks;
 mod contact;
 mod error;
 mod serial;
+mod trigonometry;
 
 #[doc(hidden)]
 pub use arithmetic::*;
