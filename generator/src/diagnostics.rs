@@ -2,6 +2,7 @@
 
 pub mod codes;
 mod compile_error;
+pub mod explanations;
 mod render;
 
 use std::ops::Range;

@@ -4,11 +4,15 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-use super::{Diagnostic, Severity, Span};
+use super::{Diagnostic, Label, Severity, Span};
 use crate::source::Source;
 
 /// So many messages are shown with their lines; the rest is counted.
 const MAX_SHOWN: usize = 100;
+/// Longer lines are not shown.
+const MAX_LINE: usize = 2000;
+/// Places further apart than this are not shown together.
+const MAX_DISTANCE: usize = 20_000;
 
 /// All messages, each with its place, its line and a caret; without colours. Ends with a newline unless empty.
 pub fn render(diagnostics: &[Diagnostic], source: &Source) -> String {
@@ -49,15 +53,22 @@ impl Diagnostic {
         let title = level.primary_title(clean(&self.message)).id(self.code.0);
         let help = self.help.as_deref().map(|help| Level::HELP.message(clean(help)));
         let renderer = Renderer::plain();
-        let Some(text) = source.text().filter(|text| !text.is_empty()) else {
-            let place = Level::NOTE.message(format!("in {}", source.name()));
-            let group = title.element(place).elements(help);
-            return renderer.render(&[group]);
+        let primary = source.text().map(|text| within(text, self.primary.span));
+        let (Some(text), Some(primary)) =
+            (source.text(), primary.filter(|place| self.has_line(source, place)))
+        else {
+            let place = Level::NOTE.message(format!("in {}", self.place(source)));
+            return renderer.render(&[title.element(place).elements(help)]);
         };
-        let labels: Vec<(Range<usize>, &str, bool)> = std::iter::once((&self.primary, true))
-            .chain(self.related.iter().map(|label| (label, false)))
-            .map(|(label, primary)| (within(text, label.span), label.text.as_str(), primary))
-            .collect();
+        // what is far away is named by its line
+        let (near, far): (Vec<&Label>, Vec<&Label>) = self.related.iter().partition(|label| {
+            let place = within(text, label.span);
+            place.start.abs_diff(primary.start) < MAX_DISTANCE && self.has_line(source, &place)
+        });
+        let labels: Vec<(Range<usize>, &str, bool)> =
+            std::iter::once((primary, self.primary.text.as_str(), true))
+                .chain(near.iter().map(|label| (within(text, label.span), label.text.as_str(), false)))
+                .collect();
         let (window, first_line) = window(text, labels.iter().map(|(range, ..)| range));
         let annotations = labels.iter().map(|(range, words, primary)| {
             let kind = if *primary { AnnotationKind::Primary } else { AnnotationKind::Context };
@@ -69,8 +80,39 @@ impl Diagnostic {
             .line_start(first_line)
             .fold(true)
             .annotations(annotations);
-        renderer.render(&[title.element(snippet).elements(help)])
+        let notes = far.iter().map(|label| {
+            let line = source.location(label.span).map_or(0, |at| at.line);
+            Level::NOTE.message(format!("{} (line {line})", clean(&label.text)))
+        });
+        renderer.render(&[title.element(snippet).elements(notes).elements(help)])
     }
+
+    /// The file, and the line and column if there are any.
+    fn place(&self, source: &Source) -> String {
+        match source.location(self.primary.span).filter(|_| self.code != super::codes::TOO_LARGE) {
+            Some(at) if source.text().is_some_and(|text| !text.is_empty()) => {
+                format!("{}:{}:{}", source.name(), at.line, at.column)
+            }
+            _ => source.name().to_owned(),
+        }
+    }
+
+    /// Can the line of a place be shown?
+    fn has_line(&self, source: &Source, place: &Range<usize>) -> bool {
+        let Some(text) =
+            source.text().filter(|text| !text.is_empty() && self.code != super::codes::TOO_LARGE)
+        else {
+            return false;
+        };
+        line_of(text, place).len() <= MAX_LINE
+    }
+}
+
+/// The line of a place.
+fn line_of(text: &str, place: &Range<usize>) -> Range<usize> {
+    let start = text[..place.start].rfind('\n').map_or(0, |n| n + 1);
+    let end = text[place.end..].find('\n').map_or(text.len(), |n| place.end + n);
+    start..end
 }
 
 /// A place as a range of characters of the text.

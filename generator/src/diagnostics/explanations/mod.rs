@@ -1,0 +1,105 @@
+//! What each code means, with a wrong and a right example. `docs/errors.md` is written from this, and the tests run the
+//! examples.
+
+mod mechanics;
+mod names;
+mod syntax;
+mod values;
+
+use super::Code;
+use super::codes::ALL;
+use crate::syntax::tree::Section;
+
+/// What a code means.
+#[derive(Clone, Copy, Debug)]
+pub struct Explanation {
+    /// the code
+    pub code: Code,
+    /// what is wrong and why it matters
+    pub text: &'static str,
+    /// a model, or sections of [`FRAME`], with this mistake; absent where no text can show it
+    pub wrong: Option<&'static str>,
+    /// the same without it
+    pub right: Option<&'static str>,
+}
+
+/// The model whose sections the examples replace or extend.
+pub const FRAME: &str = "\
+mechanism RodAndWall;
+parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81 }
+coordinates { q1: rad }
+speeds { u1: rad/s }
+frames { B = N.rotate(z, q1); }
+points { G = O - l/2*B.y; P = O - l*B.y; }
+bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }
+loads { gravity: -g*N.y; }
+contacts { tip { point: P of Rod, normal: -N.x } }
+";
+
+/// The explanation of a code.
+pub fn explanation(code: Code) -> Option<&'static Explanation> {
+    tables().find(|explanation| explanation.code == code)
+}
+
+fn tables() -> impl Iterator<Item = &'static Explanation> {
+    syntax::TABLE.iter().chain(names::TABLE).chain(values::TABLE).chain(mechanics::TABLE)
+}
+
+/// The whole model of an example: its sections take the place of those of [`FRAME`]; a model with a head is whole already.
+pub fn whole(example: &str) -> String {
+    if example.trim_start().starts_with("mechanism") {
+        return example.to_owned();
+    }
+    let split = |text: &str| -> Vec<(Option<Section>, String)> {
+        let mut parts: Vec<(Option<Section>, String)> = Vec::new();
+        for line in text.lines() {
+            let word = line.split([' ', '{']).next().unwrap_or("");
+            match (Section::of_word(word), parts.last_mut()) {
+                (None, Some((_, part))) => part.push_str(line),
+                (section, _) => parts.push((section, line.to_owned())),
+            }
+            if let Some((_, part)) = parts.last_mut() {
+                part.push('\n');
+            }
+        }
+        parts
+    };
+    let own = split(example);
+    let mut parts: Vec<(Option<Section>, String)> = split(FRAME)
+        .into_iter()
+        .filter(|(section, _)| own.iter().all(|(other, _)| other != section))
+        .collect();
+    parts.extend(own);
+    // `None`, the head, sorts first
+    parts.sort_by_key(|(section, _)| *section);
+    parts.into_iter().map(|(_, part)| part).collect()
+}
+
+/// The page `docs/errors.md`.
+pub fn page() -> String {
+    let mut out = String::from(
+        "# Errors and warnings\n\n\
+         Every mistake in a model has a code. Codes keep their meaning from version to version. This page is written from the\n\
+         sources (`generator/src/diagnostics/explanations`); a test checks that each wrong example gives its code and that each\n\
+         right one gives none. An example that does not begin with `mechanism` shows sections that take the place of those of\n\
+         this model:\n\n",
+    );
+    out.push_str(&format!("```text\n{FRAME}```\n\n"));
+    out.push_str("| code | meaning |\n| --- | --- |\n");
+    for (code, title) in ALL {
+        let anchor = code.0.to_lowercase();
+        out.push_str(&format!("| [{code}](#{anchor}) | {title} |\n"));
+    }
+    for (code, title) in ALL {
+        out.push_str(&format!("\n## {code}\n\n*{}{}.* ", title[..1].to_uppercase(), &title[1..]));
+        let Some(explanation) = explanation(*code) else { continue };
+        out.push_str(explanation.text);
+        out.push('\n');
+        for (what, example) in [("wrong", explanation.wrong), ("right", explanation.right)] {
+            if let Some(example) = example {
+                out.push_str(&format!("\n```text\n// {what}\n{}\n```\n", example.trim_end()));
+            }
+        }
+    }
+    out
+}

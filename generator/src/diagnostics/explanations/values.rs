@@ -1,0 +1,113 @@
+//! E030 to E051 and warnings: units, dimensions, scalars and vectors, speeds.
+
+use super::Explanation;
+use crate::diagnostics::codes::*;
+
+pub(super) const TABLE: &[Explanation] = &[
+    Explanation {
+        code: UNKNOWN_UNIT,
+        text: "Units are products and quotients of `kg g m s min h rad deg rev N Pa J W Hz 1`, with SI prefixes and whole powers.",
+        wrong: Some("speeds { u1: rpm }"),
+        right: Some("speeds { u1: rev/min }"),
+    },
+    Explanation {
+        code: DIMENSION,
+        text: "Only quantities of one dimension can be added, compared or equated, and every place wants its own: a mass is in kg, an angle in rad. A plain number has no unit, so a length cannot be `0.5`; declare a parameter with a unit (`fixed`, if it is not to be one at run time). Radians count as 1.",
+        wrong: Some("points { G = O - l/2*B.y; P = O - 0.5*B.y; }"),
+        right: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, fixed a: m = 0.5 }\npoints { G = O - l/2*B.y; P = O - a*B.y; }",
+        ),
+    },
+    Explanation {
+        code: EXPONENT,
+        text: "Exponents are constants of at most 100 in size, unless base and exponent are plain numbers. The dimension of a power must be known when the model is read.",
+        wrong: Some("bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^q1/12, 0, m*l^2/12] } }"),
+        right: Some("bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }"),
+    },
+    Explanation {
+        code: NUMBER_RANGE,
+        text: "Numbers and constants lie between 1e-300 and 1e300 in size, or are 0, and have at most 60 characters; so does every value at the states that are tried.",
+        wrong: Some("parameters { m: kg = 1e999, l: m = 0.5, g: m/s^2 = 9.81 }"),
+        right: Some("parameters { m: kg = 1e9, l: m = 0.5, g: m/s^2 = 9.81 }"),
+    },
+    Explanation {
+        code: ZERO_DIVISOR,
+        text: "A divisor is the constant 0, or vanishes at every state.",
+        wrong: Some("points { G = O - l/(1 - 1)*B.y; P = O - l*B.y; }"),
+        right: Some("points { G = O - l/(1 + 1)*B.y; P = O - l*B.y; }"),
+    },
+    Explanation {
+        code: CONSTANT,
+        text: "The value of a declaration is made of numbers, `pi` and functions. What follows from other quantities belongs to `definitions`.",
+        wrong: Some(
+            "parameters { m: kg = 1, l: m = 0.5, a: m = l/2, g: m/s^2 = 9.81 }\npoints { G = O - a*B.y; P = O - l*B.y; }",
+        ),
+        right: Some("definitions { a = l/2; }\npoints { G = O - a*B.y; P = O - l*B.y; }"),
+    },
+    Explanation {
+        code: NEEDS_VALUE,
+        text: "A `fixed` parameter is folded into the equations, so it needs a value.",
+        wrong: Some("parameters { m: kg = 1, fixed l: m, g: m/s^2 = 9.81 }"),
+        right: Some("parameters { m: kg = 1, fixed l: m = 0.5, g: m/s^2 = 9.81 }"),
+    },
+    Explanation {
+        code: SCALAR_VECTOR,
+        text: "Scalars and vectors do not add, a vector cannot be a divisor, and two vectors have a `dot` and a `cross` product but no other.",
+        wrong: Some("loads { gravity: -g; }"),
+        right: Some("loads { gravity: -g*N.y; }"),
+    },
+    Explanation {
+        code: FUNCTION,
+        text: "The functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, abs, sign, min, max, pow, dot, cross, norm, unit, position, velocity and angular_velocity.",
+        wrong: Some("frames { B = N.rotate(z, arctan(q1)); }"),
+        right: Some("frames { B = N.rotate(z, atan(q1)); }"),
+    },
+    Explanation {
+        code: NO_AXES,
+        text: "A frame made by `spin` has an angular velocity, but its angle is ignorable and not known. Use the axes of the frame that it spins in; give the inertia in that frame too.",
+        wrong: Some("frames { B = N.spin(u1*N.z); }\npoints { G = O; P = O - l*N.y; }"),
+        right: Some("frames { B = N.rotate(z, q1); }\npoints { G = O; P = O - l*B.y; }"),
+    },
+    Explanation {
+        code: NO_POSITION,
+        text: "A point that is given by its velocity has no position from O; neither have the points placed from it. Their positions may appear in differences: `position(P, K)`.",
+        wrong: Some(
+            "points { K: velocity u1*l*B.x; G = K - l/2*B.y; P = K - l*B.y; }\ncontacts { tip { point: P of Rod, normal: -N.x, gap: dot(position(P), -N.x) } }",
+        ),
+        right: Some(
+            "points { K: velocity u1*l*B.x; G = K - l/2*B.y; P = K - l*B.y; }\ncontacts { tip { point: P of Rod, normal: -N.x } }",
+        ),
+    },
+    Explanation {
+        code: SPEED_DEPENDENT,
+        text: "Positions, angles, normals, gaps, masses, inertias, stiffnesses and configuration equations do not depend on speeds, on velocities or on rates of coordinates.",
+        wrong: Some("contacts { tip { point: P of Rod, normal: unit(velocity(P)) } }"),
+        right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
+    },
+    Explanation {
+        code: NOT_LINEAR,
+        text: "Constraints, kinematical equations and stated velocities are linear in speeds and rates: that is what makes a system a simple non-holonomic one, and Kane's method exact. Divide by what does not depend on speeds only.",
+        wrong: Some("kinematics { d(q1)/dt = u1^2/u1; }"),
+        right: Some("kinematics { d(q1)/dt = u1; }"),
+    },
+    Explanation {
+        code: UNUSED_PARAMETER,
+        text: "The parameter enters no equation. It is kept, and warned of: perhaps another one was meant.",
+        wrong: Some("parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, k: N/m = 3 }"),
+        right: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, k: N/m = 3 }\nloads { gravity: -g*N.y; force on P: -k*l*N.x; }",
+        ),
+    },
+    Explanation {
+        code: UNUSED_INPUT,
+        text: "The input enters no equation.",
+        wrong: Some("inputs { F: N }"),
+        right: Some("inputs { F: N }\nloads { gravity: -g*N.y; force on P: F*N.x; }"),
+    },
+    Explanation {
+        code: UNUSED_DEFINITION,
+        text: "Nothing refers to the definition.",
+        wrong: Some("definitions { h = l/2; }"),
+        right: Some("definitions { h = l/2; }\npoints { G = O - h*B.y; P = O - l*B.y; }"),
+    },
+];

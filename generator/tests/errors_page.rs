@@ -1,0 +1,53 @@
+//! `docs/errors.md` is what the code says, and its examples do what they claim.
+
+use std::path::Path;
+
+use hodograph_generator::diagnostics::codes::ALL;
+use hodograph_generator::diagnostics::explanations::{explanation, page, whole};
+use hodograph_generator::diagnostics::{Code, render};
+use hodograph_generator::{model, source::Source};
+
+fn check(code: Code, example: &str) -> (Vec<Code>, String) {
+    let source = Source::file(format!("{code}.mech"), whole(example));
+    let checked = model::check(&source);
+    let said = render(&checked.diagnostics, &source);
+    (checked.diagnostics.iter().map(|d| d.code).collect(), said)
+}
+
+#[test]
+fn every_code_is_explained() {
+    for (code, _) in ALL {
+        assert!(explanation(*code).is_some(), "{code} is not explained");
+    }
+}
+
+#[test]
+fn examples_do_what_they_claim() {
+    let mut wrong = String::new();
+    for (code, _) in ALL {
+        let Some(explanation) = explanation(*code) else { continue };
+        if let Some(example) = explanation.wrong {
+            let (found, said) = check(*code, example);
+            if found.is_empty() || found.iter().any(|other| other != code) {
+                wrong.push_str(&format!("{code}, wrong example, says:\n{said}\n"));
+            }
+        }
+        if let Some(example) = explanation.right {
+            let (found, said) = check(*code, example);
+            if !found.is_empty() {
+                wrong.push_str(&format!("{code}, right example, says:\n{said}\n"));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+#[test]
+fn the_page_is_up_to_date() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/errors.md");
+    if std::env::var_os("UPDATE_EXPECTED").is_some() {
+        std::fs::write(&path, page()).expect("writing");
+    }
+    let there = std::fs::read_to_string(&path).unwrap_or_default();
+    assert_eq!(there, page(), "UPDATE_EXPECTED=1 writes docs/errors.md anew");
+}

@@ -1,0 +1,215 @@
+//! Whatever the input: an answer, soon, and no panic.
+
+use std::time::{Duration, Instant};
+
+use hodograph_generator::diagnostics::{codes, render};
+use hodograph_generator::{model, source::Source};
+use proptest::prelude::*;
+
+/// Checks a text that must be refused with this code, within two seconds even unoptimised.
+fn refused(what: &str, text: String, code: hodograph_generator::diagnostics::Code) {
+    let begun = Instant::now();
+    let source = Source::file("big.mech", text);
+    let checked = model::check(&source);
+    let said = render(&checked.diagnostics, &source);
+    assert!(checked.mechanism.is_none(), "{what} is accepted");
+    assert!(checked.diagnostics.iter().any(|d| d.code == code), "{what}: {said}");
+    let taken = begun.elapsed();
+    assert!(taken < Duration::from_secs(5), "{what} took {taken:?}");
+}
+
+const HEAD: &str = "mechanism M; parameters { m: kg = 1 } coordinates { q1: m } speeds { u1: m/s }\n";
+const TAIL: &str = "points { P = O + q1*N.x; } particles { A { point: P, mass: m } }\n";
+
+fn with(sections: &str) -> String {
+    format!("{HEAD}{sections}\n{TAIL}")
+}
+
+#[test]
+fn deep_nesting() {
+    let n = 100_000;
+    for (open, close) in [("(", ")"), ("[", "]"), ("sin(", ")"), ("d(", ")/dt"), ("A.vec(", ")")] {
+        let text = with(&format!("definitions {{ a = {}1{}; }}", open.repeat(n), close.repeat(n)));
+        refused(open, text, codes::TOO_DEEP);
+    }
+    refused("signs", with(&format!("definitions {{ a = {}1; }}", "-".repeat(n))), codes::TOO_DEEP);
+    refused("powers", with(&format!("definitions {{ a = {}1; }}", "2^".repeat(n))), codes::TOO_DEEP);
+    refused("members", with(&format!("definitions {{ a = N{}; }}", ".x".repeat(n))), codes::TOO_DEEP);
+    refused("braces", "{".repeat(n), codes::UNBALANCED);
+    refused("comments", "/*".repeat(n), codes::UNBALANCED);
+}
+
+#[test]
+fn towers_and_numbers() {
+    refused("a tower", with("definitions { a = 10^10^6; }"), codes::EXPONENT);
+    refused("a negative tower", with("definitions { a = 10^-10^6; }"), codes::EXPONENT);
+    refused(
+        "digits",
+        with(&format!("definitions {{ a = {}; }}", "9".repeat(1_000_000))),
+        codes::NUMBER_RANGE,
+    );
+    refused("an exponent", with("definitions { a = 1e999999999999; }"), codes::NUMBER_RANGE);
+    let chain = "99^99*".repeat(2000);
+    refused("a product", with(&format!("definitions {{ a = {chain}1; }}")), codes::NUMBER_RANGE);
+}
+
+#[test]
+fn large_files() {
+    refused("50 MB of blanks", " ".repeat(50 << 20), codes::TOO_LARGE);
+    refused("50 MB of words", "mechanism ".repeat(5 << 20), codes::TOO_LARGE);
+    refused("4 MB of signs", "+".repeat(4 << 20), codes::EXPECTED);
+    refused(
+        "4 MB of one line",
+        with(&format!("definitions {{ a = {}1; }}", "x+".repeat(1 << 20))),
+        codes::UNKNOWN_NAME,
+    );
+    refused(
+        "4 MB of errors",
+        with(&format!("definitions {{ {} }}", "= ; ".repeat(1_000_000))),
+        codes::EXPECTED,
+    );
+}
+
+#[test]
+fn long_chains_of_names() {
+    let n = 10_000;
+    let chain: String = (0..n).map(|i| format!("a{i} = a{}; ", i + 1)).collect();
+    refused("a chain", with(&format!("definitions {{ {chain} a{n} = 1; }}")), codes::TOO_DEEP);
+    refused("a circle", with(&format!("definitions {{ {chain} a{n} = a0; }}")), codes::CYCLE);
+    let frames: String = (0..n).map(|i| format!("F{i} = F{}.rotate(z, 1); ", i + 1)).collect();
+    refused("frames", with(&format!("frames {{ {frames} F{n} = N; }}")), codes::TOO_DEEP);
+}
+
+/// Ten thousand of everything that may be many is a model like others.
+#[test]
+fn ten_thousand_parameters() {
+    let n = 10_000;
+    let parameters: String = (0..n).map(|i| format!("p{i}: m = {i}, ")).collect();
+    let sum: String = (0..n).map(|i| format!("p{i} + ")).collect();
+    let text = format!(
+        "mechanism M; parameters {{ m: kg = 1, {parameters} }} coordinates {{ q1: m }} speeds {{ u1: m/s }}
+         definitions {{ a = {sum} q1; }} points {{ P = O + a*N.x; }} particles {{ A {{ point: P, mass: m }} }}"
+    );
+    let begun = Instant::now();
+    let checked = model::check(&Source::file("many.mech", text));
+    assert!(checked.mechanism.is_some(), "{:?}", checked.diagnostics.first());
+    assert!(begun.elapsed() < Duration::from_secs(10));
+}
+
+#[test]
+fn files_that_are_no_text() {
+    let checked = model::check(&Source::bytes("x.mech", vec![b'm', 0xff, 0xfe]));
+    assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
+    let checked = model::check(&Source::read(std::path::Path::new("/no/such/file.mech")));
+    assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
+    for text in ["", "\u{feff}", "\n", "//", "/", "\0", "mechanism", "mechanism ;", "mechanism A;"] {
+        let source = Source::file("x.mech", text);
+        let checked = model::check(&source);
+        assert!(checked.mechanism.is_none() && !checked.diagnostics.is_empty(), "{text:?}");
+        render(&checked.diagnostics, &source);
+    }
+}
+
+fn models() -> Vec<String> {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).expect("models").filter_map(|e| Some(e.ok()?.path())).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "mech"));
+    paths.sort();
+    paths.iter().map(|path| std::fs::read_to_string(path).expect("text")).collect()
+}
+
+const WORDS: &[&str] = &[
+    "mechanism",
+    "M",
+    ";",
+    "parameters",
+    "{",
+    "}",
+    "m",
+    ":",
+    "kg",
+    "=",
+    "1",
+    ",",
+    "coordinates",
+    "q1",
+    "speeds",
+    "u1",
+    "frames",
+    "B",
+    "N",
+    ".",
+    "rotate",
+    "(",
+    "z",
+    ")",
+    "points",
+    "P",
+    "O",
+    "+",
+    "-",
+    "*",
+    "/",
+    "^",
+    "bodies",
+    "frame",
+    "centre",
+    "mass",
+    "inertia",
+    "[",
+    "]",
+    "constraints",
+    "velocity",
+    "d",
+    "dt",
+    "contacts",
+    "point",
+    "of",
+    "normal",
+    "///",
+    "\n",
+    "in",
+];
+
+/// An answer, whatever it is; a refusal has reasons, and all of it can be shown.
+fn answered(bytes: Vec<u8>) {
+    let source = Source::bytes("x.mech", bytes);
+    let checked = model::check(&source);
+    assert!(checked.mechanism.is_some() || !checked.diagnostics.is_empty());
+    render(&checked.diagnostics, &source);
+    source.content_hash();
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(256) })]
+
+    #[test]
+    fn arbitrary_bytes(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        answered(bytes);
+    }
+
+    #[test]
+    fn arbitrary_text(text in ".{0,200}") {
+        answered(format!("mechanism M; parameters {{ {text} }}").into_bytes());
+    }
+
+    #[test]
+    fn soups_of_words(words in proptest::collection::vec(proptest::sample::select(WORDS), 0..120)) {
+        answered(words.join(" ").into_bytes());
+    }
+
+    #[test]
+    fn changed_models(
+        which in any::<prop::sample::Index>(),
+        changes in proptest::collection::vec((any::<prop::sample::Index>(), 0_usize..10, proptest::sample::select(WORDS)), 1..5),
+    ) {
+        let mut text = models()[which.index(models().len())].clone().into_bytes();
+        for (at, length, word) in changes {
+            let at = at.index(text.len());
+            let end = (at + length).min(text.len());
+            text.splice(at..end, word.bytes());
+        }
+        answered(text);
+    }
+}
