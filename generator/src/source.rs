@@ -11,8 +11,8 @@ use crate::syntax::{inline, lexer};
 
 /// A file has at most this many bytes: a model of ten thousand parameters has a tenth of it.
 pub const MAX_BYTES: usize = 4 << 20;
-/// An inline model has at most this many tokens.
-pub const MAX_TOKENS: usize = 1 << 20;
+/// A model has at most this many tokens.
+pub const MAX_TOKENS: usize = 500_000;
 
 /// The text of a model.
 #[derive(Clone, Debug)]
@@ -113,17 +113,18 @@ impl Source {
         let too_large = |message: String| {
             Box::new(Diagnostic::new(codes::TOO_LARGE, Span::default(), message).help("is it a model?"))
         };
-        match &self.content {
+        let tokens = match &self.content {
+            Content::Unreadable(error) => return Err(error.clone()),
             Content::File(text) if text.len() > MAX_BYTES => {
-                Err(too_large(format!("the file is larger than {} MiB", MAX_BYTES >> 20)))
+                return Err(too_large(format!("the file is larger than {} MiB", MAX_BYTES >> 20)));
             }
-            Content::File(text) => Ok(Cow::Owned(lexer::tokens(text))),
-            Content::Unreadable(error) => Err(error.clone()),
-            Content::Inline { tokens, .. } if tokens.len() > MAX_TOKENS => {
-                Err(too_large(format!("the model has more than {MAX_TOKENS} tokens")))
-            }
-            Content::Inline { tokens, .. } => Ok(Cow::Borrowed(tokens)),
+            Content::File(text) => Cow::Owned(lexer::tokens(text, MAX_TOKENS)),
+            Content::Inline { tokens, .. } => Cow::Borrowed(tokens.as_slice()),
+        };
+        if tokens.len() > MAX_TOKENS {
+            return Err(too_large(format!("the model has more than {MAX_TOKENS} words and signs")));
         }
+        Ok(tokens)
     }
 
     /// The user's tokens at a place of an inline model: the first and the last.

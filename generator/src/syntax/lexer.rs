@@ -4,13 +4,13 @@
 use super::token::{Bad, Token, TokenKind, is_decimal};
 use crate::diagnostics::Span;
 
-/// The tokens of a text. Positions are bytes.
-pub fn tokens(text: &str) -> Vec<Token> {
+/// The tokens of a text, at most `most` and a few. Positions are bytes.
+pub fn tokens(text: &str, most: usize) -> Vec<Token> {
     let mut lexer = Lexer { text, at: 0, tokens: Vec::new() };
     if text.starts_with('\u{feff}') {
         lexer.at = '\u{feff}'.len_utf8();
     }
-    while lexer.at < text.len() {
+    while lexer.at < text.len() && lexer.tokens.len() <= most {
         lexer.step();
     }
     lexer.tokens
