@@ -71,6 +71,41 @@ impl<T: Scalar> Ledger<T> {
         }
     }
 
+    /// Goes from one state to a later one, between which v_n is monotone, if that needs no look at what lies between.
+    #[inline]
+    pub fn passes(&mut self, from: &State<T>, to: &State<T>) -> bool {
+        let zero = T::zero();
+        if from.velocity < zero {
+            if to.velocity < zero {
+                return true;
+            }
+            if self.law == Law::Newton && self.target > to.velocity {
+                self.compressions += 1;
+                return true;
+            }
+            return false;
+        }
+        to.velocity >= zero && self.watched(to) < self.target
+    }
+
+    /// A rough lower estimate of the impulse to the next event, from the present rate of v_n.
+    #[inline]
+    pub fn remaining(&self, from: &State<T>, rate: T) -> T {
+        let v = from.velocity;
+        if v < T::zero() {
+            return -v / rate.abs();
+        }
+        match self.law {
+            Law::Newton => (self.target - v) / rate.abs(),
+            Law::Poisson => self.target - from.normal,
+            Law::Stronge => {
+                let missing = self.target - from.work;
+                let square = v * v + (missing + missing) * rate.abs();
+                (missing + missing) / (v + larger(square, T::zero()).sqrt())
+            }
+        }
+    }
+
     /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`).
     #[inline]
     pub fn follow_line(&mut self, from: &State<T>, rate: T, length: Option<T>) -> Line<T> {

@@ -1,7 +1,11 @@
 //! The exact solver: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
 
+mod arc;
 mod chart;
 mod ledger;
+mod regular;
+mod root;
+mod series;
 mod sliding;
 mod terminal;
 
@@ -53,6 +57,14 @@ pub fn solve<T: Scalar>(
                 Slide::Stopped(stopped) => state = stopped,
             }
         }
+        // Where slip and normal velocity stop together, rounding must not tell them apart.
+        let scale = T::one() + state.normal * (T::one() + contact.mu * contact.b.norm());
+        if slips && state.velocity.abs() <= constant::<T>(256.0) * eps * scale {
+            state.velocity = T::zero();
+            if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
+                break 'done (state, Vector2::zeros(), Path::Sliding);
+            }
+        }
         let hold = contact.hold();
         if hold.norm() <= contact.mu {
             let path = if slips { Path::SlidingThenSticking } else { Path::Sticking };
@@ -60,14 +72,6 @@ pub fn solve<T: Scalar>(
             if rate <= constant::<T>(64.0) * eps {
                 // The contact can no longer move along the normal.
                 rate = T::zero();
-                let scale = T::one() + state.normal * (T::one() + contact.mu * contact.b.norm());
-                if state.velocity.abs() <= constant::<T>(4096.0) * eps * scale {
-                    state.velocity = T::zero();
-                    if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
-                        let path = if slips { Path::Sliding } else { path };
-                        break 'done (state, Vector2::zeros(), path);
-                    }
-                }
             }
             match ledger.follow_line(&state, rate, None) {
                 Line::Ended { impulse, velocity, work } => {

@@ -1,16 +1,20 @@
-//! The sliding arc (34), step by step, until the law ends the collision or slip stops.
+//! The sliding arc (34), piece by piece, until the law ends the collision or slip stops.
 
 use nalgebra::Vector2;
 
 use super::{
-    chart::{Chart, Point, Series},
+    arc::{Start, follow},
+    chart::Chart,
     ledger::{Ledger, Line, State},
+    regular::Regular,
+    root::Root,
+    series::{TERMS, table},
     terminal::Contact,
 };
-use crate::{Law, Scalar, scalar::constant};
+use crate::{Scalar, scalar::constant};
 
-/// Steps after which the arc is given up. Each step shrinks or grows the distance to a root of h by a fixed factor.
-const STEPS: u32 = 512;
+/// Pieces after which the arc is given up. Each one changes the distance to a root of h by a fixed factor at least.
+const PIECES: u32 = 512;
 
 /// What became of the sliding arc.
 pub(super) enum Slide<T: Scalar> {
@@ -31,37 +35,56 @@ pub(super) fn slide<T: Scalar>(
     ledger: &mut Ledger<T>,
 ) -> Slide<T> {
     let eps = T::default_epsilon();
-    let mut d = from / speed;
-    let mut slip = speed;
-    let mut state = State::approach();
-    for _ in 0..STEPS {
-        let chart = Chart::about(c, &d);
+    // Rounding leaves h this uncertain.
+    let noise = eps * (c.b.norm() + c.mu * (c.tt + c.ss));
+    let mut at = Start { state: State::approach(), direction: from / speed, slip: speed };
+    let mut table = table(speed);
+    for _ in 0..PIECES {
+        let chart = Chart::about(c, &at.direction);
         let [h0, h1, ..] = chart.h;
-        let noise = eps * (chart.h[1].abs() + chart.h[2].abs() + chart.h[3].abs() + chart.h[4].abs());
-        let settled = h1 < T::zero() && h0.abs() <= noise * constant(2.0);
-        if settled || h0.abs() <= noise * constant(0.25) {
-            return straight(c, d, slip, state, ledger);
+        let [g, ..] = chart.k;
+        let settled = h1 < T::zero() && h0.abs() <= noise * constant(8.0);
+        let over = g < T::zero() && at.slip <= eps * speed * constant(4.0);
+        if settled || over || h0.abs() <= noise * constant(0.25) {
+            return straight(c, at.direction, at.slip, at.state, ledger);
         }
-        if chart.k[0] < T::zero() && slip <= eps * eps * speed {
-            return Slide::Stopped(state);
-        }
-        let Some(series) = Series::new(&chart, c.mu, d, slip, state) else {
-            return Slide::Endless(state);
-        };
-        let end = series.turning().unwrap_or(series.limit);
-        let last = match follow(&series, &state, end, ledger) {
-            Ok(point) => {
-                let (d, s) = series.slip(&point);
-                return Slide::Ended(point.state, d * s);
+        let [f0, ..] = chart.f;
+        if let Some(mut rest) = Root::new(&mut table, c, &chart, at) {
+            let stops = rest.alpha > T::zero();
+            let stop = rest.stop();
+            if stops && ledger.passes(&at.state, &stop) {
+                return Slide::Stopped(stop);
             }
-            Err(point) => point,
-        };
-        state = last.state;
-        (d, slip) = series.slip(&last);
-        let norm = d.norm();
-        d /= norm;
+            // An end close by is better sought from here than from the root.
+            let away = ledger.remaining(&at.state, f0);
+            let far = if stops {
+                (stop.normal - at.state.normal) * constant(0.1)
+            } else {
+                rest.first_rate() * constant(0.25)
+            };
+            let mut log = [at.slip; TERMS];
+            if away > far && rest.prepare(&mut log) {
+                match follow(c, &rest, &at, rest.first_rate(), f0, ledger) {
+                    Ok(point) => return Slide::Ended(point.state, point.slip),
+                    Err(_) if stops => return Slide::Stopped(stop),
+                    Err(point) => {
+                        let speed = point.slip.norm();
+                        at = Start { state: point.state, direction: point.slip / speed, slip: speed };
+                        continue;
+                    }
+                }
+            }
+        }
+        let step = Regular::new(&mut table, c, &chart, at);
+        match follow(c, &step, &at, step.first_rate(), f0, ledger) {
+            Ok(point) => return Slide::Ended(point.state, point.slip),
+            Err(point) => {
+                let speed = point.slip.norm();
+                at = Start { state: point.state, direction: point.slip / speed, slip: speed };
+            }
+        }
     }
-    Slide::Endless(state)
+    Slide::Endless(at.state)
 }
 
 /// Slip along a fixed direction: everything is linear in I_n.
@@ -73,13 +96,15 @@ fn straight<T: Scalar>(
     state: State<T>,
     ledger: &mut Ledger<T>,
 ) -> Slide<T> {
-    let noise = constant::<T>(64.0) * T::default_epsilon();
+    let noise = constant::<T>(1024.0) * T::default_epsilon();
     let g = c.slip_rate(&d).dot(&d);
     let mut f = c.normal_rate(&d);
     if f.abs() <= noise * (T::one() + c.mu * c.b.norm()) {
         f = T::zero();
     }
-    let length = if g < T::zero() { Some(-slip / g) } else { None };
+    // Slip that no longer changes while v_n does not either goes on for ever.
+    let dead = f == T::zero() && g.abs() <= noise * (c.b.norm() + c.mu * (c.tt + c.ss));
+    let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
     let moved = |impulse: T, velocity: T, work: T| State {
         normal: state.normal + impulse,
         tangential: state.tangential - d * (c.mu * impulse),
@@ -97,114 +122,4 @@ fn straight<T: Scalar>(
         }
         Line::Endless => Slide::Endless(state),
     }
-}
-
-/// Looks for the end of the collision on one step, where v_n is monotone up to `end`: the point, or else the last one.
-#[inline]
-fn follow<T: Scalar>(
-    series: &Series<T>,
-    start: &State<T>,
-    end: T,
-    ledger: &mut Ledger<T>,
-) -> Result<Point<T>, Point<T>> {
-    let last = series.at(end);
-    let zero = T::zero();
-    let mut from = zero;
-    let mut begin = *start;
-    let mut hi = end;
-    if begin.velocity < zero {
-        if last.state.velocity < zero {
-            return Err(last);
-        }
-        let (rate, f) = series.rates(zero, &series.at(zero));
-        let guess = if f > zero { -begin.velocity / (f * rate) } else { end };
-        from = find(series, zero, zero, end, guess, |p| p.velocity, |v| v);
-        let point = series.at(from);
-        if ledger.compressed(point.state.normal, point.state.work) {
-            return Ok(point);
-        }
-        begin = point.state;
-    } else if last.state.velocity < zero {
-        // v_n falls through zero: the law must end before.
-        let (rate, f) = series.rates(zero, &series.at(zero));
-        let guess = if f < zero { -begin.velocity / (f * rate) } else { end };
-        hi = find(series, zero, zero, end, guess, |p| -p.velocity, |v| -v);
-    }
-    let top = if hi < end { series.at(hi).state } else { last.state };
-    let law = ledger.law();
-    let target = ledger.target;
-    if ledger.watched(&top) < target || (law == Law::Newton && ledger.watched(&begin) >= target) {
-        return Err(last);
-    }
-    let at = series.at(from);
-    let (rate, f) = series.rates(from, &at);
-    let theta = match law {
-        Law::Newton => find(
-            series,
-            target,
-            from,
-            hi,
-            from + (target - begin.velocity) / (f * rate),
-            |p| p.velocity,
-            |v| v,
-        ),
-        Law::Poisson => {
-            find(series, target, from, hi, from + (target - begin.normal) / rate, |p| p.normal, |_| T::one())
-        }
-        Law::Stronge => {
-            let missing = target - begin.work;
-            let square = begin.velocity * begin.velocity + (missing + missing) * f;
-            let after = if square > zero { square.sqrt() } else { zero };
-            let guess = from + (missing + missing) / ((begin.velocity + after) * rate);
-            find(series, target, from, hi, guess, |p| p.work, |_| T::one())
-        }
-    };
-    Ok(series.at(theta))
-}
-
-/// The theta in [lo, hi] where a rising quantity takes the target: Newton's method kept inside a bracket.
-#[inline]
-fn find<T: Scalar>(
-    series: &Series<T>,
-    target: T,
-    mut lo: T,
-    mut hi: T,
-    guess: T,
-    quantity: impl Fn(&State<T>) -> T,
-    _slope: impl Fn(T) -> T,
-) -> T {
-    let half = constant::<T>(0.5);
-    let mut theta = if guess > lo && guess < hi { guess } else { (lo + hi) * half };
-    for _ in 0..64 {
-        let point = series.at(theta);
-        let miss = quantity(&point.state) - target;
-        if miss < T::zero() {
-            lo = theta;
-        } else {
-            hi = theta;
-        }
-        let (rate, f) = series.rates(theta, &point);
-        let slope = slope_of(&quantity, &point.state, rate, f);
-        let next = theta - miss / slope;
-        let step = (next - theta).abs();
-        if step <= constant::<T>(2.0) * T::default_epsilon() * hi {
-            return next;
-        }
-        theta = if next > lo && next < hi { next } else { (lo + hi) * half };
-        if hi - lo <= T::default_epsilon() * hi {
-            return theta;
-        }
-    }
-    theta
-}
-
-/// d quantity / d theta, by asking the quantity for its part of the state's derivative (all are linear in the state).
-#[inline]
-fn slope_of<T: Scalar>(quantity: &impl Fn(&State<T>) -> T, at: &State<T>, rate: T, f: T) -> T {
-    quantity(&State {
-        normal: rate,
-        tangential: Vector2::zeros(),
-        velocity: rate * f,
-        work: rate * at.velocity,
-    })
 }
