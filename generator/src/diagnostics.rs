@@ -1,14 +1,12 @@
 //! Mistakes in a model: where, what, and what to do about it.
 
 pub mod codes;
-mod compile_error;
 pub mod explanations;
 mod render;
 
 use std::ops::Range;
 
 pub use codes::Code;
-pub use compile_error::compile_errors;
 pub use render::render;
 
 /// A place in the source: bytes of a file, or tokens of an inline model (see `syntax`).

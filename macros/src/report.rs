@@ -20,8 +20,8 @@ pub fn error(first: Span, last: Span, message: &str) -> TokenStream {
 /// The errors of a model file in one message, at the path in the invocation.
 pub fn of_file(source: &Source, diagnostics: &[Diagnostic], at: Span) -> TokenStream {
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
-    let texts: Vec<String> = errors.map(|diagnostic| diagnostic.one_line(source)).collect();
-    error(at, at, &texts.join("\n"))
+    let texts: Vec<String> = errors.map(|diagnostic| diagnostic.compiler_text(source)).collect();
+    error(at, at, &texts.join("\n\n"))
 }
 
 /// The errors of an inline model, each at the user's own tokens.
@@ -31,14 +31,7 @@ pub fn of_inline(source: &Source, diagnostics: &[Diagnostic]) -> TokenStream {
         .map(|diagnostic| {
             let call = (Span::call_site(), Span::call_site());
             let (first, last) = source.rust_spans(diagnostic.primary.span).unwrap_or(call);
-            let mut message = diagnostic.message.clone();
-            if !diagnostic.primary.text.is_empty() {
-                message.push_str(&format!("\n{}", diagnostic.primary.text));
-            }
-            if let Some(help) = &diagnostic.help {
-                message.push_str(&format!("\nhelp: {help}"));
-            }
-            error(first, last, &format!("[{}] {message}", diagnostic.code))
+            error(first, last, &diagnostic.compiler_text(source))
         })
         .collect()
 }

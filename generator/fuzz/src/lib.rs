@@ -1,6 +1,6 @@
 //! What a run of the fuzzer does: it checks a text, renders what is said of it, and holds the results to their promises.
 
-use hodograph_generator::diagnostics::{compile_errors, render};
+use hodograph_generator::diagnostics::render;
 use hodograph_generator::{model, source::Source};
 
 /// Checks bytes as a file and, if they are Rust tokens, as an inline model. Panics if a promise is broken.
@@ -25,7 +25,10 @@ pub fn run_inline(text: &str) {
     let Ok(stream) = text.parse::<proc_macro2::TokenStream>() else { return };
     let source = Source::inline("fuzz", stream);
     let checked = model::check(&source);
-    let _ = compile_errors(&checked.diagnostics, &source);
+    for diagnostic in &checked.diagnostics {
+        assert!(source.rust_spans(diagnostic.primary.span).is_some() || text.trim().is_empty());
+        let _ = diagnostic.compiler_text(&source);
+    }
     let file = Source::file("fuzz.mech", text);
     // a text that both can read means the same to both
     if checked.mechanism.is_some() {

@@ -87,6 +87,25 @@ impl Diagnostic {
         renderer.render(&[title.element(snippet).elements(notes).elements(help)])
     }
 
+    /// The message as the text of a compile error. For a file: one line with the place, then the line and a caret. For an inline
+    /// model, whose tokens the compiler underlines: what is wrong and what to do.
+    pub fn compiler_text(&self, source: &Source) -> String {
+        if source.text().is_some() {
+            let line = Diagnostic { help: None, ..self.clone() }.one_line(source);
+            let rendered = self.render(source);
+            let body = rendered.split_once('\n').map_or("", |(_, body)| body);
+            return format!("{line}\n{body}");
+        }
+        let mut text = format!("[{}] {}", self.code, self.message);
+        if !self.primary.text.is_empty() {
+            text.push_str(&format!("\n{}", self.primary.text));
+        }
+        if let Some(help) = &self.help {
+            text.push_str(&format!("\nhelp: {help}"));
+        }
+        text
+    }
+
     /// The file, and the line and column if there are any.
     fn place(&self, source: &Source) -> String {
         match source.location(self.primary.span).filter(|_| self.code != super::codes::TOO_LARGE) {
