@@ -19,7 +19,8 @@ mod stop;
 mod surface;
 
 use commands::{
-    check, collide, derive, derive_worker, eval, expand, explain, import as import_urdf, plot as draw, solve,
+    check, collide, derive, derive_worker, eval, expand, explain, import as import_urdf, plot as draw,
+    simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -43,6 +44,7 @@ enum Command {
     Expand(expand::Arguments),
     Explain(explain::Arguments),
     Plot(draw::Arguments),
+    Simulate(simulate::Arguments),
     Import(import_urdf::Arguments),
     #[command(name = derivation::WORKER, hide = true)]
     DeriveWorker(derive_worker::Arguments),
@@ -57,6 +59,7 @@ fn main() -> ExitCode {
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),
         Command::DeriveWorker(arguments) => derive_worker::run(&arguments),

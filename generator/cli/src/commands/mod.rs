@@ -9,4 +9,5 @@ pub mod expand;
 pub mod explain;
 pub mod import;
 pub mod plot;
+pub mod simulate;
 pub mod solve;

@@ -1,5 +1,6 @@
 //! A model in a state: numbers for all that `eval` writes.
 
+pub mod collision;
 pub mod complete;
 pub mod contact;
 pub mod report;

@@ -1,0 +1,111 @@
+//! `plot`, `explain` and `simulate`.
+
+mod common;
+
+use common::{hodograph, model, number};
+use serde_json::{Value, json};
+
+#[test]
+fn plots_have_a_curve_and_three_marks_for_each_friction() {
+    let call = ["plot", &model("two_sleds"), "--mu", "0.6,1.1,1.6", "--e", "0.8"];
+    let run = hodograph(&call, "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.starts_with("<svg") && run.stdout.trim_end().ends_with("</svg>"));
+    // Three panels, three frictions: a circle for Newton in each.
+    assert_eq!(run.stdout.matches("<circle").count(), 9);
+    for text in ["mu = 0.6", "mu = 1.6", "TwoSleds, BcAc, e = 0.8"] {
+        assert!(run.stdout.contains(text), "{text}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("one.svg").display().to_string();
+    let case = json!({"m": [0.25, -0.125, 0, 0.5, 0, 0.5], "v": [-1, 0.5, 0]}).to_string();
+    assert_eq!(hodograph(&["plot", "--mu", "0.5", "--e", "1", "--output", &path], &case).code, 0);
+    assert!(std::fs::read_to_string(&path).unwrap().contains("</svg>"));
+}
+
+#[test]
+fn plots_of_nothing_are_refused() {
+    assert_eq!(hodograph(&["plot", "--mu", "0.5", "--e", "1"], "{").error_kind(), "bad_json");
+    let parting = json!({"m": [1, 0, 0, 1, 0, 1], "v": [1, 0, 0]}).to_string();
+    let run = hodograph(&["plot", "--mu", "0.5", "--e", "1"], &parting);
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("nothing to draw"), "{}", run.stderr);
+    assert_eq!(hodograph(&["plot", "--e", "1"], "").code, 2);
+}
+
+#[test]
+fn equations_are_written_in_three_ways() {
+    for (format, part) in [("text", "M[1,2] = "), ("latex", "\\begin{align*}"), ("html", "<math>")] {
+        let run = hodograph(&["explain", &model("rolling_disc"), "--format", format], "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        assert!(run.stdout.contains(part), "{format}");
+        assert!(!run.stdout.contains("NaN"));
+    }
+    let run = hodograph(&["explain", &model("rolling_disc"), "--quantity", "mass_matrx"], "");
+    assert_eq!(run.code, 2);
+    assert!(run.stderr.contains("did you mean `mass_matrix`?"), "{}", run.stderr);
+}
+
+/// Kinetic and potential energy of the falling rod.
+fn energy(q: &Value, u: &Value) -> f64 {
+    let answer = hodograph(
+        &["eval", &model("slender_rod_5dof"), "--state", "-"],
+        &json!({"q": q, "u": u, "parameters": {"m": 2, "l": 0.5, "g": 10}}).to_string(),
+    );
+    number(&answer.line()["kinetic_energy"]) + 2.0 * 10.0 * number(&q["z"])
+}
+
+#[test]
+fn a_rod_that_bounces_without_loss_keeps_its_energy() {
+    let state = json!({"q": {"z": 1, "q4": 0.2, "q5": 0.4}, "u": {"u1": 0.3, "u2": 0, "u3": 0, "u4": 0.5, "u5": 0.7},
+        "parameters": {"m": 2, "l": 0.5, "g": 10}});
+    let call = [
+        "simulate",
+        &model("slender_rod_5dof"),
+        "--until",
+        "0.8",
+        "--step",
+        "0.2",
+        "--mu",
+        "0",
+        "--e",
+        "1",
+        "--law",
+        "newton",
+    ];
+    let run = hodograph(&[&call[..], &["--state", "-"]].concat(), &state.to_string());
+    assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+    let lines = run.lines();
+    let (hits, samples): (Vec<&Value>, Vec<&Value>) =
+        lines.iter().partition(|line| line.get("contact").is_some());
+    assert_eq!(samples.len(), 5);
+    assert!(!hits.is_empty(), "{}", run.stdout);
+    let first = energy(&samples[0]["q"], &samples[0]["u"]);
+    for sample in &samples {
+        assert!((energy(&sample["q"], &sample["u"]) - first).abs() < 1e-6 * first, "{sample}");
+    }
+    let times: Vec<f64> = lines.iter().map(|line| number(&line["t"])).collect();
+    assert!(times.is_sorted());
+}
+
+#[test]
+fn a_rod_that_does_not_bounce_comes_to_rest() {
+    let call = [
+        "simulate",
+        &model("slender_rod_5dof"),
+        "--until",
+        "5",
+        "--mu",
+        "0.5",
+        "--e",
+        "0",
+        "--law",
+        "stronge",
+    ];
+    let run = hodograph(&[&call[..], &["--state", r#"{"q":{"z":1}}"#]].concat(), "");
+    assert_eq!(run.code, 1);
+    assert!(run.stderr.contains("comes to rest: lasting contact is not simulated"), "{}", run.stderr);
+    let below = hodograph(&[&call[..], &["--state", r#"{"q":{"z":-1}}"#]].concat(), "");
+    assert_eq!(below.code, 1);
+    assert!(below.stderr.contains("negative gap"), "{}", below.stderr);
+}
