@@ -60,6 +60,22 @@ pub fn find(path: &Path, model: &Model) -> Found {
 ///
 /// [`Stop::Said`] where the child process has said why; [`Stop::Fault`].
 pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
+    run(model, limits, None)
+}
+
+/// Derives a model to see what each pass does to it: a line per pass.
+///
+/// # Errors
+///
+/// As [`derive`].
+pub fn trace(model: &Model, limits: &Limits) -> Outcome<String> {
+    let file = tempfile::NamedTempFile::new()
+        .map_err(|error| Stop::Fault(format!("cannot make a temporary file: {error}")))?;
+    run(model, limits, Some(file.path()))?;
+    fs::read_to_string(file.path()).map_err(|error| Stop::unreadable(file.path(), &error))
+}
+
+fn run(model: &Model, limits: &Limits, trace: Option<&Path>) -> Outcome<(Program, String)> {
     if !cfg!(feature = "derive") {
         return Err(Stop::Fault(
             "this build of the tool reads derivations but makes none: build it with its feature `derive`"
@@ -77,6 +93,7 @@ pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
         .arg(WORKER)
         .args([&input, &output])
         .arg(model.source.name())
+        .args(trace.map(|path| [Path::new("--trace"), path]).into_iter().flatten())
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .spawn()

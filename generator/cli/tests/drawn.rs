@@ -109,3 +109,19 @@ fn a_rod_that_does_not_bounce_comes_to_rest() {
     assert_eq!(below.code, 1);
     assert!(below.stderr.contains("negative gap"), "{}", below.stderr);
 }
+
+#[test]
+fn costs_are_a_table() {
+    let run = hodograph(&["explain", &model("rolling_disc"), "--cost"], "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let row = run.stdout.lines().find(|line| line.starts_with("mass_matrix")).unwrap();
+    let numbers: Vec<usize> = row.split_whitespace().skip(1).map(|cell| cell.parse().unwrap()).collect();
+    let [_, configuration, speeds, kinds @ .., total, _] = &numbers[..] else { panic!("{row}") };
+    assert_eq!(configuration + speeds, *total);
+    assert_eq!(kinds.iter().sum::<usize>(), *total);
+    #[cfg(feature = "derive")]
+    {
+        let run = hodograph(&["explain", &model("rolling_disc"), "--cost", "--passes"], "");
+        assert!(run.stdout.contains("all, after pass fuse"), "{}{}", run.stdout, run.stderr);
+    }
+}

@@ -13,6 +13,9 @@ pub struct Arguments {
     output: PathBuf,
     /// what to call the model in messages
     name: String,
+    /// where to write what each pass did
+    #[arg(long)]
+    trace: Option<PathBuf>,
 }
 
 /// Runs the command.
@@ -22,11 +25,12 @@ pub struct Arguments {
 /// Said on stderr.
 #[cfg(feature = "derive")]
 pub fn run(arguments: &Arguments) -> Outcome {
+    use crate::commands::explain::row;
     use crate::stop::Stop;
     use hodograph_generator::DerivationError;
     use hodograph_generator::artifact;
     use hodograph_generator::model::check;
-    use hodograph_generator::program::Program;
+    use hodograph_generator::program::{Program, cost};
     use hodograph_generator::source::Source;
 
     let text = std::fs::read_to_string(&arguments.input)
@@ -43,6 +47,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         DerivationError::Session(error) => Stop::Fault(error.to_string()),
     })?;
+    if let Some(path) = &arguments.trace {
+        let steps = cost::trace(&derived);
+        let text: String = steps.iter().map(|step| format!("{}\t{}\n", step.pass, row(&step.cost))).collect();
+        std::fs::write(path, text).map_err(|error| Stop::unwritable(path, &error))?;
+    }
     let text = artifact::encode(&Program::new(&derived), &source.content_hash());
     std::fs::write(&arguments.output, text).map_err(|error| Stop::unwritable(&arguments.output, &error))
 }
@@ -54,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// Always.
 #[cfg(not(feature = "derive"))]
 pub fn run(arguments: &Arguments) -> Outcome {
-    let Arguments { input, output, name } = arguments;
+    let Arguments { input, output, name, .. } = arguments;
     Err(crate::stop::Stop::Fault(format!(
         "built without the feature `derive`: cannot derive {name} from {} to {}",
         input.display(),

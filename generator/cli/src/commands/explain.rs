@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use hodograph_generator::explain::{Format, explain, usual};
+use hodograph_generator::program::cost::{Cost, Count};
 use hodograph_generator::program::routine::Quantity;
 
-use crate::derivation::Limits;
+use crate::derivation::{self, Limits};
+use crate::evaluate::Machine;
 use crate::model;
 use crate::output;
 use crate::spelling;
@@ -23,6 +25,12 @@ pub struct Arguments {
     /// only these quantities, as derivations call them (`mass_matrix`, `contact 0 reduced` ..) [default: the usual ones]
     #[arg(long, value_name = "NAME")]
     quantity: Vec<String>,
+    /// instead of equations, the number of operations of each routine at each stage
+    #[arg(long, conflicts_with = "format")]
+    cost: bool,
+    /// with --cost: derive anew, and show what is left after each pass
+    #[arg(long, requires = "cost")]
+    passes: bool,
     #[command(flatten)]
     limits: Limits,
 }
@@ -57,6 +65,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
             }
         }
     }
+    if arguments.cost {
+        let trace = match arguments.passes {
+            true => derivation::trace(&model::load(&arguments.model)?, &arguments.limits)?,
+            false => String::new(),
+        };
+        return output::text(&costs(&machine, &quantities, &trace));
+    }
     if quantities.is_empty() {
         quantities = usual(program);
     }
@@ -66,4 +81,78 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Style::Html => Format::Html,
     };
     output::text(&explain(&machine.mechanism, program, &quantities, format))
+}
+
+/// Operations at construction, then per evaluation: multiplications, additions, divisions, sines and cosines, others, all.
+pub fn row(cost: &Cost) -> String {
+    let cells = |count: Count| {
+        let Count { multiplications, additions, divisions, trigonometric, functions, .. } = count;
+        [multiplications, additions, divisions, trigonometric, functions, count.total()]
+    };
+    let evaluation = cost.evaluation();
+    let numbers = [cost.parameter.total(), cost.configuration.total(), cost.velocity.total()];
+    let numbers: Vec<String> = numbers
+        .into_iter()
+        .chain(cells(evaluation))
+        .chain([evaluation.fused])
+        .map(|n| n.to_string())
+        .collect();
+    numbers.join("\t")
+}
+
+/// The table of operations.
+fn costs(machine: &Machine, quantities: &[Quantity], trace: &str) -> String {
+    let program = &machine.program;
+    let all = program.quantities();
+    let chosen = if quantities.is_empty() { &all[..] } else { quantities };
+    let mut rows: Vec<Vec<String>> = Vec::new();
+    let split = |name: &str, cells: &str| {
+        [name].into_iter().chain(cells.split('\t')).map(str::to_owned).collect::<Vec<String>>()
+    };
+    for &quantity in chosen {
+        rows.push(split(&named(machine, quantity), &row(&program.cost(&[quantity]))));
+    }
+    rows.push(split("all together", &row(&program.cost(chosen))));
+    for line in trace.lines() {
+        if let Some((pass, cells)) = line.split_once('\t') {
+            rows.push(split(&format!("all, after pass {pass}"), cells));
+        }
+    }
+    let head =
+        ["routine", "once", "config.", "speeds", "mul", "add", "div", "sin/cos", "other", "total", "fused"];
+    rows.insert(0, head.map(str::to_owned).to_vec());
+    let width =
+        |column: usize| rows.iter().filter_map(|row| row.get(column)).map(String::len).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..head.len()).map(width).collect();
+    let mut out = "Operations: once at construction; then per evaluation, those of the configuration and those of the speeds, \
+                   and both by kind. A pair of sine and cosine counts once.\n"
+        .to_owned();
+    for row in &rows {
+        let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| match column {
+            0 => format!("{cell:width$}"),
+            _ => format!("{cell:>width$}"),
+        });
+        out += &format!("{}\n", cells.collect::<Vec<_>>().join("  "));
+    }
+    out
+}
+
+/// A quantity with the name of its contact, point or frame.
+fn named(machine: &Machine, quantity: Quantity) -> String {
+    let words = quantity.to_string();
+    let mechanism = &machine.mechanism;
+    let name = |index: u32| match quantity {
+        Quantity::Contact(..) => mechanism.contacts.get(index as usize).map(|contact| &contact.name),
+        Quantity::Point(..) => mechanism.points.get(index as usize).map(|point| &point.name),
+        _ => mechanism.frames.get(index as usize).map(|frame| &frame.name),
+    };
+    match quantity {
+        Quantity::Contact(index, _) | Quantity::Point(index, _) | Quantity::Orientation(index) => {
+            match name(index) {
+                Some(name) => format!("{words} ({name})"),
+                None => words,
+            }
+        }
+        _ => words,
+    }
 }
