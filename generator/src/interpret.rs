@@ -26,6 +26,9 @@ pub struct Inputs {
     pub inputs: Vec<f64>,
     /// derivatives of the independent speeds; only inverse dynamics reads them
     pub accelerations: Vec<f64>,
+    /// direction of a linearisation: independent coordinates, independent speeds, named inputs; only the state tangent
+    /// reads it
+    pub tangent: Vec<f64>,
 }
 
 impl Inputs {
@@ -38,6 +41,7 @@ impl Inputs {
             Input::Speed(index) => (&self.speeds, index),
             Input::Input(index) => (&self.inputs, index),
             Input::Acceleration(index) => (&self.accelerations, index),
+            Input::Tangent(index) => (&self.tangent, index),
         };
         list.get(index as usize).copied().unwrap_or(f64::NAN)
     }

@@ -117,6 +117,7 @@ fn operation(program: &Program, words: &[&str]) -> Option<Operation> {
         ["speed", index] => Operation::Input(Input::Speed(index.parse().ok()?)),
         ["input", index] => Operation::Input(Input::Input(index.parse().ok()?)),
         ["acceleration", index] => Operation::Input(Input::Acceleration(index.parse().ok()?)),
+        ["tangent", index] => Operation::Input(Input::Tangent(index.parse().ok()?)),
         ["neg", a] => Operation::Neg(of(a)?),
         ["recip", a] => Operation::Recip(of(a)?),
         ["sincos", a] => Operation::SinCos(of(a)?),

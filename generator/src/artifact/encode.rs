@@ -66,6 +66,7 @@ fn input(text: &mut String, input: Input) -> std::fmt::Result {
         Input::Speed(index) => write!(text, "speed {index}"),
         Input::Input(index) => write!(text, "input {index}"),
         Input::Acceleration(index) => write!(text, "acceleration {index}"),
+        Input::Tangent(index) => write!(text, "tangent {index}"),
     }
 }
 

@@ -20,6 +20,9 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
             Input::Coordinate(index) => (index as usize) < mechanism.coordinates.len(),
             Input::Speed(index) | Input::Acceleration(index) => (index as usize) < independent,
             Input::Input(index) => (index as usize) < mechanism.inputs.len(),
+            Input::Tangent(index) => {
+                (index as usize) < mechanism.independent_states() + mechanism.inputs.len()
+            }
         };
         if !exists {
             return Err(format!("the derivation uses {input:?}, which the model does not have"));
@@ -52,6 +55,7 @@ fn shape(mechanism: &Mechanism, quantity: Quantity, p: usize, d: usize) -> Optio
         Quantity::DependentSpeeds | Quantity::DependentAccelerations | Quantity::ConstraintResidual => (d, 1),
         Quantity::MassMatrix => (p, p),
         Quantity::Forcing | Quantity::Accelerations | Quantity::InverseDynamics => (p, 1),
+        Quantity::StateTangent => (mechanism.independent_states(), 1),
         Quantity::KineticEnergy | Quantity::PotentialEnergy => (1, 1),
         Quantity::ConfigurationResidual => (c, 1),
         Quantity::ConfigurationJacobian => (c, c),

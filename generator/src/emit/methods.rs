@@ -14,7 +14,8 @@ impl Emitter<'_> {
     /// All methods that do not belong to a contact.
     pub fn methods(&self) -> TokenStream {
         let methods = self.program.outputs.iter().filter_map(|output| self.method(output));
-        quote! { #(#methods)* }
+        let linearise = self.linearise();
+        quote! { #(#methods)* #linearise }
     }
 
     fn method(&self, output: &Output) -> Option<TokenStream> {
@@ -118,6 +119,10 @@ impl Emitter<'_> {
             Quantity::InverseDynamics => plain(
                 "inverse_dynamics",
                 "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing.",
+            ),
+            Quantity::StateTangent => plain(
+                "state_tangent",
+                "How the rates of the independent coordinates and speeds change along a direction: a column of `linearise`, or a sum of columns.",
             ),
             Quantity::KineticEnergy => plain("kinetic_energy", "Kinetic energy in N, in J."),
             Quantity::PotentialEnergy => {

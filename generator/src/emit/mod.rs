@@ -7,6 +7,7 @@
 mod construct;
 mod contacts;
 mod fits;
+mod linearisation;
 mod methods;
 pub mod names;
 mod record;
@@ -53,6 +54,7 @@ pub fn module(mechanism: &Mechanism, program: &Program, options: &Options) -> Re
     let collision = emitter.collision_type();
     let methods = emitter.methods();
     let contacts = emitter.contacts();
+    let linearisation = emitter.linearisation_record();
     let name = &emitter.name;
     Ok(quote! {
         #docs
@@ -65,6 +67,7 @@ pub fn module(mechanism: &Mechanism, program: &Program, options: &Options) -> Re
             #(#records)*
             #mechanism_type
             #collision
+            #linearisation
 
             impl<T: #krate::Scalar> #name<T> {
                 #methods
@@ -189,6 +192,7 @@ fn takes_loads(quantity: Quantity) -> bool {
             | Quantity::Accelerations
             | Quantity::DependentAccelerations
             | Quantity::InverseDynamics
+            | Quantity::StateTangent
     )
 }
 

@@ -100,6 +100,7 @@ impl Emitter<'_> {
             speeds: velocity,
             accelerations: quantities.contains(&Quantity::InverseDynamics),
             inputs: !self.inputs.is_empty() && (loads || self.kinematic_inputs),
+            tangent: quantities.contains(&Quantity::StateTangent),
         }
     }
 
@@ -136,7 +137,18 @@ impl Emitter<'_> {
         let speeds = arguments.speeds.then(|| quote!(u: &Speeds<T>,));
         let accelerations = arguments.accelerations.then(|| quote!(acceleration: &Speeds<T>,));
         let inputs = arguments.inputs.then(|| quote!(inputs: &Inputs<T>,));
-        quote!(&self, #time #coordinates #speeds #accelerations #inputs)
+        let tangent = arguments.tangent.then(|| self.tangent_argument());
+        quote!(&self, #time #coordinates #speeds #accelerations #inputs #tangent)
+    }
+
+    /// The same arguments, handed on to another routine.
+    pub fn passed(&self, arguments: Arguments) -> TokenStream {
+        let time = arguments.time.then(|| quote!(time,));
+        let coordinates = arguments.coordinates.then(|| quote!(q,));
+        let speeds = arguments.speeds.then(|| quote!(u,));
+        let accelerations = arguments.accelerations.then(|| quote!(acceleration,));
+        let inputs = arguments.inputs.then(|| quote!(inputs,));
+        quote!(#time #coordinates #speeds #accelerations #inputs)
     }
 }
 
@@ -153,4 +165,6 @@ pub struct Arguments {
     pub accelerations: bool,
     /// named inputs
     pub inputs: bool,
+    /// direction of a linearisation
+    pub tangent: bool,
 }

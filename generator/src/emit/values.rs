@@ -98,6 +98,10 @@ impl Emitter<'_> {
             Input::Speed(index) => (&self.speeds, quote!(u), index),
             Input::Input(index) => (&self.inputs, quote!(inputs), index),
             Input::Acceleration(index) => (&self.speeds, quote!(acceleration), index),
+            Input::Tangent(index) => {
+                let index = Literal::usize_unsuffixed(index as usize);
+                return quote!(tangent[#index]);
+            }
         };
         let field = record.field(index as usize);
         quote!(#variable.#field)

@@ -1,6 +1,6 @@
 //! Everything a derivation delivers, exported from algebra to nodes of a value graph.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::contacts::{ContactForms, contact_forms, point_jacobian};
 use super::lumps::{self, Lump, Seat};
@@ -9,7 +9,9 @@ use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesTree, unit};
 use crate::kinematics::linear::LinearScalar;
+use crate::kinematics::solve::Solver;
 use crate::model::mechanism::{FrameId, Place, PointId};
+use crate::program::differentiate::differentiate;
 use crate::program::graph::{Graph, Input, Node};
 use crate::program::linear::{Factor, factorise};
 use crate::program::routine::{ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity, Structure};
@@ -48,6 +50,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     let factor = factorise(&mut writer.graph, &matrix);
     writer.guard_pivots(&factor);
     writer.dynamics(&factor);
+    writer.linearisation();
     writer.energies();
     writer.configuration();
     let structures = writer.contacts(&factor, &prescribed);
@@ -232,6 +235,82 @@ impl Writer<'_, '_> {
         let forces = self.reduced_forces(derivatives);
         let required = forces.into_iter().map(|force| self.graph.neg(force)).collect::<Vec<_>>();
         self.put(Quantity::InverseDynamics, required.len(), 1, required);
+    }
+
+    /// The derivative of all rates along a direction in the independent states and inputs.
+    fn linearisation(&mut self) {
+        let mechanism = self.k.mechanism;
+        let Some(followers) = self.dependent_coordinate_rates() else { return };
+        let mut rates = HashMap::new();
+        let mut number = 0;
+        let mut next = |writer: &mut Self| {
+            number += 1;
+            writer.graph.input(Input::Tangent(number - 1))
+        };
+        for (i, coordinate) in mechanism.coordinates.iter().enumerate() {
+            if !coordinate.dependent {
+                let node = next(self);
+                rates.insert(Input::Coordinate(i as u32), node);
+            }
+        }
+        for i in 0..self.independent.len() {
+            let node = next(self);
+            rates.insert(Input::Speed(i as u32), node);
+        }
+        for i in 0..mechanism.inputs.len() {
+            let node = next(self);
+            rates.insert(Input::Input(i as u32), node);
+        }
+        for (coordinate, form) in followers {
+            let mut terms = Vec::new();
+            for (leader, coefficient) in form.terms {
+                let coefficient = self.node(&coefficient);
+                let leader = rates[&Input::Coordinate(leader as u32)];
+                terms.push(self.graph.product([coefficient, leader]));
+            }
+            let sum = self.graph.sum(terms);
+            rates.insert(Input::Coordinate(coordinate as u32), sum);
+        }
+        let found = |quantity| self.outputs.iter().find(move |output| output.quantity == quantity);
+        let (Some(of_coordinates), Some(of_speeds)) =
+            (found(Quantity::CoordinateRates), found(Quantity::Accelerations))
+        else {
+            return;
+        };
+        let independent = of_coordinates.nodes.iter().zip(&mechanism.coordinates);
+        let mut nodes: Vec<Node> =
+            independent.filter(|(_, coordinate)| !coordinate.dependent).map(|(&node, _)| node).collect();
+        nodes.extend(&of_speeds.nodes);
+        let tangent = differentiate(&mut self.graph, &nodes, &rates);
+        self.put(Quantity::StateTangent, tangent.len(), 1, tangent);
+    }
+
+    /// Dependent coordinates as they follow the independent ones: forms in the numbers of coordinates. `None` where the
+    /// configuration equations cannot be solved for them.
+    fn dependent_coordinate_rates(&mut self) -> Option<BTreeMap<usize, LinearScalar>> {
+        let mechanism = self.k.mechanism;
+        let dependent: Vec<usize> =
+            (0..mechanism.coordinates.len()).filter(|&i| mechanism.coordinates[i].dependent).collect();
+        let mut equations = Vec::new();
+        for equation in &mechanism.configuration {
+            for residual in self.k.equation_forms(&equation.sides) {
+                let mut form = LinearScalar::constant(Expr::zero());
+                for i in 0..mechanism.coordinates.len() {
+                    let mut along = Direction::along(self.k.coordinates[i]);
+                    let partial = self.k.z.differentiate(&residual.rest, &mut along);
+                    form = form.add(&LinearScalar::unknown(i).scale(&self.k.z.name(partial)));
+                }
+                equations.push(form);
+            }
+        }
+        let solver = Solver::new(&mut self.k.z, &equations, &dependent).ok()?;
+        for (determinant, block) in &solver.determinants {
+            let names: Vec<_> = block.iter().map(|&i| mechanism.coordinates[i].name.as_str()).collect();
+            let message = format!("the configuration equations cannot be solved for {}", names.join(", "));
+            self.k.guard(determinant, message);
+        }
+        let z = &mut self.k.z;
+        Some(solver.solve(&equations, |c| z.name(c)))
     }
 
     fn energies(&mut self) {

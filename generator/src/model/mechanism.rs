@@ -79,6 +79,13 @@ pub struct Mechanism {
     pub contacts: Vec<Contact>,
 }
 
+impl Mechanism {
+    /// Number of independent coordinates and speeds: the states of the linearised equations.
+    pub fn independent_states(&self) -> usize {
+        self.coordinates.iter().chain(&self.speeds).filter(|quantity| !quantity.dependent).count()
+    }
+}
+
 /// A parameter, input, coordinate or speed.
 #[derive(Clone, Debug)]
 pub struct Quantity {

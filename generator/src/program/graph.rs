@@ -26,6 +26,8 @@ pub enum Input {
     Input(u32),
     /// derivative of an independent speed (for inverse dynamics)
     Acceleration(u32),
+    /// direction of a linearisation: independent coordinates, then independent speeds, then named inputs
+    Tangent(u32),
 }
 
 /// What a node is.

@@ -7,6 +7,7 @@
 pub mod arithmetic;
 mod build;
 pub mod cost;
+pub mod differentiate;
 pub mod graph;
 pub mod linear;
 mod lower;

@@ -122,7 +122,7 @@ impl Stage {
         match input {
             Input::Parameter(_) => Stage::Parameter,
             Input::Time | Input::Coordinate(_) => Stage::Configuration,
-            Input::Speed(_) | Input::Input(_) | Input::Acceleration(_) => Stage::Velocity,
+            Input::Speed(_) | Input::Input(_) | Input::Acceleration(_) | Input::Tangent(_) => Stage::Velocity,
         }
     }
 

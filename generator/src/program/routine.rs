@@ -20,6 +20,9 @@ pub enum Quantity {
     DependentAccelerations,
     /// generalized forces (p) that must be added to the loads for the given u' (inputs `Acceleration`): M u' - forcing
     InverseDynamics,
+    /// derivative of the rates of the independent coordinates and of the accelerations along a direction (inputs
+    /// `Tangent`): a column of the linearised equations (number of independent coordinates + p)
+    StateTangent,
     /// kinetic energy (1), J
     KineticEnergy,
     /// potential energy of gravity and springs (1), J

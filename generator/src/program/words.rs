@@ -5,7 +5,7 @@ use std::fmt;
 use super::routine::{ContactQuantity, PointQuantity, Quantity, Structure};
 
 /// Quantities of the whole mechanism.
-const WHOLE: [(Quantity, &str); 12] = [
+const WHOLE: [(Quantity, &str); 13] = [
     (Quantity::CoordinateRates, "coordinate_rates"),
     (Quantity::DependentSpeeds, "dependent_speeds"),
     (Quantity::MassMatrix, "mass_matrix"),
@@ -13,6 +13,7 @@ const WHOLE: [(Quantity, &str); 12] = [
     (Quantity::Accelerations, "accelerations"),
     (Quantity::DependentAccelerations, "dependent_accelerations"),
     (Quantity::InverseDynamics, "inverse_dynamics"),
+    (Quantity::StateTangent, "state_tangent"),
     (Quantity::KineticEnergy, "kinetic_energy"),
     (Quantity::PotentialEnergy, "potential_energy"),
     (Quantity::ConfigurationResidual, "configuration_residual"),
