@@ -134,7 +134,15 @@ impl Reader<'_> {
             Input::Speed(index) => Term::Name(name(&mechanism.speeds, index)),
             Input::Input(index) => Term::Name(name(&mechanism.inputs, index)),
             Input::Acceleration(index) => Term::Rate(name(&mechanism.speeds, index)),
+            Input::Tangent(index) => Term::Name(self.deviation(index)),
         }
+    }
+
+    /// The name of a small deviation: of an independent coordinate, an independent speed, or an input.
+    fn deviation(&self, index: u32) -> String {
+        let states = self.mechanism.coordinates.iter().chain(&self.mechanism.speeds).filter(|q| !q.dependent);
+        let name = states.chain(&self.mechanism.inputs).nth(index as usize).map_or("?", |q| q.name.as_str());
+        format!("delta_{name}")
     }
 
     fn section(&self, output: &Output) -> Section {
@@ -178,6 +186,7 @@ impl Reader<'_> {
             Quantity::Accelerations => plain("Accelerations", "a"),
             Quantity::DependentAccelerations => plain("Rates of the dependent speeds", "a"),
             Quantity::InverseDynamics => plain("Inverse dynamics", "Q"),
+            Quantity::StateTangent => plain("Linearised rates", "l"),
             Quantity::KineticEnergy => plain("Kinetic energy", "K"),
             Quantity::PotentialEnergy => plain("Potential energy", "W"),
             Quantity::ConfigurationResidual => plain("Configuration equations", "c"),

@@ -80,6 +80,7 @@ impl Model {
             speeds: values(&m.speeds)[..self.freedom()].to_vec(),
             inputs: values(&m.inputs),
             accelerations: Vec::new(),
+            tangent: Vec::new(),
         }
     }
 
@@ -147,6 +148,7 @@ impl Reference {
             speeds: listed(&self.json["u_ind"], &state["u_ind"], independent),
             inputs: named(&m.inputs, &self.json["inputs"]),
             accelerations: Vec::new(),
+            tangent: Vec::new(),
         }
     }
 

@@ -64,6 +64,7 @@ pub fn samples(model: &Model, count: usize) -> Vec<Sample> {
             speeds: state.speeds.clone(),
             inputs: state.inputs.clone(),
             accelerations: (0..model.freedom()).map(|_| 5.0 * random.number()).collect(),
+            tangent: Vec::new(),
         };
         samples.push(Sample { inputs, state, numeric });
     }

@@ -71,6 +71,7 @@ impl Machine {
             speeds: state.speeds.clone(),
             inputs: state.inputs.clone(),
             accelerations: Vec::new(),
+            tangent: Vec::new(),
         };
         let there: Vec<Quantity> = quantities
             .iter()
