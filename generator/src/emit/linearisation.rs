@@ -58,6 +58,7 @@ impl Emitter<'_> {
         let krate = self.krate;
         let (states, inputs) = self.linear_sizes();
         let size = Literal::usize_unsuffixed(states + inputs);
+        let (n, m) = (Literal::usize_unsuffixed(states), Literal::usize_unsuffixed(inputs));
         let mut arguments = self.arguments(&[Quantity::StateTangent]);
         arguments.tangent = false;
         let signature = self.signature(arguments);
@@ -70,8 +71,8 @@ impl Emitter<'_> {
             ///
             /// Where the state is singular, or a result is not finite.
             pub fn linearise(#signature) -> ::core::result::Result<Linearisation<T>, #krate::StateError> {
-                let mut a = #krate::nalgebra::SMatrix::zeros();
-                let mut b = #krate::nalgebra::SMatrix::zeros();
+                let mut a = #krate::nalgebra::SMatrix::<T, #n, #n>::zeros();
+                let mut b = #krate::nalgebra::SMatrix::<T, #n, #m>::zeros();
                 for (number, mut column) in a.column_iter_mut().chain(b.column_iter_mut()).enumerate() {
                     let mut tangent = [T::zero(); #size];
                     if let Some(entry) = tangent.get_mut(number) {
