@@ -47,7 +47,13 @@ fn tables() -> impl Iterator<Item = &'static Explanation> {
 
 /// The whole model of an example: its sections take the place of those of [`FRAME`]; a model with a head is whole already.
 pub fn whole(example: &str) -> String {
-    if example.trim_start().starts_with("mechanism") {
+    within(FRAME, example)
+}
+
+/// The whole model of an example whose sections take the place of those of another model. Sections begin at the beginning of a
+/// line.
+pub fn within(frame: &str, example: &str) -> String {
+    if example.starts_with("mechanism") || example.starts_with("//!") {
         return example.to_owned();
     }
     let split = |text: &str| -> Vec<(Option<Section>, String)> {
@@ -65,7 +71,7 @@ pub fn whole(example: &str) -> String {
         parts
     };
     let own = split(example);
-    let mut parts: Vec<(Option<Section>, String)> = split(FRAME)
+    let mut parts: Vec<(Option<Section>, String)> = split(frame)
         .into_iter()
         .filter(|(section, _)| own.iter().all(|(other, _)| other != section))
         .collect();

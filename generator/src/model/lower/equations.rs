@@ -2,7 +2,7 @@
 
 use super::super::mechanism::{Equation, EquationSides, Vector};
 use super::super::typed::{Typed, Value};
-use super::{Lowering, in_words};
+use super::{Lowering, in_words, quantity};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::syntax::tree;
 
@@ -78,7 +78,7 @@ impl Lowering<'_> {
             let error = Diagnostic::new(
                 codes::DIMENSION,
                 right.span,
-                format!("{what} between a quantity {} and one {}", in_words(l), in_words(r)),
+                format!("{what} between {} and {}", quantity(l), quantity(r)),
             )
             .label(format!("this is {}", in_words(r)))
             .related(left.span, format!("this is {}", in_words(l)));

@@ -8,7 +8,7 @@ use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::typed::{Traits, Typed, Value, moderate};
-use super::{Lowering, in_words};
+use super::{Lowering, in_words, quantity};
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::number::Number;
 use crate::syntax::tree::{Expr, ExprKind, Name};
@@ -200,8 +200,7 @@ impl Lowering<'_> {
             }
             match (dimension, term.dimension) {
                 (Some((first, place)), Some(other)) if first != other => {
-                    let message =
-                        format!("a quantity {} is added to one {}", in_words(other), in_words(first));
+                    let message = format!("{} cannot be added to {}", quantity(other), quantity(first));
                     let mut error = Diagnostic::new(codes::DIMENSION, term.span, message)
                         .label(format!("this is {}", in_words(other)))
                         .related(place, format!("this is {}", in_words(first)));

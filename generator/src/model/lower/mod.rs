@@ -96,6 +96,11 @@ pub(super) fn in_words(dimension: Dimension) -> String {
     if dimension.is_none() { "a plain number".to_owned() } else { format!("in {dimension}") }
 }
 
+/// The same with a noun.
+pub(super) fn quantity(dimension: Dimension) -> String {
+    if dimension.is_none() { "a plain number".to_owned() } else { format!("a quantity in {dimension}") }
+}
+
 /// The state of lowering.
 pub(super) struct Lowering<'a> {
     pub tree: &'a Tree,
