@@ -1,0 +1,70 @@
+//! Instructions and code size of the measured routines.
+//!
+//! valgrind's callgrind executes the program and counts every instruction that retires between entry and return of a routine,
+//! whatever it calls (sines, cosines) included, loops and argument hiding around it excluded. Counts do not depend on load.
+
+use std::collections::BTreeMap;
+use std::process::Command;
+
+use crate::harness::{Built, ROUTINES};
+use crate::tools::{Failure, Folders, output};
+
+/// How often each routine is evaluated at each state.
+const REPEATS: u64 = 50;
+
+/// Instructions per evaluation and calls of other functions, per routine.
+pub type Counts = BTreeMap<&'static str, f64>;
+
+/// Counts instructions per evaluation, the mean over the states.
+pub fn instructions(folders: &Folders, built: &Built) -> Result<Counts, Failure> {
+    let file = folders.work.join(format!("{}.callgrind", built.package));
+    output(
+        Command::new("valgrind")
+            .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
+            .arg(format!("--callgrind-out-file={}", file.display()))
+            .arg(&built.program)
+            .arg(REPEATS.to_string()),
+    )
+    .map_err(|failure| Failure::new(format!("instructions are counted with valgrind, which failed: {failure}")))?;
+    Ok(parse(&std::fs::read_to_string(&file)?))
+}
+
+/// Reads a profile: a line `cfn=` names the callee, `calls=` says how often, the next line ends with the inclusive cost.
+fn parse(profile: &str) -> Counts {
+    let mut totals: BTreeMap<&'static str, (u64, u64)> = BTreeMap::new();
+    let mut callee = None;
+    let mut lines = profile.lines();
+    while let Some(line) = lines.next() {
+        if let Some(name) = line.strip_prefix("cfn=") {
+            callee = ROUTINES.iter().find(|(_, function)| name.contains(function)).map(|(routine, _)| *routine);
+        } else if let (Some(calls), Some(routine)) = (line.strip_prefix("calls="), callee.take()) {
+            let number = |text: &str, at: usize| text.split_whitespace().nth(at).and_then(|word| word.parse().ok());
+            let cost: u64 = lines.next().and_then(|line| number(line, 1)).unwrap_or(0);
+            let total = totals.entry(routine).or_default();
+            total.0 += number(calls, 0).unwrap_or(0);
+            total.1 += cost;
+        }
+    }
+    totals.into_iter().map(|(routine, (calls, cost))| (routine, cost as f64 / calls as f64)).collect()
+}
+
+/// Bytes of machine code per routine: its function and the method, where that is a function of its own.
+pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
+    let text = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(&built.program))?;
+    let methods = ["::accelerations", "::inverse_dynamics", "::contact_matrices_", "::mass_matrix"];
+    let mut sizes = BTreeMap::new();
+    for line in text.lines() {
+        let mut words = line.splitn(4, ' ');
+        let (Some(_), Some(size), Some(_), Some(name)) = (words.next(), words.next(), words.next(), words.next())
+        else {
+            continue;
+        };
+        let Ok(size) = u64::from_str_radix(size, 16) else { continue };
+        for ((routine, function), method) in ROUTINES.iter().zip(methods) {
+            if name.contains(function) || name.contains(method) {
+                *sizes.entry(*routine).or_default() += size;
+            }
+        }
+    }
+    Ok(sizes)
+}

@@ -1,0 +1,198 @@
+//! The programs that are measured: a generated module and a loop over its routines.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::process::Command;
+use std::time::Instant;
+
+use crate::derive::Derivation;
+use crate::states::{Named, State};
+use crate::tools::{Failure, Folders, output};
+
+/// What the code is compiled for.
+pub const TARGET: &str = "x86-64-v3";
+
+/// A compiled program.
+pub struct Built {
+    /// the file
+    pub program: PathBuf,
+    /// name of its package
+    pub package: String,
+    /// seconds of compiling and linking it, dependencies apart
+    pub seconds: f64,
+}
+
+/// The measured routines: short name, and its function in the program.
+pub const ROUTINES: [(&str, &str); 4] =
+    [("FD", "measured_fd"), ("ID", "measured_id"), ("CM", "measured_cm"), ("M", "measured_m")];
+
+const MANIFEST: &str = "\
+[package]
+name = \"{name}\"
+version = \"0.1.0\"
+edition = \"2024\"
+
+[dependencies]
+hodograph = { path = \"{runtime}\" }
+";
+
+/// Writes a workspace with a package per derivation and compiles what they have in common.
+pub fn prepare(folders: &Folders, derivations: &[Derivation<'_>]) -> Result<(), Failure> {
+    let workspace = folders.work.join("crates");
+    let runtime = folders.root.join("runtime").display().to_string();
+    let mut members = vec!["\"nothing\"".to_owned()];
+    let write = |name: &str, main: &str| -> Result<(), Failure> {
+        let folder = workspace.join(name);
+        std::fs::create_dir_all(folder.join("src"))?;
+        let manifest = MANIFEST.replace("{name}", name).replace("{runtime}", &runtime);
+        std::fs::write(folder.join("Cargo.toml"), manifest)?;
+        Ok(std::fs::write(folder.join("src/main.rs"), main)?)
+    };
+    write("nothing", "fn main() {}\n")?;
+    for derivation in derivations {
+        write(&derivation.package(), &main(derivation))?;
+        std::fs::write(workspace.join(derivation.package()).join("src/module.rs"), &derivation.module)?;
+        members.push(format!("{:?}", derivation.package()));
+    }
+    let manifest = format!("[workspace]\nresolver = \"3\"\nmembers = [{}]\n", members.join(", "));
+    std::fs::write(workspace.join("Cargo.toml"), manifest)?;
+    std::fs::copy(folders.root.join("Cargo.lock"), workspace.join("Cargo.lock"))?;
+    cargo(folders, "nothing").map(|_| ())
+}
+
+/// Compiles a package; the program.
+fn cargo(folders: &Folders, package: &str) -> Result<PathBuf, Failure> {
+    let target = folders.work.join("target");
+    output(
+        Command::new("cargo")
+            .args(["build", "--release", "-p", package, "--target-dir"])
+            .arg(&target)
+            .current_dir(folders.work.join("crates"))
+            // A cache of compiled crates would hide what compiling takes.
+            .env_remove("RUSTC_WRAPPER")
+            .env("RUSTFLAGS", format!("-C target-cpu={TARGET}")),
+    )?;
+    Ok(target.join("release").join(package))
+}
+
+/// Compiles the program of a derivation and takes the time.
+pub fn build(folders: &Folders, derivation: &Derivation<'_>) -> Result<Built, Failure> {
+    let package = derivation.package();
+    // Even an unchanged program is compiled again.
+    let main = folders.work.join("crates").join(&package).join("src/main.rs");
+    std::fs::write(&main, self::main(derivation))?;
+    let start = Instant::now();
+    let program = cargo(folders, &package)?;
+    Ok(Built { program, package, seconds: start.elapsed().as_secs_f64() })
+}
+
+/// The program: `numbers` prints what the routines answer, a number repeats all of them that often.
+fn main(derivation: &Derivation<'_>) -> String {
+    let case = derivation.case;
+    let (module, contact) = (module_name(derivation), case.contact);
+    let mechanism = type_name(derivation);
+    let inputs = if case.inputs { ", i" } else { "" };
+    let numbers = "Result<impl Numbers, StateError>";
+    let (record, empty) = if case.inputs { ("Inputs", "Inputs::default()") } else { ("()", "()") };
+    let arguments = format!("m: &Machine, q: &Coordinates, u: &Speeds, a: &Speeds, i: &{record}");
+    let mut text = format!(
+        "#![allow(unused)]
+use std::hint::black_box;
+use hodograph::{{ReducedMatrix, StateError, nalgebra::SMatrix}};
+include!(\"module.rs\");
+use {module}::*;
+type Machine = {mechanism}<f64>;
+type State = (Coordinates, Speeds, Speeds, {record});
+
+#[inline(never)]
+fn measured_fd({arguments}) -> {numbers} {{ m.accelerations(q, u{inputs}) }}
+#[inline(never)]
+fn measured_id({arguments}) -> {numbers} {{ m.inverse_dynamics(q, u, a{inputs}) }}
+#[inline(never)]
+fn measured_cm({arguments}) -> {numbers} {{ m.contact_matrices_{contact}(q) }}
+#[inline(never)]
+fn measured_m({arguments}) -> {numbers} {{ m.mass_matrix(q) }}
+
+/// What a routine answers, as a line.
+trait Numbers {{
+    fn numbers(&self) -> Vec<f64>;
+}}
+impl Numbers for Speeds {{
+    fn numbers(&self) -> Vec<f64> {{ <[f64; {speeds}]>::from(*self).to_vec() }}
+}}
+impl<const R: usize, const C: usize> Numbers for SMatrix<f64, R, C> {{
+    fn numbers(&self) -> Vec<f64> {{ self.transpose().iter().copied().collect() }}
+}}
+impl<A: Numbers> Numbers for (A, ReducedMatrix<f64>) {{
+    fn numbers(&self) -> Vec<f64> {{
+        let mut all = self.0.numbers();
+        all.extend(<[f64; 6]>::from(self.1));
+        all
+    }}
+}}
+fn line(numbers: Result<impl Numbers, StateError>) {{
+    let words: Vec<String> = match numbers {{
+        Ok(numbers) => numbers.numbers().iter().map(|number| format!(\"{{number:?}}\")).collect(),
+        Err(error) => vec![error.to_string()],
+    }};
+    println!(\"{{}}\", words.join(\" \"));
+}}
+
+fn main() {{
+    let m = black_box(Machine::default());
+    let none = black_box({empty});
+    let states: Vec<State> = black_box(vec![\n",
+        speeds = derivation.speeds.len()
+    );
+    for state in &derivation.states {
+        let _ = writeln!(text, "        ({}),", self::state(state, case.inputs));
+    }
+    text += "    ]);
+    let argument = std::env::args().nth(1).unwrap_or_default();
+    for (q, u, a, i) in &states {
+        if argument == \"numbers\" {
+            line(measured_fd(&m, q, u, a, i));
+            line(measured_id(&m, q, u, a, &none));
+            line(measured_cm(&m, q, u, a, i));
+            line(measured_m(&m, q, u, a, i));
+        }
+    }
+    for _ in 0..argument.parse().unwrap_or(0) {
+        for (q, u, a, i) in &states {
+            let _ = black_box(measured_fd(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
+            let _ = black_box(measured_id(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(&none)));
+            let _ = black_box(measured_cm(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
+            let _ = black_box(measured_m(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
+        }
+    }
+}
+";
+    text
+}
+
+fn state(state: &State, inputs: bool) -> String {
+    let record = |name: &str, values: &Named| {
+        let fields: Vec<String> = values.iter().map(|(name, value)| format!("{name}: {value:?}")).collect();
+        format!("{name} {{ {} }}", fields.join(", "))
+    };
+    let inputs = if inputs { record("Inputs", &state.inputs) } else { "()".to_owned() };
+    [record("Coordinates", &state.q), record("Speeds", &state.u), record("Speeds", &state.a), inputs].join(", ")
+}
+
+/// The first word after `start` in the module.
+fn word<'a>(derivation: &'a Derivation<'_>, start: &str) -> &'a str {
+    let rest = derivation.module.split_once(start).map_or("", |(_, rest)| rest);
+    rest.split(|letter: char| !letter.is_alphanumeric() && letter != '_').next().unwrap_or("")
+}
+
+fn module_name<'a>(derivation: &'a Derivation<'_>) -> &'a str {
+    word(derivation, "pub mod ")
+}
+
+/// The mechanism's type is the one with a field of hoisted values.
+fn type_name<'a>(derivation: &'a Derivation<'_>) -> &'a str {
+    let end = derivation.module.find("hoisted: [").unwrap_or(derivation.module.len());
+    let start = derivation.module[..end].rfind("pub struct ").unwrap_or(0);
+    let rest = &derivation.module[start + "pub struct ".len()..];
+    rest.split(|letter: char| !letter.is_alphanumeric() && letter != '_').next().unwrap_or("")
+}

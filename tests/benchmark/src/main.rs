@@ -1,0 +1,79 @@
+//! Measures the code that Hodograph generates: retired instructions per evaluation, operations, derivation time, compile time
+//! and code size, beside stored figures of other generators and libraries. `docs/benchmarks.md` says how to run and read it.
+
+mod cases;
+mod chain;
+mod count;
+mod derive;
+mod harness;
+mod peers;
+mod plot;
+mod states;
+mod table;
+mod tools;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use cases::Case;
+use table::Row;
+use tools::{Failure, Folders};
+
+/// What the command line asks for.
+struct Arguments {
+    /// only mechanisms whose name is one of these; empty: all
+    only: Vec<String>,
+    /// the command line tool, if it is built already
+    tool: Option<PathBuf>,
+}
+
+const USAGE: &str = "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH]";
+
+fn main() -> ExitCode {
+    match arguments().and_then(|arguments| run(&arguments)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn arguments() -> Result<Arguments, Failure> {
+    let mut arguments = Arguments { only: Vec::new(), tool: None };
+    let mut words = std::env::args().skip(1);
+    while let Some(word) = words.next() {
+        let mut value = || words.next().ok_or_else(|| Failure::new(USAGE));
+        match word.as_str() {
+            "--only" => arguments.only = value()?.split(',').map(str::to_owned).collect(),
+            "--tool" => arguments.tool = Some(PathBuf::from(value()?)),
+            _ => return Err(Failure::new(USAGE)),
+        }
+    }
+    Ok(arguments)
+}
+
+fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let folders = Folders::new()?;
+    let tool = tools::tool(&folders, arguments.tool.as_deref())?;
+    let wanted = |case: &Case| arguments.only.is_empty() || arguments.only.contains(&case.name);
+    let cases: Vec<Case> = cases::all().into_iter().filter(wanted).collect();
+    let mut derived = Vec::new();
+    for case in &cases {
+        for fixed in [false, true] {
+            derived.push(derive::derive(&folders, &tool, case, fixed)?);
+        }
+    }
+    harness::prepare(&folders, &derived)?;
+    let mut rows = Vec::new();
+    for derivation in &derived {
+        eprintln!("measuring {}", derivation.package());
+        let built = harness::build(&folders, derivation)?;
+        states::agree(&built, derivation)?;
+        let counts = count::instructions(&folders, &built)?;
+        rows.push(Row { derivation, compile_seconds: built.seconds, counts, sizes: count::sizes(&built)? });
+    }
+    let peers = peers::read(&folders)?;
+    table::print(&rows, &peers);
+    plot::chains(&folders, &rows, &peers)
+}

@@ -1,0 +1,101 @@
+//! The table.
+
+use std::collections::BTreeMap;
+
+use hodograph_generator::program::Program;
+use hodograph_generator::program::operation::Operation;
+use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+
+use crate::count::Counts;
+use crate::derive::Derivation;
+use crate::harness::ROUTINES;
+use crate::peers::Peers;
+
+/// A measured mechanism.
+pub struct Row<'a> {
+    /// its derivation
+    pub derivation: &'a Derivation<'a>,
+    /// seconds of compiling
+    pub compile_seconds: f64,
+    /// instructions per evaluation
+    pub counts: Counts,
+    /// bytes of machine code
+    pub sizes: BTreeMap<&'static str, u64>,
+}
+
+/// The quantities of a routine.
+fn quantities(routine: &str) -> Vec<Quantity> {
+    match routine {
+        "FD" => vec![Quantity::Accelerations],
+        "ID" => vec![Quantity::InverseDynamics],
+        "CM" => [ContactQuantity::PartialVelocities, ContactQuantity::Reduced]
+            .map(|quantity| Quantity::Contact(0, quantity))
+            .to_vec(),
+        _ => vec![Quantity::MassMatrix],
+    }
+}
+
+/// Operations of a routine as the program has them: multiplications, additions, divisions, pairs of sine and cosine, and how many
+/// pairs of the first two are fused.
+fn operations(program: &Program, routine: &str) -> String {
+    use hodograph_generator::program::operation::Stage;
+    let stages = program.stages();
+    let [mut mul, mut add, mut div, mut trig, mut fused] = [0; 5];
+    for value in program.slice(&quantities(routine)).order {
+        if stages[value.index()] <= Stage::Parameter {
+            continue;
+        }
+        match program.operation(value) {
+            Operation::Mul(..) => mul += 1,
+            Operation::Add(..) | Operation::Sub(..) | Operation::Neg(_) => add += 1,
+            Operation::Div(..) | Operation::Recip(_) => div += 1,
+            Operation::MulAdd(..) | Operation::MulSub(..) | Operation::NegMulAdd(..) => {
+                (mul, add, fused) = (mul + 1, add + 1, fused + 1);
+            }
+            Operation::SinCos(_) | Operation::Call(..) => trig += 1,
+            _ => {}
+        }
+    }
+    format!("{mul}/{add}/{div}/{trig} ({fused})")
+}
+
+/// Prints the table as Markdown.
+pub fn print(rows: &[Row<'_>], peers: &Peers) {
+    println!("| mechanism | routine | run-time | ratio | fixed | ratio | best peer | operations | code (bytes) |");
+    println!("| --- | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |");
+    for pair in rows.chunks_exact(2) {
+        let [run_time, fixed] = pair else { continue };
+        for (routine, _) in ROUTINES {
+            let of = |row: &Row<'_>| row.counts.get(routine).copied();
+            let (Some(slow), Some(fast)) = (of(run_time), of(fixed)) else { continue };
+            let case = run_time.derivation.case;
+            let best = peers.best(&case.name, routine);
+            let ratio = |count: f64| {
+                best.as_ref().map_or(String::new(), |best| format!("{:.2}", count / best.instructions))
+            };
+            let peer = best.as_ref().map_or(String::new(), |best| format!("{} ({})", best.instructions, best.name));
+            println!(
+                "| {} | {routine} | {slow:.0} | {} | {fast:.0} | {} | {peer} | {} | {} |",
+                case.title,
+                ratio(slow),
+                ratio(fast),
+                operations(&fixed.derivation.program, routine),
+                fixed.sizes.get(routine).copied().unwrap_or(0),
+            );
+        }
+    }
+    println!("\nOperations (parameters fixed): multiplications/additions/divisions/pairs of sine and cosine (of them fused).\n");
+    println!("| mechanism | parameters | derivation (s) | memory (MB) | compiling (s) |");
+    println!("| --- | --- | ---: | ---: | ---: |");
+    for row in rows {
+        let derivation = row.derivation;
+        println!(
+            "| {} | {} | {:.2} | {} | {:.1} |",
+            derivation.case.title,
+            if derivation.fixed { "fixed" } else { "run-time" },
+            derivation.seconds,
+            derivation.kilobytes.map_or("-".to_owned(), |kilobytes| format!("{}", kilobytes / 1024)),
+            row.compile_seconds
+        );
+    }
+}
