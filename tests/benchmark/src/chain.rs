@@ -7,7 +7,8 @@ pub fn urdf(links: usize) -> String {
     let length = |link: usize| 0.4 + 0.02 * (link as f64 - 1.0);
     let mut text = format!("<robot name=\"chain{links}\">\n<link name=\"base\"/>\n");
     for link in 0..=links {
-        let (mass, at) = if link == 0 { (2.1, 0.0) } else { (0.5 + 0.03 * (link as f64 - 1.0), length(link)) };
+        let (mass, at) =
+            if link == 0 { (2.1, 0.0) } else { (0.5 + 0.03 * (link as f64 - 1.0), length(link)) };
         let origin = if link > 1 { length(link - 1) } else { 0.0 };
         let (joint, axis) = if link == 0 { ("prismatic", "0 1 0") } else { ("revolute", "1 0 0") };
         let parent = if link == 0 { "base".to_owned() } else { format!("l{}", link - 1) };

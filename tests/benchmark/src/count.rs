@@ -25,7 +25,9 @@ pub fn instructions(folders: &Folders, built: &Built) -> Result<Counts, Failure>
             .arg(&built.program)
             .arg(REPEATS.to_string()),
     )
-    .map_err(|failure| Failure::new(format!("instructions are counted with valgrind, which failed: {failure}")))?;
+    .map_err(|failure| {
+        Failure::new(format!("instructions are counted with valgrind, which failed: {failure}"))
+    })?;
     Ok(parse(&std::fs::read_to_string(&file)?))
 }
 
@@ -36,9 +38,11 @@ fn parse(profile: &str) -> Counts {
     let mut lines = profile.lines();
     while let Some(line) = lines.next() {
         if let Some(name) = line.strip_prefix("cfn=") {
-            callee = ROUTINES.iter().find(|(_, function)| name.contains(function)).map(|(routine, _)| *routine);
+            callee =
+                ROUTINES.iter().find(|(_, function)| name.contains(function)).map(|(routine, _)| *routine);
         } else if let (Some(calls), Some(routine)) = (line.strip_prefix("calls="), callee.take()) {
-            let number = |text: &str, at: usize| text.split_whitespace().nth(at).and_then(|word| word.parse().ok());
+            let number =
+                |text: &str, at: usize| text.split_whitespace().nth(at).and_then(|word| word.parse().ok());
             let cost: u64 = lines.next().and_then(|line| number(line, 1)).unwrap_or(0);
             let total = totals.entry(routine).or_default();
             total.0 += number(calls, 0).unwrap_or(0);
@@ -55,7 +59,8 @@ pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
     let mut sizes = BTreeMap::new();
     for line in text.lines() {
         let mut words = line.splitn(4, ' ');
-        let (Some(_), Some(size), Some(_), Some(name)) = (words.next(), words.next(), words.next(), words.next())
+        let (Some(_), Some(size), Some(_), Some(name)) =
+            (words.next(), words.next(), words.next(), words.next())
         else {
             continue;
         };

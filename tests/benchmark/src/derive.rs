@@ -54,8 +54,8 @@ pub fn derive<'a>(
     let _ = std::fs::remove_file(&kept);
     let (seconds, kilobytes) = timed(tool, &path)?;
     let text = std::fs::read_to_string(&kept)?;
-    let artifact = artifact::decode(&text)
-        .map_err(|error| Failure::new(format!("{}: {error:?}", kept.display())))?;
+    let artifact =
+        artifact::decode(&text).map_err(|error| Failure::new(format!("{}: {error:?}", kept.display())))?;
     let module = output(Command::new(tool).arg("expand").arg(&path))?;
     let states = states::states(folders, tool, case, &path)?;
     let speeds = states::speeds(tool, &path)?;

@@ -176,7 +176,8 @@ fn state(state: &State, inputs: bool) -> String {
         format!("{name} {{ {} }}", fields.join(", "))
     };
     let inputs = if inputs { record("Inputs", &state.inputs) } else { "()".to_owned() };
-    [record("Coordinates", &state.q), record("Speeds", &state.u), record("Speeds", &state.a), inputs].join(", ")
+    [record("Coordinates", &state.q), record("Speeds", &state.u), record("Speeds", &state.a), inputs]
+        .join(", ")
 }
 
 /// The first word after `start` in the module.

@@ -25,9 +25,9 @@ impl Peers {
     /// The least figure for a routine of a mechanism.
     pub fn best(&self, mechanism: &str, routine: &str) -> Option<Best> {
         let figures = self.0["instructions"][mechanism][routine].as_object()?;
-        let figures = figures.iter().filter_map(|(name, value)| {
-            Some(Best { name: name.clone(), instructions: value.as_f64()? })
-        });
+        let figures = figures
+            .iter()
+            .filter_map(|(name, value)| Some(Best { name: name.clone(), instructions: value.as_f64()? }));
         figures.min_by(|a, b| a.instructions.total_cmp(&b.instructions))
     }
 }

@@ -10,7 +10,8 @@ use crate::tools::{Failure, Folders};
 
 /// Draws instructions over links for the chains, parameters fixed, with the best peer's figures as circles.
 pub fn chains(folders: &Folders, rows: &[Row<'_>], peers: &Peers) -> Result<(), Failure> {
-    let chain = |row: &&Row<'_>| matches!(row.derivation.case.origin, Origin::Chain(_)) && row.derivation.fixed;
+    let chain =
+        |row: &&Row<'_>| matches!(row.derivation.case.origin, Origin::Chain(_)) && row.derivation.fixed;
     let rows: Vec<&Row<'_>> = rows.iter().filter(chain).collect();
     if rows.len() < 2 {
         return Ok(());

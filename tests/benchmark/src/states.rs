@@ -62,7 +62,8 @@ fn peer(folders: &Folders, case: &Case) -> Result<Vec<State>, Failure> {
     let text = std::fs::read_to_string(folders.root.join("tests/data/peers/expected.json"))?;
     let all = parsed(&text)?;
     let robot = &all[case.name.as_str()];
-    let joints: Vec<&str> = robot["joints"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let joints: Vec<&str> =
+        robot["joints"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     let states = robot["states"].as_array().into_iter().flatten().map(|state| {
         let [q, v, a, tau] = ["q", "v", "a", "tau"].map(|key| numbers(&state[key]));
         let (mut coordinates, mut speeds): (Vec<String>, Vec<String>) = Default::default();
@@ -70,7 +71,8 @@ fn peer(folders: &Folders, case: &Case) -> Result<Vec<State>, Failure> {
             match *joint {
                 "universe" => {}
                 "root_joint" => {
-                    coordinates.extend(["x", "y", "z", "e1", "e2", "e3", "e0"].map(|part| format!("base_{part}")));
+                    coordinates
+                        .extend(["x", "y", "z", "e1", "e2", "e3", "e0"].map(|part| format!("base_{part}")));
                     speeds.extend(["x", "y", "z", "rx", "ry", "rz"].map(|part| format!("base_{part}")));
                 }
                 joint => {
@@ -147,7 +149,13 @@ fn of_model(tool: &Path, model: &Path, turn: i32) -> Result<State, Failure> {
         let value = |at: usize| scale * (1.7 * at as f64 + phase + 2.3 * turn).sin();
         speeds.iter().enumerate().map(|(at, name)| (name.clone(), value(at))).collect()
     };
-    Ok(State { q: named(answer["q"].as_object(), 0.0), u: of(2.0, 1.1), a: of(1.4, 2.0), inputs: Vec::new(), expected: None })
+    Ok(State {
+        q: named(answer["q"].as_object(), 0.0),
+        u: of(2.0, 1.1),
+        a: of(1.4, 2.0),
+        inputs: Vec::new(),
+        expected: None,
+    })
 }
 
 /// Holds what the measured routines answer to the reference numbers: 1e-10 of the largest entry.

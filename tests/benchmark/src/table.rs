@@ -61,7 +61,9 @@ fn operations(program: &Program, routine: &str) -> String {
 
 /// Prints the table as Markdown.
 pub fn print(rows: &[Row<'_>], peers: &Peers) {
-    println!("| mechanism | routine | run-time | ratio | fixed | ratio | best peer | operations | code (bytes) |");
+    println!(
+        "| mechanism | routine | run-time | ratio | fixed | ratio | best peer | operations | code (bytes) |"
+    );
     println!("| --- | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |");
     for pair in rows.chunks_exact(2) {
         let [run_time, fixed] = pair else { continue };
@@ -73,7 +75,8 @@ pub fn print(rows: &[Row<'_>], peers: &Peers) {
             let ratio = |count: f64| {
                 best.as_ref().map_or(String::new(), |best| format!("{:.2}", count / best.instructions))
             };
-            let peer = best.as_ref().map_or(String::new(), |best| format!("{} ({})", best.instructions, best.name));
+            let peer =
+                best.as_ref().map_or(String::new(), |best| format!("{} ({})", best.instructions, best.name));
             println!(
                 "| {} | {routine} | {slow:.0} | {} | {fast:.0} | {} | {peer} | {} | {} |",
                 case.title,
@@ -84,7 +87,9 @@ pub fn print(rows: &[Row<'_>], peers: &Peers) {
             );
         }
     }
-    println!("\nOperations (parameters fixed): multiplications/additions/divisions/pairs of sine and cosine (of them fused).\n");
+    println!(
+        "\nOperations (parameters fixed): multiplications/additions/divisions/pairs of sine and cosine (of them fused).\n"
+    );
     println!("| mechanism | parameters | derivation (s) | memory (MB) | compiling (s) |");
     println!("| --- | --- | ---: | ---: | ---: |");
     for row in rows {
