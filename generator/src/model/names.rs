@@ -198,6 +198,12 @@ pub fn reserved(name: &Name) -> Option<Diagnostic> {
         let message = "a name needs a letter";
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help("choose another name"));
     }
+    if let Some(c) = name.text.chars().find(|c| !c.is_alphanumeric() && *c != '_') {
+        let message = format!("`{c}` cannot stand in a name");
+        let help =
+            if c == '·' { "write `*` for a product" } else { "names are made of letters, digits and `_`" };
+        return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
+    }
     if name.text.chars().count() > 100 {
         let message = "a name has at most 100 letters";
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help("choose a shorter name"));
