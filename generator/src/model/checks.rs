@@ -40,11 +40,18 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
         return out;
     }
     let mut seen = Vec::new();
+    let mut turns: Option<Vec<bool>> = None;
     let mut failures = Vec::new();
     for mut state in states {
         let result = numeric::complete(m, &mut state).and_then(|()| numeric::evaluate(m, &state));
         match result {
-            Ok(evaluation) => seen.push(evaluation),
+            Ok(evaluation) => {
+                let turning = turning_inertias(m, &state, &evaluation);
+                turns = Some(turns.map_or(turning.clone(), |before: Vec<bool>| {
+                    before.iter().zip(&turning).map(|(a, b)| *a && *b).collect()
+                }));
+                seen.push(evaluation);
+            }
             Err(failure) => failures.push((state, failure)),
         }
     }
@@ -54,6 +61,14 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
             out.extend(nowhere(m, state, failure));
         }
     } else {
+        for (body, _) in m.bodies.iter().zip(turns.unwrap_or_default()).filter(|(_, turns)| *turns) {
+            let frame = body.inertia.as_ref().map_or("", |inertia| m.frames[inertia.frame.0].name.as_str());
+            let message = format!("the inertia of `{}` is not constant in `{frame}`", body.name);
+            let help = format!(
+                "the body turns in `{frame}`, but not about an axis of symmetry; give its inertia in its own frame"
+            );
+            out.push(Diagnostic::new(codes::INERTIA, body.span, message).help(help));
+        }
         inertia_of_speeds(m, &seen, &mut out);
         contacts(m, &seen, &mut out);
     }
@@ -140,6 +155,31 @@ fn bodies(m: &Mechanism, states: &[State], out: &mut Vec<Diagnostic>) {
             out.push(Diagnostic::new(code, body.span, message).help(help));
         }
     }
+}
+
+/// For each body: is its inertia given in a frame in which it changes? It does not if turning about the relative angular
+/// velocity W leaves it as it is: W I = I W.
+fn turning_inertias(m: &Mechanism, state: &State, at: &Evaluation) -> Vec<bool> {
+    let values = at_rest(m, state);
+    let changes = |body: &Body| {
+        let (Some(frame), Some(inertia)) = (body.frame, &body.inertia) else { return false };
+        if inertia.frame == frame || inertia.about.is_some() {
+            return false;
+        }
+        let Ok(Some(i)) = numeric::central_inertia(&values, body) else { return false };
+        let (a, b) = (at.angular_velocities[frame.0], at.angular_velocities[inertia.frame.0]);
+        let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        let w = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
+        let entry = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3], r: usize, c: usize| {
+            (0..3).map(|k| a[r][k] * b[k][c]).sum::<f64>()
+        };
+        let size = |a: &[[f64; 3]; 3]| a.iter().flatten().fold(0.0_f64, |s, e| s.max(e.abs()));
+        let change = (0..9)
+            .map(|n| (entry(&w, &i, n / 3, n % 3) - entry(&i, &w, n / 3, n % 3)).abs())
+            .fold(0.0, f64::max);
+        change > 1e-9 * size(&w) * size(&i)
+    };
+    m.bodies.iter().map(changes).collect()
 }
 
 /// A number as a message shows it.
