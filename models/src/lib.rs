@@ -25,6 +25,7 @@ mechanism!("driven_rotary_pendulum.mech");
 mechanism!("five_bar.mech");
 mechanism!("four_bar.mech");
 mechanism!("free_box_corner.mech");
+mechanism!("free_box_quaternion.mech");
 mechanism!("planar_double_pendulum.mech");
 mechanism!("planar_triple_pendulum.mech");
 mechanism!("puma_560.mech");

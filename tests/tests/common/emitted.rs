@@ -201,6 +201,9 @@ modules! {
     free_box_corner FreeBoxCorner plain independent {
         0 reduced_matrix_corner partial_velocities_corner contact_velocity_corner collide_corner
     }
+    free_box_quaternion FreeBoxQuaternion plain independent {
+        0 reduced_matrix_corner partial_velocities_corner contact_velocity_corner collide_corner
+    }
     planar_double_pendulum PlanarDoublePendulum plain independent {
         0 reduced_matrix_tip_wall partial_velocities_tip_wall contact_velocity_tip_wall collide_tip_wall
     }

@@ -1,6 +1,7 @@
 //! Random states of models, always the same ones.
 
 use hodograph_generator::interpret::Inputs;
+use hodograph_generator::model::mechanism::Orientation;
 use hodograph_generator::numeric::{self, Evaluation, State};
 
 use super::Model;
@@ -53,6 +54,12 @@ pub fn samples(model: &Model, count: usize) -> Vec<Sample> {
         state.inputs.iter_mut().for_each(|value| *value = 3.0 * random.number());
         state.time = random.number();
         state.coordinates.iter_mut().for_each(|value| *value += 0.4 * random.number());
+        for frame in &m.frames {
+            if let Orientation::Quaternion(parts) = frame.orientation {
+                let norm = parts.iter().map(|part| state.coordinates[part.0].powi(2)).sum::<f64>().sqrt();
+                parts.iter().for_each(|part| state.coordinates[part.0] /= norm);
+            }
+        }
         state.speeds.iter_mut().for_each(|value| *value = 2.0 * random.number());
         // A linkage does not close everywhere, and some descriptions have poles: such states are not sampled.
         let numeric = numeric::complete(m, &mut state).and_then(|()| numeric::evaluate(m, &state));

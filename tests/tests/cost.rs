@@ -1,0 +1,32 @@
+//! What the derived programs cost, held to what others needed.
+
+mod common;
+
+use common::Model;
+use hodograph_generator::program::operation::{Operation, Stage};
+use hodograph_generator::program::routine::Quantity;
+
+/// Inverse dynamics of the Stanford arm took Kane and Levinson 646 multiplications and 394 additions (1983, by hand).
+#[test]
+fn inverse_dynamics_of_the_stanford_arm() {
+    let model = Model::load("stanford_arm");
+    let stages = model.program.stages();
+    let (mut products, mut sums) = (0, 0);
+    for value in model.program.slice(&[Quantity::InverseDynamics]).order {
+        // What depends on parameters alone is computed once, at construction.
+        if stages[value.index()] <= Stage::Parameter {
+            continue;
+        }
+        match model.program.operation(value) {
+            Operation::Mul(..) | Operation::Div(..) | Operation::Recip(..) => products += 1,
+            Operation::Add(..) | Operation::Sub(..) | Operation::Neg(..) => sums += 1,
+            Operation::MulAdd(..) | Operation::MulSub(..) | Operation::NegMulAdd(..) => {
+                products += 1;
+                sums += 1;
+            }
+            _ => {}
+        }
+    }
+    assert!(products < 646 && sums < 394, "{products} multiplications, {sums} additions");
+    assert!(products < 200 && sums < 150, "more than before: {products} multiplications, {sums} additions");
+}
