@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         contact: &contact,
         renewal: (&renewal.0, renewal.1.separation.x),
         sticking: (&sticking.0, sticking.1.separation.x),
-    });
+    })?;
 
     println!("\nNine outcomes, e = {e}\n");
     println!("                    impulse, N s                      velocity of separation, m/s");
@@ -177,5 +177,14 @@ impl Course {
         } else {
             Terminal::Renewal(renewal_direction(&contact.reduced, mu))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    /// Every number of the paper is reproduced but those that are marked and explained.
+    #[test]
+    fn the_example_runs() {
+        super::main().expect("the numbers of the paper");
     }
 }
