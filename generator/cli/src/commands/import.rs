@@ -3,6 +3,9 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
+use hodograph_generator::diagnostics::render;
+use hodograph_generator::model::check;
+use hodograph_generator::source::Source;
 
 use crate::import::{Options, import};
 use crate::output;
@@ -60,7 +63,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
             for note in imported.notes {
                 eprintln!("note: {note}");
             }
-            output::text(&imported.model)
+            output::text(&imported.model)?;
+            // What the model language refuses (a body that turns without inertia, say) is better said now than later.
+            let source = Source::file("the imported model", imported.model);
+            let found = check(&source);
+            eprint!("{}", render(&found.diagnostics, &source));
+            if found.has_errors() { Err(Stop::Said) } else { Ok(()) }
         }
         Err(problems) => {
             for problem in problems {

@@ -1,6 +1,7 @@
 //! Closed loops: dependent coordinates that satisfy the configuration equations.
 
-use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::model::mechanism::{EquationSides, PointId, Vector};
+use hodograph_generator::program::routine::{PointQuantity, Quantity};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Machine, listed};
@@ -27,6 +28,7 @@ pub fn complete(machine: &Machine, state: &mut State) -> Result<(), Failure> {
         .map(|(index, _)| index)
         .collect();
     if dependent.is_empty() {
+        warn_of_open_loops(machine, state);
         return Ok(());
     }
     let guess = state.clone();
@@ -123,4 +125,28 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
     let left = if left > 1e-6 * residual.norm() { left } else { 0.0 };
     let size = sizes.fold(left, f64::max);
     Ok(Here { residual, step, size })
+}
+
+/// A loop that is closed by velocities alone is followed from wherever it begins: says so where it begins open.
+fn warn_of_open_loops(machine: &Machine, state: &State) {
+    let mechanism = &machine.mechanism;
+    for constraint in &mechanism.constraints {
+        let EquationSides::Vector(Vector::Velocity(PointId(a)), Vector::Velocity(PointId(b))) =
+            constraint.sides
+        else {
+            continue;
+        };
+        let wanted = [a, b].map(|point| Quantity::Point(point as u32, PointQuantity::Position));
+        let Ok(numbers) = machine.evaluate(state, &wanted) else { continue };
+        let apart: Vec<f64> =
+            numbers.get(wanted[0]).iter().zip(numbers.get(wanted[1])).map(|(a, b)| a - b).collect();
+        if apart.iter().any(|distance| distance.abs() > 1e-9) {
+            let [a, b] = [a, b].map(|point| &mechanism.points[point].name);
+            eprintln!(
+                "note: a constraint holds the velocities of {a} and {b} equal, but here {a} is off {b} by {apart:?}: if they \
+                 are one point, say `configuration {{ position({a}) = position({b}); }}` in the model, with dependent \
+                 coordinates, and the state will be completed"
+            );
+        }
+    }
 }

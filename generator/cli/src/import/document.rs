@@ -65,7 +65,12 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
     let mut places = HashMap::new();
     let (mut links, mut joints) = (0, 0);
     let mut ignored: BTreeMap<String, (usize, String)> = BTreeMap::new();
-    let mut ignore = |what: String, node: Node| ignored.entry(what).or_insert_with(|| (0, at(node))).0 += 1;
+    // What is not used is not read either: many files have faults there.
+    let mut used = source.as_bytes().to_vec();
+    let mut ignore = |what: String, node: Node| {
+        ignored.entry(what).or_insert_with(|| (0, at(node))).0 += 1;
+        used[node.range()].iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
+    };
     for node in root.children().filter(Node::is_element) {
         match node.tag_name().name() {
             "link" => {
@@ -77,10 +82,10 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
                 links += 1;
             }
             "joint" => {
-                let used = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
+                let wanted = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
                 for part in node.children().filter(Node::is_element) {
                     let name = part.tag_name().name();
-                    if !used.contains(&name) {
+                    if !wanted.contains(&name) {
                         ignore(format!("<{name}> of a joint"), part);
                     }
                 }
@@ -99,7 +104,7 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
     if !problems.is_empty() {
         return Err(problems);
     }
-    let robot = urdf_rs::read_from_string(source)
+    let robot = urdf_rs::read_from_string(&String::from_utf8_lossy(&used))
         .map_err(|error| vec![format!("{file}: this is no valid URDF: {}", one_line(&error.to_string()))])?;
     if robot.links.len() != links || robot.joints.len() != joints {
         return Err(vec![format!("{file}: some links or joints could not be read")]);

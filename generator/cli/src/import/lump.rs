@@ -16,6 +16,28 @@ pub struct Lump {
     pub inertia: Matrix3<f64>,
 }
 
+impl Lump {
+    /// Why no body can have this inertia.
+    fn fault(&self) -> Option<String> {
+        if self.mass <= 0.0 {
+            return Some("its mass is 0, but its inertia is not: give a mass".to_owned());
+        }
+        let principal = self.inertia.symmetric_eigenvalues();
+        let (least, total) = (principal.min(), principal.sum());
+        let slack = 1e-9 * total.abs().max(self.inertia.amax());
+        let moments = principal.as_slice();
+        if least < -slack {
+            Some(format!("no body has the principal moments of inertia {moments:?}: none may be negative"))
+        } else if 2.0 * principal.max() > total + slack {
+            Some(format!(
+                "no body has the principal moments of inertia {moments:?}: the largest is above the sum of the others"
+            ))
+        } else {
+            None
+        }
+    }
+}
+
 /// A link that moves, with all that is fixed to it.
 #[derive(Clone, Debug)]
 pub struct Group {
@@ -103,6 +125,20 @@ pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Gr
     for (group, parts) in groups.iter_mut().zip(&parts) {
         group.lump = joined(parts);
     }
+    let largest =
+        groups.iter().flat_map(|group| &group.lump).map(|lump| lump.inertia.amax()).fold(0.0, f64::max);
+    for group in &mut groups {
+        // Rounding that an exporter left where there is none.
+        if let Some(lump) = group.lump.as_mut().filter(|lump| lump.inertia.amax() <= 1e-12 * largest) {
+            lump.inertia = Matrix3::zeros();
+        }
+        // Files have odd numbers for small fixed parts; what counts is the body that they are part of.
+        if let Some(fault) = group.lump.as_ref().and_then(Lump::fault) {
+            let link = &tree.links[group.link];
+            let with = if group.fixed.is_empty() { "" } else { " with what is fixed to it" };
+            problems.push(format!("{}: link `{}`{with}: {fault}", document.link(link.index), link.name));
+        }
+    }
     for (index, group) in groups.iter().enumerate() {
         if group.lump.is_some() || group.ground {
             continue;
@@ -156,24 +192,9 @@ fn read_inertial(
     if mass < 0.0 {
         return problem(format!("its mass is {mass}: give a positive one"));
     }
-    if mass == 0.0 {
-        if inertia.iter().all(|&number| number == 0.0) {
-            notes.push(format!("{place}: link `{}` has mass 0: taken as massless", link.name));
-            return None;
-        }
-        return problem("its mass is 0, but its inertia is not: give a mass".to_owned());
-    }
-    let principal = inertia.symmetric_eigenvalues();
-    let (least, total) = (principal.min(), principal.sum());
-    let slack = 1e-9 * total.abs().max(inertia.amax());
-    if least < -slack {
-        return problem(format!("its inertia has the principal moment {least}: none may be negative"));
-    }
-    if 2.0 * principal.max() > total + slack {
-        return problem(format!(
-            "no body has the principal moments of inertia {:?}: the largest is above the sum of the others",
-            principal.as_slice()
-        ));
+    if mass == 0.0 && inertia.iter().all(|&number| number == 0.0) {
+        notes.push(format!("{place}: link `{}` has mass 0: taken as massless", link.name));
+        return None;
     }
     let turn = turned(&rpy);
     Some(Lump { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
@@ -193,9 +214,12 @@ fn joined(parts: &[Lump]) -> Option<Lump> {
     if let [only] = parts {
         return Some(only.clone());
     }
-    let mass: f64 = parts.iter().map(|part| part.mass).sum();
     if parts.is_empty() {
         return None;
+    }
+    let mass: f64 = parts.iter().map(|part| part.mass).sum();
+    if mass <= 0.0 {
+        return parts.first().cloned();
     }
     let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector3<f64>>() / mass;
     let inertia = parts

@@ -90,6 +90,26 @@ fn what_is_fixed_becomes_one_body() {
 }
 
 #[test]
+fn odd_numbers_of_what_is_fixed_or_not_used_do_not_matter() {
+    let speck = "<link name=\"speck\"><inertial><mass value=\"0\"/><inertia ixx=\"1e-6\" ixy=\"0\" ixz=\"0\" iyy=\"0\" \
+                 iyz=\"0\" izz=\"0\"/></inertial><visual><geometry><mesh/></geometry></visual></link>\n";
+    let body = "<material name=\"m\"><texture/></material><link name=\"base\"/>".to_owned()
+        + link("arm")
+        + speck
+        + joint("j", "revolute", "base", "arm", "")
+        + joint("k", "fixed", "arm", "speck", "");
+    let (model, notes) = model(&body, &Options::default());
+    has(&model, "m_arm: kg = 2,");
+    has(&model, "Ixx_arm: kg*m^2 = 0.100001,");
+    assert!(
+        notes.contains("r.urdf:2:1: ignored <material>") && notes.contains("ignored <visual> of a link"),
+        "{notes}"
+    );
+    let alone = refused(&body.replace("\"fixed\"", "\"revolute\""));
+    assert!(alone.contains("link `speck`: its mass is 0, but its inertia is not"), "{alone}");
+}
+
+#[test]
 fn mistakes_are_named_with_their_place() {
     let two = |name: &str| "<link name=\"base\"/>\n".to_owned() + link("arm") + name;
     let cases = [
