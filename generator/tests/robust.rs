@@ -6,7 +6,7 @@ use hodograph_generator::diagnostics::{codes, render};
 use hodograph_generator::{model, source::Source};
 use proptest::prelude::*;
 
-/// Checks a text that must be refused with this code, within two seconds even unoptimised.
+/// Checks a text that must be refused with this code, soon: in two seconds, or unoptimised and on a busy machine in thirty.
 fn refused(what: &str, text: String, code: hodograph_generator::diagnostics::Code) {
     let begun = Instant::now();
     let source = Source::file("big.mech", text);
@@ -15,7 +15,8 @@ fn refused(what: &str, text: String, code: hodograph_generator::diagnostics::Cod
     assert!(checked.mechanism.is_none(), "{what} is accepted");
     assert!(checked.diagnostics.iter().any(|d| d.code == code), "{what}: {said}");
     let taken = begun.elapsed();
-    assert!(taken < Duration::from_secs(5), "{what} took {taken:?}");
+    let allowed = if cfg!(debug_assertions) { 30 } else { 2 };
+    assert!(taken < Duration::from_secs(allowed), "{what} took {taken:?}");
 }
 
 const HEAD: &str = "mechanism M; parameters { m: kg = 1 } coordinates { q1: m } speeds { u1: m/s }\n";
@@ -77,6 +78,20 @@ fn long_chains_of_names() {
     refused("frames", with(&format!("frames {{ {frames} F{n} = N; }}")), codes::TOO_DEEP);
 }
 
+#[test]
+fn many_names() {
+    let n = 40_000;
+    let unknown: String = (0..n).map(|i| format!("a{i} = unknown{i}; ")).collect();
+    refused("unknown names", with(&format!("definitions {{ {unknown} }}")), codes::UNKNOWN_NAME);
+    let frames: String = (0..n).map(|i| format!("F{i} = N; ")).collect();
+    let stated: String = (0..n).map(|i| format!("F{i} = w; ")).collect();
+    let text = with(&format!("frames {{ {frames} }} angular_velocities {{ {stated} }}"));
+    refused("stated motions", text, codes::UNKNOWN_NAME);
+    let coordinates: String = (0..n).map(|i| format!("q{i}: m, ")).collect();
+    let text = format!("mechanism M; coordinates {{ {coordinates} }} speeds {{ u1: m/s }}");
+    refused("coordinates", text, codes::TOO_LARGE);
+}
+
 /// Ten thousand of everything that may be many is a model like others.
 #[test]
 fn ten_thousand_parameters() {
@@ -90,7 +105,7 @@ fn ten_thousand_parameters() {
     let begun = Instant::now();
     let checked = model::check(&Source::file("many.mech", text));
     assert!(checked.mechanism.is_some(), "{:?}", checked.diagnostics.first());
-    assert!(begun.elapsed() < Duration::from_secs(10));
+    assert!(begun.elapsed() < Duration::from_secs(30));
 }
 
 #[test]

@@ -11,9 +11,9 @@ pub mod similar;
 mod typed;
 pub mod units;
 
-use crate::diagnostics::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Severity, codes};
 use crate::source::Source;
-use crate::syntax;
+use crate::syntax::{self, tree::Tree};
 use mechanism::Mechanism;
 
 /// What was found in a model.
@@ -32,6 +32,22 @@ impl Checked {
     }
 }
 
+/// A mechanism has at most so many coordinates, and so many speeds.
+const MAX_FREEDOMS: usize = 1000;
+
+fn too_many(tree: &Tree) -> Option<Diagnostic> {
+    let (quantity, what) = match (tree.coordinates.get(MAX_FREEDOMS), tree.speeds.get(MAX_FREEDOMS)) {
+        (Some(quantity), _) => (quantity, "coordinates"),
+        (None, Some(quantity)) => (quantity, "speeds"),
+        (None, None) => (tree.dependent.get(MAX_FREEDOMS)?, "dependent speeds"),
+    };
+    let message = format!("a mechanism has at most {MAX_FREEDOMS} {what}");
+    Some(
+        Diagnostic::new(codes::TOO_LARGE, quantity.name.span, message)
+            .help("quantities that do not move are parameters"),
+    )
+}
+
 /// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
 pub fn check(source: &Source) -> Checked {
     let tokens = match source.tokens() {
@@ -41,7 +57,9 @@ pub fn check(source: &Source) -> Checked {
     let (tree, diagnostics) = syntax::parse(&tokens);
     // without a name nothing else could be read
     let unread = tree.name.is_none() && tree.sections.is_empty();
-    let (mechanism, mut diagnostics) = if unread {
+    let (mechanism, mut diagnostics) = if let Some(error) = too_many(&tree) {
+        (None, diagnostics.into_iter().chain([error]).collect())
+    } else if unread {
         (None, diagnostics)
     } else {
         let (mechanism, diagnostics) = lower::lower(&tree, diagnostics);

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::names::{Names, Symbol};
 use crate::diagnostics::{Diagnostic, Span, codes};
-use crate::syntax::tree::{Expr, ExprKind, Name, Tree};
+use crate::syntax::tree::{AngularVelocity, Expr, ExprKind, Name, Tree, Velocity};
 
 /// Something that must be understood before what refers to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -34,7 +34,7 @@ pub struct Order {
 
 /// Finds the order. Names that are unknown are passed over here.
 pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> Order {
-    let graph = Graph { tree, names };
+    let graph = Graph { tree, names, stated: Stated::of(tree) };
     let counts = [tree.definitions.len(), tree.frames.len() + 1, tree.points.len() + 1];
     let mut all = Vec::new();
     all.extend((0..counts[0]).map(Item::Definition));
@@ -94,9 +94,32 @@ pub fn order(tree: &Tree, names: &Names, diagnostics: &mut Vec<Diagnostic>) -> O
     out
 }
 
+/// Where the motion of a frame or a point is stated, by its name; of several statements the first.
+pub struct Stated<'a> {
+    /// angular velocities of frames
+    pub angular_velocities: HashMap<&'a str, &'a AngularVelocity>,
+    /// velocities of points
+    pub velocities: HashMap<&'a str, &'a Velocity>,
+}
+
+impl<'a> Stated<'a> {
+    /// All statements of a model.
+    pub fn of(tree: &'a Tree) -> Self {
+        let mut out = Stated { angular_velocities: HashMap::new(), velocities: HashMap::new() };
+        for statement in &tree.angular_velocities {
+            out.angular_velocities.entry(&statement.frame.text).or_insert(statement);
+        }
+        for statement in &tree.velocities {
+            out.velocities.entry(&statement.point.text).or_insert(statement);
+        }
+        out
+    }
+}
+
 struct Graph<'a> {
     tree: &'a Tree,
     names: &'a Names,
+    stated: Stated<'a>,
 }
 
 impl Graph<'_> {
@@ -164,7 +187,7 @@ impl Graph<'_> {
             }
             Item::AngularVelocity(i) => {
                 let frame = &self.tree.frames[i - 1];
-                let stated = self.tree.angular_velocities.iter().find(|a| a.frame.text == frame.name.text);
+                let stated = self.stated.angular_velocities.get(frame.name.text.as_str());
                 if let Some(stated) = stated {
                     if let Some(within) = &stated.within {
                         self.frame(within, Item::AngularVelocity, &mut found);
@@ -194,7 +217,7 @@ impl Graph<'_> {
 
     fn velocity(&self, i: usize, found: &mut Vec<(Item, Span)>) {
         let point = &self.tree.points[i - 1];
-        let stated = self.tree.velocities.iter().find(|v| v.point.text == point.name.text);
+        let stated = self.stated.velocities.get(point.name.text.as_str());
         if let Some(stated) = stated {
             return self.walk(&stated.value, found);
         }

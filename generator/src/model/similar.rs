@@ -10,14 +10,14 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         n => ((n + 1) / 3).max(1),
     };
     candidates
-        .take(20_000)
+        .take(5_000)
         .filter(|candidate| *candidate != word)
         .filter_map(|candidate| {
             let other: Vec<char> = candidate.chars().take(65).collect();
             if letters.len().abs_diff(other.len()) > allowed {
                 return None;
             }
-            let same_but_for_case = candidate.to_lowercase() == word.to_lowercase();
+            let same_but_for_case = candidate.eq_ignore_ascii_case(word);
             let distance = if same_but_for_case { 0 } else { distance(&letters, &other) };
             // two names of one letter have nothing in common
             (distance <= allowed && distance < letters.len().max(other.len()))

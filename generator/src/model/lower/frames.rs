@@ -240,7 +240,7 @@ impl Lowering<'_> {
             let turning = self.frames[i].orientation.derivative(source.name.span);
             self.frames[i].angular_velocity = parents.plus(turning);
         }
-        let stated = self.tree.angular_velocities.iter().find(|a| a.frame.text == source.name.text);
+        let stated = self.stated.angular_velocities.get(source.name.text.as_str()).copied();
         let Some(stated) = stated else {
             if let (Orientation::Quaternion(_), Some(_)) = (&self.out.frames[i].orientation, parent) {
                 let message = format!("the angular velocity of `{}` must be stated", source.name.text);

@@ -16,7 +16,7 @@ use std::collections::HashSet;
 use super::dimension::Dimension;
 use super::mechanism::*;
 use super::names::{Names, Symbol};
-use super::order::{Item, order};
+use super::order::{Item, Stated, order};
 use super::typed::{Traits, Typed, Value};
 use super::units::Unit;
 use crate::diagnostics::{Code, Diagnostic, Span, codes};
@@ -53,6 +53,9 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagn
     lowering.unused();
     (lowering.out, lowering.diagnostics)
 }
+
+/// So many unknown names are compared with the declared ones.
+const MAX_SUGGESTIONS: usize = 20;
 
 /// What is known of a quantity besides what the mechanism holds.
 pub(super) struct QuantityFacts {
@@ -104,6 +107,7 @@ pub(super) fn quantity(dimension: Dimension) -> String {
 /// The state of lowering.
 pub(super) struct Lowering<'a> {
     pub tree: &'a Tree,
+    pub stated: Stated<'a>,
     pub names: Names,
     pub diagnostics: Vec<Diagnostic>,
     pub used: HashSet<Symbol>,
@@ -142,6 +146,7 @@ impl<'a> Lowering<'a> {
         };
         Lowering {
             tree,
+            stated: Stated::of(tree),
             names,
             diagnostics,
             used: HashSet::new(),
@@ -281,7 +286,10 @@ impl<'a> Lowering<'a> {
             None => {}
         }
         let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, format!("unknown name `{}`", name.text));
-        let error = match self.names.nearest(&name.text, fits) {
+        // comparing spellings is slow; nobody reads so many suggestions
+        let near =
+            if self.unknown.len() <= MAX_SUGGESTIONS { self.names.nearest(&name.text, fits) } else { None };
+        let error = match near {
             Some(near) => {
                 let help = format!("did you mean `{near}`?");
                 match self.names.place(near) {

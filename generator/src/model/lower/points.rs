@@ -120,7 +120,7 @@ impl Lowering<'_> {
                 _ => Traits::default(),
             };
         }
-        let Some(stated) = self.tree.velocities.iter().find(|v| v.point.text == source.name.text) else {
+        let Some(stated) = self.stated.velocities.get(source.name.text.as_str()).copied() else {
             return;
         };
         if source.by_velocity {
