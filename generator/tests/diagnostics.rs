@@ -1,6 +1,6 @@
 //! What is said of malformed models, word for word: `tests/diagnostics/NAME.mech` and the expected `NAME.txt`.
 //!
-//! `UPDATE_EXPECTED=1 cargo test -p hodograph-generator --test diagnostics` writes the expectations anew; read the difference
+//! `HODOGRAPH_UPDATE=1 cargo test -p hodograph-generator --test diagnostics` writes the expectations anew; read the difference
 //! before you commit it.
 
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ fn cases() -> Vec<PathBuf> {
 
 #[test]
 fn messages_are_as_expected() {
-    let update = std::env::var_os("UPDATE_EXPECTED").is_some();
+    let update = std::env::var_os("HODOGRAPH_UPDATE").is_some();
     let mut wrong = Vec::new();
     for path in cases() {
         let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
@@ -39,7 +39,7 @@ fn messages_are_as_expected() {
             wrong.push(format!("{name}:\n{said}"));
         }
     }
-    assert!(wrong.is_empty(), "UPDATE_EXPECTED=1 accepts these:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "HODOGRAPH_UPDATE=1 accepts these:\n{}", wrong.join("\n"));
 }
 
 #[test]

@@ -45,9 +45,9 @@ fn examples_do_what_they_claim() {
 #[test]
 fn the_page_is_up_to_date() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/errors.md");
-    if std::env::var_os("UPDATE_EXPECTED").is_some() {
+    if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
         std::fs::write(&path, page()).expect("writing");
     }
     let there = std::fs::read_to_string(&path).unwrap_or_default();
-    assert_eq!(there, page(), "UPDATE_EXPECTED=1 writes docs/errors.md anew");
+    assert_eq!(there, page(), "HODOGRAPH_UPDATE=1 writes docs/errors.md anew");
 }

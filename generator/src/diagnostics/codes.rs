@@ -70,6 +70,7 @@ codes! {
     QUATERNION = "E053", "a quaternion is not used correctly";
     POINT = "E054", "a point is not placed correctly";
     MOTION_TWICE = "E055", "a motion is stated twice";
+    INPUT_MOVES = "E056", "an input where a rate is needed";
     BODY = "E060", "a body or particle lacks something";
     MASS = "E061", "a mass that no body can have";
     INERTIA = "E062", "an inertia that no body can have";

@@ -93,8 +93,10 @@ impl Diagnostic {
         if source.text().is_some() {
             let line = Diagnostic { help: None, ..self.clone() }.one_line(source);
             let rendered = self.render(source);
-            let body = rendered.split_once('\n').map_or("", |(_, body)| body);
-            return format!("{line}\n{body}");
+            // the first line is said already, and so is the place under it
+            let body: Vec<&str> =
+                rendered.lines().skip(1).skip_while(|line| line.trim_start().starts_with("-->")).collect();
+            return format!("{line}\n{}", body.join("\n"));
         }
         let mut text = format!("[{}] {}", self.code, self.message);
         if !self.primary.text.is_empty() {

@@ -29,8 +29,8 @@ pub struct Traits {
     pub moves: bool,
     /// on time
     pub time: bool,
-    /// on inputs
-    pub input: bool,
+    /// on an input, and where it stands
+    pub input: Option<Span>,
 }
 
 impl Traits {
@@ -51,7 +51,7 @@ impl Traits {
             },
             moves: self.moves || other.moves,
             time: self.time || other.time,
-            input: self.input || other.input,
+            input: self.input.or(other.input),
         }
     }
 
@@ -69,12 +69,12 @@ impl Traits {
 
     /// The same things mattered, but seen from another place: that is where a message must point.
     pub fn seen_from(self, at: Span) -> Traits {
-        Traits { speed_at: self.speed_at.map(|_| at), ..self }
+        Traits { speed_at: self.speed_at.map(|_| at), input: self.input.map(|_| at), ..self }
     }
 
-    /// With nothing more to be said about speeds.
-    pub fn free_of_speeds(self) -> Traits {
-        Traits { degree: 0, speed_at: None, ..self }
+    /// With nothing more to be said about speeds and inputs.
+    pub fn given(self) -> Traits {
+        Traits { degree: 0, speed_at: None, input: None, ..self }
     }
 
     /// The time derivative of something free of speeds.

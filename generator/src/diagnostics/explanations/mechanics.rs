@@ -55,6 +55,14 @@ pub(super) const TABLE: &[Explanation] = &[
         right: Some("angular_velocities { B = u1*B.z; }"),
     },
     Explanation {
+        code: INPUT_MOVES,
+        text: "Inputs are values without a history: their rates are not known. So nothing whose rate is needed may depend on them: no position, no orientation, nothing in `d( )/dt`. Prescribe motion as a function of `time` and parameters, or make it a coordinate and give its speed.",
+        wrong: Some("inputs { a: m }\npoints { G = O - l/2*B.y; P = O - (l + a)*B.y; }"),
+        right: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, a: m = 0.1, w: rad/s = 3 }\npoints { G = O - l/2*B.y; P = O - (l + a*sin(w*time))*B.y; }",
+        ),
+    },
+    Explanation {
         code: BODY,
         text: "A body has a frame, a centre, a mass and an inertia; a particle has a point and a mass.",
         wrong: Some("bodies { Rod { frame: B, centre: G, inertia: [m*l^2/12, 0, m*l^2/12] } }"),

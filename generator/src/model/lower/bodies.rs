@@ -135,7 +135,7 @@ impl Lowering<'_> {
     fn mass(&mut self, expr: &Expr) -> Option<Scalar> {
         let (scalar, typed) = self.scalar_like(expr, Dimension::of(0, 1, 0), "a mass")?;
         self.need_free_of_speeds(&typed, "a mass");
-        if typed.traits.moves || typed.traits.time || typed.traits.input {
+        if typed.traits.moves || typed.traits.time || typed.traits.input.is_some() {
             let error = Diagnostic::new(codes::MASS, typed.span, "a mass must be constant")
                 .help("it may depend on parameters only");
             self.report(error);
@@ -228,7 +228,7 @@ impl Lowering<'_> {
                 continue;
             };
             self.need_free_of_speeds(&typed, what);
-            if typed.traits.moves || typed.traits.time || typed.traits.input {
+            if typed.traits.moves || typed.traits.time || typed.traits.input.is_some() {
                 let error =
                     Diagnostic::new(codes::INERTIA, typed.span, "an inertia must be constant in its frame")
                         .help(

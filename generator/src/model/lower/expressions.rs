@@ -407,6 +407,7 @@ impl Lowering<'_> {
             self.need_free_of_speeds(&typed, "what is differentiated");
             return Typed::poison(span);
         }
+        self.need_rate(&typed, "what is differentiated");
         let per_second = Dimension::of(0, 0, -1);
         let dimension = typed.dimension.and_then(|d| d.times(&per_second));
         let value = Scalar::Rate(Box::new(scalar));

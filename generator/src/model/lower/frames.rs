@@ -80,7 +80,8 @@ impl Lowering<'_> {
     fn angle(&mut self, expr: &Expr) -> Option<(Scalar, Traits)> {
         let (scalar, typed) = self.scalar_like(expr, Dimension::none(), "an angle")?;
         self.need_free_of_speeds(&typed, "an angle");
-        Some((scalar, typed.traits.free_of_speeds()))
+        self.need_rate(&typed, "an angle");
+        Some((scalar, typed.traits.given()))
     }
 
     fn rotate(
@@ -115,7 +116,8 @@ impl Lowering<'_> {
             if let Some((scalar, typed)) = self.scalar_like(item, Dimension::none(), "a component of an axis")
             {
                 self.need_free_of_speeds(&typed, "an axis");
-                traits = traits.plus(typed.traits.free_of_speeds());
+                self.need_rate(&typed, "an axis");
+                traits = traits.plus(typed.traits.given());
                 components.push(scalar);
             }
         }

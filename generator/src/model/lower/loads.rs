@@ -206,7 +206,18 @@ impl Lowering<'_> {
         let owner = Self::owner(load);
         let [angle, rest, stiffness, damping] =
             self.record("a torsion spring", &owner, &load.fields, known, &["angle"]);
-        let angle = self.spring_value(angle, Dimension::none(), "an angle");
+        let angle = match angle {
+            None => None,
+            Some(field) => {
+                self.notes(field, &[]);
+                let read = self.scalar_like(&field.value, Dimension::none(), "an angle");
+                read.map(|(scalar, typed)| {
+                    self.need_free_of_speeds(&typed, "an angle");
+                    self.need_rate(&typed, "an angle");
+                    scalar
+                })
+            }
+        };
         let rest = self.spring_value(rest, Dimension::none(), "an angle");
         let stiffness = self.spring_value(stiffness, Dimension::of(2, 1, -2), "a torsional stiffness");
         let damping = self.spring_value(damping, Dimension::of(2, 1, -1), "a torsional damping");

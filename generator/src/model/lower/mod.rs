@@ -411,6 +411,20 @@ impl<'a> Lowering<'a> {
         }
     }
 
+    /// Demands that its rate is known.
+    pub fn need_rate(&mut self, typed: &Typed, what: &str) {
+        if let Some(place) = typed.traits.input {
+            let message = format!("{what} must not depend on an input, whose rate is not known");
+            let error = Diagnostic::new(codes::INPUT_MOVES, typed.span, message)
+                .help("prescribe motion by `time` and parameters, or by a coordinate with its speed");
+            self.report(if place == typed.span {
+                error.label("this is or contains an input")
+            } else {
+                error.related(place, "this is or contains an input")
+            });
+        }
+    }
+
     /// Demands that speeds enter linearly at most.
     pub fn need_linear(&mut self, typed: &Typed, what: &str) {
         if typed.traits.degree > 1 {

@@ -92,7 +92,8 @@ impl Lowering<'_> {
                 let vector = self.need_vector(&by, "the way from one point to another")?;
                 self.demand(&by, Dimension::of(1, 0, 0), "the way from one point to another");
                 self.need_free_of_speeds(&by, "a position");
-                Some((from, vector, by.traits.free_of_speeds()))
+                self.need_rate(&by, "a position");
+                Some((from, vector, by.traits.given()))
             }
         }
     }

@@ -119,7 +119,7 @@ impl Lowering<'_> {
                 (self.parameters.get(i), Scalar::Parameter(super::super::mechanism::ParameterId(i)))
             }
             Symbol::Input(i) => {
-                traits.input = true;
+                traits.input = Some(span);
                 (self.inputs.get(i), Scalar::Input(super::super::mechanism::InputId(i)))
             }
             Symbol::Coordinate(i) => {
