@@ -103,4 +103,19 @@ mod tests {
         std::fs::write(folder.path().join("Cargo.toml"), "").unwrap();
         assert_eq!(package(&path).unwrap(), folder.path());
     }
+
+    #[test]
+    fn a_model_has_one_hash_in_a_file_in_rust_and_in_the_macro() {
+        let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../models");
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["two_sleds", "whipple_bicycle", "shaken_pendulum_moving_plate"] {
+            let text = std::fs::read_to_string(root.join(name).with_extension("mech")).unwrap();
+            let path = folder.path().join("lib.rs");
+            std::fs::write(&path, format!("hodograph::mechanism! {{\n{text}\n}}\n")).unwrap();
+            let hash = models(&path).unwrap()[0].content_hash();
+            assert_eq!(hash, Source::file("model", text.clone()).content_hash(), "{name}");
+            let tokens = TokenStream::from_str(&text).unwrap();
+            assert_eq!(hash, Source::inline("model", tokens).content_hash(), "{name}");
+        }
+    }
 }

@@ -89,7 +89,9 @@ fn panel(
             }))?;
     }
     if same_scale {
-        chart.configure_series_labels().background_style(WHITE.mix(0.8)).border_style(faint).draw()?;
+        let labels = &mut chart.configure_series_labels();
+        let labels = labels.position(SeriesLabelPosition::UpperRight);
+        labels.background_style(WHITE.mix(0.8)).border_style(faint).draw()?;
     }
     Ok(())
 }
