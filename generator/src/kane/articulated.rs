@@ -20,6 +20,14 @@ use crate::model::mechanism::{FrameId, PointId};
 /// Rows along the first's home axes, columns along the second's.
 type Matrix = [Triple; 3];
 
+/// What is found.
+pub struct Solved {
+    /// u' of all speeds
+    pub accelerations: Vec<Expr>,
+    /// articulated inertias that must not vanish, with the speeds they resist
+    pub pivots: Vec<(Expr, usize)>,
+}
+
 /// An eliminated derivative: `u' = (load - sum p . da - sum h . dalpha - sum m u') / d`.
 struct Eliminated {
     slot: usize,
@@ -43,13 +51,13 @@ struct Form {
     torque: BTreeMap<FrameId, Triple>,
 }
 
-/// The accelerations of all speeds, and the pivots that must not vanish (value, speed), for forces that act while `u' = 0`.
+/// The accelerations of all speeds for forces that act while `u' = 0`.
 /// `None` where the graph is no tree, or constraints couple the speeds.
 pub fn accelerations(
     k: &mut Kinematics<'_>,
     lumps: &BTreeMap<Seat, Lump>,
     wrenches: Wrenches,
-) -> Option<(Vec<Expr>, Vec<(Expr, usize)>)> {
+) -> Option<Solved> {
     if !k.dependent.is_empty() {
         return None;
     }
@@ -451,7 +459,7 @@ fn taken<K: Ord + Copy>(
 }
 
 /// Going outwards: each `u'` from those before it.
-fn back(k: &mut Kinematics<'_>, eliminated: Vec<Eliminated>) -> (Vec<Expr>, Vec<(Expr, usize)>) {
+fn back(k: &mut Kinematics<'_>, eliminated: Vec<Eliminated>) -> Solved {
     let mut values = vec![Expr::zero(); k.speeds.len()];
     let mut pivots = Vec::new();
     let mut outward = Outward { speeds: BTreeMap::new() };
@@ -474,7 +482,7 @@ fn back(k: &mut Kinematics<'_>, eliminated: Vec<Eliminated>) -> (Vec<Expr>, Vec<
         outward.speeds.insert(step.slot, value.clone());
         values[step.slot] = value;
     }
-    (values, pivots)
+    Solved { accelerations: values, pivots }
 }
 
 /// Accelerations beyond those with `u' = 0`, as far as the `u'` are known.

@@ -119,7 +119,7 @@ pub fn wrenches(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>, derivative
         let moment = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &moment));
         wrenches.torque(k, frame, &vectors::mixed(home, moment));
     }
-    apply_loads(k, &mut wrenches);
+    k.within("a load".to_string(), |k| apply_loads(k, &mut wrenches));
     wrenches
 }
 

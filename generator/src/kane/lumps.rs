@@ -75,7 +75,8 @@ pub fn lumps(k: &mut Kinematics<'_>) -> BTreeMap<Seat, Lump> {
     let mut lumps: BTreeMap<Seat, Lump> = BTreeMap::new();
     for body in &k.mechanism.bodies {
         let mut lump = Lump::empty();
-        let mass = k.scalar(&body.mass);
+        let place = format!("body `{}`", body.name);
+        let mass = k.within(place, |k| k.scalar(&body.mass));
         lump.mass = k.z.name(mass);
         let own = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N);
         let frame = own.or_else(|| carrier(k, body.centre)).unwrap_or(FrameId::N);

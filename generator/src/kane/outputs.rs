@@ -175,10 +175,10 @@ impl Writer<'_, '_> {
     /// Accelerations of the independent speeds by articulated inertias, where the mechanism permits.
     fn articulated(&mut self, at_rest: &[Expr]) -> Option<(Vec<Node>, Vec<Guard>)> {
         let wrenches = forces::wrenches(self.k, &self.lumps, at_rest.to_vec());
-        let (values, pivots) = articulated::accelerations(self.k, &self.lumps, wrenches)?;
-        let nodes = self.nodes(&values);
+        let solved = articulated::accelerations(self.k, &self.lumps, wrenches)?;
+        let nodes = self.nodes(&solved.accelerations);
         let mut guards = Vec::new();
-        for (pivot, slot) in pivots {
+        for (pivot, slot) in solved.pivots {
             let value = self.node(&pivot);
             if self.graph.as_number(value).is_none() {
                 let speed = &self.k.mechanism.speeds[slot].name;
@@ -351,7 +351,8 @@ impl Writer<'_, '_> {
         let mechanism = self.k.mechanism;
         let mut structures = Vec::new();
         for (number, contact) in mechanism.contacts.iter().enumerate() {
-            let forms = contact_forms(self.k, contact);
+            let place = format!("contact `{}`", contact.name);
+            let forms = self.k.within(place, |k| contact_forms(k, contact));
             structures.push(self.contact(number as u32, &forms, factor, prescribed));
         }
         structures

@@ -4,7 +4,6 @@ use super::linear::{self, LinearScalar, LinearVector};
 use super::vectors::{add, add_linear, constant, mixed, scale, scale_linear};
 use super::{Kinematics, Mixed, MixedLinear};
 use crate::algebra::{Expr, View};
-use crate::diagnostics::Span;
 use crate::model::mechanism::{DefinitionId, DefinitionValue, Function, Mechanism, Scalar, Vector};
 use crate::program::graph::Input;
 
@@ -51,9 +50,9 @@ impl Kinematics<'_> {
             Scalar::Mul(factors) => {
                 factors.iter().fold(Expr::one(), |product, f| product.mul(&self.scalar(f)))
             }
-            Scalar::Div(a, b, span) => {
+            Scalar::Div(a, b, _) => {
                 let (a, b) = (self.scalar(a), self.scalar(b));
-                self.divide(&a, b, *span)
+                self.divide(&a, b)
             }
             Scalar::Pow(base, exponent) => {
                 let (base, exponent) = (self.scalar(base), self.scalar(exponent));
@@ -80,7 +79,10 @@ impl Kinematics<'_> {
         }
         let mechanism = self.mechanism;
         let value = match &mechanism.definitions[id.0].value {
-            DefinitionValue::Scalar(value) => self.scalar(value),
+            DefinitionValue::Scalar(value) => {
+                let place = format!("definition `{}`", mechanism.definitions[id.0].name);
+                self.within(place, |k| k.scalar(value))
+            }
             DefinitionValue::Vector(_) => Expr::zero(),
         };
         let value = self.z.name(value);
@@ -88,10 +90,9 @@ impl Kinematics<'_> {
         value
     }
 
-    fn divide(&mut self, a: &Expr, b: Expr, span: Span) -> Expr {
+    fn divide(&mut self, a: &Expr, b: Expr) -> Expr {
         let b = self.z.name(b);
-        let place = format!("a divisor vanishes (bytes {}..{} of the model)", span.start, span.end);
-        self.guard(&b, place);
+        self.guard(&b, format!("a divisor vanishes in {}", self.place));
         a.div(&b)
     }
 
@@ -102,7 +103,7 @@ impl Kinematics<'_> {
             if let Some(n) = whole(&number) {
                 if n < 0 {
                     let base = self.z.name(base);
-                    self.guard(&base, "a divisor vanishes (a negative power)");
+                    self.guard(&base, format!("a divisor vanishes in {}", self.place));
                     return base.pow(n);
                 }
                 return base.pow(n);
@@ -111,7 +112,7 @@ impl Kinematics<'_> {
             if let Some(n) = whole(&twice) {
                 let root = self.z.call(Function::Sqrt, vec![base]);
                 if n < 0 {
-                    self.guard(&root, "a divisor vanishes (a negative power)");
+                    self.guard(&root, format!("a divisor vanishes in {}", self.place));
                 }
                 return root.pow(n);
             }
@@ -134,7 +135,10 @@ impl Kinematics<'_> {
                 }
                 let mechanism = self.mechanism;
                 let value = match &mechanism.definitions[id.0].value {
-                    DefinitionValue::Vector(value) => self.vector(value),
+                    DefinitionValue::Vector(value) => {
+                        let place = format!("definition `{}`", mechanism.definitions[id.0].name);
+                        self.within(place, |k| k.vector(value))
+                    }
                     DefinitionValue::Scalar(_) => Mixed::new(),
                 };
                 self.definitions.vectors[id.0] = Some(value.clone());
@@ -150,10 +154,10 @@ impl Kinematics<'_> {
                 let (a, b) = (self.vector(a), self.vector(b));
                 self.cross(&a, &b)
             }
-            Vector::Unit(v, span) => {
+            Vector::Unit(v, _) => {
                 let v = self.vector(v);
                 let norm = self.norm(&v);
-                let k = self.divide(&Expr::one(), norm, *span);
+                let k = self.divide(&Expr::one(), norm);
                 scale(&k, &v)
             }
             Vector::Position { of, from } => self.position(*of, *from),
@@ -208,10 +212,10 @@ impl Kinematics<'_> {
                     }
                 })
             }
-            Scalar::Div(a, b, span) => {
+            Scalar::Div(a, b, _) => {
                 let a = self.linear_scalar(a);
                 let b = self.scalar(b);
-                let reciprocal = self.divide(&Expr::one(), b, *span);
+                let reciprocal = self.divide(&Expr::one(), b);
                 a.scale(&reciprocal)
             }
             Scalar::Dot(a, b) => {

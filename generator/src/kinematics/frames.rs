@@ -128,7 +128,8 @@ impl Kinematics<'_> {
         self.frame_axes = vec![None; self.mechanism.frames.len()];
         self.frame_axes[0] = Some(AxesTree::N);
         for id in 0..self.mechanism.frames.len() {
-            self.orient_frame(FrameId(id))?;
+            let place = format!("the orientation of frame `{}`", self.mechanism.frames[id].name);
+            self.within(place, |k| k.orient_frame(FrameId(id)))?;
         }
         Ok(())
     }

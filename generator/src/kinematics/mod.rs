@@ -18,7 +18,7 @@ pub mod vectors;
 
 use std::collections::BTreeMap;
 
-use crate::algebra::{Direction, Expr, Intermediates, SymbolId};
+use crate::algebra::{Direction, Expr, Intermediates, SymbolId, View};
 use crate::diagnostics::Span;
 use crate::model::mechanism::{CoordinateId, FrameId, Mechanism, PointId};
 use crate::program::graph::Input;
@@ -122,6 +122,8 @@ pub struct Kinematics<'m> {
     pub guards: Vec<GuardedValue>,
     partials: BTreeMap<SymbolId, Vec<(usize, Expr)>>,
     definitions: evaluate::Definitions,
+    /// what is being evaluated, for messages about divisors
+    place: String,
     used_axes: Vec<bool>,
     angular_values: BTreeMap<FrameId, Triple>,
     velocity_values: BTreeMap<PointId, (AxesId, Triple)>,
@@ -173,6 +175,7 @@ impl<'m> Kinematics<'m> {
             guards: Vec::new(),
             partials: BTreeMap::new(),
             definitions: evaluate::Definitions::new(mechanism),
+            place: "an equation".to_string(),
             used_axes: frames::used_axes(mechanism),
             angular_values: BTreeMap::new(),
             velocity_values: BTreeMap::new(),
@@ -256,13 +259,31 @@ impl<'m> Kinematics<'m> {
         linear::name(&mut self.z, rates)
     }
 
+    /// Does some work on behalf of a named part of the model, which messages about divisors then name.
+    pub fn within<R>(&mut self, place: String, work: impl FnOnce(&mut Self) -> R) -> R {
+        let outer = std::mem::replace(&mut self.place, place);
+        let result = work(self);
+        self.place = outer;
+        result
+    }
+
     /// Notes that a value must not vanish.
     pub fn guard(&mut self, value: &Expr, message: impl Into<String>) {
-        if value.is_number() || self.guards.iter().any(|guard| &guard.value == value) {
+        // A product divides by each of its factors.
+        let message = message.into();
+        match value.view() {
+            View::Number(_) => return,
+            View::Product(factors) => {
+                return factors.iter().for_each(|factor| self.guard(factor, message.clone()));
+            }
+            View::Power(base, _) => return self.guard(&base, message),
+            View::Symbol(_) | View::Sum(_) => {}
+        }
+        if self.guards.iter().any(|guard| &guard.value == value) {
             return;
         }
         let scale = self.z.bound(value);
-        self.guards.push(GuardedValue { value: value.clone(), scale, message: message.into() });
+        self.guards.push(GuardedValue { value: value.clone(), scale, message });
     }
 
     /// A coordinate's name.

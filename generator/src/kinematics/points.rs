@@ -54,7 +54,8 @@ impl Kinematics<'_> {
         let mechanism = self.mechanism;
         match &mechanism.points[point.0].place {
             Place::Offset { by, .. } | Place::Material { by, .. } => {
-                let step = self.vector(by);
+                let place = format!("the position of point `{}`", mechanism.points[point.0].name);
+                let step = self.within(place, |k| k.vector(by));
                 step.into_iter().map(|(axes, v)| (axes, linear::name(&mut self.z, v))).collect()
             }
             Place::Origin | Place::Velocity(_) => Mixed::new(),

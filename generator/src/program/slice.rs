@@ -25,8 +25,10 @@ impl Program {
                 visit.value(value);
             }
         }
-        let guards: Vec<&Guard> =
+        let mut guards: Vec<&Guard> =
             self.guards.iter().filter(|guard| visit.seen[guard.value.index()]).collect();
+        // What a value is computed from is checked before it: the first guard to fail names the cause.
+        guards.sort_by_key(|guard| guard.value);
         for guard in &guards {
             if let Some(scale) = guard.scale {
                 visit.value(scale);
