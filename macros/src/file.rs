@@ -82,26 +82,26 @@ pub fn expand(path: &ModelPath, krate: &TokenStream) -> TokenStream {
         Ok(place) => place,
         Err(message) => {
             let error = report::error(path.span, path.span, &message);
-            let skeleton = emit::skeleton(&module, None, &[]);
+            let skeleton = emit::skeleton(&module, Some(&stem), &[]);
             return quote!(#error #skeleton);
         }
     };
     let mut tracked_files = vec![tracked(&path.text, place.in_package)];
-    let failed = |error: TokenStream, name: Option<&str>, tracked: &[TokenStream]| {
-        let skeleton = emit::skeleton(&module, name.or(Some(&stem)), tracked);
+    let failed = |error: TokenStream, tracked: &[TokenStream]| {
+        let skeleton = emit::skeleton(&module, Some(&stem), tracked);
         quote!(#error #skeleton)
     };
     let bytes = match std::fs::read(&place.path) {
         Ok(bytes) => bytes,
         Err(error) => {
             let message = format!("the model `{}` cannot be read: {error}", path.text);
-            return failed(report::error(path.span, path.span, &message), None, &[]);
+            return failed(report::error(path.span, path.span, &message), &[]);
         }
     };
     let source = Source::bytes(path.text.clone(), bytes);
     let checked = check(&source);
     let Some(mechanism) = checked.mechanism else {
-        return failed(report::of_file(&source, &checked.diagnostics, path.span), None, &tracked_files);
+        return failed(report::of_file(&source, &checked.diagnostics, path.span), &tracked_files);
     };
     let shown = Path::new(&path.text).with_extension("derivation").to_string_lossy().into_owned();
     let command = format!("hodograph derive {}", path.text);
@@ -122,6 +122,10 @@ pub fn expand(path: &ModelPath, krate: &TokenStream) -> TokenStream {
         if place.path.with_extension("derivation").is_file() {
             tracked_files.push(tracked(&shown, place.in_package));
         }
-        failed(report::error(path.span, path.span, &message), Some(&mechanism.name), &tracked_files)
+        let error = report::error(path.span, path.span, &message);
+        let options =
+            emit::Options { krate: krate.clone(), module: module.clone(), tracked: tracked_files.clone() };
+        let stub = emit::stub(&mechanism, &options);
+        quote!(#error #stub)
     })
 }

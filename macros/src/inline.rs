@@ -35,8 +35,9 @@ pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
     result.unwrap_or_else(|message| {
         let error = report::error(Span::call_site(), Span::call_site(), &message);
         let tracked = if path.is_file() { vec![tracked] } else { vec![] };
-        let skeleton = emit::skeleton(&module, Some(&mechanism.name), &tracked);
-        quote!(#error #skeleton)
+        let options = emit::Options { krate: krate.clone(), module: module.clone(), tracked };
+        let stub = emit::stub(&mechanism, &options);
+        quote!(#error #stub)
     })
 }
 

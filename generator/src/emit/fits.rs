@@ -9,7 +9,6 @@ use crate::program::routine::{ContactQuantity, PointQuantity, Quantity};
 /// Checks that every input, contact, point and frame exists and that every quantity has its shape.
 pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
     let independent = mechanism.speeds.iter().filter(|speed| !speed.dependent).count();
-    let dependent = mechanism.speeds.len() - independent;
     for operation in &program.operations {
         let Operation::Input(input) = *operation else { continue };
         let exists = match input {
@@ -32,7 +31,7 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
         return Err("the derivation has more contacts than the model".to_string());
     }
     for output in &program.outputs {
-        let shape = shape(mechanism, output.quantity, independent, dependent);
+        let shape = shape(mechanism, output.quantity);
         let right = match shape {
             Some((rows, columns)) => output.rows * output.columns == rows * columns,
             None => false,
@@ -48,7 +47,9 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
 }
 
 /// The shape of a quantity, if the mechanism can have it.
-fn shape(mechanism: &Mechanism, quantity: Quantity, p: usize, d: usize) -> Option<(usize, usize)> {
+pub fn shape(mechanism: &Mechanism, quantity: Quantity) -> Option<(usize, usize)> {
+    let p = mechanism.speeds.iter().filter(|speed| !speed.dependent).count();
+    let d = mechanism.speeds.len() - p;
     let c = mechanism.coordinates.iter().filter(|coordinate| coordinate.dependent).count();
     Some(match quantity {
         Quantity::CoordinateRates => (mechanism.coordinates.len(), 1),

@@ -26,7 +26,7 @@ use crate::program::operation::{Operation, Stage, Value};
 use crate::program::routine::Quantity;
 use record::Record;
 
-pub use skeleton::skeleton;
+pub use skeleton::{skeleton, stub};
 
 /// How a module is emitted.
 #[derive(Clone, Debug)]

@@ -1,0 +1,47 @@
+//! A user's crate: no_std, the dependency renamed, a model in a file and one in the source.
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(warnings, missing_docs, clippy::all, clippy::pedantic)]
+
+contact::mechanism!("models/hopper.mech");
+
+contact::mechanism! {
+    //! A puck on a table.
+    mechanism Puck;
+    parameters { m: kg = 0.2, r: m = 0.05 }
+    coordinates { q1: m, q2: m, q3: rad }
+    speeds { u1: m/s, u2: m/s, u3: rad/s }
+    frames { B = N.rotate(z, q3); }
+    points { C = O + q1*N.x + q2*N.y; P = C + r*B.x; }
+    bodies { Disc { frame: B, centre: C, mass: m, inertia: [m*r^2/4, m*r^2/4, m*r^2/2] } }
+    contacts { rim { point: P of Disc, normal: -B.x } }
+}
+
+use contact::{CollisionError, Law, Surface};
+use hopper::{Coordinates, Hopper, Speeds};
+
+/// The speeds after the foot has struck the ground.
+///
+/// # Errors
+///
+/// Where the collision has no outcome.
+pub fn strike(q: &Coordinates<f32>, u: &Speeds<f32>) -> Result<Speeds<f32>, CollisionError<f32>> {
+    let surface = Surface { mu: 0.6, e: 0.2, law: Law::Stronge };
+    Ok(Hopper::default().collide_foot_ground(q, u, &surface)?.speeds)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_foot_leaves_the_ground() {
+        let hopper = Hopper::<f64>::default();
+        let (q, u) = (Coordinates::default(), Speeds { u1: -2.0, u2: 0.1 });
+        let surface = Surface { mu: 0.6, e: 0.2, law: Law::Newton };
+        let hit = hopper.collide_foot_ground(&q, &u, &surface).unwrap();
+        assert!((hit.separation.x + 0.2 * hit.approach.x).abs() < 1e-12);
+        assert!(strike(&Coordinates::default(), &Speeds { u1: -2.0, u2: 0.1 }).unwrap().u1 > -2.0);
+        assert!(puck::Puck::<f32>::default().mass_matrix(&puck::Coordinates::default()).is_ok());
+    }
+}

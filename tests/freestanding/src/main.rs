@@ -1,0 +1,79 @@
+//! Links only without panics: see Cargo.toml. It is never run.
+#![no_std]
+#![no_main]
+
+use core::hint::black_box;
+
+use hodograph::nalgebra::{SMatrix, Vector3};
+use hodograph::{CollisionError, Impact, ImpactError, Law, ReducedMatrix, StateError, Surface};
+use no_panic::no_panic;
+
+mod memory;
+
+hodograph::mechanism!("../downstream/models/hopper.mech");
+
+use hopper::{Collision, Coordinates, Hopper, Inputs, Parameters, Speeds};
+
+#[no_panic]
+#[inline(never)]
+fn solve(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -> Result<Impact<f64>, ImpactError<f64>> {
+    hodograph::solve(m, v, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn collide(hopper: &Hopper, q: &Coordinates, u: &Speeds, surface: &Surface<f64>) -> Result<Collision, CollisionError<f64>> {
+    hopper.collide_foot_ground(q, u, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn collide_f32(
+    hopper: &Hopper<f32>,
+    q: &Coordinates<f32>,
+    u: &Speeds<f32>,
+    surface: &Surface<f32>,
+) -> Result<Collision<f32>, CollisionError<f32>> {
+    hopper.collide_foot_ground(q, u, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn accelerations(hopper: &Hopper, q: &Coordinates, u: &Speeds, inputs: &Inputs) -> Result<Speeds, StateError> {
+    hopper.accelerations(q, u, inputs)
+}
+
+#[no_panic]
+#[inline(never)]
+fn mass_matrix(hopper: &Hopper, q: &Coordinates) -> Result<SMatrix<f64, 2, 2>, StateError> {
+    hopper.mass_matrix(q)
+}
+
+#[no_panic]
+#[inline(never)]
+fn new(parameters: Parameters) -> Option<Hopper> {
+    Hopper::new(parameters).ok()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn _start() -> ! {
+    let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Stronge });
+    let (q, u) = (black_box(Coordinates::default()), black_box(Speeds { u1: -2.0, u2: 0.1 }));
+    if let Some(hopper) = new(black_box(Parameters::default())) {
+        black_box(collide(&hopper, &q, &u, &surface).is_ok());
+        black_box(accelerations(&hopper, &q, &u, &Inputs::default()).is_ok());
+        black_box(mass_matrix(&hopper, &q).is_ok());
+    }
+    let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Poisson });
+    let (q, u) = (black_box(Coordinates::default()), black_box(Speeds { u1: -2.0, u2: 0.1 }));
+    black_box(collide_f32(&black_box(Hopper::default()), &q, &u, &surface).is_ok());
+    let m = black_box(ReducedMatrix::new(1.0, 0.1, 0.2, 1.0, 0.1, 1.0));
+    let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Newton });
+    black_box(solve(&m, &black_box(Vector3::new(-1.0, 0.5, 0.1)), &surface).is_ok());
+    loop {}
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
+    loop {}
+}
