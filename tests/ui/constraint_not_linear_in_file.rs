@@ -1,0 +1,3 @@
+hodograph::mechanism!("constraint_not_linear.mech");
+
+fn main() {}

@@ -1,0 +1,3 @@
+hodograph::mechanism!("missing_mass.mech");
+
+fn main() {}

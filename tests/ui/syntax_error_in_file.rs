@@ -1,0 +1,3 @@
+hodograph::mechanism!("syntax_error.mech");
+
+fn main() {}

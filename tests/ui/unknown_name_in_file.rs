@@ -1,0 +1,3 @@
+hodograph::mechanism!("unknown_name.mech");
+
+fn main() {}

@@ -1,0 +1,3 @@
+hodograph::mechanism!("wrong_dimension.mech");
+
+fn main() {}
