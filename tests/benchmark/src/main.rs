@@ -8,6 +8,7 @@ mod derive;
 mod harness;
 mod peers;
 mod plot;
+mod robots;
 mod states;
 mod table;
 mod tools;
@@ -25,9 +26,11 @@ struct Arguments {
     only: Vec<String>,
     /// the command line tool, if it is built already
     tool: Option<PathBuf>,
+    /// fetch public robots and compare them, instead of measuring
+    robots: bool,
 }
 
-const USAGE: &str = "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH]";
+const USAGE: &str = "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH] [--robots]";
 
 fn main() -> ExitCode {
     match arguments().and_then(|arguments| run(&arguments)) {
@@ -40,13 +43,14 @@ fn main() -> ExitCode {
 }
 
 fn arguments() -> Result<Arguments, Failure> {
-    let mut arguments = Arguments { only: Vec::new(), tool: None };
+    let mut arguments = Arguments { only: Vec::new(), tool: None, robots: false };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| Failure::new(USAGE));
         match word.as_str() {
             "--only" => arguments.only = value()?.split(',').map(str::to_owned).collect(),
             "--tool" => arguments.tool = Some(PathBuf::from(value()?)),
+            "--robots" => arguments.robots = true,
             _ => return Err(Failure::new(USAGE)),
         }
     }
@@ -56,6 +60,9 @@ fn arguments() -> Result<Arguments, Failure> {
 fn run(arguments: &Arguments) -> Result<(), Failure> {
     let folders = Folders::new()?;
     let tool = tools::tool(&folders, arguments.tool.as_deref())?;
+    if arguments.robots {
+        return robots::compare(&folders, &tool);
+    }
     let wanted = |case: &Case| arguments.only.is_empty() || arguments.only.contains(&case.name);
     let cases: Vec<Case> = cases::all().into_iter().filter(wanted).collect();
     let mut derived = Vec::new();
