@@ -6,7 +6,7 @@ use hodograph_generator::artifact::place;
 use hodograph_generator::emit::names::snake_case;
 use hodograph_generator::source::Source;
 
-use crate::inline;
+use crate::inline::{self, Invocation};
 use crate::stop::{Outcome, Stop};
 
 /// A model and the file it is in.
@@ -54,31 +54,53 @@ pub fn collect(paths: &[PathBuf]) -> Outcome<Vec<Entry>> {
     let mut entries = Vec::new();
     for path in paths {
         let data = std::fs::metadata(path).map_err(|error| Stop::unreadable(path, &error))?;
-        let before = entries.len();
+        let mut found = Vec::new();
         if data.is_dir() {
-            walk(path, &mut entries)?;
+            walk(path, &mut found)?;
         } else {
-            file(path, &mut entries)?;
+            file(path, &mut found)?;
         }
-        if entries.len() == before {
+        if found.is_empty() {
             return Err(Stop::Call(format!("{} holds no model", path.display())));
+        }
+        for entry in found {
+            match entry.inline {
+                true => entries.push(entry),
+                false => add(&entry.path, &mut entries),
+            }
         }
     }
     Ok(entries)
 }
 
 fn file(path: &Path, entries: &mut Vec<Entry>) -> Outcome {
-    if path.extension().is_some_and(|extension| extension == "rs") {
-        let models = inline::models(path)?;
-        entries.extend(models.into_iter().map(|source| Entry {
-            path: path.to_path_buf(),
-            source,
-            inline: true,
-        }));
-    } else {
-        entries.push(Entry { path: path.to_path_buf(), source: Source::read(path), inline: false });
+    if path.extension().is_none_or(|extension| extension != "rs") {
+        add(path, entries);
+        return Ok(());
+    }
+    for model in inline::models(path)? {
+        match model {
+            Invocation::Inline(source) => {
+                entries.push(Entry { path: path.to_path_buf(), source, inline: true })
+            }
+            // As the macro does: beside Cargo.toml, else beside the source file.
+            Invocation::File(file) => {
+                let beside = path.with_file_name(&file);
+                let named = inline::package(path).map(|package| package.join(&file));
+                add(&named.ok().filter(|named| named.is_file()).unwrap_or(beside), entries);
+            }
+        }
     }
     Ok(())
+}
+
+/// Adds a model file, unless it is there.
+fn add(path: &Path, entries: &mut Vec<Entry>) {
+    let real = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    let this = real(path);
+    if !entries.iter().any(|entry| !entry.inline && real(&entry.path) == this) {
+        entries.push(Entry { path: path.to_path_buf(), source: Source::read(path), inline: false });
+    }
 }
 
 fn walk(folder: &Path, entries: &mut Vec<Entry>) -> Outcome {

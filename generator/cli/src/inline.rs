@@ -4,16 +4,25 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use hodograph_generator::source::Source;
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{TokenStream, TokenTree};
 
 use crate::stop::{Outcome, Stop};
 
-/// The inline models of a Rust file. In each source the rest of the file is blank, so that places are those in the file.
+/// What a `mechanism!` in a Rust file names.
+#[derive(Clone, Debug)]
+pub enum Invocation {
+    /// a model in the file itself; in the source the rest of the file is blank, so that places are those in the file
+    Inline(Source),
+    /// a model file, by the path in the macro
+    File(PathBuf),
+}
+
+/// The models of a Rust file, in their order.
 ///
 /// # Errors
 ///
 /// The file cannot be read, or is no Rust.
-pub fn models(path: &Path) -> Outcome<Vec<Source>> {
+pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
     let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
     if !text.contains("mechanism") {
         return Ok(Vec::new());
@@ -35,13 +44,18 @@ pub fn models(path: &Path) -> Outcome<Vec<Source>> {
         for (index, tree) in trees.iter().enumerate() {
             let TokenTree::Group(group) = tree else { continue };
             if index >= 2 && is_invocation(&trees[index - 2], &trees[index - 1]) {
-                let first = group.stream().into_iter().next();
-                if group.delimiter() != Delimiter::None
-                    && first.is_some_and(|tree| matches!(tree, TokenTree::Ident(_) | TokenTree::Punct(_)))
-                {
-                    let (from, to) =
-                        (group.span_open().byte_range().end, group.span_close().byte_range().start);
-                    sources.push((from, Source::file(name.clone(), blanked(&text, from, to))));
+                let (from, to) = (group.span_open().byte_range().end, group.span_close().byte_range().start);
+                match group.stream().into_iter().next() {
+                    Some(TokenTree::Ident(_) | TokenTree::Punct(_)) => {
+                        let source = Source::file(name.clone(), blanked(&text, from, to));
+                        sources.push((from, Invocation::Inline(source)));
+                    }
+                    Some(TokenTree::Literal(literal)) => {
+                        let literal = literal.to_string();
+                        let file = literal.trim_start_matches('r').trim_matches('#').trim_matches('"');
+                        sources.push((from, Invocation::File(PathBuf::from(file))));
+                    }
+                    _ => {}
                 }
             } else {
                 open.push(group.stream());
@@ -96,10 +110,13 @@ mod tests {
                     mechanism! { mechanism B; } }\nfn f() -> &'static str { \"mechanism! { no }\" }\n";
         std::fs::write(&path, text).unwrap();
         let found = models(&path).unwrap();
-        assert_eq!(found.len(), 2);
-        assert!(found[0].text().unwrap().ends_with("\n    mechanism Té;\n"));
-        assert_eq!(found[0].text().unwrap().lines().count(), 3);
-        assert_eq!(found[1].text().unwrap().trim(), "mechanism B;");
+        let [Invocation::Inline(first), Invocation::File(file), Invocation::Inline(last)] = &found[..] else {
+            panic!("{found:?}");
+        };
+        assert!(first.text().unwrap().ends_with("\n    mechanism Té;\n"));
+        assert_eq!(first.text().unwrap().lines().count(), 3);
+        assert_eq!(file, Path::new("b.mech"));
+        assert_eq!(last.text().unwrap().trim(), "mechanism B;");
         std::fs::write(folder.path().join("Cargo.toml"), "").unwrap();
         assert_eq!(package(&path).unwrap(), folder.path());
     }
@@ -112,7 +129,8 @@ mod tests {
             let text = std::fs::read_to_string(root.join(name).with_extension("mech")).unwrap();
             let path = folder.path().join("lib.rs");
             std::fs::write(&path, format!("hodograph::mechanism! {{\n{text}\n}}\n")).unwrap();
-            let hash = models(&path).unwrap()[0].content_hash();
+            let Invocation::Inline(source) = models(&path).unwrap().remove(0) else { panic!("inline") };
+            let hash = source.content_hash();
             assert_eq!(hash, Source::file("model", text.clone()).content_hash(), "{name}");
             let tokens = TokenStream::from_str(&text).unwrap();
             assert_eq!(hash, Source::inline("model", tokens).content_hash(), "{name}");

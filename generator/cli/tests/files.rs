@@ -138,6 +138,22 @@ mod deriving {
     }
 
     #[test]
+    fn models_that_rust_files_name_are_derived_once() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::create_dir_all(folder.path().join("src")).unwrap();
+        fs::write(folder.path().join("Cargo.toml"), "[package]").unwrap();
+        fs::write(folder.path().join("rod.mech"), ROD).unwrap();
+        let source = folder.path().join("src/lib.rs");
+        fs::write(&source, "hodograph::mechanism!(\"rod.mech\");\n").unwrap();
+        let derived = run(&["derive", &text(&source)]);
+        assert_eq!(derived.code, 0, "{}", derived.stderr);
+        assert!(folder.path().join("rod.derivation").exists());
+        let checked = run(&["check", &text(folder.path()), &text(&source)]);
+        assert_eq!(checked.code, 0, "{}", checked.stdout);
+        assert!(checked.stderr.contains("1 model checked"), "{}", checked.stderr);
+    }
+
+    #[test]
     fn a_limit_of_no_time_is_kept() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("arm_7dof.mech");

@@ -14,7 +14,7 @@ use crate::stop::{Outcome, Stop};
 /// Exit 0 if there is no error (warnings are allowed), else 1.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// model files, Rust files with inline models, or directories of them
+    /// model files, Rust files that use `mechanism!`, or directories of them
     #[arg(required = true)]
     models: Vec<PathBuf>,
 }

@@ -14,7 +14,7 @@ use crate::stop::{Outcome, Stop};
 /// With a fresh derivation checked in, building a program needs no algebra engine.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// model files, Rust files with inline models, or directories of them
+    /// model files, Rust files that use `mechanism!`, or directories of them
     #[arg(required = true)]
     models: Vec<PathBuf>,
     /// derive nothing: name the derivations that are stale or missing, and exit 1 if there are any

@@ -25,10 +25,11 @@ pub struct Answer {
 impl From<&Impact<f64>> for Answer {
     fn from(impact: &Impact<f64>) -> Self {
         Answer {
-            impulse: impact.impulse.into(),
-            v: impact.velocity.into(),
-            contact_work: impact.contact_work,
-            normal_work: impact.normal_work,
+            // A zero has no sign for a reader.
+            impulse: impact.impulse.map(|number| number + 0.0).into(),
+            v: impact.velocity.map(|number| number + 0.0).into(),
+            contact_work: impact.contact_work + 0.0,
+            normal_work: impact.normal_work + 0.0,
             path: impact.path.phases(),
             compressions: impact.compressions,
         }
