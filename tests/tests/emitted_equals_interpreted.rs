@@ -3,6 +3,7 @@
 #[allow(missing_docs)]
 mod golden {
     include!("../../generator/tests/golden/pendulum.rs");
+    include!("../../generator/tests/golden/pendulum_in_parts.rs");
 }
 
 use golden::pendulum::{Coordinates, Inputs, Parameters, Pendulum, Speeds};
@@ -39,6 +40,24 @@ fn the_same_bits() {
         assert_eq!(interpreted(Quantity::Point(1, PointQuantity::Position)), position.as_slice());
         let reduced: [f64; 6] = pendulum.reduced_matrix_tip_wall(&q).unwrap().into();
         assert_eq!(interpreted(Quantity::Contact(0, ContactQuantity::Reduced)), reduced);
+    }
+}
+
+#[test]
+fn routines_in_parts_compute_the_same_bits() {
+    use golden::pendulum_in_parts as parts;
+    let (whole, split) = (Pendulum::<f64>::default(), parts::Pendulum::<f64>::default());
+    for step in 0..50 {
+        let x = f64::from(step) * 0.37 - 9.0;
+        let (q, u) = (Coordinates { q1: x }, Speeds { u1: 0.9 * x });
+        let (q2, u2) = (parts::Coordinates { q1: x }, parts::Speeds { u1: 0.9 * x });
+        let reduced = whole.reduced_matrix_tip_wall(&q).unwrap();
+        assert_eq!(reduced, split.reduced_matrix_tip_wall(&q2).unwrap());
+        let velocity = whole.contact_velocity_tip_wall(&q, &u).unwrap();
+        assert_eq!(velocity, split.contact_velocity_tip_wall(&q2, &u2).unwrap());
+        let tau = x.cos();
+        let rates = whole.accelerations(&q, &u, &Inputs { tau }).unwrap();
+        assert_eq!(rates.u1, split.accelerations(&q2, &u2, &parts::Inputs { tau }).unwrap().u1);
     }
 }
 

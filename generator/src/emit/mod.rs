@@ -13,6 +13,7 @@ pub mod names;
 mod record;
 mod routine;
 mod skeleton;
+mod split;
 mod validation;
 mod values;
 
@@ -41,8 +42,18 @@ pub struct Options {
 
 /// The module of a mechanism. The error says why the program is not one of this mechanism.
 pub fn module(mechanism: &Mechanism, program: &Program, options: &Options) -> Result<TokenStream, String> {
+    module_in_parts(mechanism, program, options, split::LONGEST)
+}
+
+/// The module of a mechanism, with at most `longest` operations in a function.
+fn module_in_parts(
+    mechanism: &Mechanism,
+    program: &Program,
+    options: &Options,
+    longest: usize,
+) -> Result<TokenStream, String> {
     fits::fits(mechanism, program)?;
-    let emitter = Emitter::new(mechanism, program, &options.krate);
+    let emitter = Emitter { longest, ..Emitter::new(mechanism, program, &options.krate) };
     let krate = &options.krate;
     let module = names::ident(&options.module);
     let tracked = &options.tracked;
@@ -95,6 +106,8 @@ struct Emitter<'a> {
     uses_time: bool,
     /// do velocities, or what follows from them, depend on named inputs?
     kinematic_inputs: bool,
+    /// the greatest number of operations in one function
+    longest: usize,
 }
 
 impl<'a> Emitter<'a> {
@@ -126,6 +139,7 @@ impl<'a> Emitter<'a> {
             stages,
             uses_time,
             kinematic_inputs: false,
+            longest: split::LONGEST,
         };
         emitter.unit_quaternions();
         emitter.kinematic_inputs = emitter.find_kinematic_inputs();

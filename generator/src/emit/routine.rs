@@ -6,7 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
-use super::values::{Place, local};
+use super::values::local;
 use crate::program::Guard;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
@@ -20,11 +20,7 @@ impl Emitter<'_> {
             &slice.outputs.iter().flat_map(|output| output.values.clone()).collect::<Vec<_>>(),
             &slice.guards,
         );
-        let statements = slice
-            .order
-            .iter()
-            .filter(|value| needed.contains(value))
-            .filter_map(|&value| self.statement(value, Place::Method));
+        let order: Vec<Value> = slice.order.iter().copied().filter(|value| needed.contains(value)).collect();
         let guards = slice
             .guards
             .iter()
@@ -33,7 +29,11 @@ impl Emitter<'_> {
         let results: BTreeSet<Value> =
             slice.outputs.iter().flat_map(|output| output.values.iter().copied()).collect();
         let finite = self.finite(&results);
-        quote! { #(#statements)* #(#guards)* #finite }
+        let late = slice.guards.iter().filter(|guard| self.stage(guard.value) > Stage::Parameter);
+        let checked = late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
+        let wanted: BTreeSet<Value> = results.iter().copied().chain(checked).collect();
+        let statements = self.statements(&order, &wanted);
+        quote! { #statements #(#guards)* #finite }
     }
 
     /// The values that a method computes: what depends on parameters alone is only fetched.

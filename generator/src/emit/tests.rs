@@ -1,6 +1,6 @@
 //! A small module under review, and the properties that every module has.
 
-use super::{Options, Program, module, skeleton};
+use super::{Options, Program, module, module_in_parts, skeleton};
 use quote::quote;
 
 use crate::diagnostics::Span;
@@ -145,6 +145,14 @@ fn reviewed(name: &str, text: &str) {
 #[test]
 fn the_module_is_the_reviewed_one() {
     reviewed("pendulum.rs", &emitted());
+}
+
+/// The same with at most three operations in a function.
+#[test]
+fn long_routines_come_in_parts() {
+    let options = Options { krate: quote!(::hodograph), module: "pendulum_in_parts".into(), tracked: vec![] };
+    let tokens = module_in_parts(&mechanism(), &Program::new(&derived()), &options, 3).unwrap();
+    reviewed("pendulum_in_parts.rs", &prettyplease::unparse(&syn::parse2(tokens).expect("parts are Rust")));
 }
 
 /// The whole's tests evaluate this derivation beside the reviewed module.

@@ -1,0 +1,90 @@
+//! Long routines in parts, each a function of its own: compilers take more than proportionally long for long functions.
+//!
+//! A part takes what earlier parts and the routine's inputs give it, and returns what later parts and the result need. The
+//! operations are the same, and so are the bits.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Emitter;
+use super::values::{Place, local};
+use crate::program::operation::{Operation, Stage, Value};
+
+/// The greatest number of operations in one function of an emitted module.
+pub const LONGEST: usize = 4000;
+
+impl Emitter<'_> {
+    /// The statements that compute `values`, in their order; `wanted` are those that are looked at afterwards.
+    pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>) -> TokenStream {
+        let (work, given): (Vec<Value>, Vec<Value>) = values.iter().partition(|&&value| self.is_work(value));
+        if work.len() <= self.longest {
+            let statements = values.iter().filter_map(|&value| self.statement(value, Place::Method));
+            return quote! { #(#statements)* };
+        }
+        let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
+        let length = work.len().div_ceil(work.len().div_ceil(self.longest.max(1)));
+        let parts: Vec<&[Value]> = work.chunks(length).collect();
+        let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
+        let calls = (0..parts.len()).map(|index| self.part(&parts, index, &wanted));
+        quote! { #(#given)* #(#calls)* }
+    }
+
+    /// Is it computed in a method? Numbers, inputs and what is known at construction are only fetched.
+    fn is_work(&self, value: Value) -> bool {
+        self.stage(value) > Stage::Parameter && !matches!(self.program.operation(value), Operation::Input(_))
+    }
+
+    /// A part as a function, and its call.
+    fn part(&self, parts: &[&[Value]], index: usize, wanted: &BTreeSet<String>) -> TokenStream {
+        let krate = self.krate;
+        let part = parts[index];
+        let made: BTreeSet<String> = part.iter().flat_map(|&value| self.makes(value)).collect();
+        let used: BTreeSet<Value> =
+            part.iter().flat_map(|&value| self.program.operation(value).operands()).collect();
+        let numbers = used.iter().filter(|&&value| self.stage(value) == Stage::Constant);
+        let numbers = numbers.filter_map(|&value| self.statement(value, Place::Method));
+        let taken = self.takes(part);
+        let taken: Vec<_> = taken.difference(&made).map(|name| format_ident!("{name}")).collect();
+        let later: BTreeSet<String> = parts[index + 1..].iter().flat_map(|part| self.takes(part)).collect();
+        let given = made.iter().filter(|name| later.contains(*name) || wanted.contains(*name));
+        let given: Vec<_> = given.map(|name| format_ident!("{name}")).collect();
+        let (takes, gives) = (Literal::usize_unsuffixed(taken.len()), Literal::usize_unsuffixed(given.len()));
+        let statements = part.iter().filter_map(|&value| self.statement(value, Place::Method));
+        let name = format_ident!("part_{index}");
+        quote! {
+            #[inline(never)]
+            fn #name<T: #krate::Scalar>(taken: &[T; #takes]) -> [T; #gives] {
+                let [#(#taken),*] = *taken;
+                #(#numbers)*
+                #(#statements)*
+                [#(#given),*]
+            }
+            let [#(#given),*] = #name(&[#(#taken),*]);
+        }
+    }
+
+    /// The variables that a statement makes.
+    fn makes(&self, value: Value) -> Vec<String> {
+        let name = local(value).to_string();
+        match self.program.operation(value) {
+            Operation::SinCos(_) => vec![format!("{name}c"), name],
+            _ => vec![name],
+        }
+    }
+
+    /// The variables that statements use, but for numbers.
+    fn takes(&self, part: &[Value]) -> BTreeSet<String> {
+        let mut names = BTreeSet::new();
+        for &value in part {
+            let operation = self.program.operation(value);
+            for operand in operation.operands().filter(|&operand| self.stage(operand) > Stage::Constant) {
+                let name = local(operand);
+                let cosine = matches!(operation, Operation::Cosine(_));
+                names.insert(if cosine { format!("{name}c") } else { name.to_string() });
+            }
+        }
+        names
+    }
+}
