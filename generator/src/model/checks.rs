@@ -306,7 +306,9 @@ fn nowhere(m: &Mechanism, state: &State, failure: &Failure) -> Option<Diagnostic
         }
         Failure::DivisionByZero(span) => {
             let message = "this is zero at every state that was tried";
-            Diagnostic::new(codes::ZERO_DIVISOR, *span, message).help("division by it is not possible")
+            Diagnostic::new(codes::ZERO_DIVISOR, *span, message).help(
+                "division by it is not possible; if a parameter is 0 only by default, give it another value",
+            )
         }
         Failure::NotFinite(span) => {
             let message = "this is not finite at any state that was tried";

@@ -20,7 +20,7 @@ use super::order::{Item, Stated, order};
 use super::typed::{Traits, Typed, Value};
 use super::units::Unit;
 use crate::diagnostics::{Code, Diagnostic, Span, codes};
-use crate::syntax::tree::{Name, Tree};
+use crate::syntax::tree::{ExprKind, Name, Tree};
 
 /// Lowers a tree. The mechanism is complete only if no error was reported.
 pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagnostic>) {
@@ -331,6 +331,17 @@ impl<'a> Lowering<'a> {
             Symbol::Point(p) => Some(PointId(p)),
             other => {
                 self.wrong_kind(name, "a point", &format!("`{}` is {}", name.text, other.kind()));
+                let records = self.tree.bodies.iter().chain(&self.tree.particles);
+                let centre = records.filter(|record| record.name.text == name.text).find_map(|record| {
+                    let field =
+                        record.fields.iter().find(|f| matches!(f.name.text.as_str(), "centre" | "point"))?;
+                    if let ExprKind::Name(centre) = &field.value.kind { Some(centre.clone()) } else { None }
+                });
+                if let (Symbol::Body(_), Some(centre), Some(error)) =
+                    (other, centre, self.diagnostics.last_mut())
+                {
+                    error.help = Some(format!("its mass centre is `{centre}`"));
+                }
                 None
             }
         }
