@@ -28,9 +28,9 @@ pub(super) struct Regular<'a, T: Scalar> {
 }
 
 impl<'a, T: Scalar> Regular<'a, T> {
-    /// The series about the direction `d` of slip with speed `slip`.
+    /// The series about the direction of slip at the start; the next event is about the impulse `away`.
     #[inline]
-    pub fn new(table: &'a mut Table<T>, contact: &Contact<T>, chart: &Chart<T>, start: Start<T>) -> Self {
+    pub fn new(table: &'a mut Table<T>, contact: &Contact<T>, chart: &Chart<T>, start: Start<T>, away: T) -> Self {
         let half = constant::<T>(0.5);
         let [h0, h1, ..] = chart.h;
         // Move the two nearest roots of H to either side of the start.
@@ -55,11 +55,8 @@ impl<'a, T: Scalar> Regular<'a, T> {
         } else {
             from_rest(table, &taps, &sources, 0, count);
             limit = reach(terms(table, count));
-            // Where the collision would end at the present rates.
             let rate = (start.slip + start.slip) * scaled.inverse;
-            let [f0, ..] = scaled.f;
-            let far = constant::<T>(2.0) * (T::one() - start.state.velocity);
-            if far > limit * rate * f0.abs() {
+            if away > limit * rate {
                 from_rest(table, &taps, &sources, count, TERMS);
                 count = TERMS;
                 limit = reach(terms(table, count)).sqrt();

@@ -49,14 +49,16 @@ pub(super) fn slide<T: Scalar>(
             return straight(c, at.direction, at.slip, at.state, ledger);
         }
         let [f0, ..] = chart.f;
-        if let Some(mut rest) = Root::new(&mut table, c, &chart, at) {
+        // An end close by is better sought from here than from the root: a rough look at how far slip will turn and change.
+        let away = ledger.remaining(&at.state, f0);
+        let near = away * (g.abs() + h1.abs() * constant(0.5)) < at.slip * constant(0.4);
+        let rest = if near { None } else { Root::new(&mut table, c, &chart, at) };
+        if let Some(mut rest) = rest {
             let stops = rest.alpha > T::zero();
             let stop = rest.stop();
             if stops && ledger.passes(&at.state, &stop) {
                 return Slide::Stopped(stop);
             }
-            // An end close by is better sought from here than from the root.
-            let away = ledger.remaining(&at.state, f0);
             let far = if stops {
                 (stop.normal - at.state.normal) * constant(0.1)
             } else {
@@ -75,7 +77,7 @@ pub(super) fn slide<T: Scalar>(
                 }
             }
         }
-        let step = Regular::new(&mut table, c, &chart, at);
+        let step = Regular::new(&mut table, c, &chart, at, away);
         match follow(c, &step, &at, step.first_rate(), f0, ledger) {
             Ok(point) => return Slide::Ended(point.state, point.slip),
             Err(point) => {
