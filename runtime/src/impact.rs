@@ -52,3 +52,11 @@ pub struct Impact<T: nalgebra::Scalar> {
     /// How often compression ended: 1, or 2 if the bodies approached again during restitution.
     pub compressions: u32,
 }
+
+impl<T: crate::Scalar> Impact<T> {
+    /// The energy that the collision gained, if it did: only Newton's hypothesis does that.
+    #[inline]
+    pub fn energy_gained(&self) -> Option<T> {
+        (self.contact_work > T::zero()).then_some(self.contact_work)
+    }
+}

@@ -7,17 +7,21 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+mod characteristics;
 mod error;
 #[doc(hidden)]
 pub mod generated;
 mod impact;
 mod law;
+#[cfg(feature = "std")]
+pub mod methods;
 mod reduced;
 mod scalar;
 mod solve;
 mod surface;
 
 pub use crate::{
+    characteristics::{Characteristics, Renewal, rates},
     error::ImpactError,
     generated::{CollisionError, ParameterError, StateError},
     impact::{Impact, Path},

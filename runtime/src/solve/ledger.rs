@@ -6,7 +6,7 @@ use crate::{Law, Scalar, scalar::constant, scalar::larger};
 
 /// The quantities that grow along a collision, in units where m_nn = 1 and v_n1 = -1.
 #[derive(Clone, Copy)]
-pub(super) struct State<T: Scalar> {
+pub(crate) struct State<T: Scalar> {
     /// Normal impulse I_n.
     pub normal: T,
     /// Tangential impulse (I_t, I_s).
@@ -26,7 +26,7 @@ impl<T: Scalar> State<T> {
 
 /// The law, and where it ends restitution. Compression ends at each upward zero of v_n.
 #[derive(Clone, Copy)]
-pub(super) struct Ledger<T: Scalar> {
+pub(crate) struct Ledger<T: Scalar> {
     law: Law,
     e: T,
     /// v_n, I_n or the normal work at which restitution ends, whichever the law speaks of.
@@ -158,7 +158,7 @@ impl<T: Scalar> Ledger<T> {
 }
 
 /// What became of a linear arc.
-pub(super) enum Line<T> {
+pub(crate) enum Line<T> {
     /// The law ended the collision after this impulse.
     Ended {
         /// I_n since the beginning of the arc.

@@ -11,9 +11,10 @@ mod terminal;
 
 use nalgebra::{Vector2, Vector3};
 
-use self::{
-    ledger::{Ledger, Line, State},
-    sliding::{Slide, slide},
+use self::{ledger::Line, sliding::slide};
+pub(crate) use self::{
+    ledger::{Ledger, State},
+    sliding::Slide,
     terminal::Contact,
 };
 use crate::{Impact, ImpactError, Path, ReducedMatrix, Scalar, Surface, scalar::constant};
@@ -32,93 +33,123 @@ pub fn solve<T: Scalar>(
     surface: &Surface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     check(matrix, approach, surface)?;
+    collide(matrix, approach, surface, slide)
+}
+
+/// Solves a collision with any way of following the sliding arc.
+#[inline(always)]
+pub(crate) fn collide<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+    slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Ledger<T>) -> Slide<T>,
+) -> Result<Impact<T>, ImpactError<T>> {
     let unit = T::one() / matrix.nn;
     let speed = -approach.x;
-    let contact = Contact {
-        mu: surface.mu,
-        b: Vector2::new(matrix.nt, matrix.ns) * unit,
-        tt: matrix.tt * unit,
-        ts: matrix.ts * unit,
-        ss: matrix.ss * unit,
-    };
+    let contact = contact(matrix, surface.mu);
     let tangential = Vector2::new(approach.y, approach.z) / speed;
     let slip = tangential.norm();
     let mut ledger = Ledger::new(surface.law, surface.e);
     let eps = T::default_epsilon();
     let slips = slip > eps * eps * eps * eps;
-    let wedged = |v: T| ImpactError::Wedged { normal_velocity: v * speed, law: surface.law };
-
-    let (state, velocity, path) = 'done: {
-        let mut state = State::approach();
-        if slips {
-            match slide(&contact, tangential, slip, &mut ledger) {
-                Slide::Ended(state, velocity) => break 'done (state, velocity, Path::Sliding),
-                Slide::Endless(state) => return Err(wedged(state.velocity)),
-                Slide::Stopped(stopped) => state = stopped,
-            }
+    let mut state = State::approach();
+    let mut ended = None;
+    let mut endless = false;
+    if slips {
+        match slide(&contact, tangential, slip, &mut ledger) {
+            Slide::Ended(end, velocity) => ended = Some((end, velocity, Path::Sliding)),
+            Slide::Stopped(stopped) => state = stopped,
+            Slide::Endless(stopped) => (state, endless) = (stopped, true),
         }
-        // Where slip and normal velocity stop together, rounding must not tell them apart.
-        let scale = T::one() + state.normal * (T::one() + contact.mu * contact.b.norm());
-        if slips && state.velocity.abs() <= constant::<T>(256.0) * eps * scale {
-            state.velocity = T::zero();
-            if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
-                break 'done (state, Vector2::zeros(), Path::Sliding);
-            }
-        }
-        let hold = contact.hold();
-        if hold.norm() <= contact.mu {
-            let path = if slips { Path::SlidingThenSticking } else { Path::Sticking };
-            let mut rate = T::one() - contact.b.dot(&hold);
-            if rate <= constant::<T>(64.0) * eps {
-                // The contact can no longer move along the normal.
-                rate = T::zero();
-            }
-            match ledger.follow_line(&state, rate, None) {
-                Line::Ended { impulse, velocity, work } => {
-                    let end = State {
-                        normal: state.normal + impulse,
-                        tangential: state.tangential - hold * impulse,
-                        velocity,
-                        work,
-                    };
-                    (end, Vector2::zeros(), path)
-                }
-                _ => return Err(wedged(state.velocity)),
-            }
-        } else {
-            let path = if slips { Path::SlidingThenRenewal } else { Path::Renewal };
-            let d = contact.renewal();
-            let g = contact.slip_rate(&d).dot(&d);
-            match ledger.follow_line(&state, contact.normal_rate(&d), None) {
-                Line::Ended { impulse, velocity, work } => {
-                    let end = State {
-                        normal: state.normal + impulse,
-                        tangential: state.tangential - d * (contact.mu * impulse),
-                        velocity,
-                        work,
-                    };
-                    (end, d * (g * impulse), path)
-                }
-                _ => return Err(wedged(state.velocity)),
-            }
-        }
+    }
+    if ended.is_none() && !endless {
+        ended = after_slip(&contact, &mut state, slips, &mut ledger);
+    }
+    let Some((end, velocity, path)) = ended else {
+        return Err(ImpactError::Wedged { normal_velocity: state.velocity * speed, law: surface.law });
     };
     let scale = speed * unit;
-    let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * scale;
-    let separation = Vector3::new(state.velocity, velocity.x, velocity.y) * speed;
+    let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
+    let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
+    let normal_work = end.work * scale * speed;
+    for value in [impulse.x, impulse.y, impulse.z, separation.x, separation.y, separation.z, normal_work] {
+        if !value.is_finite() {
+            return Err(ImpactError::NotFinite { value });
+        }
+    }
     Ok(Impact {
         impulse,
         velocity: separation,
         contact_work: impulse.dot(&(separation + approach)) * constant(0.5),
-        normal_work: state.work * scale * speed,
+        normal_work,
         path,
         compressions: ledger.compressions,
     })
 }
 
+/// The arc after slip has stopped; nothing if the law never ends it.
+#[inline]
+fn after_slip<T: Scalar>(
+    contact: &Contact<T>,
+    state: &mut State<T>,
+    slips: bool,
+    ledger: &mut Ledger<T>,
+) -> Option<(State<T>, Vector2<T>, Path)> {
+    let eps = T::default_epsilon();
+    // Where slip and normal velocity stop together, rounding must not tell them apart.
+    let scale = T::one() + state.normal * (T::one() + contact.mu * contact.b.norm());
+    if slips && state.velocity.abs() <= constant::<T>(256.0) * eps * scale {
+        state.velocity = T::zero();
+        if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
+            return Some((*state, Vector2::zeros(), Path::Sliding));
+        }
+    }
+    let hold = contact.hold();
+    let sticks = hold.norm() <= contact.mu;
+    let (path, push, gain, rate) = if sticks {
+        let rate = T::one() - contact.b.dot(&hold);
+        // Below rounding the contact can no longer move along the normal.
+        let rate = if rate <= constant::<T>(64.0) * eps { T::zero() } else { rate };
+        let path = if slips { Path::SlidingThenSticking } else { Path::Sticking };
+        (path, hold, Vector2::zeros(), rate)
+    } else {
+        let d = contact.renewal();
+        let g = contact.slip_rate(&d).dot(&d);
+        let path = if slips { Path::SlidingThenRenewal } else { Path::Renewal };
+        (path, d * contact.mu, d * g, contact.normal_rate(&d))
+    };
+    match ledger.follow_line(state, rate, None) {
+        Line::Ended { impulse, velocity, work } => {
+            let end = State {
+                normal: state.normal + impulse,
+                tangential: state.tangential - push * impulse,
+                velocity,
+                work,
+            };
+            // A phase that lasts no impulse is no phase.
+            let path = if slips && impulse <= T::zero() { Path::Sliding } else { path };
+            Some((end, gain * impulse, path))
+        }
+        _ => None,
+    }
+}
+
+/// The tangential part of a contact in units where m_nn = 1.
+#[inline]
+pub(crate) fn contact<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T) -> Contact<T> {
+    let unit = T::one() / matrix.nn;
+    Contact {
+        mu,
+        b: Vector2::new(matrix.nt, matrix.ns) * unit,
+        tt: matrix.tt * unit,
+        ts: matrix.ts * unit,
+        ss: matrix.ss * unit,
+    }
+}
+
 /// Names what is wrong with the input.
 #[inline]
-fn check<T: Scalar>(
+pub(crate) fn check<T: Scalar>(
     m: &ReducedMatrix<T>,
     v: &Vector3<T>,
     surface: &Surface<T>,

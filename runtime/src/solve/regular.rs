@@ -30,7 +30,13 @@ pub(super) struct Regular<'a, T: Scalar> {
 impl<'a, T: Scalar> Regular<'a, T> {
     /// The series about the direction of slip at the start; the next event is about the impulse `away`.
     #[inline]
-    pub fn new(table: &'a mut Table<T>, contact: &Contact<T>, chart: &Chart<T>, start: Start<T>, away: T) -> Self {
+    pub fn new(
+        table: &'a mut Table<T>,
+        contact: &Contact<T>,
+        chart: &Chart<T>,
+        start: Start<T>,
+        away: T,
+    ) -> Self {
         let half = constant::<T>(0.5);
         let [h0, h1, ..] = chart.h;
         // Move the two nearest roots of H to either side of the start.

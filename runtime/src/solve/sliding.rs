@@ -17,7 +17,7 @@ use crate::{Scalar, scalar::constant};
 const PIECES: u32 = 512;
 
 /// What became of the sliding arc.
-pub(super) enum Slide<T: Scalar> {
+pub(crate) enum Slide<T: Scalar> {
     /// The law ended the collision while the contact slid with this velocity.
     Ended(State<T>, Vector2<T>),
     /// Slip stopped first.
@@ -45,7 +45,7 @@ pub(super) fn slide<T: Scalar>(
         let [g, ..] = chart.k;
         let settled = h1 < T::zero() && h0.abs() <= noise * constant(8.0);
         let over = g < T::zero() && at.slip <= eps * speed * constant(4.0);
-        if settled || over || h0.abs() <= noise * constant(0.25) {
+        if settled || over || h0.abs() <= noise * constant(4.0) {
             return straight(c, at.direction, at.slip, at.state, ledger);
         }
         let [f0, ..] = chart.f;

@@ -6,7 +6,7 @@ use crate::{Scalar, scalar::constant, scalar::larger};
 
 /// The tangential part of a contact, in units where m_nn = 1: b = (m_nt, m_ns) and T.
 #[derive(Clone, Copy)]
-pub(super) struct Contact<T: Scalar> {
+pub(crate) struct Contact<T: Scalar> {
     pub mu: T,
     pub b: Vector2<T>,
     pub tt: T,

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use serde_json::Value;
 
 /// One reference collision and its answer.
+#[allow(dead_code)]
 pub struct Case {
     pub line: String,
     pub family: String,
@@ -33,6 +34,7 @@ fn top(v: &Vector3<f64>) -> f64 {
     v.amax()
 }
 
+#[allow(dead_code)]
 impl Case {
     fn read(line: &str) -> Self {
         let case: Value = serde_json::from_str(line).expect("JSON");
@@ -77,6 +79,14 @@ impl Case {
 }
 
 /// All reference collisions.
+#[allow(dead_code)]
 pub fn reference_cases() -> Vec<Case> {
     include_str!("../../../tests/data/impact_cases.jsonl").lines().map(Case::read).collect()
+}
+
+/// The paper's example (section 5), with s = n x t.
+#[allow(dead_code)]
+pub fn two_sleds(mu: f64, law: Law) -> (ReducedMatrix<f64>, Vector3<f64>, Surface<f64>) {
+    let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
+    (matrix, Vector3::new(-0.946108022, 1.06306701, 0.0), Surface { mu, e: 0.8, law })
 }

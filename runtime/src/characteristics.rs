@@ -1,0 +1,82 @@
+//! The quantities of section 3 that depend on the contact alone.
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::{ReducedMatrix, Scalar, solve::contact};
+
+/// What the paper calls mu_c, phi_c, mu_s, c_n, c_t, c_s, phi_hat, f_hat and g_hat, for one contact and one coefficient of friction.
+///
+/// Angles are in radians from t towards s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Characteristics<T> {
+    /// The least coefficient of friction that holds the contact once it has stopped slipping (43); with the pseudo-inverse of the
+    /// tangential part where that is singular.
+    pub mu_c: T,
+    /// The direction opposite to which friction then acts (43); zero if mu_c is.
+    pub phi_c: T,
+    /// m_ns / m_ts, the friction at which slip along t stays along t; `None` if m_ts is zero.
+    pub mu_s: Option<T>,
+    /// dI_n / dv_n, dI_t / dv_n, dI_s / dv_n while sticking (41); `None` if the contact cannot move along n while it sticks.
+    pub sticking: Option<[T; 3]>,
+    /// Renewed sliding, if mu < mu_c.
+    pub renewal: Option<Renewal<T>>,
+}
+
+/// Renewed sliding (46).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Renewal<T> {
+    /// Its direction, the only root of h with g > 0.
+    pub phi_hat: T,
+    /// dv_n / dI_n there (31), positive.
+    pub f_hat: T,
+    /// ds / dI_n there (32), positive.
+    pub g_hat: T,
+}
+
+impl<T: Scalar> Characteristics<T> {
+    /// The characteristics of a contact. The matrix must be that of a mechanism: positive semidefinite, m_nn > 0.
+    #[inline]
+    pub fn of(matrix: &ReducedMatrix<T>, mu: T) -> Self {
+        let c = contact(matrix, mu);
+        let hold = c.hold();
+        let mu_c = hold.norm();
+        let rate = T::one() - c.b.dot(&hold);
+        let sticking = if rate > T::default_epsilon() {
+            let n = T::one() / (rate * matrix.nn);
+            Some([n, -hold.x * n, -hold.y * n])
+        } else {
+            None
+        };
+        let renewal = (mu < mu_c).then(|| {
+            let d: Vector2<T> = c.renewal();
+            Renewal {
+                phi_hat: d.y.atan2(d.x),
+                f_hat: c.normal_rate(&d) * matrix.nn,
+                g_hat: c.slip_rate(&d).dot(&d) * matrix.nn,
+            }
+        });
+        Self {
+            mu_c,
+            phi_c: if mu_c > T::zero() { hold.y.atan2(hold.x) } else { T::zero() },
+            mu_s: (matrix.ts != T::zero()).then(|| matrix.ns / matrix.ts),
+            sticking,
+            renewal,
+        }
+    }
+}
+
+/// f, g and h (31)-(33) for slip in the direction `phi`, in 1/kg.
+#[inline]
+pub fn rates<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, phi: T) -> Vector3<T> {
+    let (sin, cos) = phi.sin_cos();
+    let c = contact(matrix, mu);
+    let d = Vector2::new(cos, sin);
+    let rate = c.slip_rate(&d);
+    Vector3::new(c.normal_rate(&d), rate.dot(&d), d.x * rate.y - d.y * rate.x) * matrix.nn
+}

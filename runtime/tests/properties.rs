@@ -1,0 +1,151 @@
+//! Laws of mechanics that every outcome obeys, over random contacts of rank 1 to 3.
+
+use hodograph::{ImpactError, Law, Path, ReducedMatrix, Surface, solve};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+
+const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
+
+prop_compose! {
+    /// B B^T with a B of one to three columns, and a velocity in its range: no prescribed motion.
+    fn contact()(entries in prop::array::uniform9(-2.0..2.0_f64), rank in 1..4_usize, speeds in prop::array::uniform3(-1.5..1.5_f64))
+        -> (ReducedMatrix<f64>, Vector3<f64>)
+    {
+        let mut b = Matrix3::from(std::array::from_fn::<_, 3, _>(|i| std::array::from_fn::<_, 3, _>(|j| entries[3 * i + j])));
+        for column in rank..3 {
+            b.column_mut(column).fill(0.0);
+        }
+        let mut v = b * Vector3::from(speeds);
+        if v.x > 0.0 {
+            v = -v;
+        }
+        (ReducedMatrix::from(b * b.transpose()), v)
+    }
+}
+
+fn surface() -> impl Strategy<Value = Surface<f64>> {
+    (0.0..3.0_f64, 0.0..=1.0_f64, prop::sample::select(&LAWS[..])).prop_map(|(mu, e, law)| Surface {
+        mu,
+        e,
+        law,
+    })
+}
+
+/// Size of the terms that cancel in the checks.
+fn scale(m: &ReducedMatrix<f64>, v: &Vector3<f64>, impulse: &Vector3<f64>) -> f64 {
+    v.amax() + impulse.amax() * (m.nn + m.tt + m.ss)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1000, max_global_rejects: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn mechanics_holds((m, v) in contact(), surface in surface()) {
+        prop_assume!(m.nn > 1e-3 && v.x < -1e-3);
+        let hit = match solve(&m, &v, &surface) {
+            Ok(hit) => hit,
+            // Only a singular contact may wedge.
+            Err(ImpactError::Wedged { .. }) => {
+                let det = Matrix3::from(m).determinant();
+                prop_assert!(det < 1e-3 * m.nn * (m.tt + m.ss).powi(2), "wedged with det {}", det);
+                return Ok(());
+            }
+            Err(error) => return Err(TestCaseError::fail(error.to_string())),
+        };
+        let tiny = 1e-11 * scale(&m, &v, &hit.impulse);
+        // (20)-(22)
+        prop_assert!((m.apply(&hit.impulse) - (hit.velocity - v)).amax() <= tiny);
+        // Coulomb
+        let rubbed = hit.impulse.y.hypot(hit.impulse.z);
+        prop_assert!(rubbed <= surface.mu * hit.impulse.x * (1.0 + 1e-10) || matches!(hit.path, Path::SlidingThenSticking | Path::Sticking));
+        if matches!(hit.path, Path::SlidingThenSticking | Path::Sticking) {
+            prop_assert_eq!((hit.velocity.y, hit.velocity.z), (0.0, 0.0));
+        }
+        // Separation, and work
+        prop_assert!(hit.velocity.x >= -tiny);
+        let work_scale = tiny * hit.impulse.amax();
+        prop_assert!(hit.contact_work <= hit.normal_work + work_scale);
+        if surface.law != Law::Newton {
+            prop_assert!(hit.contact_work <= work_scale, "energy gained: {}", hit.contact_work);
+        }
+        if surface.law == Law::Newton {
+            prop_assert!((hit.velocity.x + surface.e * v.x).abs() <= tiny);
+        }
+        if surface.e == 0.0 {
+            prop_assert!(hit.velocity.x.abs() <= tiny);
+        }
+    }
+
+    #[test]
+    fn axes_and_units_do_not_matter((m, v) in contact(), surface in surface(), angle in 0.0..6.3_f64, mass in -6..6_i32, speed in -6..6_i32) {
+        prop_assume!(m.nn > 1e-2 && v.x < -1e-2 && Matrix3::from(m).determinant() > 1e-2);
+        let (sin, cos) = angle.sin_cos();
+        let (mass, speed) = (10.0_f64.powi(mass), 10.0_f64.powi(speed));
+        let turned = m.turned(cos, sin);
+        let entries: [f64; 6] = turned.into();
+        let other = ReducedMatrix::from(entries.map(|x| x * mass));
+        let w = Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin) * speed;
+        let a = solve(&m, &v, &surface).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let b = solve(&other, &w, &surface).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        let i = b.impulse * (mass / speed);
+        let back = Vector3::new(i.x, i.y * cos - i.z * sin, i.z * cos + i.y * sin);
+        // Where a target grazes a maximum of v_n the outcome jumps, and no tolerance would do.
+        prop_assume!(a.compressions == 1 && b.compressions == 1);
+        prop_assert!((back - a.impulse).amax() <= 1e-6 * a.impulse.amax(), "{} {}", back, a.impulse);
+    }
+
+    #[test]
+    fn laws_agree_without_friction_and_when_balanced((m, v) in contact(), mu in 0.0..2.0_f64, e in 0.0..=1.0_f64, balanced in any::<bool>()) {
+        prop_assume!(m.nn > 1e-3 && v.x < -1e-3);
+        let (m, mu) = if balanced { (ReducedMatrix { nt: 0.0, ns: 0.0, ..m }, mu) } else { (m, 0.0) };
+        let [a, b, c] = LAWS.map(|law| solve(&m, &v, &Surface { mu, e, law }));
+        let (Ok(a), Ok(b), Ok(c)) = (a, b, c) else { return Err(TestCaseError::fail("no outcome")) };
+        let tiny = 1e-11 * a.impulse.amax();
+        prop_assert!((a.impulse - b.impulse).amax() <= tiny && (a.impulse - c.impulse).amax() <= tiny);
+    }
+
+    #[test]
+    fn outcomes_are_continuous_across_mu_c((m, v) in contact(), e in 0.0..=1.0_f64, law in prop::sample::select(&LAWS[..])) {
+        prop_assume!(m.nn > 1e-2 && v.x < -1e-2 && Matrix3::from(m).determinant() > 1e-1);
+        let mu_c = hodograph::Characteristics::of(&m, 1.0).mu_c;
+        let at = |mu: f64| solve(&m, &v, &Surface { mu, e, law });
+        let (Ok(a), Ok(b)) = (at(mu_c * (1.0 - 1e-9)), at(mu_c * (1.0 + 1e-9))) else {
+            return Err(TestCaseError::fail("no outcome"));
+        };
+        prop_assume!(a.compressions == 1 && b.compressions == 1);
+        prop_assert!((a.impulse - b.impulse).amax() <= 1e-4 * a.impulse.amax());
+    }
+}
+
+#[test]
+fn bad_input_is_named() {
+    let m = ReducedMatrix::new(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
+    let v = Vector3::new(-1.0, 0.5, 0.0);
+    let s = Surface { mu: 0.5, e: 0.5, law: Law::Poisson };
+    let kind = |m: &ReducedMatrix<f64>, v: &Vector3<f64>, s: &Surface<f64>| {
+        solve(m, v, s).map_err(|e| e.kind()).err()
+    };
+    assert_eq!(kind(&m, &v, &s), None);
+    assert_eq!(kind(&m, &Vector3::new(f64::NAN, 0.0, 0.0), &s), Some("not_finite"));
+    assert_eq!(kind(&m, &v, &Surface { mu: -1.0, ..s }), Some("negative_friction"));
+    assert_eq!(kind(&m, &v, &Surface { e: 1.2, ..s }), Some("restitution_out_of_range"));
+    assert_eq!(kind(&m, &-v, &s), Some("not_approaching"));
+    assert_eq!(kind(&ReducedMatrix { nt: 2.0, ..m }, &v, &s), Some("not_positive_semidefinite"));
+    assert_eq!(kind(&ReducedMatrix { nn: 0.0, ..m }, &v, &s), Some("no_normal_mobility"));
+    // Sliding for ever along a direction without mobility.
+    let wedge = ReducedMatrix::new(1.0, 1.0, 0.0, 1.0, 0.0, 0.0);
+    let answer = solve(&wedge, &Vector3::new(-1.0, -0.1, 1.0), &Surface { mu: 2.0, ..s });
+    let Err(ImpactError::Wedged { normal_velocity, .. }) = answer else { panic!("{answer:?}") };
+    assert!((normal_velocity + 0.3226).abs() < 1e-4);
+}
+
+#[test]
+fn bodies_may_approach_twice() {
+    let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);
+    let v = Vector3::new(-0.22, -0.2, 1.0);
+    for (law, expected) in [(Law::Poisson, 0.15700905_f64), (Law::Stronge, 0.14009101)] {
+        let hit = solve(&m, &v, &Surface { mu: 1.95, e: 0.5, law }).expect("an outcome");
+        assert!((hit.velocity.x - expected).abs() < 1e-8, "{law:?} {}", hit.velocity.x);
+        assert_eq!(hit.compressions, 2);
+    }
+}
