@@ -60,3 +60,54 @@ fn absent(_mechanism: &Mechanism, shown: &str, command: &str) -> Result<Found, S
          in:\n\n    {command}\n\n(or, while the model is being written, switch on the feature `derive` of hodograph)"
     ))
 }
+
+#[cfg(test)]
+mod tests {
+    use hodograph_generator::model::check;
+
+    use super::*;
+
+    const MODEL: &str = "mechanism Drop; parameters { m: kg = 1 } coordinates { q1: m } speeds { u1: m/s } \
+                         points { P = O + q1*N.x; } particles { A { point: P, mass: m } }";
+
+    /// What is said of a derivation with this text; `None`: there is no file.
+    fn said(name: &str, text: Option<&str>) -> String {
+        let source = Source::file("models/drop.mech", MODEL);
+        let mechanism = check(&source).mechanism.expect("the model is sound");
+        let path = std::env::temp_dir().join(format!("hodograph-{}-{name}.derivation", std::process::id()));
+        if let Some(text) = text {
+            std::fs::write(&path, text).unwrap();
+        }
+        let found =
+            find(&source, &mechanism, &path, "models/drop.derivation", "hodograph derive models/drop.mech");
+        let _ = std::fs::remove_file(&path);
+        found.err().unwrap_or_default()
+    }
+
+    #[test]
+    fn a_fresh_derivation_is_taken() {
+        let hash = Source::file("models/drop.mech", MODEL).content_hash();
+        assert_eq!(said("fresh", Some(&artifact::encode(&Program::default(), &hash))), "");
+    }
+
+    #[test]
+    fn the_command_that_repairs_is_named() {
+        let stale = said("stale", Some(&artifact::encode(&Program::default(), "00")));
+        assert!(stale.contains("`models/drop.derivation` is stale"), "{stale}");
+        let damaged = said("damaged", Some("<<<<<<< ours\n"));
+        assert!(damaged.contains("is damaged"), "{damaged}");
+        for message in [stale, damaged] {
+            assert!(message.contains("\n\n    hodograph derive models/drop.mech\n"), "{message}");
+        }
+    }
+
+    #[test]
+    #[cfg(not(feature = "derive"))]
+    fn an_absent_derivation_names_the_command_and_the_feature() {
+        let absent = said("absent", None);
+        assert!(
+            absent.contains("hodograph derive models/drop.mech") && absent.contains("feature `derive`"),
+            "{absent}"
+        );
+    }
+}
