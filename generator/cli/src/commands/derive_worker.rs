@@ -33,6 +33,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     use hodograph_generator::program::{Program, cost};
     use hodograph_generator::source::Source;
 
+    end_with_parent();
     let text = std::fs::read_to_string(&arguments.input)
         .map_err(|error| Stop::unreadable(&arguments.input, &error))?;
     let source = Source::file(arguments.name.clone(), text);
@@ -55,6 +56,22 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let text = artifact::encode(&Program::new(&derived), &source.content_hash());
     std::fs::write(&arguments.output, text).map_err(|error| Stop::unwritable(&arguments.output, &error))
 }
+
+/// Nobody waits for the result of a process whose parent is gone, but others wait for the engine.
+#[cfg(all(feature = "derive", unix))]
+fn end_with_parent() {
+    use std::os::unix::process::parent_id;
+    let parent = parent_id();
+    std::thread::spawn(move || {
+        while parent_id() == parent {
+            std::thread::sleep(std::time::Duration::from_millis(200));
+        }
+        std::process::exit(1);
+    });
+}
+
+#[cfg(all(feature = "derive", not(unix)))]
+fn end_with_parent() {}
 
 /// Without the engine there is nothing to do.
 ///
