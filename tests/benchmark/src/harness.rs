@@ -39,29 +39,37 @@ hodograph = { path = \"{runtime}\" }
 /// Writes a workspace with a package per derivation and compiles what they have in common.
 pub fn prepare(folders: &Folders, derivations: &[Derivation<'_>]) -> Result<(), Failure> {
     let workspace = folders.work.join("crates");
-    let runtime = folders.root.join("runtime").display().to_string();
-    let mut members = vec!["\"nothing\"".to_owned()];
-    let write = |name: &str, main: &str| -> Result<(), Failure> {
-        let folder = workspace.join(name);
-        std::fs::create_dir_all(folder.join("src"))?;
-        let manifest = MANIFEST.replace("{name}", name).replace("{runtime}", &runtime);
-        std::fs::write(folder.join("Cargo.toml"), manifest)?;
-        Ok(std::fs::write(folder.join("src/main.rs"), main)?)
-    };
-    write("nothing", "fn main() {}\n")?;
+    // What an earlier run left is no member of this one.
+    let _ = std::fs::remove_dir_all(&workspace);
+    write(folders, "nothing", "main.rs", "fn main() {}\n")?;
     for derivation in derivations {
-        write(&derivation.package(), &main(derivation))?;
-        std::fs::write(workspace.join(derivation.package()).join("src/module.rs"), &derivation.module)?;
-        members.push(format!("{:?}", derivation.package()));
+        let package = derivation.package();
+        write(folders, &package, "main.rs", &main(derivation))?;
+        write(folders, &package, "module.rs", &derivation.module)?;
     }
-    let manifest = format!("[workspace]\nresolver = \"3\"\nmembers = [{}]\n", members.join(", "));
-    std::fs::write(workspace.join("Cargo.toml"), manifest)?;
+    std::fs::write(workspace.join("Cargo.toml"), "[workspace]\nresolver = \"3\"\nmembers = [\"*\"]\n")?;
     std::fs::copy(folders.root.join("Cargo.lock"), workspace.join("Cargo.lock"))?;
     cargo(folders, "nothing").map(|_| ())
 }
 
+/// Writes a source file of a package, and its manifest.
+fn write(folders: &Folders, package: &str, file: &str, text: &str) -> Result<(), Failure> {
+    let folder = folders.work.join("crates").join(package);
+    std::fs::create_dir_all(folder.join("src"))?;
+    let runtime = folders.root.join("runtime").display().to_string();
+    let manifest = MANIFEST.replace("{name}", package).replace("{runtime}", &runtime);
+    std::fs::write(folder.join("Cargo.toml"), manifest)?;
+    Ok(std::fs::write(folder.join("src").join(file), text)?)
+}
+
+/// Writes a package that is a library, with the module of a derivation beside it.
+pub fn write_library(folders: &Folders, package: &str, text: &str, module: &str) -> Result<(), Failure> {
+    write(folders, package, "module.rs", module)?;
+    write(folders, package, "lib.rs", text)
+}
+
 /// Compiles a package; the program.
-fn cargo(folders: &Folders, package: &str) -> Result<PathBuf, Failure> {
+pub fn cargo(folders: &Folders, package: &str) -> Result<PathBuf, Failure> {
     let target = folders.work.join("target");
     output(
         Command::new("cargo")
@@ -186,12 +194,13 @@ fn word<'a>(derivation: &'a Derivation<'_>, start: &str) -> &'a str {
     rest.split(|letter: char| !letter.is_alphanumeric() && letter != '_').next().unwrap_or("")
 }
 
-fn module_name<'a>(derivation: &'a Derivation<'_>) -> &'a str {
+/// Name of the module.
+pub fn module_name<'a>(derivation: &'a Derivation<'_>) -> &'a str {
     word(derivation, "pub mod ")
 }
 
 /// The mechanism's type is the one with a field of hoisted values.
-fn type_name<'a>(derivation: &'a Derivation<'_>) -> &'a str {
+pub fn type_name<'a>(derivation: &'a Derivation<'_>) -> &'a str {
     let end = derivation.module.find("hoisted: [").unwrap_or(derivation.module.len());
     let start = derivation.module[..end].rfind("pub struct ").unwrap_or(0);
     let rest = &derivation.module[start + "pub struct ".len()..];

@@ -6,12 +6,14 @@ mod chain;
 mod count;
 mod derive;
 mod harness;
+mod literature;
 mod peers;
 mod plot;
 mod robots;
 mod states;
 mod table;
 mod tools;
+mod whole;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -82,5 +84,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let peers = peers::read(&folders)?;
     table::print(&rows, &peers);
+    whole::print(&folders, &derived)?;
+    literature::print(&folders, &tool)?;
     plot::chains(&folders, &rows, &peers)
 }

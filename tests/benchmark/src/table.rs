@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use hodograph_generator::program::Program;
-use hodograph_generator::program::operation::Operation;
+use hodograph_generator::program::cost::Count;
 use hodograph_generator::program::routine::{ContactQuantity, Quantity};
 
 use crate::count::Counts;
@@ -36,27 +36,11 @@ fn quantities(routine: &str) -> Vec<Quantity> {
 }
 
 /// Operations of a routine as the program has them: multiplications, additions, divisions, pairs of sine and cosine, and how many
-/// pairs of the first two are fused.
+/// of the multiplications are fused with an addition.
 fn operations(program: &Program, routine: &str) -> String {
-    use hodograph_generator::program::operation::Stage;
-    let stages = program.stages();
-    let [mut mul, mut add, mut div, mut trig, mut fused] = [0; 5];
-    for value in program.slice(&quantities(routine)).order {
-        if stages[value.index()] <= Stage::Parameter {
-            continue;
-        }
-        match program.operation(value) {
-            Operation::Mul(..) => mul += 1,
-            Operation::Add(..) | Operation::Sub(..) | Operation::Neg(_) => add += 1,
-            Operation::Div(..) | Operation::Recip(_) => div += 1,
-            Operation::MulAdd(..) | Operation::MulSub(..) | Operation::NegMulAdd(..) => {
-                (mul, add, fused) = (mul + 1, add + 1, fused + 1);
-            }
-            Operation::SinCos(_) | Operation::Call(..) => trig += 1,
-            _ => {}
-        }
-    }
-    format!("{mul}/{add}/{div}/{trig} ({fused})")
+    let count = program.cost(&quantities(routine)).evaluation();
+    let Count { multiplications, additions, divisions, trigonometric, fused, .. } = count;
+    format!("{multiplications}/{additions}/{divisions}/{trigonometric} ({fused})")
 }
 
 /// Prints the table as Markdown.

@@ -1,0 +1,60 @@
+//! Compiling a module with every one of its methods, in doubles: the worst case, for code that nobody calls is not compiled.
+
+use std::fmt::Write;
+use std::time::Instant;
+
+use crate::derive::Derivation;
+use crate::harness;
+use crate::tools::{Failure, Folders};
+
+/// The mechanism whose module is compiled as a whole.
+const LARGEST: &str = "anymal";
+
+/// Prints how long it takes and how large the code is.
+pub fn print(folders: &Folders, derivations: &[Derivation<'_>]) -> Result<(), Failure> {
+    for derivation in derivations.iter().filter(|derivation| derivation.case.name == LARGEST) {
+        let (text, methods) = library(derivation);
+        let package = format!("{}_whole", derivation.package());
+        harness::write_library(folders, &package, &text, &derivation.module)?;
+        let start = Instant::now();
+        harness::cargo(folders, &package)?;
+        println!(
+            "\nThe module of the {} with all its {methods} methods compiles in {:.1} s ({}).",
+            derivation.case.title,
+            start.elapsed().as_secs_f64(),
+            derivation.package()
+        );
+    }
+    Ok(())
+}
+
+/// A library that instantiates every method for doubles, and how many those are.
+fn library(derivation: &Derivation<'_>) -> (String, usize) {
+    let mut text = format!(
+        "#![allow(unused)]\ninclude!(\"module.rs\");\nuse {}::*;\ntype T = f64;\ntype Machine = {}<T>;\n",
+        harness::module_name(derivation),
+        harness::type_name(derivation)
+    );
+    let mut methods = 0;
+    for part in derivation.module.split("\n        pub fn ").skip(1) {
+        let Some((name, rest)) = part.split_once('(') else { continue };
+        let Some((arguments, _)) = rest.split_once(')') else { continue };
+        let arguments: Vec<&str> =
+            arguments.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
+        if arguments.first() != Some(&"&self") {
+            continue;
+        }
+        let names: Vec<&str> =
+            arguments[1..].iter().filter_map(|argument| argument.split(':').next()).collect();
+        let typed: Vec<&str> = std::iter::once("m: &Machine").chain(arguments[1..].iter().copied()).collect();
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "pub fn all_{methods}({}) -> impl Sized {{ m.{name}({}) }}",
+            typed.join(", "),
+            names.join(", ")
+        );
+        methods += 1;
+    }
+    (text, methods)
+}
