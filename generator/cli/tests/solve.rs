@@ -85,6 +85,7 @@ fn bad_lines_are_answered_and_the_next_is_solved() {
         (("e", json!(-0.1)), "restitution_out_of_range"),
         (("v", json!([1, 0, 0])), "not_approaching"),
         (("v", json!([0, 1, 0])), "not_approaching"),
+        (("v", json!([-1e200, 1e200, 0])), "not_finite"),
         (("m", json!([1, 2, 0, 1, 0, 1])), "not_positive_semidefinite"),
         (("m", json!([0, 0, 0, 1, 0, 1])), "no_normal_mobility"),
     ] {

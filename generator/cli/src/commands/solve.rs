@@ -125,5 +125,5 @@ fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
     let impact = match arguments.method {
         Method::Exact => hodograph::solve(&matrix, &velocity, &surface),
     }?;
-    Ok(Answer::from(&impact))
+    Answer::try_from(&impact)
 }

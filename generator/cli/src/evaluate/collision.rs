@@ -58,7 +58,7 @@ pub fn collide<'a>(
         .map(|(a, b)| a * b)
         .sum();
     Ok(Collision {
-        answer: Answer::from(&impact),
+        answer: Answer::try_from(&impact)?,
         u_after: named(&machine.mechanism.speeds, after),
         kinetic_energy_change: impact.contact_work - contact.remainder.dot(&impact.impulse) + prescribed,
     })

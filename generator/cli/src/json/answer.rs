@@ -3,6 +3,8 @@
 use hodograph::Impact;
 use serde::Serialize;
 
+use super::{Failure, Kind};
+
 /// The outcome of an impact.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
@@ -22,16 +24,29 @@ pub struct Answer {
     pub compressions: u32,
 }
 
-impl From<&Impact<f64>> for Answer {
-    fn from(impact: &Impact<f64>) -> Self {
-        Answer {
-            // A zero has no sign for a reader.
+impl TryFrom<&Impact<f64>> for Answer {
+    type Error = Failure;
+
+    /// # Errors
+    ///
+    /// `not_finite` where the outcome is out of the range of doubles.
+    fn try_from(impact: &Impact<f64>) -> Result<Self, Failure> {
+        let works = [impact.contact_work, impact.normal_work];
+        if !impact.impulse.iter().chain(impact.velocity.iter()).chain(&works).all(|number| number.is_finite())
+        {
+            return Err(Failure::new(
+                Kind::NotFinite,
+                "the outcome is out of the range of doubles: choose units in which the numbers are nearer to 1",
+            ));
+        }
+        // A zero has no sign for a reader.
+        Ok(Answer {
             impulse: impact.impulse.map(|number| number + 0.0).into(),
             v: impact.velocity.map(|number| number + 0.0).into(),
             contact_work: impact.contact_work + 0.0,
             normal_work: impact.normal_work + 0.0,
             path: impact.path.phases(),
             compressions: impact.compressions,
-        }
+        })
     }
 }
