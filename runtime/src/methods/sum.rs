@@ -1,0 +1,167 @@
+//! Recursive summation (56).
+
+use nalgebra::Vector3;
+
+use super::{
+    MethodError,
+    equations::{I_N, I_S, I_T, NORMAL_WORK, PHI, Problem, S, State, V_N, WORK, between},
+    integrate::Slid,
+    law::{Ending, Event},
+};
+use crate::{Impact, Path, ReducedMatrix, Surface};
+
+/// Steps after which a summation gives up.
+const STEPS: u32 = 1_000_000;
+
+/// How fine the summation is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Summation {
+    /// The paper's refinement factor k >= 1: steps to a unit of impulse.
+    pub k: u32,
+    /// The unit of impulse in N s. The paper's is 1 N s, whatever the system. `None` takes -v_n1 / (4 m_nn), which is 1.05 N s for its two sleds and
+    /// does not depend on the units.
+    pub unit: Option<f64>,
+}
+
+impl Summation {
+    /// With k steps to the unit -v_n1 / (4 m_nn).
+    pub fn new(k: u32) -> Self {
+        Self { k, unit: None }
+    }
+
+    /// The step D in the scaled units.
+    pub(super) fn step(&self, problem: &Problem) -> Result<f64, MethodError> {
+        if self.k == 0 {
+            return Err(MethodError::BadOption { name: "k", value: 0.0 });
+        }
+        let unit = match self.unit {
+            None => 0.25,
+            Some(unit) if unit > 0.0 && unit.is_finite() => problem.impulse(unit),
+            Some(value) => return Err(MethodError::BadOption { name: "unit", value }),
+        };
+        Ok(unit / f64::from(self.k))
+    }
+}
+
+/// Sums (56) with the step D = unit / k until the law ends the collision; where slip stops the step is cut short, and lambda goes to -1 (sticking)
+/// or 1 (renewal). Corrected in (56f) and (56h); within the last step, and where compression ends, all quantities are interpolated linearly.
+///
+/// The error falls like 1 / k. Near the end of slip steps larger than [`super::stability`] allows make it large.
+///
+/// # Errors
+/// As [`crate::solve`], else [`MethodError::Unfinished`] or [`MethodError::BadOption`].
+pub fn sum(
+    matrix: &ReducedMatrix<f64>,
+    approach: &Vector3<f64>,
+    surface: &Surface<f64>,
+    options: &Summation,
+) -> Result<Impact<f64>, MethodError> {
+    let problem = Problem::new(matrix, approach, surface)?;
+    let d = options.step(&problem)?;
+    let mut ending = Ending::new(surface);
+    let mut made = 0;
+    let mut at = match slide(&problem, d, &mut ending, &mut made)? {
+        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, ending.compressions)),
+        Slid::Stopped(at) => at,
+    };
+    let arc = problem.terminal();
+    let path = arc.path(problem.start()[S] > 0.0);
+    at = arc.entered(at);
+    if arc.v_n <= 0.0 {
+        let end = ending.close(&problem, &arc, at, d * problem.pace())?;
+        return Ok(problem.outcome(&end, path, ending.compressions));
+    }
+    loop {
+        count(&mut made, &problem, &at)?;
+        let s = at[S] + arc.s * d;
+        let v_n = at[V_N] + arc.v_n * d;
+        let to = [
+            arc.phi,
+            s,
+            v_n,
+            at[I_T] + arc.impulse.x * d,
+            at[I_S] + arc.impulse.y * d,
+            at[WORK] + (v_n - problem.mu * s) * d,
+            at[NORMAL_WORK] + v_n * d,
+            at[I_N] + d,
+        ];
+        if let Some(end) = events(&mut ending, &at, &to) {
+            return Ok(problem.outcome(&end, path, ending.compressions));
+        }
+        at = to;
+    }
+}
+
+/// Sums the sliding part, lambda = 0.
+pub(super) fn slide(
+    problem: &Problem,
+    d: f64,
+    ending: &mut Ending,
+    made: &mut u32,
+) -> Result<Slid, MethodError> {
+    let mut at = problem.start();
+    if at[S] <= 0.0 {
+        return Ok(Slid::Stopped(at));
+    }
+    let mu = problem.mu;
+    let (sin, cos) = at[PHI].sin_cos();
+    let [_, mut g, mut h] = problem.fgh(cos, sin);
+    loop {
+        count(made, problem, &at)?;
+        let stops = at[S] + g * d <= 0.0;
+        let d = if stops { -at[S] / g } else { d };
+        let phi = at[PHI] + h / at[S] * d;
+        let s = if stops { 0.0 } else { at[S] + g * d };
+        let (sin, cos) = phi.sin_cos();
+        let f;
+        [f, g, h] = problem.fgh(cos, sin);
+        let v_n = at[V_N] + f * d;
+        let to = [
+            phi,
+            s,
+            v_n,
+            at[I_T] - mu * cos * d,
+            at[I_S] - mu * sin * d,
+            at[WORK] + (v_n - mu * s) * d,
+            at[NORMAL_WORK] + v_n * d,
+            at[I_N] + d,
+        ];
+        if let Some(end) = events(ending, &at, &to) {
+            return Ok(Slid::Ended(end));
+        }
+        at = to;
+        if stops {
+            return Ok(Slid::Stopped(at));
+        }
+    }
+}
+
+fn count(made: &mut u32, problem: &Problem, at: &State) -> Result<(), MethodError> {
+    if *made >= STEPS {
+        return Err(MethodError::Unfinished { steps: *made, normal_velocity: problem.velocity(at[V_N]) });
+    }
+    *made += 1;
+    Ok(())
+}
+
+/// Takes note of all that happens within a step; the state in which the collision ended, if it did.
+fn events(ending: &mut Ending, from: &State, to: &State) -> Option<State> {
+    let mut from = *from;
+    while let Some(mut event) = ending.between(to) {
+        let cut = |event, from: &State, to: &State| {
+            let (low, high) = (ending.height(event, from), ending.height(event, to));
+            let part = if high > low { (-low / (high - low)).clamp(0.0, 1.0) } else { 1.0 };
+            between(from, to, part)
+        };
+        let mut at = cut(event, &from, to);
+        if event == Event::Approach && ending.is_over(&at) {
+            event = Event::End;
+            at = cut(event, &from, &at);
+        }
+        if ending.note(event, &mut at) {
+            return Some(at);
+        }
+        from = at;
+    }
+    None
+}
