@@ -1,6 +1,6 @@
 //! The methods of a contact: gap, velocities, reduced matrix, collision.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
@@ -43,6 +43,8 @@ impl Emitter<'_> {
                 pub dependent_speeds: DependentSpeeds<T>,
             }
         });
+        let dependent_field = (!self.dependent.is_empty()).then(|| quote!(dependent_speeds));
+        let count = Literal::usize_unsuffixed(13 + usize::from(!self.dependent.is_empty()));
         quote! {
             /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +76,11 @@ impl Emitter<'_> {
                 pub path: #krate::Path,
                 /// everything that the solver tells
                 pub impact: #krate::Impact<T>,
+            }
+
+            #krate::generated::serialize_outcome! {
+                Collision #count speeds #dependent_field impulse impulse_on_point impulse_on_struck normal tangent binormal
+                approach separation reduced energy_change path impact
             }
         }
     }

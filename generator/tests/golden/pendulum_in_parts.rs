@@ -341,6 +341,10 @@ pub mod pendulum_in_parts {
         /// everything that the solver tells
         pub impact: ::hodograph::Impact<T>,
     }
+    ::hodograph::generated::serialize_outcome! {
+        Collision 13 speeds impulse impulse_on_point impulse_on_struck normal tangent
+        binormal approach separation reduced energy_change path impact
+    }
     impl<T: ::hodograph::Scalar> Pendulum<T> {
         /// Rates q' of the generalized coordinates, per second.
         ///

@@ -50,7 +50,7 @@ pub struct Resolved<T: nalgebra::Scalar> {
 #[inline]
 pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
     let along = |direction: Vector2<T>| {
-        let length = direction.x.hypot(direction.y);
+        let length = (direction.x * direction.x + direction.y * direction.y).sqrt();
         (length > T::zero()).then(|| (direction.x / length, direction.y / length))
     };
     if let Some(axes) = along(Vector2::new(contact.velocity.y, contact.velocity.z)) {
@@ -78,7 +78,7 @@ pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<
     let (cos, sin) = contact_axes(contact);
     let Contact { normal, first, second, velocity, .. } = contact;
     let reduced = contact.reduced.turned(cos, sin);
-    let slip = velocity.y.hypot(velocity.z);
+    let slip = (velocity.y * velocity.y + velocity.z * velocity.z).sqrt();
     let approach = Vector3::new(velocity.x, slip, T::zero());
     let impact = solve(&reduced, &approach, surface)?;
     let impulse = Vector3::new(

@@ -22,7 +22,7 @@ pub use serde;
 pub use serial::{FieldIndex, FieldNames};
 
 #[doc(hidden)]
-pub use crate::__serialize_record as serialize_record;
+pub use crate::{__serialize_outcome as serialize_outcome, __serialize_record as serialize_record};
 
 /// Generated code names this constant: where it is missing, the module was made by a generator that this runtime does not fit.
 #[doc(hidden)]

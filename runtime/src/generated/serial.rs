@@ -90,6 +90,34 @@ macro_rules! __serialize_record {
     };
 }
 
+/// Implements `Serialize` for a generated struct of results, or nothing.
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __serialize_outcome {
+    ($($anything:tt)*) => {};
+}
+
+/// Implements `Serialize` for a generated struct of results, or nothing.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! __serialize_outcome {
+    ($name:ident $count:literal $($field:ident)*) => {
+        impl<T: $crate::Scalar + $crate::generated::serde::Serialize> $crate::generated::serde::Serialize for $name<T> {
+            fn serialize<S: $crate::generated::serde::Serializer>(
+                &self,
+                serializer: S,
+            ) -> ::core::result::Result<S::Ok, S::Error> {
+                use $crate::generated::serde::ser::SerializeStruct;
+                let mut outcome = serializer.serialize_struct(::core::stringify!($name), $count)?;
+                $(outcome.serialize_field(::core::stringify!($field), &self.$field)?;)*
+                outcome.end()
+            }
+        }
+    };
+}
+
 #[cfg(feature = "serde")]
 mod fields {
     use core::fmt;

@@ -42,6 +42,10 @@ mod tests {
         let hit = hopper.collide_foot_ground(&q, &u, &surface).unwrap();
         assert!((hit.separation.x + 0.2 * hit.approach.x).abs() < 1e-12);
         assert!(strike(&Coordinates::default(), &Speeds { u1: -2.0, u2: 0.1 }).unwrap().u1 > -2.0);
+        let text = serde_json::to_string(&hit).unwrap();
+        assert!(text.starts_with("{\"speeds\":{\"u1\":") && text.contains("\"path\":"), "{text}");
+        assert_eq!(serde_json::from_str::<Speeds<f64>>("{\"u2\":3.5}").unwrap(), Speeds { u1: 0.0, u2: 3.5 });
+        assert!(serde_json::from_str::<Speeds<f64>>("{\"u9\":3.5}").is_err());
         assert!(puck::Puck::<f32>::default().mass_matrix(&puck::Coordinates::default()).is_ok());
     }
 }
