@@ -26,6 +26,8 @@ struct Writer<'k, 'm> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
     lumps: BTreeMap<Seat, Lump>,
+    /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where dependent speeds enter
+    largest: Vec<Node>,
 }
 
 /// Derives and writes all quantities.
@@ -44,6 +46,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
         independent,
         dependent,
         lumps,
+        largest: Vec::new(),
     };
     writer.kinematics();
     let (matrix, prescribed) = writer.mass_matrix();
@@ -141,6 +144,11 @@ impl Writer<'_, '_> {
             }
         }
         let prescribed: Vec<Expr> = independent.iter().map(|&r| reduced(r, remainder)).collect();
+        // Bounds of what angles do depend on parameters alone, so they cost nothing at run time.
+        if dependent.is_empty() {
+            let largest: Vec<Expr> = (0..independent.len()).map(|i| self.k.z.bound(&matrix[i][i])).collect();
+            self.largest = self.nodes(&largest);
+        }
         let matrix: Vec<Vec<Node>> = matrix.iter().map(|row| self.nodes(row)).collect();
         let prescribed = self.nodes(&prescribed);
         let all = matrix.iter().flatten().copied().collect();
@@ -153,6 +161,7 @@ impl Writer<'_, '_> {
             let speed = &self.k.mechanism.speeds[self.independent[row]].name;
             if self.graph.as_number(value).is_none() {
                 let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
+                let scale = self.largest.get(row).copied().unwrap_or(scale);
                 self.guards.push(Guard { value, scale: Some(scale), message });
             }
         }
@@ -183,7 +192,9 @@ impl Writer<'_, '_> {
             if self.graph.as_number(value).is_none() {
                 let speed = &self.k.mechanism.speeds[slot].name;
                 let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
-                guards.push(Guard { value, scale: None, message });
+                let row = self.independent.iter().position(|&independent| independent == slot);
+                let scale = row.and_then(|row| self.largest.get(row).copied());
+                guards.push(Guard { value, scale, message });
             }
         }
         Some((nodes, guards))
