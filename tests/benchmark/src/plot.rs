@@ -34,7 +34,10 @@ fn draw(path: &str, rows: &[&Row<'_>], peers: &Peers) -> Result<(), Box<dyn std:
     area.fill(&WHITE)?;
     let mut chart = ChartBuilder::on(&area)
         .margin(16)
-        .caption("Instructions per evaluation, chain of n links on a cart (circles: best peer)", ("sans-serif", 18))
+        .caption(
+            "Instructions per evaluation, chain of n links on a cart (circles: best peer)",
+            ("sans-serif", 18),
+        )
         .x_label_area_size(36)
         .y_label_area_size(64)
         .build_cartesian_2d((0.9f64..50.0).log_scale(), (20.0f64..50_000.0).log_scale())?;
