@@ -8,6 +8,8 @@
 extern crate std;
 
 mod characteristics;
+mod derivative;
+mod dual;
 mod error;
 #[doc(hidden)]
 pub mod generated;
@@ -16,17 +18,20 @@ mod law;
 #[cfg(feature = "std")]
 pub mod methods;
 mod reduced;
+mod saltation;
 mod scalar;
 mod solve;
 mod surface;
 
 pub use crate::{
     characteristics::{Characteristics, Renewal, rates},
+    derivative::{ImpactDerivative, Obstacle, derivative},
     error::ImpactError,
     generated::{CollisionError, ParameterError, StateError},
     impact::{Impact, Path},
     law::Law,
     reduced::ReducedMatrix,
+    saltation::{saltation, speed_derivative},
     scalar::Scalar,
     solve::solve,
     surface::Surface,

@@ -1,6 +1,15 @@
 //! The number type.
 
-use nalgebra::{RealField, convert};
+use core::{
+    fmt::Debug,
+    ops::{AddAssign, DivAssign, MulAssign, Neg, SubAssign},
+};
+
+use nalgebra::{
+    ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, RealField, Vector2, convert,
+    convert_unchecked,
+};
+use num_traits::{One, Zero};
 
 /// A real scalar the solver works in: `f64`, `f32`, or a dual number that carries derivatives.
 ///
@@ -9,20 +18,101 @@ pub trait Scalar: RealField + Copy {}
 
 impl<T: RealField + Copy> Scalar for T {}
 
+/// The little that the solver itself asks of a number: all of [`Scalar`], and the crate's own dual numbers, which cannot have nalgebra's
+/// [`RealField`] because one of its parents has unsafe methods.
+pub(crate) trait Real:
+    Copy
+    + PartialOrd
+    + Debug
+    + Send
+    + Sync
+    + 'static
+    + Zero
+    + One
+    + Neg<Output = Self>
+    + ClosedAddAssign
+    + ClosedSubAssign
+    + ClosedMulAssign
+    + ClosedDivAssign
+    + AddAssign
+    + SubAssign
+    + MulAssign
+    + DivAssign
+{
+    /// Whether a number may carry derivatives: then iterations go on until these have settled too.
+    const REFINED: bool = size_of::<Self>() > size_of::<f64>();
+
+    fn constant(value: f64) -> Self;
+    /// The value without its derivatives.
+    fn plain(self) -> Self;
+    fn default_epsilon() -> Self;
+    fn is_finite(&self) -> bool;
+    fn abs(self) -> Self;
+    fn sqrt(self) -> Self;
+    fn exp(self) -> Self;
+    fn ln(self) -> Self;
+    fn mul_add(self, a: Self, b: Self) -> Self;
+}
+
+impl<T: RealField + Copy> Real for T {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        convert(value)
+    }
+    #[inline(always)]
+    fn plain(self) -> Self {
+        if Self::REFINED { convert(convert_unchecked::<T, f64>(self)) } else { self }
+    }
+    #[inline(always)]
+    fn default_epsilon() -> Self {
+        T::default_epsilon()
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        nalgebra::ComplexField::is_finite(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        nalgebra::ComplexField::abs(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        nalgebra::ComplexField::sqrt(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> Self {
+        nalgebra::ComplexField::exp(self)
+    }
+    #[inline(always)]
+    fn ln(self) -> Self {
+        nalgebra::ComplexField::ln(self)
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        nalgebra::ComplexField::mul_add(self, a, b)
+    }
+}
+
 /// A constant of the method in the scalar type.
 #[inline(always)]
-pub(crate) fn constant<T: Scalar>(value: f64) -> T {
-    convert(value)
+pub(crate) fn constant<T: Real>(value: f64) -> T {
+    T::constant(value)
 }
 
 /// `a * b + c`, fused only where the target has the instruction and the standard library reaches it.
 #[inline(always)]
-pub(crate) fn fma<T: Scalar>(a: T, b: T, c: T) -> T {
+pub(crate) fn fma<T: Real>(a: T, b: T, c: T) -> T {
     if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// The larger of two numbers, by comparison alone (no order is defined beyond `PartialOrd`).
 #[inline(always)]
-pub(crate) fn larger<T: Scalar>(a: T, b: T) -> T {
+pub(crate) fn larger<T: Real>(a: T, b: T) -> T {
     if b > a { b } else { a }
+}
+
+/// The length of a vector in the contact plane.
+#[inline(always)]
+pub(crate) fn length<T: Real>(v: &Vector2<T>) -> T {
+    (v.x * v.x + v.y * v.y).sqrt()
 }

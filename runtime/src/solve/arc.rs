@@ -6,7 +6,7 @@ use super::{
     ledger::{Ledger, State},
     terminal::Contact,
 };
-use crate::{Law, Scalar, scalar::constant};
+use crate::{Law, scalar::Real as Scalar, scalar::constant, scalar::length};
 
 /// Where a piece begins.
 #[derive(Clone, Copy)]
@@ -34,7 +34,7 @@ impl<T: Scalar> Point<T> {
     #[inline]
     fn moved(&self, contact: &Contact<T>, step: T) -> Self {
         let impulse = self.rate * step;
-        let d = self.slip / self.slip.norm();
+        let d = self.slip / length(&self.slip);
         let state = &self.state;
         Self {
             state: State {
@@ -171,6 +171,8 @@ fn find<T: Scalar>(
     let mut point = arc.at(x);
     // The square of a step this small is rounding.
     let small = constant::<T>(0.0625) * T::default_epsilon().sqrt();
+    // A derivative is one step of Newton's behind its value, and interpolation between close points ruins it.
+    let mut behind = T::REFINED;
     for _ in 0..64 {
         let y = quantity(&point.state) - target;
         let slope = slope_at(&point.state, point.rate, point.slope);
@@ -181,7 +183,13 @@ fn find<T: Scalar>(
         }
         let newton = -y / slope;
         if newton.abs() <= small * (x - from.0) {
-            return (x + newton, point.moved(contact, newton));
+            if !behind {
+                return (x + newton, point.moved(contact, newton));
+            }
+            behind = false;
+            x = (x + newton).plain();
+            point = arc.at(x);
+            continue;
         }
         if hi - lo <= T::default_epsilon() * hi {
             break;
@@ -225,5 +233,5 @@ pub(super) fn turning<T: Scalar>(f: [T; 3], limit: T) -> Option<T> {
             best = Some(r);
         }
     }
-    best.map(|r| r * limit)
+    best.map(|r| (r * limit).plain())
 }

@@ -6,7 +6,7 @@
 use nalgebra::Vector2;
 
 use super::terminal::Contact;
-use crate::{Scalar, scalar::constant, scalar::fma};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::fma};
 
 /// H, K and F for one direction and one choice of kappa.
 #[derive(Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::{Law, Scalar, scalar::constant, scalar::larger};
+use crate::{Law, scalar::Real as Scalar, scalar::constant, scalar::larger};
 
 /// The quantities that grow along a collision, in units where m_nn = 1 and v_n1 = -1.
 #[derive(Clone, Copy)]

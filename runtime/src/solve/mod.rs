@@ -1,6 +1,7 @@
 //! The exact solver: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
 
 mod arc;
+mod bend;
 mod chart;
 mod ledger;
 mod regular;
@@ -17,7 +18,10 @@ pub(crate) use self::{
     sliding::Slide,
     terminal::Contact,
 };
-use crate::{Impact, ImpactError, Path, ReducedMatrix, Scalar, Surface, scalar::constant};
+use crate::{
+    Impact, ImpactError, Path, ReducedMatrix, Surface,
+    scalar::{Real, constant, length},
+};
 
 /// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
 ///
@@ -27,7 +31,17 @@ use crate::{Impact, ImpactError, Path, ReducedMatrix, Scalar, Surface, scalar::c
 /// # Errors
 /// Every reason is a variant of [`ImpactError`]; a result is never NaN.
 #[inline]
-pub fn solve<T: Scalar>(
+pub fn solve<T: crate::Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<Impact<T>, ImpactError<T>> {
+    solve_real(matrix, approach, surface)
+}
+
+/// The same for everything that the solver can calculate with.
+#[inline]
+pub(crate) fn solve_real<T: Real>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
     surface: &Surface<T>,
@@ -38,7 +52,7 @@ pub fn solve<T: Scalar>(
 
 /// Solves a collision with any way of following the sliding arc.
 #[inline(always)]
-pub(crate) fn collide<T: Scalar>(
+pub(crate) fn collide<T: Real>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
     surface: &Surface<T>,
@@ -48,7 +62,7 @@ pub(crate) fn collide<T: Scalar>(
     let speed = -approach.x;
     let contact = contact(matrix, surface.mu);
     let tangential = Vector2::new(approach.y, approach.z) / speed;
-    let slip = tangential.norm();
+    let slip = length(&tangential);
     let mut ledger = Ledger::new(surface.law, surface.e);
     let eps = T::default_epsilon();
     let slips = slip > eps * eps * eps * eps;
@@ -89,7 +103,7 @@ pub(crate) fn collide<T: Scalar>(
 
 /// The arc after slip has stopped; nothing if the law never ends it.
 #[inline]
-fn after_slip<T: Scalar>(
+fn after_slip<T: Real>(
     contact: &Contact<T>,
     state: &mut State<T>,
     slips: bool,
@@ -97,7 +111,7 @@ fn after_slip<T: Scalar>(
 ) -> Option<(State<T>, Vector2<T>, Path)> {
     let eps = T::default_epsilon();
     // Where slip and normal velocity stop together, rounding must not tell them apart.
-    let scale = T::one() + state.normal * (T::one() + contact.mu * contact.b.norm());
+    let scale = T::one() + state.normal * (T::one() + contact.mu * length(&contact.b));
     if slips && state.velocity.abs() <= constant::<T>(256.0) * eps * scale {
         state.velocity = T::zero();
         if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
@@ -105,7 +119,7 @@ fn after_slip<T: Scalar>(
         }
     }
     let hold = contact.hold();
-    let sticks = hold.norm() <= contact.mu;
+    let sticks = length(&hold) <= contact.mu;
     let (path, push, gain, rate) = if sticks {
         let rate = T::one() - contact.b.dot(&hold);
         // Below rounding the contact can no longer move along the normal.
@@ -136,7 +150,7 @@ fn after_slip<T: Scalar>(
 
 /// The tangential part of a contact in units where m_nn = 1.
 #[inline]
-pub(crate) fn contact<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T) -> Contact<T> {
+pub(crate) fn contact<T: Real>(matrix: &ReducedMatrix<T>, mu: T) -> Contact<T> {
     let unit = T::one() / matrix.nn;
     Contact {
         mu,
@@ -149,7 +163,7 @@ pub(crate) fn contact<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T) -> Contact<T>
 
 /// Names what is wrong with the input.
 #[inline]
-pub(crate) fn check<T: Scalar>(
+pub(crate) fn check<T: Real>(
     m: &ReducedMatrix<T>,
     v: &Vector3<T>,
     surface: &Surface<T>,
@@ -204,7 +218,7 @@ pub(crate) fn check<T: Scalar>(
 
 /// Both real roots of a x^2 + b x + c, without cancellation; roots that do not exist come out as zero.
 #[inline]
-pub(crate) fn quadratic<T: Scalar>(a: T, b: T, c: T) -> [T; 2] {
+pub(crate) fn quadratic<T: Real>(a: T, b: T, c: T) -> [T; 2] {
     let disc = b * b - constant::<T>(4.0) * a * c;
     if disc < T::zero() {
         return [T::zero(); 2];

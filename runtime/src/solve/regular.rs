@@ -9,7 +9,7 @@ use super::{
     series::{Row, Scaled, TERMS, Table, from_rest, from_rest_direct, sum, terms},
     terminal::Contact,
 };
-use crate::{Scalar, scalar::constant, scalar::larger};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::larger};
 
 /// Slip over |v_n1| (times mu if that is above one) beyond which the work of the normal impulse is summed directly.
 const FAST: f64 = 32.0;
@@ -43,7 +43,8 @@ impl<'a, T: Scalar> Regular<'a, T> {
         let chart = chart.with_kappa(-half * h1 / h0);
         let [h0, h1, h2, ..] = chart.h;
         let [k0, ..] = chart.k;
-        let pivot = h1.abs() * half + (h2 * h0).abs().sqrt() + k0.abs() * half + h0.abs() * half;
+        // Nothing depends on it, so that it needs no derivative (and the root may have none).
+        let pivot = (h1.abs() * half + (h2 * h0).abs().sqrt() + k0.abs() * half + h0.abs() * half).plain();
         let scaled = Scaled::new(&chart, h0 / pivot, T::one() / pivot);
         let b = &contact.b;
         let d = &start.direction;
@@ -77,7 +78,7 @@ impl<'a, T: Scalar> Regular<'a, T> {
             contact: *contact,
             along: [along, contact.mu * tt, contact.mu * ts],
             fast,
-            limit,
+            limit: limit.plain(),
         }
     }
 

@@ -12,7 +12,7 @@ use super::{
     series::{Row, Scaled, TERMS, Table, from_root, inverses, sum, sum_one, terms},
     terminal::Contact,
 };
-use crate::{Scalar, scalar::constant, scalar::fma, scalar::larger};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::fma, scalar::larger};
 
 /// Slip over |v_n1| (times mu if that is above one) beyond which the work would lose digits.
 const FAST: f64 = 32.0;

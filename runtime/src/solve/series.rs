@@ -7,7 +7,7 @@
 use core::cell::Cell;
 
 use super::chart::Chart;
-use crate::{Scalar, scalar::constant, scalar::fma};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::fma};
 
 /// Most terms of a series.
 pub(super) const TERMS: usize = 64;

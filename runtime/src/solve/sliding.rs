@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use super::{
     arc::{Start, follow},
+    bend::bend,
     chart::Chart,
     ledger::{Ledger, Line, State},
     regular::Regular,
@@ -11,7 +12,7 @@ use super::{
     series::{TERMS, table},
     terminal::Contact,
 };
-use crate::{Scalar, scalar::constant};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::length};
 
 /// Pieces after which the arc is given up. Each one changes the distance to a root of h by a fixed factor at least.
 const PIECES: u32 = 512;
@@ -36,7 +37,7 @@ pub(super) fn slide<T: Scalar>(
 ) -> Slide<T> {
     let eps = T::default_epsilon();
     // Rounding leaves h this uncertain.
-    let noise = eps * (c.b.norm() + c.mu * (c.tt + c.ss));
+    let noise = eps * (length(&c.b) + c.mu * (c.tt + c.ss));
     let mut at = Start { state: State::approach(), direction: from / speed, slip: speed };
     let mut table = table(speed);
     for _ in 0..PIECES {
@@ -70,7 +71,7 @@ pub(super) fn slide<T: Scalar>(
                     Ok(point) => return Slide::Ended(point.state, point.slip),
                     Err(_) if stops => return Slide::Stopped(stop),
                     Err(point) => {
-                        let speed = point.slip.norm();
+                        let speed = length(&point.slip);
                         at = Start { state: point.state, direction: point.slip / speed, slip: speed };
                         continue;
                     }
@@ -81,7 +82,7 @@ pub(super) fn slide<T: Scalar>(
         match follow(c, &step, &at, step.first_rate(), f0, ledger) {
             Ok(point) => return Slide::Ended(point.state, point.slip),
             Err(point) => {
-                let speed = point.slip.norm();
+                let speed = length(&point.slip);
                 at = Start { state: point.state, direction: point.slip / speed, slip: speed };
             }
         }
@@ -101,26 +102,35 @@ fn straight<T: Scalar>(
     let noise = constant::<T>(1024.0) * T::default_epsilon();
     let g = c.slip_rate(&d).dot(&d);
     let mut f = c.normal_rate(&d);
-    if f.abs() <= noise * (T::one() + c.mu * c.b.norm()) {
+    if f.abs() <= noise * (T::one() + c.mu * length(&c.b)) {
         f = T::zero();
     }
     // Slip that no longer changes while v_n does not either goes on for ever.
-    let dead = f == T::zero() && g.abs() <= noise * (c.b.norm() + c.mu * (c.tt + c.ss));
+    let dead = f == T::zero() && g.abs() <= noise * (length(&c.b) + c.mu * (c.tt + c.ss));
     let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
-    let moved = |impulse: T, velocity: T, work: T| State {
-        normal: state.normal + impulse,
-        tangential: state.tangential - d * (c.mu * impulse),
-        velocity,
-        work,
+    let across = Vector2::new(-d.y, d.x);
+    let turned = |impulse: Option<T>| if T::REFINED { bend(c, &d, slip, impulse) } else { T::zero() };
+    let moved = |impulse: T, velocity: T, work: T, bend: T| {
+        let mut push = d * impulse;
+        if T::REFINED {
+            push += across * bend;
+        }
+        State { normal: state.normal + impulse, tangential: state.tangential - push * c.mu, velocity, work }
     };
     match ledger.follow_line(&state, f, length) {
         Line::Ended { impulse, velocity, work } => {
-            Slide::Ended(moved(impulse, velocity, work), d * (slip + g * impulse))
+            let mut left = d * (slip + g * impulse);
+            let bend = turned(Some(impulse));
+            if T::REFINED {
+                let pull = Vector2::new(c.ts * d.x - c.tt * d.y, c.ss * d.x - c.ts * d.y);
+                left += across * (c.slip_rate(&d).dot(&across) * impulse) - pull * (c.mu * bend);
+            }
+            Slide::Ended(moved(impulse, velocity, work, bend), left)
         }
         Line::Passed(impulse) => {
             let velocity = state.velocity + f * impulse;
             let work = state.work + (state.velocity + velocity) * impulse * constant(0.5);
-            Slide::Stopped(moved(impulse, velocity, work))
+            Slide::Stopped(moved(impulse, velocity, work, turned(None)))
         }
         Line::Endless => Slide::Endless(state),
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::{Scalar, scalar::constant, scalar::larger};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::larger, scalar::length};
 
 /// The tangential part of a contact, in units where m_nn = 1: b = (m_nt, m_ns) and T.
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ impl<T: Scalar> Contact<T> {
     #[inline]
     pub fn renewal(&self) -> Vector2<T> {
         let (tt, ts, ss) = (self.mu * self.tt, self.mu * self.ts, self.mu * self.ss);
-        let size = self.b.norm();
+        let size = length(&self.b);
         let mut g = larger(size - (tt + ss), T::default_epsilon() * size);
         let mut d = self.b / size;
         let mut settled = false;
@@ -68,7 +68,7 @@ impl<T: Scalar> Contact<T> {
             let (p, q) = (tt + g, ss + g);
             let det = p * q - ts * ts;
             let y = Vector2::new(q * self.b.x - ts * self.b.y, p * self.b.y - ts * self.b.x) / det;
-            let norm = y.norm();
+            let norm = length(&y);
             d = y / norm;
             // d|y|/dg = -d . (mu T + g)^-1 y
             let z = Vector2::new(q * d.x - ts * d.y, p * d.y - ts * d.x) / det;

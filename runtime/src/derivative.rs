@@ -1,0 +1,240 @@
+//! The derivative of a collision's outcome with respect to everything that it depends on.
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+use crate::{
+    Impact, ImpactError, Law, Path, ReducedMatrix, Scalar, Surface, dual::Dual, scalar::constant, solve,
+    solve::solve_real,
+};
+
+/// Inputs: approach velocity (3), reduced matrix (6), mu, e.
+const INPUTS: usize = 11;
+
+/// Why a derivative does not exist at this input. What is given then is the derivative along the path that the solver took, which
+/// is one-sided: it holds for changes of the input that keep the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Obstacle {
+    /// There is no slip at the start. The outcome is continuous there, but what a little slip does depends on its direction: the
+    /// columns of v_t and v_s are zero and mean nothing. The other columns hold for changes that bring no slip.
+    NoSlip,
+    /// mu = mu_c: after slip has stopped the contact sticks for a greater mu and slides on for a smaller one. The derivative is the one for
+    /// the path given.
+    CriticalFriction,
+    /// Slip stops just as the collision ends: with a change of the input one way the terminal phase vanishes. The derivative is the one for
+    /// the path given.
+    PathChange,
+    /// Slip keeps its direction from the beginning although the contact pulls across it (h = 0 while b.d' is not): the derivative of v_n is
+    /// the one for changes that keep the hodograph straight. Where symmetry keeps it straight (planar systems) nothing is missing.
+    Straight,
+    /// The law ends the collision where v_n just touches zero or its greatest value, or the bodies just fail to approach a second time: the
+    /// outcome jumps. The derivative is the one without the jump.
+    Grazing,
+}
+
+/// The outcome of a collision and its derivative.
+///
+/// The columns of both matrices are v_n1, v_t1, v_s1 (approach), m_nn, m_nt, m_ns, m_tt, m_ts, m_ss, mu, e; an off-diagonal entry
+/// of the reduced matrix is one input that stands twice in the matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ImpactDerivative<T: nalgebra::Scalar> {
+    /// The outcome itself.
+    pub impact: Impact<T>,
+    /// Derivative of the impulse (rows n, t, s).
+    pub impulse: SMatrix<T, 3, 11>,
+    /// Derivative of the velocity of separation (rows n, t, s).
+    pub velocity: SMatrix<T, 3, 11>,
+    /// Why this is only a one-sided derivative, if it is.
+    ///
+    /// At mu = 0, e = 0 and e = 1, where the range of an input ends, the column of that input is one-sided by itself and nothing is reported.
+    pub obstacle: Option<Obstacle>,
+}
+
+impl<T: Scalar> ImpactDerivative<T> {
+    /// Impulse by velocity of approach, in kg.
+    #[inline]
+    pub fn impulse_by_approach(&self) -> Matrix3<T> {
+        self.impulse.fixed_columns::<3>(0).into_owned()
+    }
+
+    /// Velocity of separation by velocity of approach, without unit.
+    #[inline]
+    pub fn velocity_by_approach(&self) -> Matrix3<T> {
+        self.velocity.fixed_columns::<3>(0).into_owned()
+    }
+
+    /// Impulse by the entries nn, nt, ns, tt, ts, ss of the reduced matrix.
+    #[inline]
+    pub fn impulse_by_matrix(&self) -> SMatrix<T, 3, 6> {
+        self.impulse.fixed_columns::<6>(3).into_owned()
+    }
+
+    /// Velocity of separation by the entries nn, nt, ns, tt, ts, ss of the reduced matrix.
+    #[inline]
+    pub fn velocity_by_matrix(&self) -> SMatrix<T, 3, 6> {
+        self.velocity.fixed_columns::<6>(3).into_owned()
+    }
+
+    /// Impulse and velocity of separation by mu.
+    #[inline]
+    pub fn by_friction(&self) -> (Vector3<T>, Vector3<T>) {
+        (self.impulse.column(9).into_owned(), self.velocity.column(9).into_owned())
+    }
+
+    /// Impulse and velocity of separation by e.
+    #[inline]
+    pub fn by_restitution(&self) -> (Vector3<T>, Vector3<T>) {
+        (self.impulse.column(10).into_owned(), self.velocity.column(10).into_owned())
+    }
+}
+
+/// Solves a collision and differentiates its outcome.
+///
+/// The same exact solver runs on numbers that carry their derivatives: no step size, no truncation. Needs no allocator and cannot
+/// panic; the stack holds about twelve times what [`solve`] needs.
+///
+/// # Errors
+/// What [`solve`] refuses.
+pub fn derivative<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<ImpactDerivative<T>, ImpactError<T>> {
+    let impact = solve(matrix, approach, surface)?;
+    let input = Dual::<T, INPUTS>::input;
+    let [nn, nt, ns, tt, ts, ss] = <[T; 6]>::from(*matrix);
+    let hit = solve_real(
+        &ReducedMatrix::new(
+            input(nn, 3),
+            input(nt, 4),
+            input(ns, 5),
+            input(tt, 6),
+            input(ts, 7),
+            input(ss, 8),
+        ),
+        &Vector3::new(input(approach.x, 0), input(approach.y, 1), input(approach.z, 2)),
+        &Surface { mu: input(surface.mu, 9), e: input(surface.e, 10), law: surface.law },
+    );
+    // The same calculation has just succeeded.
+    let Ok(hit) = hit else { return Err(ImpactError::NotFinite { value: surface.e }) };
+    let rows = |v: &Vector3<Dual<T, INPUTS>>| {
+        SMatrix::from_fn(|i, j| {
+            let entry = v.as_slice().get(i).and_then(|d| d.partials.get(j));
+            entry.copied().unwrap_or(T::zero())
+        })
+    };
+    let mut result = ImpactDerivative {
+        impact,
+        impulse: rows(&hit.impulse),
+        velocity: rows(&hit.velocity),
+        obstacle: None,
+    };
+    if surface.e <= T::zero() {
+        plastic(matrix, approach, surface, &mut result);
+    }
+    result.obstacle = obstacle(matrix, approach, surface, &result);
+    Ok(result)
+}
+
+/// The column of e where it is zero: the collision ends with compression, and a little restitution adds a little of the last phase.
+fn plastic<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+    result: &mut ImpactDerivative<T>,
+) {
+    let impact = &result.impact;
+    let slip = impact.velocity.yz();
+    let speed = slip.norm();
+    let push = match impact.path {
+        Path::SlidingThenSticking | Path::Sticking => {
+            // No tangential velocity comes: T x = b, as sticking demands.
+            match matrix_hold(matrix) {
+                Some([t, s]) => Vector3::new(T::one(), -t, -s),
+                None => return,
+            }
+        }
+        _ if speed > T::zero() => {
+            Vector3::new(T::one(), -surface.mu * slip.x / speed, -surface.mu * slip.y / speed)
+        }
+        _ => return,
+    };
+    let rates = matrix.apply(&push);
+    let rate = rates.x;
+    let more = match surface.law {
+        Law::Newton => -approach.x / rate,
+        Law::Poisson => impact.impulse.x,
+        Law::Stronge => (-(impact.normal_work + impact.normal_work) / rate).sqrt(),
+    };
+    if more.is_finite() {
+        result.impulse.set_column(10, &(push * more));
+        result.velocity.set_column(10, &(rates * more));
+    }
+}
+
+/// T^-1 b of a contact that sticks, if T is not singular.
+fn matrix_hold<T: Scalar>(m: &ReducedMatrix<T>) -> Option<[T; 2]> {
+    let det = m.tt * m.ss - m.ts * m.ts;
+    if det > m.tt * m.ss * T::default_epsilon() * constant(64.0) {
+        return Some([(m.ss * m.nt - m.ts * m.ns) / det, (m.tt * m.ns - m.ts * m.nt) / det]);
+    }
+    // Rank one: the least push that does it.
+    let square = m.tt * m.tt + m.ss * m.ss + (m.ts + m.ts) * m.ts;
+    let [x, y] = [m.tt * m.nt + m.ts * m.ns, m.ts * m.nt + m.ss * m.ns];
+    (square > T::zero()).then(|| [x / square, y / square])
+}
+
+/// What stands against a derivative: the path, or the number of compressions, is another one close by.
+fn obstacle<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+    result: &ImpactDerivative<T>,
+) -> Option<Obstacle> {
+    let here = &result.impact;
+    if matches!(here.path, Path::Sticking | Path::Renewal) {
+        return Some(Obstacle::NoSlip);
+    }
+    let step = T::default_epsilon().sqrt();
+    let mut found = straight(matrix, approach, surface.mu).then_some(Obstacle::Straight);
+    for sign in [T::one(), -T::one()] {
+        let factor = T::one() + sign * step;
+        let slip = Vector3::new(approach.x, approach.y * factor, approach.z * factor);
+        let mu = Surface { mu: surface.mu * factor, ..*surface };
+        let e = Surface { e: (surface.e * factor).min(T::one()), ..*surface };
+        for (velocity, surface) in [(&slip, surface), (approach, &mu), (approach, &e)] {
+            let Ok(near) = solve(matrix, velocity, surface) else {
+                return Some(Obstacle::Grazing);
+            };
+            // The outcome jumps, or falls steeply like a root.
+            let moved = (near.impulse - here.impulse).norm();
+            let jumps = moved > here.impulse.norm() * step.sqrt() * constant(64.0);
+            if near.compressions != here.compressions || jumps {
+                return Some(Obstacle::Grazing);
+            }
+            if near.path != here.path {
+                let slides = |path: Path| path == Path::Sliding;
+                found = Some(if slides(near.path) || slides(here.path) {
+                    Obstacle::PathChange
+                } else {
+                    Obstacle::CriticalFriction
+                });
+            }
+        }
+    }
+    let finite = result.impulse.iter().chain(result.velocity.iter()).all(|x| x.is_finite());
+    if finite { found } else { Some(Obstacle::Grazing) }
+}
+
+/// Whether slip starts in a direction that stays, while the normal velocity depends on that direction.
+fn straight<T: Scalar>(m: &ReducedMatrix<T>, v: &Vector3<T>, mu: T) -> bool {
+    let slip = v.yz();
+    let d = slip / slip.norm();
+    let across = m.ns * d.x - m.nt * d.y;
+    let pull = m.ts * (d.x * d.x - d.y * d.y) + (m.ss - m.tt) * d.x * d.y;
+    let noise = T::default_epsilon() * (m.nt.abs() + m.ns.abs() + mu * (m.tt + m.ss)) * constant(4.0);
+    (across - mu * pull).abs() <= noise && across.abs() > noise && mu > T::zero()
+}

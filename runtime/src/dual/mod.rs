@@ -1,0 +1,82 @@
+//! Dual numbers: a value with its derivatives with respect to `N` inputs, carried through the solver by forward differentiation.
+
+mod operators;
+
+use crate::{Scalar, scalar::Real};
+
+/// A value and its partial derivatives. Comparisons look at the value alone, so that a calculation takes the same branches as without
+/// derivatives.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Dual<T, const N: usize> {
+    pub value: T,
+    pub partials: [T; N],
+}
+
+impl<T: Scalar, const N: usize> Dual<T, N> {
+    /// Something that does not depend on the inputs.
+    #[inline]
+    pub fn fixed(value: T) -> Self {
+        Self { value, partials: [T::zero(); N] }
+    }
+
+    /// The input with this index.
+    #[inline]
+    pub fn input(value: T, index: usize) -> Self {
+        let mut dual = Self::fixed(value);
+        if let Some(partial) = dual.partials.get_mut(index) {
+            *partial = T::one();
+        }
+        dual
+    }
+
+    /// A function of one number, by its value and its derivative here.
+    #[inline]
+    fn chain(self, value: T, derivative: T) -> Self {
+        Self { value, partials: self.partials.map(|p| p * derivative) }
+    }
+}
+
+impl<T: Scalar, const N: usize> Real for Dual<T, N> {
+    const REFINED: bool = true;
+
+    #[inline]
+    fn constant(value: f64) -> Self {
+        Self::fixed(nalgebra::convert(value))
+    }
+    #[inline]
+    fn plain(self) -> Self {
+        Self::fixed(self.value)
+    }
+    #[inline]
+    fn default_epsilon() -> Self {
+        Self::fixed(T::default_epsilon())
+    }
+    #[inline]
+    fn is_finite(&self) -> bool {
+        self.value.is_finite()
+    }
+    #[inline]
+    fn abs(self) -> Self {
+        if self.value < T::zero() { -self } else { self }
+    }
+    /// At zero, where there is no derivative, it counts as zero.
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        let derivative = if root > T::zero() { T::one() / (root + root) } else { T::zero() };
+        self.chain(root, derivative)
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        let value = self.value.exp();
+        self.chain(value, value)
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), T::one() / self.value)
+    }
+    #[inline]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+}
