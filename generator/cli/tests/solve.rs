@@ -166,3 +166,73 @@ fn wrong_calls_exit_with_2() {
     }
     assert_eq!(hodograph(&["solve"], "").code, 0);
 }
+
+/// The scaled difference of two answers.
+fn apart(ours: &Value, exact: &Value, approach: f64) -> f64 {
+    let largest = |value: &Value| numbers(value).iter().fold(0.0f64, |a, b| a.max(b.abs()));
+    let (impulse, velocity) = (largest(&exact["impulse"]), largest(&exact["v"]) + approach);
+    let of = |name: &str| (number(&ours[name]) - number(&exact[name])).abs() / (impulse * velocity);
+    difference(&numbers(&ours["impulse"]), &numbers(&exact["impulse"]), 0.0)
+        .max(difference(&numbers(&ours["v"]), &numbers(&exact["v"]), velocity))
+        .max(of("dE"))
+        .max(of("dEn"))
+}
+
+#[test]
+fn every_method_comes_near_the_exact_answer() {
+    let sleds = json!({"m": [0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211], "v": [-0.946108022, 1.06306701, 0]});
+    let mut input = String::new();
+    for mu in [0.6, 1.1, 1.6] {
+        for law in ["newton", "poisson", "stronge"] {
+            let mut line = sleds.clone();
+            (line["mu"], line["e"], line["law"]) = (json!(mu), json!(0.8), json!(law));
+            input += &format!("{line}\n");
+        }
+    }
+    let exact = hodograph(&["solve"], &input).lines();
+    for (arguments, bound) in [
+        (&["--method", "exact"][..], 0.0),
+        (&["--method", "integrate"], 1e-8),
+        (&["--method", "integrate", "--tolerance", "1e-6"], 1e-4),
+        (&["--method", "irs", "--tolerance", "1e-10"], 1e-8),
+        (&["--method", "irs", "--steps", "1000"], 1e-3),
+        (&["--method", "sum", "--steps", "1000"], 1e-3),
+        (&["--method", "sum"], 0.02),
+        (&["--method", "irs", "--steps", "1"], 0.5),
+    ] {
+        let run = hodograph(&[&["solve"], arguments].concat(), &input);
+        assert_eq!(run.code, 0, "{arguments:?} {}", run.stdout);
+        for (ours, exact) in run.lines().iter().zip(&exact) {
+            let apart = apart(ours, exact, 1.06306701);
+            assert!(apart <= bound, "{arguments:?}: {apart:e}\n{ours}\n{exact}");
+            // A coarse summation may even miss where slip stops.
+            assert!(bound > 0.1 || ours["path"] == exact["path"], "{arguments:?}");
+        }
+    }
+}
+
+#[test]
+fn methods_answer_bad_lines_too_and_refuse_options_that_are_not_theirs() {
+    let slides_forever =
+        json!({"m": [1, 1, 0, 1, 0, 0], "v": [-1, -0.1, 1], "mu": 2, "e": 0.5, "law": "newton"});
+    let run = hodograph(&["solve", "--method", "integrate"], &slides_forever.to_string());
+    assert_eq!((run.code, kind(&run.line()).as_str()), (1, "unfinished"));
+    for method in ["integrate", "sum", "irs"] {
+        let run = hodograph(&["solve", "--method", method], &with(&[("mu", json!(-1))]).to_string());
+        assert_eq!((run.code, kind(&run.line()).as_str()), (1, "negative_friction"));
+    }
+    for arguments in [
+        &["--steps", "5"][..],
+        &["--tolerance", "1e-6"],
+        &["--method", "sum", "--steps", "0"],
+        &["--method", "sum", "--tolerance", "1e-6"],
+        &["--method", "integrate", "--steps", "5"],
+        &["--method", "integrate", "--tolerance", "0"],
+        &["--method", "integrate", "--tolerance", "x"],
+        &["--method", "irs", "--steps", "5", "--tolerance", "1e-6"],
+    ] {
+        let run = hodograph(&[&["solve"], arguments].concat(), "");
+        assert_eq!(run.code, 2, "{arguments:?}");
+        assert!(run.stdout.is_empty() && !run.stderr.is_empty());
+    }
+}

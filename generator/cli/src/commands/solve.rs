@@ -3,6 +3,7 @@
 use std::io::{self, BufRead, IsTerminal};
 
 use clap::ValueEnum;
+use hodograph::methods::{self, Integration, Partial, Summation};
 use hodograph::{ReducedMatrix, Surface};
 use nalgebra::Vector3;
 
@@ -27,9 +28,15 @@ const LONGEST_LINE: usize = 1 << 20;
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// how to solve
+    /// how to solve; all but `exact` are for comparison
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     pub method: Method,
+    /// `sum`, `irs`: steps to an impulse of -v_n1 / (4 m_nn), the paper's refinement k [default: 50]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    pub steps: Option<u32>,
+    /// `integrate`, and `irs` instead of steps: error allowed per step, relative, 1e-14 to 0.1 [default: 1e-10]
+    #[arg(long, value_parser = tolerance, conflicts_with = "steps")]
+    pub tolerance: Option<f64>,
 }
 
 /// The roads to an outcome.
@@ -37,14 +44,70 @@ pub struct Arguments {
 pub enum Method {
     /// the exact solver
     Exact,
+    /// numerical integration (55)
+    Integrate,
+    /// recursive summation (56)
+    Sum,
+    /// summation or, with --tolerance, integration of the sliding part, and (57)-(62) after it
+    Irs,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if (1e-14..=0.1).contains(&value) => Ok(value),
+        _ => Err("it must be a number from 1e-14 to 0.1".to_owned()),
+    }
+}
+
+impl Arguments {
+    /// Names an option that the method does not have.
+    fn check(&self) -> Outcome {
+        let misfit = match self.method {
+            Method::Exact if self.steps.is_some() => "--steps",
+            Method::Exact | Method::Sum if self.tolerance.is_some() => "--tolerance",
+            Method::Integrate if self.steps.is_some() => "--steps",
+            _ => return Ok(()),
+        };
+        let method =
+            self.method.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned());
+        Err(Stop::Call(format!("--method {method} has no option {misfit}: see `hodograph solve --help`")))
+    }
+
+    fn integration(&self) -> Integration {
+        self.tolerance.map_or_else(Integration::default, Integration::with_tolerance)
+    }
+
+    fn summation(&self) -> Summation {
+        Summation::new(self.steps.unwrap_or(50))
+    }
+
+    fn solve(
+        &self,
+        matrix: &ReducedMatrix<f64>,
+        approach: &Vector3<f64>,
+        surface: &Surface<f64>,
+    ) -> Result<hodograph::Impact<f64>, Failure> {
+        let partial = if self.tolerance.is_some() {
+            Partial::Integrate(self.integration())
+        } else {
+            Partial::Sum(self.summation())
+        };
+        Ok(match self.method {
+            Method::Exact => hodograph::solve(matrix, approach, surface)?,
+            Method::Integrate => methods::integrate(matrix, approach, surface, &self.integration())?,
+            Method::Sum => methods::sum(matrix, approach, surface, &self.summation())?,
+            Method::Irs => methods::irs(matrix, approach, surface, &partial)?,
+        })
+    }
 }
 
 /// Runs the command.
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a line had an error.
+/// [`Stop::Said`] if a line had an error, [`Stop::Call`] for an option that the method does not have.
 pub fn run(arguments: &Arguments) -> Outcome {
+    arguments.check()?;
     let mut input = io::stdin().lock();
     if io::stdin().is_terminal() {
         eprintln!(
@@ -122,8 +185,5 @@ fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
     let surface = Surface { mu, e, law };
     let matrix = ReducedMatrix::from(matrix);
     let velocity = Vector3::from(velocity);
-    let impact = match arguments.method {
-        Method::Exact => hodograph::solve(&matrix, &velocity, &surface),
-    }?;
-    Answer::try_from(&impact)
+    Answer::try_from(&arguments.solve(&matrix, &velocity, &surface)?)
 }

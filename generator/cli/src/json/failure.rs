@@ -3,6 +3,7 @@
 use std::fmt;
 
 use hodograph::ImpactError;
+use hodograph::methods::MethodError;
 use serde::Serialize;
 
 /// What kind of error it is: the stable names of the contract.
@@ -29,6 +30,8 @@ pub enum Kind {
     NoNormalMobility,
     /// no outcome exists
     Wedged,
+    /// a method other than the exact one did not come to an end
+    Unfinished,
     /// the equations cannot be evaluated in this state
     SingularState,
     /// the coordinates contradict each other
@@ -84,5 +87,14 @@ impl From<ImpactError<f64>> for Failure {
             _ => Kind::NotFinite,
         };
         Failure::new(kind, error.to_string())
+    }
+}
+
+impl From<MethodError> for Failure {
+    fn from(error: MethodError) -> Self {
+        match error {
+            MethodError::Impact(error) => error.into(),
+            error => Failure::new(Kind::Unfinished, error.to_string()),
+        }
     }
 }
