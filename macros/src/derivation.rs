@@ -47,9 +47,22 @@ pub fn find(
 
 #[cfg(feature = "derive")]
 fn absent(mechanism: &Mechanism, _shown: &str, _command: &str) -> Result<Found, String> {
+    #[cfg(unix)]
+    let _elsewhere = lead_stdout_elsewhere();
     match hodograph_generator::derive(mechanism) {
         Ok(derived) => Ok(Found { program: Program::new(&derived), checked_in: false }),
         Err(error) => Err(format!("the equations could not be derived: {error}")),
+    }
+}
+
+/// The algebra engine greets on standard output, which here belongs to the compiler or to an editor's macro server: until
+/// the guard is dropped it goes to standard error, or where that cannot be, nowhere.
+#[cfg(all(feature = "derive", unix))]
+fn lead_stdout_elsewhere() -> Box<dyn std::any::Any> {
+    let stderr = std::fs::OpenOptions::new().write(true).open("/dev/stderr").ok();
+    match stderr.and_then(|stderr| gag::Redirect::stdout(stderr).ok()) {
+        Some(redirect) => Box::new(redirect),
+        None => Box::new(gag::Gag::stdout().ok()),
     }
 }
 

@@ -25,6 +25,17 @@ pub enum DerivationError {
     Session(SessionError),
 }
 
+impl std::fmt::Display for DerivationError {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            DerivationError::Model(error) => error.fmt(out),
+            DerivationError::Session(error) => error.fmt(out),
+        }
+    }
+}
+
+impl std::error::Error for DerivationError {}
+
 /// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with their cube.
 pub const MOST_SPEEDS: usize = 64;
 

@@ -37,6 +37,14 @@ pub struct DeriveError {
     pub help: String,
 }
 
+impl std::fmt::Display for DeriveError {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(out, "{}: {}", self.message, self.help)
+    }
+}
+
+impl std::error::Error for DeriveError {}
+
 /// A value that must not vanish.
 #[derive(Clone, Debug)]
 pub struct GuardedValue {
