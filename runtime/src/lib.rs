@@ -21,6 +21,7 @@ mod reduced;
 mod saltation;
 mod scalar;
 mod solve;
+pub mod structure;
 mod surface;
 
 pub use crate::{

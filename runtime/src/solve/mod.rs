@@ -12,10 +12,9 @@ mod terminal;
 
 use nalgebra::{Vector2, Vector3};
 
-use self::{ledger::Line, sliding::slide};
 pub(crate) use self::{
-    ledger::{Ledger, State},
-    sliding::Slide,
+    ledger::{Ledger, Line, State},
+    sliding::{Slide, slide, straight},
     terminal::Contact,
 };
 use crate::{

@@ -29,7 +29,7 @@ pub(crate) enum Slide<T: Scalar> {
 
 /// Slides from the given tangential velocity.
 #[inline]
-pub(super) fn slide<T: Scalar>(
+pub(crate) fn slide<T: Scalar>(
     c: &Contact<T>,
     from: Vector2<T>,
     speed: T,
@@ -92,7 +92,7 @@ pub(super) fn slide<T: Scalar>(
 
 /// Slip along a fixed direction: everything is linear in I_n.
 #[inline]
-fn straight<T: Scalar>(
+pub(crate) fn straight<T: Scalar>(
     c: &Contact<T>,
     d: Vector2<T>,
     slip: T,

@@ -1,0 +1,36 @@
+//! Without friction the impulse is along n, v_n is linear in it, and so is the slip.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{Frictionless, Shape};
+use crate::{
+    ReducedMatrix, Surface,
+    scalar::{Real, constant, length},
+    solve::{Contact, Ledger, Line, Slide, State, straight},
+};
+
+#[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
+impl Shape for Frictionless {
+    #[inline(always)]
+    fn impose<T: Real>(_: &mut ReducedMatrix<T>, _: &mut Vector3<T>, surface: &mut Surface<T>) {
+        surface.mu = T::zero();
+    }
+
+    #[inline(always)]
+    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+        let d = from / speed;
+        let across = c.b.y * d.x - c.b.x * d.y;
+        // Slip can only pass through zero where it is along b.
+        if across.abs() <= constant::<T>(0.25) * T::default_epsilon() * length(&c.b) {
+            return straight(c, d, speed, State::approach(), ledger);
+        }
+        let start = State::approach();
+        match ledger.follow_line(&start, T::one(), None) {
+            Line::Ended { impulse, velocity, work } => Slide::Ended(
+                State { normal: impulse, tangential: Vector2::zeros(), velocity, work },
+                from + c.b * impulse,
+            ),
+            _ => Slide::Endless(start),
+        }
+    }
+}

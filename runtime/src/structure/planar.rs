@@ -1,0 +1,23 @@
+//! In a plane the direction of slip stays (h = 0), and every arc is linear in I_n.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{Planar, Shape};
+use crate::{
+    ReducedMatrix, Surface,
+    scalar::Real,
+    solve::{Contact, Ledger, Slide, State, straight},
+};
+
+#[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
+impl Shape for Planar {
+    #[inline(always)]
+    fn impose<T: Real>(m: &mut ReducedMatrix<T>, v: &mut Vector3<T>, _: &mut Surface<T>) {
+        (m.ns, m.ts, v.z) = (T::zero(), T::zero(), T::zero());
+    }
+
+    #[inline(always)]
+    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+        straight(c, from / speed, speed, State::approach(), ledger)
+    }
+}
