@@ -1,0 +1,89 @@
+//! Counts the instructions per collision of every method, and measures their errors. `docs/benchmarks.md` says how to read it.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+use hodograph_benchmark_impacts::{METHODS, set};
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run() -> Result<(), String> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let target = here.join("target/measured");
+    execute(
+        Command::new("cargo")
+            .args(["build", "--release", "--bin", "measured", "--manifest-path"])
+            .arg(here.join("Cargo.toml"))
+            .arg("--target-dir")
+            .arg(&target)
+            // valgrind executes no AVX-512.
+            .env("RUSTFLAGS", "-C target-cpu=x86-64-v3"),
+    )?;
+    for name in ["nine", "random", "all"] {
+        let profile = target.join(format!("{name}.callgrind"));
+        execute(
+            Command::new("valgrind")
+                .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
+                .arg(format!("--callgrind-out-file={}", profile.display()))
+                .arg(target.join("release/measured"))
+                .arg(name),
+        )?;
+        let counts = counts(&std::fs::read_to_string(&profile).map_err(|error| error.to_string())?);
+        table(name, &counts);
+    }
+    Ok(())
+}
+
+fn execute(command: &mut Command) -> Result<(), String> {
+    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("{command:?}: {}\n{}", output.status, String::from_utf8_lossy(&output.stderr)))
+    }
+}
+
+/// Instructions per call of each measured function, with all that it calls: a line `cfn=` names the callee, the line after `calls=` ends with the cost.
+fn counts(profile: &str) -> BTreeMap<&'static str, f64> {
+    let mut totals: BTreeMap<&'static str, (f64, f64)> = BTreeMap::new();
+    let (mut callee, mut lines) = (None, profile.lines());
+    while let Some(line) = lines.next() {
+        if let Some(name) = line.strip_prefix("cfn=") {
+            callee = METHODS.iter().find(|method| name.contains(method.1)).map(|method| method.1);
+        } else if let (Some(calls), Some(function)) = (line.strip_prefix("calls="), callee.take()) {
+            let number = |text: &str, place| {
+                text.split_whitespace().nth(place).and_then(|word| word.parse::<f64>().ok()).unwrap_or(0.0)
+            };
+            let total = totals.entry(function).or_default();
+            total.0 += number(calls, 0);
+            total.1 += lines.next().map_or(0.0, |line| number(line, 1));
+        }
+    }
+    totals.into_iter().map(|(function, (calls, cost))| (function, cost / calls)).collect()
+}
+
+fn table(name: &str, counts: &BTreeMap<&'static str, f64>) {
+    let cases = set(name);
+    println!("\n{name}: {} collisions\n", cases.len());
+    println!("| method | instructions | median error | largest error | no answer |");
+    println!("| --- | --- | --- | --- | --- |");
+    for (label, function, method) in METHODS {
+        let answers: Vec<_> = cases.iter().map(|case| method(case).map(|hit| case.error(&hit))).collect();
+        let mut errors: Vec<f64> = answers.iter().flatten().copied().collect();
+        errors.sort_by(f64::total_cmp);
+        let count = counts.get(function).copied().unwrap_or(f64::NAN);
+        let median = errors.get(errors.len() / 2).copied().unwrap_or(f64::NAN);
+        let largest = errors.last().copied().unwrap_or(f64::NAN);
+        let none = answers.len() - errors.len();
+        println!("| {label} | {count:.0} | {median:.1e} | {largest:.1e} | {none} |");
+    }
+}
