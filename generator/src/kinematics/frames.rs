@@ -187,8 +187,12 @@ impl Kinematics<'_> {
     }
 
     /// Rotations about one axis that keeps its direction in N add up: in a planar chain the axes of every link are turned
-    /// against the ground by the sum of the angles, which spares the products of their sines and cosines.
-    fn flatten(&self, parent: AxesId, axis: Axis, negative: bool, angle: Expr) -> (AxesId, Expr) {
+    /// against the ground by the sum of the angles, which spares the products of their sines and cosines. An angle that
+    /// does not change is left alone: what is fixed in the parent stays so.
+    fn flatten(&mut self, parent: AxesId, axis: Axis, negative: bool, angle: Expr) -> (AxesId, Expr) {
+        if self.rate_of(&angle).is_zero() {
+            return (parent, angle);
+        }
         match (self.tree.turn(parent), self.tree.parent(parent)) {
             (Some(Turn::Simple { axis: before, angle: first, .. }), Some(AxesTree::N))
                 if *before == axes::index(axis) && self.tree.owner(parent) != FrameId::N =>
