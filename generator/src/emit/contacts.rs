@@ -7,7 +7,7 @@ use super::Emitter;
 use super::methods::about;
 use super::values::local;
 use crate::program::Output;
-use crate::program::routine::{ContactQuantity, Quantity};
+use crate::program::routine::{ContactQuantity, Quantity, Structure};
 
 /// What a collision needs of its contact, in any case.
 const NEEDED: [ContactQuantity; 6] = [
@@ -250,6 +250,13 @@ impl Emitter<'_> {
              Where the state is singular, or the collision has no outcome.",
             self.contact_words(contact)
         ));
+        // What the symbols of the reduced matrix show selects a closed form.
+        let resolve = match self.program.structures.get(contact) {
+            Some(Structure::Planar) => {
+                quote!(#krate::generated::resolve_structured::<#krate::structure::Planar, T>)
+            }
+            _ => quote!(#krate::generated::resolve),
+        };
         let mut arguments = self.arguments(&quantities);
         arguments.speeds = true;
         let signature = self.signature(arguments);
@@ -270,7 +277,7 @@ impl Emitter<'_> {
                     remainder: #remainder,
                     prescribed_work: #prescribed,
                 };
-                let hit = #krate::generated::resolve(&contact, surface)?;
+                let hit = #resolve(&contact, surface)?;
                 let [[i0, i1, i2]] = hit.impulse.data.0;
                 ::core::result::Result::Ok(Collision {
                     speeds: #speeds,

@@ -729,7 +729,10 @@ pub mod pendulum_in_parts {
                 remainder: ::hodograph::nalgebra::Vector3::zeros(),
                 prescribed_work: ::hodograph::nalgebra::Vector3::zeros(),
             };
-            let hit = ::hodograph::generated::resolve(&contact, surface)?;
+            let hit = ::hodograph::generated::resolve_structured::<
+                ::hodograph::structure::Planar,
+                T,
+            >(&contact, surface)?;
             let [[i0, i1, i2]] = hit.impulse.data.0;
             ::core::result::Result::Ok(Collision {
                 speeds: Speeds {

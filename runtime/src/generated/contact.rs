@@ -3,7 +3,10 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::number;
-use crate::{Impact, ImpactError, ReducedMatrix, Scalar, Surface, solve};
+use crate::{
+    Impact, ImpactError, ReducedMatrix, Scalar, Surface, solve,
+    structure::{Structure, solve_structured},
+};
 
 /// What a mechanism tells of a contact. The contact basis is `normal`, `first`, `second`, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,17 +79,49 @@ pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
 #[inline]
 pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<Resolved<T>, ImpactError<T>> {
     let (cos, sin) = contact_axes(contact);
-    let Contact { normal, first, second, velocity, .. } = contact;
+    let Contact { velocity, .. } = contact;
     let reduced = contact.reduced.turned(cos, sin);
     let slip = (velocity.y * velocity.y + velocity.z * velocity.z).sqrt();
     let approach = Vector3::new(velocity.x, slip, T::zero());
     let impact = solve(&reduced, &approach, surface)?;
+    Ok(resolved(contact, (cos, sin), reduced, approach, impact))
+}
+
+/// Solves the collision of a contact whose structure is known, in the contact basis.
+///
+/// # Errors
+///
+/// What [`solve`] refuses.
+#[inline]
+pub fn resolve_structured<S: Structure, T: Scalar>(
+    contact: &Contact<T>,
+    surface: &Surface<T>,
+) -> Result<Resolved<T>, ImpactError<T>> {
+    let (cos, sin) = contact_axes(contact);
+    let mut impact = solve_structured::<S, T>(&contact.reduced, &contact.velocity, surface)?;
+    let turned = |v: &Vector3<T>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
+    impact.impulse = turned(&impact.impulse);
+    impact.velocity = turned(&impact.velocity);
+    let approach = turned(&contact.velocity);
+    Ok(resolved(contact, (cos, sin), contact.reduced.turned(cos, sin), approach, impact))
+}
+
+/// The outcome along n, t, s in all the forms wanted.
+#[inline]
+fn resolved<T: Scalar>(
+    contact: &Contact<T>,
+    (cos, sin): (T, T),
+    reduced: ReducedMatrix<T>,
+    approach: Vector3<T>,
+    impact: Impact<T>,
+) -> Resolved<T> {
+    let Contact { normal, first, second, .. } = contact;
     let impulse = Vector3::new(
         impact.impulse.x,
         impact.impulse.y * cos - impact.impulse.z * sin,
         impact.impulse.y * sin + impact.impulse.z * cos,
     );
-    Ok(Resolved {
+    Resolved {
         tangent: first * cos + second * sin,
         binormal: second * cos - first * sin,
         approach,
@@ -95,5 +130,5 @@ pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<
         impulse,
         impulse_on_point: normal * impulse.x + first * impulse.y + second * impulse.z,
         energy_change: impact.contact_work + impulse.dot(&(contact.prescribed_work - contact.remainder)),
-    })
+    }
 }

@@ -11,7 +11,7 @@ mod trigonometry;
 pub use arithmetic::*;
 #[doc(hidden)]
 pub use checks::*;
-pub use contact::{Contact, Resolved, contact_axes, resolve};
+pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured};
 pub use error::{CollisionError, ParameterError, StateError};
 
 #[cfg(feature = "serde")]
