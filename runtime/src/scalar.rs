@@ -1,6 +1,7 @@
 //! The number type.
 
 use core::{
+    any::TypeId,
     fmt::Debug,
     ops::{AddAssign, DivAssign, MulAssign, Neg, SubAssign},
 };
@@ -39,8 +40,8 @@ pub(crate) trait Real:
     + MulAssign
     + DivAssign
 {
-    /// Whether a number may carry derivatives: then iterations go on until these have settled too.
-    const REFINED: bool = size_of::<Self>() > size_of::<f64>();
+    /// Whether the numbers may carry derivatives: then iterations go on until these have settled too.
+    fn refined() -> bool;
 
     fn constant(value: f64) -> Self;
     /// The value without its derivatives.
@@ -55,13 +56,19 @@ pub(crate) trait Real:
 }
 
 impl<T: RealField + Copy> Real for T {
+    /// Known while compiling.
+    #[inline(always)]
+    fn refined() -> bool {
+        let this = TypeId::of::<T>();
+        this != TypeId::of::<f64>() && this != TypeId::of::<f32>()
+    }
     #[inline(always)]
     fn constant(value: f64) -> Self {
         convert(value)
     }
     #[inline(always)]
     fn plain(self) -> Self {
-        if Self::REFINED { convert(convert_unchecked::<T, f64>(self)) } else { self }
+        if T::refined() { convert(convert_unchecked::<T, f64>(self)) } else { self }
     }
     #[inline(always)]
     fn default_epsilon() -> Self {

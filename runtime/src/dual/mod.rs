@@ -37,7 +37,10 @@ impl<T: Scalar, const N: usize> Dual<T, N> {
 }
 
 impl<T: Scalar, const N: usize> Real for Dual<T, N> {
-    const REFINED: bool = true;
+    #[inline(always)]
+    fn refined() -> bool {
+        true
+    }
 
     #[inline]
     fn constant(value: f64) -> Self {

@@ -172,7 +172,7 @@ fn find<T: Scalar>(
     // The square of a step this small is rounding.
     let small = constant::<T>(0.0625) * T::default_epsilon().sqrt();
     // A derivative is one step of Newton's behind its value, and interpolation between close points ruins it.
-    let mut behind = T::REFINED;
+    let mut behind = T::refined();
     for _ in 0..64 {
         let y = quantity(&point.state) - target;
         let slope = slope_at(&point.state, point.rate, point.slope);

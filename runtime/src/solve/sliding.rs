@@ -109,10 +109,10 @@ pub(crate) fn straight<T: Scalar>(
     let dead = f == T::zero() && g.abs() <= noise * (length(&c.b) + c.mu * (c.tt + c.ss));
     let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
     let across = Vector2::new(-d.y, d.x);
-    let turned = |impulse: Option<T>| if T::REFINED { bend(c, &d, slip, impulse) } else { T::zero() };
+    let turned = |impulse: Option<T>| if T::refined() { bend(c, &d, slip, impulse) } else { T::zero() };
     let moved = |impulse: T, velocity: T, work: T, bend: T| {
         let mut push = d * impulse;
-        if T::REFINED {
+        if T::refined() {
             push += across * bend;
         }
         State { normal: state.normal + impulse, tangential: state.tangential - push * c.mu, velocity, work }
@@ -121,7 +121,7 @@ pub(crate) fn straight<T: Scalar>(
         Line::Ended { impulse, velocity, work } => {
             let mut left = d * (slip + g * impulse);
             let bend = turned(Some(impulse));
-            if T::REFINED {
+            if T::refined() {
                 let pull = Vector2::new(c.ts * d.x - c.tt * d.y, c.ss * d.x - c.ts * d.y);
                 left += across * (c.slip_rate(&d).dot(&across) * impulse) - pull * (c.mu * bend);
             }
