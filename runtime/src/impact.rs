@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::{Phases, Sensitivity};
+
 /// The phases a collision went through. A phase that lasts no impulse is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -51,6 +53,10 @@ pub struct Impact<T: nalgebra::Scalar> {
     pub path: Path,
     /// How often compression ended: 1, or 2 if the bodies approached again during restitution.
     pub compressions: u32,
+    /// All quantities where compression ended and where slip stopped.
+    pub phases: Phases<T>,
+    /// Why the outcome is sensitive to its input, if it is.
+    pub sensitivity: Sensitivity,
 }
 
 impl<T: crate::Scalar> Impact<T> {

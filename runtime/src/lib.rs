@@ -13,13 +13,17 @@ mod dual;
 mod error;
 #[doc(hidden)]
 pub mod generated;
+mod hodograph;
 mod impact;
 mod law;
 #[cfg(feature = "std")]
 pub mod methods;
+mod phases;
+mod phi_bar;
 mod reduced;
 mod saltation;
 mod scalar;
+mod sensitivity;
 mod solve;
 pub mod structure;
 mod surface;
@@ -29,11 +33,15 @@ pub use crate::{
     derivative::{ImpactDerivative, Obstacle, derivative},
     error::ImpactError,
     generated::{CollisionError, ParameterError, StateError},
+    hodograph::Hodograph,
     impact::{Impact, Path},
     law::Law,
+    phases::{Moment, Motion, Phases},
+    phi_bar::phi_bar,
     reduced::ReducedMatrix,
     saltation::{saltation, speed_derivative},
     scalar::Scalar,
+    sensitivity::Sensitivity,
     solve::solve,
     surface::Surface,
 };

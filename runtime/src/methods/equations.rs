@@ -2,8 +2,8 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::MethodError;
-use crate::{Impact, Path, ReducedMatrix, Surface};
+use super::{MethodError, law::Ending};
+use crate::{Impact, Moment, Motion, Path, Phases, ReducedMatrix, Sensitivity, Surface, phases::after_slip};
 
 /// Places in a [`State`].
 pub(super) const PHI: usize = 0;
@@ -166,16 +166,42 @@ impl Problem {
     }
 
     /// The outcome in the units of the input.
-    pub fn outcome(&self, end: &State, path: Path, compressions: u32) -> Impact<f64> {
-        let (sin, cos) = end[PHI].sin_cos();
-        let scale = self.speed / self.nn;
+    pub fn outcome(&self, end: &State, path: Path, ending: &Ending) -> Impact<f64> {
+        let after = after_slip(path);
+        let compression = |state: State| {
+            let slides = ending.slip_end.is_none_or(|end| state[I_N] < end[I_N]) && self.slip > 0.0;
+            self.moment(&state, if slides { Motion::Sliding } else { after })
+        };
+        let Moment { impulse, velocity, contact_work, normal_work, .. } = self.moment(end, after);
         Impact {
-            impulse: Vector3::new(end[I_N], end[I_T], end[I_S]) * scale,
-            velocity: Vector3::new(end[V_N], end[S] * cos, end[S] * sin) * self.speed,
-            contact_work: end[WORK] * scale * self.speed,
-            normal_work: end[NORMAL_WORK] * scale * self.speed,
+            impulse,
+            velocity,
+            contact_work,
+            normal_work,
             path,
-            compressions,
+            compressions: ending.compressions,
+            phases: Phases {
+                compression_end: ending.first.map(compression),
+                last_compression_end: ending.latest.map(compression),
+                slip_end: ending.slip_end.map(|state| {
+                    let mut moment = self.moment(&state, after);
+                    (moment.velocity.y, moment.velocity.z) = (0.0, 0.0);
+                    moment
+                }),
+            },
+            sensitivity: Sensitivity::default(),
+        }
+    }
+
+    fn moment(&self, at: &State, motion: Motion) -> Moment<f64> {
+        let (sin, cos) = at[PHI].sin_cos();
+        let scale = self.speed / self.nn;
+        Moment {
+            impulse: Vector3::new(at[I_N], at[I_T], at[I_S]) * scale,
+            velocity: Vector3::new(at[V_N], at[S] * cos, at[S] * sin) * self.speed,
+            contact_work: at[WORK] * scale * self.speed,
+            normal_work: at[NORMAL_WORK] * scale * self.speed,
+            motion,
         }
     }
 }

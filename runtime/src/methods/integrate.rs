@@ -78,8 +78,8 @@ pub fn integrate(
     let mut ending = Ending::new(surface);
     let mut walk = Walk { problem: &problem, options, made: 0 };
     let at = match slide(&mut walk, &mut ending)? {
-        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, ending.compressions)),
-        Slid::Stopped(at) => at,
+        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, &ending)),
+        Slid::Stopped(at) => ending.slip_stopped(&problem, at),
     };
     let arc = problem.terminal();
     let mut at = arc.entered(at);
@@ -90,7 +90,7 @@ pub fn integrate(
     } else {
         ending.close(&problem, &arc, at, options.slack())?
     };
-    Ok(problem.outcome(&end, arc.path(problem.start()[S] > 0.0), ending.compressions))
+    Ok(problem.outcome(&end, arc.path(problem.start()[S] > 0.0), &ending))
 }
 
 /// How sliding came to its end.

@@ -46,10 +46,11 @@ pub fn irs(
     let (end, path) = match slid {
         Slid::Ended(end) => (end, Path::Sliding),
         Slid::Stopped(at) => {
+            let at = ending.slip_stopped(&problem, at);
             let arc = problem.terminal();
             let end = ending.close(&problem, &arc, arc.entered(at), slack)?;
             (end, arc.path(problem.start()[S] > 0.0))
         }
     };
-    Ok(problem.outcome(&end, path, ending.compressions))
+    Ok(problem.outcome(&end, path, &ending))
 }

@@ -2,7 +2,7 @@
 
 use super::{
     MethodError,
-    equations::{I_N, NORMAL_WORK, Problem, State, Terminal, V_N},
+    equations::{I_N, NORMAL_WORK, Problem, S, State, Terminal, V_N},
 };
 use crate::{ImpactError, Law, Surface};
 
@@ -27,6 +27,10 @@ pub(super) struct Ending {
     least_work: f64,
     pub compressions: u32,
     approaching: bool,
+    /// Where the first and the latest compression ended, and where slip stopped.
+    pub first: Option<State>,
+    pub latest: Option<State>,
+    pub slip_end: Option<State>,
 }
 
 impl Ending {
@@ -38,7 +42,16 @@ impl Ending {
             least_work: 0.0,
             compressions: 0,
             approaching: true,
+            first: None,
+            latest: None,
+            slip_end: None,
         }
+    }
+
+    /// Takes note of the end of slip, if there was any.
+    pub fn slip_stopped(&mut self, problem: &Problem, at: State) -> State {
+        self.slip_end = (problem.start()[S] > 0.0).then_some(at);
+        at
     }
 
     fn watched(&self, state: &State) -> f64 {
@@ -90,6 +103,8 @@ impl Ending {
                 at[V_N] = 0.0;
                 self.approaching = false;
                 self.compressions += 1;
+                self.first.get_or_insert(*at);
+                self.latest = Some(*at);
                 self.least_work = self.least_work.min(at[NORMAL_WORK]);
                 match self.law {
                     Law::Newton => {}

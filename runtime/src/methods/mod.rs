@@ -7,6 +7,8 @@
 //! atan2(v_s, v_t), not at 0), and know what the paper leaves out: no slip at the start, singular matrices, and repeated compression (compression
 //! ends at each upward zero of v_n; no law ends a collision while v_n < 0).
 //!
+//! They tell the phases of a collision, but set none of the flags of [`crate::Sensitivity`].
+//!
 //! # What is corrected
 //!
 //! * (56f): the terms of renewal and sticking are v_n(i-1) + f_hat D(i) and v_n(i-1) + D(i) / c_n; (56h): the first term begins with

@@ -61,15 +61,15 @@ pub fn sum(
     let mut ending = Ending::new(surface);
     let mut made = 0;
     let mut at = match slide(&problem, d, &mut ending, &mut made)? {
-        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, ending.compressions)),
-        Slid::Stopped(at) => at,
+        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, &ending)),
+        Slid::Stopped(at) => ending.slip_stopped(&problem, at),
     };
     let arc = problem.terminal();
     let path = arc.path(problem.start()[S] > 0.0);
     at = arc.entered(at);
     if arc.v_n <= 0.0 {
         let end = ending.close(&problem, &arc, at, d * problem.pace())?;
-        return Ok(problem.outcome(&end, path, ending.compressions));
+        return Ok(problem.outcome(&end, path, &ending));
     }
     loop {
         count(&mut made, &problem, &at)?;
@@ -86,7 +86,7 @@ pub fn sum(
             at[I_N] + d,
         ];
         if let Some(end) = events(&mut ending, &at, &to) {
-            return Ok(problem.outcome(&end, path, ending.compressions));
+            return Ok(problem.outcome(&end, path, &ending));
         }
         at = to;
     }

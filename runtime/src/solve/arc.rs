@@ -78,16 +78,24 @@ pub(super) fn follow<T: Scalar>(
     let (mut lo, mut hi) = (zero, end);
     let (mut begin, mut rate, mut slope) = (from.state, rate, slope);
     let mut top = last.state;
+    if let Some(stop) = ledger.stop {
+        if last.state.normal < stop {
+            return Err(last);
+        }
+        let missing = stop - begin.normal;
+        let guess = arc.guess(zero, missing / rate, missing / (top.normal - begin.normal));
+        return Ok(find(contact, arc, stop, (lo, &begin, rate, slope), hi, guess, |s| s.normal).1);
+    }
     if begin.velocity < zero {
         if last.state.velocity < zero {
             return Err(last);
         }
-        if law == Law::Newton && ledger.target > last.state.velocity {
+        if law == Law::Newton && ledger.target > last.state.velocity && !ledger.thorough {
             // Newton's law need not know where compression ends.
-            ledger.compressions += 1;
+            ledger.compressed_somewhere();
             return Err(last);
         }
-        if law != Law::Newton || ledger.target <= zero {
+        if law != Law::Newton || ledger.target <= zero || ledger.thorough {
             let guess = arc.guess(
                 zero,
                 -begin.velocity / (slope * rate),
@@ -96,13 +104,13 @@ pub(super) fn follow<T: Scalar>(
             let found = find(contact, arc, zero, (lo, &begin, rate, slope), hi, guess, |s| s.velocity);
             lo = found.0;
             let point = found.1;
-            if ledger.compressed(point.state.normal, point.state.work) {
+            if ledger.compressed(&point.state) {
                 return Ok(point);
             }
             (begin, rate, slope) = (point.state, point.rate, point.slope);
             begin.velocity = zero;
         } else {
-            ledger.compressions += 1;
+            ledger.compressed_somewhere();
         }
     } else if last.state.velocity < zero {
         // v_n falls through zero: the law must end before.

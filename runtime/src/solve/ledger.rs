@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::turns::Turns;
 use crate::{Law, scalar::Real as Scalar, scalar::constant, scalar::larger};
 
 /// The quantities that grow along a collision, in units where m_nn = 1 and v_n1 = -1.
@@ -33,18 +34,57 @@ pub(crate) struct Ledger<T: Scalar> {
     pub target: T,
     least_work: T,
     pub compressions: u32,
+    /// Where the first and the latest compression ended, if that was looked at.
+    pub first: Option<State<T>>,
+    pub latest: Option<State<T>>,
+    /// Looks for the end of compression even where the law need not know it.
+    pub thorough: bool,
+    /// Ends at this normal impulse, and not where a law does.
+    pub stop: Option<T>,
+    /// What v_n has turned at.
+    pub turns: Turns<T>,
 }
 
 impl<T: Scalar> Ledger<T> {
     #[inline]
     pub fn new(law: Law, e: T) -> Self {
-        Self { law, e, target: e, least_work: T::zero(), compressions: 0 }
+        Self {
+            law,
+            e,
+            target: e,
+            least_work: T::zero(),
+            compressions: 0,
+            first: None,
+            latest: None,
+            thorough: false,
+            stop: None,
+            turns: Turns::new(if law == Law::Newton { e } else { T::zero() }),
+        }
+    }
+
+    /// A ledger that ends the arc at a normal impulse.
+    #[inline]
+    pub fn until(normal: T) -> Self {
+        Self { stop: Some(normal), ..Self::new(Law::Poisson, T::one()) }
+    }
+
+    /// Compression ends somewhere on this piece, and nobody needs to know where.
+    #[inline]
+    pub fn compressed_somewhere(&mut self) {
+        self.compressions += 1;
+        self.latest = None;
     }
 
     /// Compression ends here: v_n = 0 and rising. True if restitution ends with it.
     #[inline]
-    pub fn compressed(&mut self, normal: T, work: T) -> bool {
+    pub fn compressed(&mut self, at: &State<T>) -> bool {
+        let (normal, work) = (at.normal, at.work);
         self.compressions += 1;
+        let here = Some(State { velocity: T::zero(), ..*at });
+        if self.compressions == 1 {
+            self.first = here;
+        }
+        self.latest = here;
         if work < self.least_work {
             self.least_work = work;
         }
@@ -75,12 +115,15 @@ impl<T: Scalar> Ledger<T> {
     #[inline]
     pub fn passes(&mut self, from: &State<T>, to: &State<T>) -> bool {
         let zero = T::zero();
+        if let Some(stop) = self.stop {
+            return to.normal < stop;
+        }
         if from.velocity < zero {
             if to.velocity < zero {
                 return true;
             }
-            if self.law == Law::Newton && self.target > to.velocity {
-                self.compressions += 1;
+            if self.law == Law::Newton && self.target > to.velocity && !self.thorough {
+                self.compressed_somewhere();
                 return true;
             }
             return false;
@@ -92,6 +135,9 @@ impl<T: Scalar> Ledger<T> {
     #[inline]
     pub fn remaining(&self, from: &State<T>, rate: T) -> T {
         let v = from.velocity;
+        if let Some(stop) = self.stop {
+            return stop - from.normal;
+        }
         if v < T::zero() {
             return -v / rate.abs();
         }
@@ -106,12 +152,22 @@ impl<T: Scalar> Ledger<T> {
         }
     }
 
-    /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`).
+    /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`), against friction with
+    /// the impulse `push` per I_n.
     #[inline]
-    pub fn follow_line(&mut self, from: &State<T>, rate: T, length: Option<T>) -> Line<T> {
+    pub fn follow_line(&mut self, from: &State<T>, rate: T, push: &Vector2<T>, length: Option<T>) -> Line<T> {
         let (mut impulse, mut velocity, mut work) = (T::zero(), from.velocity, from.work);
         let half = constant::<T>(0.5);
         let within = |d: T| length.is_none_or(|l| d <= l);
+        if let Some(stop) = self.stop {
+            impulse = larger(stop - from.normal, T::zero());
+            if !within(impulse) {
+                return Line::on(length);
+            }
+            velocity += rate * impulse;
+            work += (from.velocity + velocity) * impulse * half;
+            return Line::Ended { impulse, velocity, work };
+        }
         if velocity < T::zero() {
             let to_rest = -velocity / rate;
             if rate <= T::zero() || !within(to_rest) {
@@ -120,7 +176,8 @@ impl<T: Scalar> Ledger<T> {
             impulse = to_rest;
             work += velocity * to_rest * half;
             velocity = T::zero();
-            if self.compressed(from.normal + impulse, work) {
+            let tangential = from.tangential - push * impulse;
+            if self.compressed(&State { normal: from.normal + impulse, tangential, velocity, work }) {
                 return Line::Ended { impulse, velocity, work };
             }
         }

@@ -9,16 +9,18 @@ mod root;
 mod series;
 mod sliding;
 mod terminal;
+mod turns;
 
 use nalgebra::{Vector2, Vector3};
 
 pub(crate) use self::{
     ledger::{Ledger, Line, State},
     sliding::{Slide, slide, straight},
-    terminal::Contact,
+    terminal::{Contact, Terminal},
 };
 use crate::{
-    Impact, ImpactError, Path, ReducedMatrix, Surface,
+    Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
+    phases::{Units, phases},
     scalar::{Real, constant, length},
 };
 
@@ -46,15 +48,16 @@ pub(crate) fn solve_real<T: Real>(
     surface: &Surface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     check(matrix, approach, surface)?;
-    collide(matrix, approach, surface, slide)
+    collide(matrix, approach, surface, Ledger::new(surface.law, surface.e), slide)
 }
 
-/// Solves a collision with any way of following the sliding arc.
+/// Solves a collision whose input is checked, with a new ledger and any way of following the sliding arc.
 #[inline(always)]
 pub(crate) fn collide<T: Real>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
     surface: &Surface<T>,
+    mut ledger: Ledger<T>,
     slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Ledger<T>) -> Slide<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     let unit = T::one() / matrix.nn;
@@ -62,25 +65,30 @@ pub(crate) fn collide<T: Real>(
     let contact = contact(matrix, surface.mu);
     let tangential = Vector2::new(approach.y, approach.z) / speed;
     let slip = length(&tangential);
-    let mut ledger = Ledger::new(surface.law, surface.e);
-    let eps = T::default_epsilon();
-    let slips = slip > eps * eps * eps * eps;
+    let slips = slips(slip);
+    let mut sensitivity = Sensitivity::of_start(&contact, &tangential, slip);
     let mut state = State::approach();
     let mut ended = None;
-    let mut endless = false;
+    let (mut stops, mut endless) = (false, false);
     if slips {
         match slide(&contact, tangential, slip, &mut ledger) {
             Slide::Ended(end, velocity) => ended = Some((end, velocity, Path::Sliding)),
-            Slide::Stopped(stopped) => state = stopped,
+            Slide::Stopped(stopped) => {
+                ledger.turns.moved(stopped.velocity);
+                (state, stops) = (stopped, true);
+            }
             Slide::Endless(stopped) => (state, endless) = (stopped, true),
         }
     }
     if ended.is_none() && !endless {
-        ended = after_slip(&contact, &mut state, slips, &mut ledger);
+        ended = after_slip(&contact, &mut state, slips, &mut ledger, &mut sensitivity);
     }
     let Some((end, velocity, path)) = ended else {
         return Err(ImpactError::Wedged { normal_velocity: state.velocity * speed, law: surface.law });
     };
+    let slides = path == Path::Sliding && !stops;
+    sensitivity.ended(&contact, &mut ledger, &end, slides.then_some(&velocity));
+    let slip_end = stops.then_some(state);
     let scale = speed * unit;
     let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
     let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
@@ -97,7 +105,16 @@ pub(crate) fn collide<T: Real>(
         normal_work,
         path,
         compressions: ledger.compressions,
+        phases: phases(&Units { approach, scale, speed, contact }, &ledger, slip_end, path),
+        sensitivity,
     })
+}
+
+/// Whether there is slip at all, where v_n1 = -1.
+#[inline]
+pub(crate) fn slips<T: Real>(slip: T) -> bool {
+    let eps = T::default_epsilon();
+    slip > eps * eps * eps * eps
 }
 
 /// The arc after slip has stopped; nothing if the law never ends it.
@@ -107,31 +124,26 @@ fn after_slip<T: Real>(
     state: &mut State<T>,
     slips: bool,
     ledger: &mut Ledger<T>,
+    sensitivity: &mut Sensitivity,
 ) -> Option<(State<T>, Vector2<T>, Path)> {
     let eps = T::default_epsilon();
     // Where slip and normal velocity stop together, rounding must not tell them apart.
     let scale = T::one() + state.normal * (T::one() + contact.mu * length(&contact.b));
     if slips && state.velocity.abs() <= constant::<T>(256.0) * eps * scale {
         state.velocity = T::zero();
-        if ledger.compressions == 0 && ledger.compressed(state.normal, state.work) {
+        if ledger.compressions == 0 && ledger.compressed(state) {
             return Some((*state, Vector2::zeros(), Path::Sliding));
         }
     }
-    let hold = contact.hold();
-    let sticks = length(&hold) <= contact.mu;
-    let (path, push, gain, rate) = if sticks {
-        let rate = T::one() - contact.b.dot(&hold);
-        // Below rounding the contact can no longer move along the normal.
-        let rate = if rate <= constant::<T>(64.0) * eps { T::zero() } else { rate };
-        let path = if slips { Path::SlidingThenSticking } else { Path::Sticking };
-        (path, hold, Vector2::zeros(), rate)
-    } else {
-        let d = contact.renewal();
-        let g = contact.slip_rate(&d).dot(&d);
-        let path = if slips { Path::SlidingThenRenewal } else { Path::Renewal };
-        (path, d * contact.mu, d * g, contact.normal_rate(&d))
+    let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
+    sensitivity.stopped(contact.mu, mu_c);
+    let path = match (slips, sticks) {
+        (true, true) => Path::SlidingThenSticking,
+        (true, false) => Path::SlidingThenRenewal,
+        (false, true) => Path::Sticking,
+        (false, false) => Path::Renewal,
     };
-    match ledger.follow_line(state, rate, None) {
+    match ledger.follow_line(state, rate, &push, None) {
         Line::Ended { impulse, velocity, work } => {
             let end = State {
                 normal: state.normal + impulse,

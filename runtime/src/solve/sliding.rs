@@ -71,6 +71,7 @@ pub(crate) fn slide<T: Scalar>(
                     Ok(point) => return Slide::Ended(point.state, point.slip),
                     Err(_) if stops => return Slide::Stopped(stop),
                     Err(point) => {
+                        ledger.turns.moved(point.state.velocity);
                         let speed = length(&point.slip);
                         at = Start { state: point.state, direction: point.slip / speed, slip: speed };
                         continue;
@@ -82,6 +83,7 @@ pub(crate) fn slide<T: Scalar>(
         match follow(c, &step, &at, step.first_rate(), f0, ledger) {
             Ok(point) => return Slide::Ended(point.state, point.slip),
             Err(point) => {
+                ledger.turns.moved(point.state.velocity);
                 let speed = length(&point.slip);
                 at = Start { state: point.state, direction: point.slip / speed, slip: speed };
             }
@@ -117,7 +119,7 @@ pub(crate) fn straight<T: Scalar>(
         }
         State { normal: state.normal + impulse, tangential: state.tangential - push * c.mu, velocity, work }
     };
-    match ledger.follow_line(&state, f, length) {
+    match ledger.follow_line(&state, f, &(d * c.mu), length) {
         Line::Ended { impulse, velocity, work } => {
             let mut left = d * (slip + g * impulse);
             let bend = turned(Some(impulse));

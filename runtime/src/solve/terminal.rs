@@ -87,3 +87,35 @@ impl<T: Scalar> Contact<T> {
         d
     }
 }
+
+/// What the contact does once it has stopped slipping, per I_n.
+#[derive(Clone, Copy)]
+pub(crate) struct Terminal<T: Scalar> {
+    pub sticks: bool,
+    /// The opposite of the tangential impulse.
+    pub push: Vector2<T>,
+    /// Tangential velocity.
+    pub gain: Vector2<T>,
+    /// v_n.
+    pub rate: T,
+    pub mu_c: T,
+}
+
+impl<T: Scalar> Terminal<T> {
+    /// Sticking (45) if mu >= mu_c, else renewal (46).
+    #[inline]
+    pub fn of(contact: &Contact<T>) -> Self {
+        let hold = contact.hold();
+        let mu_c = length(&hold);
+        if mu_c <= contact.mu {
+            let rate = T::one() - contact.b.dot(&hold);
+            // Below rounding the contact can no longer move along the normal.
+            let tiny = constant::<T>(64.0) * T::default_epsilon();
+            let rate = if rate <= tiny { T::zero() } else { rate };
+            return Self { sticks: true, push: hold, gain: Vector2::zeros(), rate, mu_c };
+        }
+        let d = contact.renewal();
+        let g = contact.slip_rate(&d).dot(&d);
+        Self { sticks: false, push: d * contact.mu, gain: d * g, rate: contact.normal_rate(&d), mu_c }
+    }
+}

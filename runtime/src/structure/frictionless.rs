@@ -25,7 +25,7 @@ impl Shape for Frictionless {
             return straight(c, d, speed, State::approach(), ledger);
         }
         let start = State::approach();
-        match ledger.follow_line(&start, T::one(), None) {
+        match ledger.follow_line(&start, T::one(), &Vector2::zeros(), None) {
             Line::Ended { impulse, velocity, work } => Slide::Ended(
                 State { normal: impulse, tangential: Vector2::zeros(), velocity, work },
                 from + c.b * impulse,

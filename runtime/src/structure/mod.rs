@@ -106,5 +106,5 @@ pub fn solve_structured<S: Structure, T: Scalar>(
     let (mut matrix, mut approach, mut surface) = (*matrix, *approach, *surface);
     S::impose(&mut matrix, &mut approach, &mut surface);
     check(&matrix, &approach, &surface)?;
-    collide(&matrix, &approach, &surface, S::slide)
+    collide(&matrix, &approach, &surface, Ledger::new(surface.law, surface.e), S::slide)
 }

@@ -1,0 +1,149 @@
+//! The course of a collision over the normal impulse: the hodograph.
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::{
+    Impact, ImpactError, Moment, Motion, ReducedMatrix, Scalar, Surface,
+    phases::{Units, after_slip},
+    scalar::constant,
+    solve::{Contact, Ledger, Slide, State, Terminal, check, collide, contact, slide, slips},
+};
+
+/// A solved collision that can be evaluated at any normal impulse, exactly: the curve of v_s over v_t that the paper calls hodograph, with the
+/// normal velocity, the impulses and the works along it.
+///
+/// ```
+/// # use hodograph::{Hodograph, Law, ReducedMatrix, Surface};
+/// # use nalgebra::Vector3;
+/// let matrix = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
+/// let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge };
+/// let hodograph = Hodograph::new(&matrix, &Vector3::new(-0.946, 1.063, 0.0), &surface)?;
+/// for moment in hodograph.points(100) {
+///     let (v_t, v_s) = (moment.velocity.y, moment.velocity.z);
+///     # let _ = (v_t, v_s);
+/// }
+/// # Ok::<(), hodograph::ImpactError<f64>>(())
+/// ```
+///
+/// Cost: [`Hodograph::new`] is one [`crate::solve`] that also looks for the end of compression where the law need not know it. A
+/// point while sliding follows the arc from its beginning with the pieces of the solver until I_n is reached, and so costs no
+/// more than a solve; nothing is stored but the outcome. A point after slip has stopped is a straight line, some twenty operations. No allocation.
+#[derive(Clone, Copy, Debug)]
+pub struct Hodograph<T: nalgebra::Scalar> {
+    approach: Vector3<T>,
+    matrix: ReducedMatrix<T>,
+    mu: T,
+    impact: Impact<T>,
+    terminal: Option<(Vector2<T>, Vector2<T>, T)>,
+}
+
+impl<T: Scalar> Hodograph<T> {
+    /// Solves the collision; the arguments are those of [`crate::solve`].
+    ///
+    /// # Errors
+    /// Those of [`crate::solve`].
+    #[inline]
+    pub fn new(
+        matrix: &ReducedMatrix<T>,
+        approach: &Vector3<T>,
+        surface: &Surface<T>,
+    ) -> Result<Self, ImpactError<T>> {
+        check(matrix, approach, surface)?;
+        let mut ledger = Ledger::new(surface.law, surface.e);
+        ledger.thorough = true;
+        let impact = collide(matrix, approach, surface, ledger, slide)?;
+        let terminal = (after_slip(impact.path) != Motion::Sliding).then(|| {
+            let Terminal { push, gain, rate, .. } = Terminal::of(&contact(matrix, surface.mu));
+            (push, gain, rate)
+        });
+        Ok(Self { approach: *approach, matrix: *matrix, mu: surface.mu, impact, terminal })
+    }
+
+    /// The outcome, as of [`crate::solve`], with the end of compression under every law.
+    #[inline]
+    pub fn impact(&self) -> &Impact<T> {
+        &self.impact
+    }
+
+    /// The normal impulse of the whole collision I_n2, in N s.
+    #[inline]
+    pub fn normal_impulse(&self) -> T {
+        self.impact.impulse.x
+    }
+
+    /// All quantities where the normal impulse is `normal_impulse`, in N s: the approach at 0 and below, the outcome at I_n2 and above.
+    #[inline]
+    pub fn at(&self, normal_impulse: T) -> Moment<T> {
+        let zero = T::zero();
+        let after = after_slip(self.impact.path);
+        if normal_impulse >= self.impact.impulse.x {
+            return self.end(after);
+        }
+        let contact: Contact<T> = contact(&self.matrix, self.mu);
+        let speed = -self.approach.x;
+        let scale = speed / self.matrix.nn;
+        let units = Units { approach: &self.approach, scale, speed, contact };
+        let tangential = Vector2::new(self.approach.y, self.approach.z) / speed;
+        let slip = tangential.norm();
+        let slides = slips(slip);
+        let first = if slides { Motion::Sliding } else { after };
+        // Also where it is not a number.
+        if !(normal_impulse > zero) {
+            return units.moment(&State::approach(), &tangential, first);
+        }
+        let stop = normal_impulse / scale;
+        let slip_end = self.impact.phases.slip_end.map(|moment| self.state(&moment, scale, speed));
+        let from = match slip_end {
+            None if !slides => State::approach(),
+            Some(end) if stop >= end.normal => end,
+            _ => match slide(&contact, tangential, slip, &mut Ledger::until(stop)) {
+                Slide::Ended(state, velocity) => return units.moment(&state, &velocity, first),
+                // Rounding alone tells this from the end of slip.
+                Slide::Stopped(state) | Slide::Endless(state) => {
+                    return units.moment(&state, &Vector2::zeros(), first);
+                }
+            },
+        };
+        let Some((push, gain, rate)) = self.terminal else { return self.end(after) };
+        let impulse = stop - from.normal;
+        let velocity = from.velocity + rate * impulse;
+        let state = State {
+            normal: stop,
+            tangential: from.tangential - push * impulse,
+            velocity,
+            work: from.work + (from.velocity + velocity) * impulse * constant(0.5),
+        };
+        units.moment(&state, &(gain * impulse), after)
+    }
+
+    /// `count` moments at even steps of the normal impulse, from the approach to the outcome; one moment is the outcome.
+    #[inline]
+    pub fn points(
+        &self,
+        count: usize,
+    ) -> impl ExactSizeIterator<Item = Moment<T>> + DoubleEndedIterator + Clone + '_ {
+        let last = count.saturating_sub(1);
+        (0..count).map(move |index| {
+            let impulse = self.impact.impulse.x;
+            if index == last {
+                return self.at(impulse);
+            }
+            self.at(impulse * (constant::<T>(index as f64) / constant::<T>(last as f64)))
+        })
+    }
+
+    fn end(&self, motion: Motion) -> Moment<T> {
+        let Impact { impulse, velocity, contact_work, normal_work, .. } = self.impact;
+        Moment { impulse, velocity, contact_work, normal_work, motion }
+    }
+
+    fn state(&self, moment: &Moment<T>, scale: T, speed: T) -> State<T> {
+        let impulse = moment.impulse / scale;
+        State {
+            normal: impulse.x,
+            tangential: Vector2::new(impulse.y, impulse.z),
+            velocity: moment.velocity.x / speed,
+            work: moment.normal_work / (scale * speed),
+        }
+    }
+}

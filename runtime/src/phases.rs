@@ -1,0 +1,158 @@
+//! All quantities of a collision at one moment, and at the moments where a phase begins.
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::{
+    Path, Scalar,
+    scalar::{Real, constant},
+    solve::{Contact, Ledger, State},
+};
+
+/// What the contact does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Motion {
+    /// It slips (34).
+    Sliding,
+    /// It does not slip (45).
+    Sticking,
+    /// It slips in the direction phi_hat, after slip had stopped or from none (46).
+    Renewal,
+}
+
+/// All quantities at one moment of a collision, in the axes n, t, s of the input.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Moment<T: nalgebra::Scalar> {
+    /// Impulse (n, t, s) so far, in N s; the first is I_n.
+    pub impulse: Vector3<T>,
+    /// Relative velocity (n, t, s), in m/s.
+    pub velocity: Vector3<T>,
+    /// Work of the impulse so far (23), in J.
+    pub contact_work: T,
+    /// Work of the normal impulse so far (35b), in J.
+    pub normal_work: T,
+    /// What the contact does now; where a phase begins, that phase.
+    pub motion: Motion,
+}
+
+impl<T: Scalar> Moment<T> {
+    /// The normal impulse I_n, in N s.
+    #[inline]
+    pub fn normal_impulse(&self) -> T {
+        self.impulse.x
+    }
+
+    /// The speed of slip s, in m/s.
+    #[inline]
+    pub fn slip(&self) -> T {
+        (self.velocity.y * self.velocity.y + self.velocity.z * self.velocity.z).sqrt()
+    }
+
+    /// The direction of slip phi from t towards s, in radians; `None` without slip.
+    #[inline]
+    pub fn direction(&self) -> Option<T> {
+        let none = self.velocity.y == T::zero() && self.velocity.z == T::zero();
+        (!none).then(|| self.velocity.z.atan2(self.velocity.y))
+    }
+
+    /// Whether the bodies approach each other: compression.
+    #[inline]
+    pub fn compresses(&self) -> bool {
+        self.velocity.x < T::zero()
+    }
+}
+
+/// The moments where a phase begins or ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Phases<T: nalgebra::Scalar> {
+    /// The end of the first compression: v_n = 0 (index C in the paper).
+    ///
+    /// Under Newton's hypothesis, while slip lasts, nothing depends on it: [`crate::solve`] passes it by and leaves `None`;
+    /// [`crate::Hodograph`] has it always.
+    pub compression_end: Option<Moment<T>>,
+    /// The end of the latest compression, the one the law counts from; the same as the first unless the bodies approached again.
+    pub last_compression_end: Option<Moment<T>>,
+    /// Where slip stopped (index S in the paper); `None` if it never did, or there was none at the start.
+    pub slip_end: Option<Moment<T>>,
+}
+
+/// From the units of the solver, where m_nn = 1 and v_n1 = -1, to those of the input.
+pub(crate) struct Units<'a, T: Real> {
+    pub approach: &'a Vector3<T>,
+    /// Of impulse and of velocity.
+    pub scale: T,
+    pub speed: T,
+    pub contact: Contact<T>,
+}
+
+impl<T: Real> Units<'_, T> {
+    /// A moment from a state and the tangential velocity there.
+    #[inline]
+    pub fn moment(&self, state: &State<T>, tangential: &Vector2<T>, motion: Motion) -> Moment<T> {
+        let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * self.scale;
+        let velocity = Vector3::new(state.velocity, tangential.x, tangential.y) * self.speed;
+        Moment {
+            impulse,
+            velocity,
+            contact_work: impulse.dot(&(velocity + self.approach)) * constant(0.5),
+            normal_work: state.work * self.scale * self.speed,
+            motion,
+        }
+    }
+
+    /// The tangential velocity that the impulses give: (21), (22).
+    #[inline]
+    fn tangential(&self, state: &State<T>) -> Vector2<T> {
+        let c = &self.contact;
+        let i = &state.tangential;
+        Vector2::new(self.approach.y, self.approach.z) / self.speed
+            + c.b * state.normal
+            + Vector2::new(c.tt * i.x + c.ts * i.y, c.ts * i.x + c.ss * i.y)
+    }
+}
+
+/// From what the solver noted on its way.
+#[inline]
+pub(crate) fn phases<T: Real>(
+    units: &Units<'_, T>,
+    ledger: &Ledger<T>,
+    slip_end: Option<State<T>>,
+    path: Path,
+) -> Phases<T> {
+    let after = after_slip(path);
+    let compression = |state: State<T>| {
+        let slides = match &slip_end {
+            Some(end) => state.normal < end.normal,
+            None => path == Path::Sliding,
+        };
+        if slides {
+            units.moment(&state, &units.tangential(&state), Motion::Sliding)
+        } else if after == Motion::Renewal {
+            units.moment(&state, &units.tangential(&state), after)
+        } else {
+            units.moment(&state, &Vector2::zeros(), after)
+        }
+    };
+    Phases {
+        compression_end: ledger.first.map(compression),
+        last_compression_end: ledger.latest.map(compression),
+        slip_end: slip_end.map(|state| units.moment(&state, &Vector2::zeros(), after)),
+    }
+}
+
+/// What follows slip on a path.
+pub(crate) fn after_slip(path: Path) -> Motion {
+    match path {
+        Path::Sliding => Motion::Sliding,
+        Path::SlidingThenSticking | Path::Sticking => Motion::Sticking,
+        Path::SlidingThenRenewal | Path::Renewal => Motion::Renewal,
+    }
+}
