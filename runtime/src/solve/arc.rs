@@ -122,6 +122,7 @@ pub(super) fn follow<T: Scalar>(
         let found = find(contact, arc, zero, (lo, &begin, rate, slope), hi, guess, |s| -s.velocity);
         hi = found.0;
         top = found.1.state;
+        ledger.falls(&top);
     }
     let target = ledger.target;
     if ledger.watched(&top) < target || (law == Law::Newton && ledger.watched(&begin) >= target) {

@@ -96,6 +96,17 @@ impl<T: Scalar> Ledger<T> {
         self.e <= T::zero()
     }
 
+    /// v_n falls through zero here: Poisson's or Stronge's law ends the collision before, or only after another compression.
+    #[inline]
+    pub fn falls(&mut self, at: &State<T>) {
+        let size = match self.law {
+            Law::Newton => return,
+            Law::Poisson => self.target,
+            Law::Stronge => self.least_work,
+        };
+        self.turns.missed((self.target - self.watched(at)).abs() / size.abs());
+    }
+
     #[inline]
     pub fn law(&self) -> Law {
         self.law

@@ -29,10 +29,15 @@ impl<T: Real> Turns<T> {
         }
         self.rising = to > from;
         let to_target = if self.rising { from.abs() } else { (from - self.target).abs() };
-        for distance in [from.abs(), to_target] {
-            if distance < self.nearest {
-                self.nearest = distance;
-            }
+        self.missed(from.abs());
+        self.missed(to_target);
+    }
+
+    /// Something ended, or did not, by this relative distance.
+    #[inline]
+    pub fn missed(&mut self, distance: T) {
+        if distance < self.nearest {
+            self.nearest = distance;
         }
     }
 }

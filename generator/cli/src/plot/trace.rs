@@ -1,10 +1,6 @@
 //! The course of a collision over the normal impulse, dense enough to be drawn.
-//!
-//! Outcomes come from the exact solver; the arc of slip between them is integrated here, in the variable that keeps the
-//! equations regular where slip ends (dI_n = s dtau), to more digits than a drawing shows.
 
-use hodograph::{ReducedMatrix, Surface};
-use nalgebra::{Vector2, Vector4};
+use hodograph::{Hodograph, ReducedMatrix, Surface};
 
 use crate::surface::LAWS;
 
@@ -24,6 +20,12 @@ impl Moment {
     }
 }
 
+impl From<hodograph::Moment<f64>> for Moment {
+    fn from(moment: hodograph::Moment<f64>) -> Self {
+        Moment { impulse: moment.impulse.x, velocity: moment.velocity.into() }
+    }
+}
+
 /// A collision for one coefficient of friction.
 #[derive(Clone, Debug)]
 pub struct Trace {
@@ -37,59 +39,41 @@ pub struct Trace {
     pub failures: Vec<String>,
 }
 
-/// Bound on the number of moments.
-const STEPS: usize = 20_000;
+/// Moments while slip lasts, and in all if it lasts to the end.
+const MOMENTS: usize = 400;
 
 /// Follows a collision to the latest of its ends.
 pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Trace {
     let mut failures = Vec::new();
-    let ends = LAWS.map(|(name, law)| match hodograph::solve(m, &approach.into(), &Surface { mu, e, law }) {
-        Ok(impact) => Some(Moment { impulse: impact.impulse.x, velocity: impact.velocity.into() }),
-        Err(error) => {
-            failures.push(format!("mu = {mu}, {name}: {error}"));
-            None
+    let mut ends = [None; 3];
+    let mut longest: Option<Hodograph<f64>> = None;
+    for ((name, law), end) in LAWS.into_iter().zip(&mut ends) {
+        match Hodograph::new(m, &approach.into(), &Surface { mu, e, law }) {
+            Ok(hodograph) => {
+                *end = Some(hodograph.at(hodograph.normal_impulse()).into());
+                if longest.is_none_or(|longest| longest.normal_impulse() < hodograph.normal_impulse()) {
+                    longest = Some(hodograph);
+                }
+            }
+            Err(error) => failures.push(format!("mu = {mu}, {name}: {error}")),
         }
-    });
-    let last = ends.iter().flatten().copied().max_by(|a, b| a.impulse.total_cmp(&b.impulse));
-    let moments = last.map_or(Vec::new(), |last| course(m, approach, mu, last));
+    }
+    let moments = longest.as_ref().map_or(Vec::new(), course);
     Trace { mu, moments, ends, failures }
 }
 
-fn course(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, last: Moment) -> Vec<Moment> {
-    let b = Vector2::new(m.nt, m.ns);
-    let rate = |y: &Vector4<f64>| {
-        let v = Vector2::new(y[1], y[2]);
-        let (s, friction) = (v.norm(), Vector2::new(m.tt * v.x + m.ts * v.y, m.ts * v.x + m.ss * v.y) * mu);
-        let along = b * s - friction;
-        Vector4::new(m.nn * s - mu * b.dot(&v), along.x, along.y, s)
-    };
-    let pace = b.norm() + mu * (m.tt + m.ss);
-    let mut y = Vector4::new(approach[0], approach[1], approach[2], 0.0);
-    let moment = |y: &Vector4<f64>| Moment { impulse: y[3], velocity: [y[0], y[1], y[2]] };
-    let (start, mut moments) = (approach[1].hypot(approach[2]), vec![moment(&y)]);
-    for _ in 0..STEPS {
-        let slip = y[1].hypot(y[2]);
-        if slip <= 1e-5 * start {
-            break;
-        }
-        // Neither more than a small turn or change of slip, nor more than a pixel or two.
-        let mut step = (last.impulse / (400.0 * slip)).min(0.05 / pace);
-        let ends = y[3] + 1.000_001 * slip * step >= last.impulse;
-        if ends {
-            step = (last.impulse - y[3]) / slip;
-        }
-        let k1 = rate(&y);
-        let k2 = rate(&(y + k1 * (step / 2.0)));
-        let k3 = rate(&(y + k2 * (step / 2.0)));
-        let k4 = rate(&(y + k3 * step));
-        y += (k1 + (k2 + k3) * 2.0 + k4) * (step / 6.0);
-        moments.push(moment(&y));
-        if ends {
-            break;
-        }
+fn course(hodograph: &Hodograph<f64>) -> Vec<Moment> {
+    let all = hodograph.normal_impulse();
+    let stop = hodograph.impact().phases.slip_end.map_or(all, |moment| moment.impulse.x);
+    // Slip turns most where it is about to stop: the steps get smaller towards there. What follows is a straight line.
+    let arc = (0..=MOMENTS).map(|index| {
+        let left = 1.0 - index as f64 / MOMENTS as f64;
+        hodograph.at(stop * (1.0 - left * left))
+    });
+    let mut moments: Vec<Moment> = arc.map(Moment::from).collect();
+    if stop < all {
+        moments.push(hodograph.at(all).into());
     }
-    // What follows the end of slip is a straight line.
-    moments.push(last);
     moments
 }
 
@@ -102,19 +86,23 @@ mod tests {
     const V: [f64; 3] = [-0.946108022, 1.06306701, 0.0];
 
     #[test]
-    fn the_course_reaches_the_outcome() {
+    fn the_course_leads_from_the_approach_to_the_last_outcome() {
         for mu in [0.6, 1.1, 1.6] {
             let trace = trace(&M.into(), V, mu, 0.8);
             assert!(trace.failures.is_empty());
-            let [.., before, last] = trace.moments[..] else { panic!("too short") };
-            if mu == 0.6 {
-                // Slip to the end: the integration arrives by itself.
-                assert!((before.slip() - last.slip()).abs() < 1e-4);
-                assert!((before.velocity[0] - last.velocity[0]).abs() < 1e-4);
-            } else {
-                assert!(before.slip() < 1e-4);
-            }
-            assert!(trace.moments.len() < 3000);
+            assert_eq!(trace.moments[0].velocity, V);
+            assert_eq!(trace.moments.last(), trace.ends[0].as_ref(), "Newton's is the longest");
+            assert!(trace.moments.windows(2).all(|pair| pair[0].impulse < pair[1].impulse));
+            // Slip stops exactly where it does.
+            assert_eq!(trace.moments.iter().any(|moment| moment.slip() == 0.0), mu > 1.0);
+            // No corner that is not there: neighbours are close.
+            assert!(
+                trace
+                    .moments
+                    .windows(2)
+                    .take(MOMENTS)
+                    .all(|pair| (0..3).all(|i| (pair[0].velocity[i] - pair[1].velocity[i]).abs() < 0.02))
+            );
         }
     }
 }
