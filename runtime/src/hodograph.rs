@@ -87,8 +87,9 @@ impl<T: Scalar> Hodograph<T> {
         let slip = tangential.norm();
         let slides = slips(slip);
         let first = if slides { Motion::Sliding } else { after };
-        // Also where it is not a number.
-        if !(normal_impulse > zero) {
+        // No: it is the beginning, or not a number.
+        let begun = normal_impulse > zero;
+        if !begun {
             return units.moment(&State::approach(), &tangential, first);
         }
         let stop = normal_impulse / scale;

@@ -5,7 +5,7 @@
 use core::hint::black_box;
 
 use hodograph::nalgebra::{SMatrix, Vector3};
-use hodograph::{CollisionError, Impact, ImpactError, Law, ReducedMatrix, StateError, Surface};
+use hodograph::{CollisionError, Hodograph, Impact, ImpactError, Law, ReducedMatrix, StateError, Surface};
 use no_panic::no_panic;
 
 mod memory;
@@ -18,6 +18,19 @@ use hopper::{Collision, Coordinates, Hopper, Inputs, Parameters, Speeds};
 #[inline(never)]
 fn solve(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -> Result<Impact<f64>, ImpactError<f64>> {
     hodograph::solve(m, v, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn course(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -> Result<f64, ImpactError<f64>> {
+    let hodograph = Hodograph::new(m, v, surface)?;
+    Ok(hodograph.points(8).map(|moment| moment.slip()).sum())
+}
+
+#[no_panic]
+#[inline(never)]
+fn phi_bar(m: &ReducedMatrix<f64>, mu: f64, phi: f64) -> Option<f64> {
+    hodograph::phi_bar(m, mu, phi)
 }
 
 #[no_panic]
@@ -70,6 +83,8 @@ extern "C" fn _start() -> ! {
     let m = black_box(ReducedMatrix::new(1.0, 0.1, 0.2, 1.0, 0.1, 1.0));
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Newton });
     black_box(solve(&m, &black_box(Vector3::new(-1.0, 0.5, 0.1)), &surface).is_ok());
+    black_box(course(&m, &black_box(Vector3::new(-1.0, 0.5, 0.1)), &surface).is_ok());
+    black_box(phi_bar(&m, surface.mu, black_box(0.3)).is_some());
     loop {}
 }
 
