@@ -6,7 +6,8 @@ use common::{reference_cases, two_sleds};
 use hodograph::{
     Characteristics, Hodograph, Law, Moment, Motion, Path, ReducedMatrix, Surface, phi_bar, rates, solve,
 };
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
 
 const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
 
@@ -289,5 +290,66 @@ fn grazing_is_flagged_where_the_outcome_jumps() {
         println!("{law:?}: e {low}, above {}", at(high).sensitivity.grazing);
         assert!(at(high).sensitivity.grazing, "{law:?} {:?}", at(high));
         assert!(!at(1.0).sensitivity.grazing || law == Law::Newton && high > 0.99, "{law:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, max_global_rejects: 20_000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// What is not flagged does not jump.
+    #[test]
+    fn outcomes_without_a_flag_are_steady(
+        entries in prop::array::uniform9(-2.0..2.0_f64),
+        v in prop::array::uniform2(-1.5..1.5_f64),
+        mu in 0.0..3.0_f64,
+        e in 0.0..=0.999_f64,
+        law in prop::sample::select(&LAWS[..]),
+    ) {
+        let b = Matrix3::from(std::array::from_fn::<_, 3, _>(|i| std::array::from_fn::<_, 3, _>(|j| entries[3 * i + j])));
+        let m = ReducedMatrix::from(b * b.transpose());
+        prop_assume!(m.nn > 1e-2 && Matrix3::from(m).determinant() > 1e-2);
+        let v = Vector3::new(-1.0, v[0], v[1]);
+        let at = |mu: f64, e: f64| solve(&m, &v, &Surface { mu, e, law });
+        let hit = at(mu, e).map_err(|e| TestCaseError::fail(e.to_string()))?;
+        prop_assume!(!hit.sensitivity.any());
+        for near in [at(mu * (1.0 + 1e-7), e), at(mu, e * (1.0 + 1e-7))] {
+            let near = near.map_err(|e| TestCaseError::fail(e.to_string()))?;
+            prop_assert_eq!(near.compressions, hit.compressions);
+            prop_assert!((near.impulse - hit.impulse).amax() <= 1e-4 * hit.impulse.amax(), "{:?} {:?}", hit, near);
+        }
+    }
+
+    /// The course is continuous, its impulse is what was asked for, and everything holds at any of its points.
+    #[test]
+    fn any_point_of_the_course_obeys_the_reduced_equations(
+        entries in prop::array::uniform9(-2.0..2.0_f64),
+        rank in 1..4_usize,
+        speeds in prop::array::uniform3(-1.5..1.5_f64),
+        mu in 0.0..3.0_f64,
+        e in 0.0..=1.0_f64,
+        law in prop::sample::select(&LAWS[..]),
+        part in 0.0..=1.0_f64,
+    ) {
+        let mut b = Matrix3::from(std::array::from_fn::<_, 3, _>(|i| std::array::from_fn::<_, 3, _>(|j| entries[3 * i + j])));
+        for column in rank..3 {
+            b.column_mut(column).fill(0.0);
+        }
+        let mut v = b * Vector3::from(speeds);
+        if v.x > 0.0 {
+            v = -v;
+        }
+        let m = ReducedMatrix::from(b * b.transpose());
+        prop_assume!(m.nn > 1e-2 && v.x < -1e-2);
+        let Ok(whole) = Hodograph::new(&m, &v, &Surface { mu, e, law }) else { return Ok(()) };
+        let i = part * whole.normal_impulse();
+        let moment = whole.at(i);
+        let size = v.amax() + moment.impulse.amax() * (m.nn + m.tt + m.ss);
+        prop_assert!((moment.impulse.x - i).abs() <= 1e-12 * whole.normal_impulse(), "{} {}", moment.impulse.x, i);
+        prop_assert!((m.apply(&moment.impulse) - (moment.velocity - v)).amax() <= 1e-11 * size);
+        prop_assert!(moment.impulse.y.hypot(moment.impulse.z) <= mu * i * (1.0 + 1e-9) + 1e-12 * whole.normal_impulse() * (1.0 + mu)
+            || moment.motion == Motion::Sticking);
+        if moment.motion == Motion::Sticking {
+            prop_assert_eq!(moment.slip(), 0.0);
+        }
     }
 }
