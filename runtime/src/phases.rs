@@ -141,9 +141,12 @@ pub(crate) fn phases<T: Real>(
             units.moment(&state, &Vector2::zeros(), after)
         }
     };
+    let compression_end = ledger.first.map(compression);
+    let last_compression_end =
+        if ledger.compressions == 1 { compression_end } else { ledger.latest.map(compression) };
     Phases {
-        compression_end: ledger.first.map(compression),
-        last_compression_end: ledger.latest.map(compression),
+        compression_end,
+        last_compression_end,
         slip_end: slip_end.map(|state| units.moment(&state, &Vector2::zeros(), after)),
     }
 }
