@@ -49,13 +49,56 @@ impl<T: Scalar> Point<T> {
     }
 }
 
+/// What an event is sought in: v_n, I_n or the normal work, each less a target.
+#[derive(Clone, Copy)]
+pub(super) enum Sought<T> {
+    Velocity(T),
+    Impulse(T),
+    Work(T),
+}
+
+impl<T: Scalar> Sought<T> {
+    /// The value less the target.
+    #[inline(always)]
+    pub fn of(&self, state: &State<T>) -> T {
+        match *self {
+            Self::Velocity(target) => state.velocity - target,
+            Self::Impulse(target) => state.normal - target,
+            Self::Work(target) => state.work - target,
+        }
+    }
+
+    /// Its derivative by theta.
+    #[inline(always)]
+    pub fn slope(&self, state: &State<T>, rate: T, slope: T) -> T {
+        match self {
+            Self::Velocity(_) => rate * slope,
+            Self::Impulse(_) => rate,
+            Self::Work(_) => rate * state.velocity,
+        }
+    }
+}
+
 /// A piece on which I_n rises with theta from 0 to `end`, and v_n is monotone.
 pub(super) trait Arc<T: Scalar> {
     fn at(&self, theta: T) -> Point<T>;
+    /// What is sought and its derivative by theta.
+    fn value(&self, theta: T, sought: &Sought<T>) -> (T, T) {
+        let point = self.at(theta);
+        (sought.of(&point.state), sought.slope(&point.state, point.rate, point.slope))
+    }
     fn end(&self) -> T;
     /// The point at the end.
     fn last(&self, end: T) -> Point<T> {
         self.at(end)
+    }
+    /// Whether the parameter runs far beyond what is of interest, so that the end says little.
+    fn winds(&self) -> bool {
+        false
+    }
+    /// The step that corrects Newton's for the way the arc runs out, if interpolation would do worse.
+    fn step(&self, _newton: T) -> Option<T> {
+        None
     }
     /// A first guess at a point after `lo`: where the rates at `lo` put it, and the part of the way to the end in the quantity sought.
     fn guess(&self, lo: T, linear: T, fraction: T) -> T;
@@ -84,8 +127,19 @@ pub(super) fn follow<T: Scalar>(
         }
         let missing = stop - begin.normal;
         let guess = arc.guess(zero, missing / rate, missing / (top.normal - begin.normal));
-        return Ok(find(contact, arc, stop, (lo, &begin, rate, slope), hi, guess, |s| s.normal).1);
+        return Ok(find(
+            contact,
+            arc,
+            &Sought::Impulse(stop),
+            T::one(),
+            (lo, &begin, rate, slope),
+            (hi, Some(&last)),
+            guess,
+        )
+        .1);
     }
+    // The point at `hi`, if its rates are known.
+    let mut peak = Some(&last);
     if begin.velocity < zero {
         if last.state.velocity < zero {
             return Err(last);
@@ -101,7 +155,15 @@ pub(super) fn follow<T: Scalar>(
                 -begin.velocity / (slope * rate),
                 begin.velocity / (begin.velocity - top.velocity),
             );
-            let found = find(contact, arc, zero, (lo, &begin, rate, slope), hi, guess, |s| s.velocity);
+            let found = find(
+                contact,
+                arc,
+                &Sought::Velocity(zero),
+                T::one(),
+                (lo, &begin, rate, slope),
+                (hi, peak),
+                guess,
+            );
             lo = found.0;
             let point = found.1;
             if ledger.compressed(&point.state) {
@@ -119,107 +181,135 @@ pub(super) fn follow<T: Scalar>(
             -begin.velocity / (slope * rate),
             begin.velocity / (begin.velocity - top.velocity),
         );
-        let found = find(contact, arc, zero, (lo, &begin, rate, slope), hi, guess, |s| -s.velocity);
+        let found = find(
+            contact,
+            arc,
+            &Sought::Velocity(zero),
+            -T::one(),
+            (lo, &begin, rate, slope),
+            (hi, peak),
+            guess,
+        );
         hi = found.0;
         top = found.1.state;
         ledger.falls(&top);
+        peak = None;
     }
     let target = ledger.target;
     if ledger.watched(&top) < target || (law == Law::Newton && ledger.watched(&begin) >= target) {
         return Err(last);
     }
-    let (first, last) = (ledger.watched(&begin), ledger.watched(&top));
-    let fraction = (target - first) / (last - first);
+    let first = ledger.watched(&begin);
+    let fraction = (target - first) / (ledger.watched(&top) - first);
     let (_, point) = match law {
         Law::Newton => {
             let guess = arc.guess(lo, lo + (target - first) / (slope * rate), fraction);
-            find(contact, arc, target, (lo, &begin, rate, slope), hi, guess, |s| s.velocity)
+            find(
+                contact,
+                arc,
+                &Sought::Velocity(target),
+                T::one(),
+                (lo, &begin, rate, slope),
+                (hi, peak),
+                guess,
+            )
         }
         Law::Poisson => {
             let guess = arc.guess(lo, lo + (target - first) / rate, fraction);
-            find(contact, arc, target, (lo, &begin, rate, slope), hi, guess, |s| s.normal)
+            find(
+                contact,
+                arc,
+                &Sought::Impulse(target),
+                T::one(),
+                (lo, &begin, rate, slope),
+                (hi, peak),
+                guess,
+            )
         }
         Law::Stronge => {
             let missing = target - first;
             let square = begin.velocity * begin.velocity + (missing + missing) * slope;
             let after = if square > zero { square.sqrt() } else { zero };
             let guess = arc.guess(lo, lo + (missing + missing) / ((begin.velocity + after) * rate), fraction);
-            find(contact, arc, target, (lo, &begin, rate, slope), hi, guess, |s| s.work)
+            find(contact, arc, &Sought::Work(target), T::one(), (lo, &begin, rate, slope), (hi, peak), guess)
         }
     };
     Ok(point)
 }
 
-/// The point between `from` and `hi` where a rising quantity takes the target.
+/// The point between `from` and `hi` where what is sought vanishes, rising (`sign` = 1) or falling (-1).
 ///
-/// Inverse cubic interpolation between the last two points, else Newton's method, kept inside a bracket; the last, tiny step is made along
-/// the equations (34) themselves.
+/// Newton's method, kept inside a bracket; the last, tiny step is made along the equations (34) themselves.
 #[inline]
 fn find<T: Scalar>(
     contact: &Contact<T>,
     arc: &impl Arc<T>,
-    target: T,
+    sought: &Sought<T>,
+    sign: T,
     from: (T, &State<T>, T, T),
-    hi: T,
+    (hi, top): (T, Option<&Point<T>>),
     guess: T,
-    quantity: impl Fn(&State<T>) -> T,
 ) -> (T, Point<T>) {
     let half = constant::<T>(0.5);
-    // All quantities are linear in the state, so they turn its derivative into theirs.
-    let slope_at = |state: &State<T>, rate: T, slope: T| {
-        quantity(&State {
-            normal: rate,
-            tangential: Vector2::zeros(),
-            velocity: rate * slope,
-            work: rate * state.velocity,
-        })
-    };
-    let (mut lo, mut hi) = (from.0, hi);
-    let (mut x0, mut y0, mut s0) = (from.0, quantity(from.1) - target, slope_at(from.1, from.2, from.3));
+    let (from, state, rate, slope) = from;
+    let (mut lo, mut hi) = (from, hi);
     let mut x = if guess > lo && guess < hi { guess } else { (lo + hi) * half };
-    let mut point = arc.at(x);
+    let (mut x0, mut y0, mut s0) = (from, sought.of(state), sought.slope(state, rate, slope));
+    if let (Some(top), false) = (top, arc.winds()) {
+        let y = sought.of(&top.state);
+        let between = cubic((x0, y0, s0), (hi, y, sought.slope(&top.state, top.rate, top.slope)));
+        if between > lo && between < hi {
+            x = between;
+        }
+    }
     // The square of a step this small is rounding.
     let small = constant::<T>(0.0625) * T::default_epsilon().sqrt();
     // A derivative is one step of Newton's behind its value, and interpolation between close points ruins it.
-    let mut behind = T::refined();
+    let behind = T::refined();
     for _ in 0..64 {
-        let y = quantity(&point.state) - target;
-        let slope = slope_at(&point.state, point.rate, point.slope);
-        if y < T::zero() {
+        let (y, slope) = arc.value(x, sought);
+        if y * sign < T::zero() {
             lo = x;
         } else {
             hi = x;
         }
         let newton = -y / slope;
-        if newton.abs() <= small * (x - from.0) {
-            if !behind {
-                return (x + newton, point.moved(contact, newton));
+        if newton.abs() <= small * (x - from) || hi - lo <= T::default_epsilon() * hi {
+            if behind {
+                x = (x + newton).plain();
             }
-            behind = false;
-            x = (x + newton).plain();
-            point = arc.at(x);
-            continue;
-        }
-        if hi - lo <= T::default_epsilon() * hi {
             break;
         }
-        let rise = y - y0;
-        let u = -y0 / rise;
-        let w = T::one() - u;
-        let cubic = x0 * w * w * (T::one() + u + u)
-            + x * u * u * (T::one() + w + w)
-            + u * w * rise * (w / s0 - u / slope);
+        let better = match arc.step(newton) {
+            Some(step) => x + step,
+            None => cubic((x0, y0, s0), (x, y, slope)),
+        };
         (x0, y0, s0) = (x, y, slope);
-        x = if cubic > lo && cubic < hi {
-            cubic
+        x = if better > lo && better < hi {
+            better
         } else if x + newton > lo && x + newton < hi {
             x + newton
         } else {
             (lo + hi) * half
         };
-        point = arc.at(x);
     }
-    (x, point)
+    let point = arc.at(x);
+    let y = sought.of(&point.state);
+    let step = -y / sought.slope(&point.state, point.rate, point.slope);
+    if step.abs() <= constant::<T>(16.0) * small * x {
+        (x + step, point.moved(contact, step))
+    } else {
+        (x, point)
+    }
+}
+
+/// Inverse cubic interpolation: where it vanishes, from two points, values and derivatives.
+#[inline(always)]
+fn cubic<T: Scalar>((x0, y0, s0): (T, T, T), (x, y, slope): (T, T, T)) -> T {
+    let rise = y - y0;
+    let u = -y0 / rise;
+    let w = T::one() - u;
+    x0 * w * w * (T::one() + u + u) + x * u * u * (T::one() + w + w) + u * w * rise * (w / s0 - u / slope)
 }
 
 /// The first theta in (0, limit) where F changes sign, if there is one.

@@ -3,13 +3,13 @@
 use nalgebra::Vector2;
 
 use super::{
-    arc::{Arc, Point, Start},
+    arc::{Arc, Point, Sought, Start},
     chart::Chart,
     ledger::State,
     series::{Row, Scaled, TERMS, Table, from_rest, from_rest_direct, sum, terms},
     terminal::Contact,
 };
-use crate::{scalar::Real as Scalar, scalar::constant, scalar::larger};
+use crate::{scalar::Real as Scalar, scalar::constant, scalar::fma, scalar::larger};
 
 /// Slip over |v_n1| (times mu if that is above one) beyond which the work of the normal impulse is summed directly.
 const FAST: f64 = 32.0;
@@ -22,7 +22,11 @@ pub(super) struct Regular<'a, T: Scalar> {
     contact: Contact<T>,
     /// m_nt and m_ts, m_tt, along the slip at the start.
     along: [T; 3],
+    /// mu times b across the slip at the start.
+    across: T,
     fast: bool,
+    /// Half the terms hold up to here.
+    short: T,
     /// The series holds up to here.
     pub limit: T,
 }
@@ -55,6 +59,7 @@ impl<'a, T: Scalar> Regular<'a, T> {
         let sources = scaled.sources(!fast);
         let mut count = TERMS / 2;
         let mut limit;
+        let mut short = T::zero();
         if fast {
             count = TERMS;
             from_rest_direct(table, &taps, &sources, [-contact.mu * along, -contact.mu * across], count);
@@ -63,7 +68,8 @@ impl<'a, T: Scalar> Regular<'a, T> {
             from_rest(table, &taps, &sources, 0, count);
             limit = reach(terms(table, count));
             let rate = (start.slip + start.slip) * scaled.inverse;
-            if away > limit * rate {
+            if away + away > limit * rate {
+                short = limit;
                 from_rest(table, &taps, &sources, count, TERMS);
                 count = TERMS;
                 limit = reach(terms(table, count)).sqrt();
@@ -77,9 +83,17 @@ impl<'a, T: Scalar> Regular<'a, T> {
             start,
             contact: *contact,
             along: [along, contact.mu * tt, contact.mu * ts],
+            across: contact.mu * across,
             fast,
+            short,
             limit: limit.plain(),
         }
+    }
+
+    /// The terms that count at theta.
+    #[inline(always)]
+    fn enough(&self, theta: T) -> &'a [Row<T>] {
+        if theta > self.short { self.terms } else { self.terms.get(..TERMS / 2).unwrap_or(self.terms) }
     }
 
     /// dI_n / dtheta at the start.
@@ -107,7 +121,7 @@ fn reach<T: Scalar>(terms: &[Row<T>]) -> T {
 impl<T: Scalar> Arc<T> for Regular<'_, T> {
     #[inline]
     fn at(&self, theta: T) -> Point<T> {
-        let lanes = sum(self.terms, theta);
+        let lanes = sum(self.enough(theta), theta);
         let [i, c, s, w] = lanes.map(|x| x * theta);
         let poly = |p: [T; 3]| (p[2] * theta + p[1]) * theta + p[0];
         let (cos, sin, e) = (poly(self.scaled.c), poly(self.scaled.z), poly(self.scaled.e));
@@ -141,6 +155,32 @@ impl<T: Scalar> Arc<T> for Regular<'_, T> {
             slope: poly(self.scaled.f) / e,
             slip: Vector2::new(slip.x * d.x - slip.y * d.y, slip.x * d.y + slip.y * d.x),
         }
+    }
+
+    #[inline]
+    fn value(&self, theta: T, sought: &Sought<T>) -> (T, T) {
+        let poly = |p: [T; 3]| fma(fma(p[2], theta, p[1]), theta, p[0]);
+        let poly2 = |p: [T; 5]| fma(fma(fma(fma(p[4], theta, p[3]), theta, p[2]), theta, p[1]), theta, p[0]);
+        let from = &self.start;
+        let [b1, m11, m12] = self.along;
+        let e = poly(self.scaled.e);
+        let (first, slope) = match *sought {
+            Sought::Velocity(target) => (from.state.velocity - target, poly(self.scaled.f)),
+            Sought::Impulse(target) => (from.state.normal - target, e),
+            Sought::Work(_) => {
+                let point = self.at(theta);
+                return (sought.of(&point.state), sought.slope(&point.state, point.rate, point.slope));
+            }
+        };
+        let [i, c, s, _] = sum(self.enough(theta), theta);
+        let inverse = poly(self.scaled.c) - fma(b1, i, -fma(m11, c, m12 * s)) * theta;
+        let gain = match sought {
+            Sought::Velocity(_) => i - (self.contact.mu * b1) * c - self.across * s,
+            _ => i,
+        };
+        let rate = (from.slip + from.slip) * e * self.scaled.inverse / poly2(self.scaled.h);
+        let sigma = T::one() / inverse;
+        (fma(from.slip * theta * gain, sigma, first), rate * slope * sigma)
     }
 
     #[inline]

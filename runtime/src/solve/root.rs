@@ -6,16 +6,19 @@
 use nalgebra::Vector2;
 
 use super::{
-    arc::{Arc, Point, Start, turning},
+    arc::{Arc, Point, Sought, Start, turning},
     chart::Chart,
     ledger::State,
-    series::{Row, Scaled, TERMS, Table, from_root, inverses, sum, sum_one, terms},
+    series::{MOST, Row, Scaled, Table, from_root, inverses, sum, sum_one, terms},
     terminal::Contact,
 };
 use crate::{scalar::Real as Scalar, scalar::constant, scalar::fma, scalar::larger};
 
 /// Slip over |v_n1| (times mu if that is above one) beyond which the work would lose digits.
 const FAST: f64 = 32.0;
+
+/// Largest ratio of successive terms of the expansion that is used.
+const RATIO: f64 = 0.73;
 
 /// The rest of the arc; the parameter is lambda = -ln theta.
 pub(super) struct Root<'a, T: Scalar> {
@@ -25,53 +28,138 @@ pub(super) struct Root<'a, T: Scalar> {
     start: Start<T>,
     /// Direction of the root.
     direction: Vector2<T>,
+    /// mu times b along the root and across it.
+    across: [T; 2],
     /// sigma, its lanes and the slip at the start.
     sigma: T,
     first: Row<T>,
     slip: Vector2<T>,
     /// Exponent of sigma.
     pub alpha: T,
+    /// Square of the ratio of terms at theta = 1.
+    ratio: T,
     /// ln S as a series, without its first term.
     log: &'a [T],
     log_start: T,
 }
 
-/// The stable root of H ahead, if it is in reach.
+/// The root of h that slip runs into: found once, it serves every piece of the arc.
+#[derive(Clone, Copy)]
+pub(super) struct Ahead<T: Scalar> {
+    /// Direction of the root.
+    direction: Vector2<T>,
+    chart: Chart<T>,
+    /// 1 / x of the other roots of H: a real one, and the middle and the square of half the difference of the others.
+    poles: [T; 3],
+}
+
+impl<T: Scalar> Ahead<T> {
+    /// The root ahead of a direction, if Newton's method finds it from a guess nearby or from the direction of b, where it is if friction is small.
+    #[inline]
+    pub fn of(contact: &Contact<T>, chart: &Chart<T>, d: &Vector2<T>) -> Option<Self> {
+        let b = &contact.b;
+        let forward = chart.h[0] > T::zero();
+        let guess = match near(&chart.h) {
+            Some(x) => x,
+            None => (b.y * d.x - b.x * d.y) / ((b.x * b.x + b.y * b.y).sqrt() + b.x * d.x + b.y * d.y),
+        };
+        let x = stable(&chart.h, guess)?;
+        let one = T::one();
+        let size = one / (one + x * x);
+        let (c, s) = ((one - x * x) * size, (x + x) * size);
+        let direction = Vector2::new(d.x * c - d.y * s, d.y * c + d.x * s);
+        let chart = Chart::about(contact, &direction);
+        let [_, h1, h2, h3, h4] = chart.h;
+        let inverse = one / h1;
+        let (a, b, c) = (h2 * inverse, h3 * inverse, h4 * inverse);
+        // w^3 + a w^2 + b w + c: from beyond all its roots, or from the end of the range if the real one is alone.
+        let bound = one + larger(a.abs(), larger(b.abs(), c.abs()));
+        let mut w = if fma(fma(-a, constant::<T>(2.0 / 9.0) * a, b) * constant(1.0 / 3.0), a, -c) > T::zero()
+        {
+            bound
+        } else {
+            -bound
+        };
+        for _ in 0..24 {
+            let value = fma(fma(w + a, w, b), w, c);
+            let slope = fma(fma(constant::<T>(3.0), w, a + a), w, b);
+            let step = value / slope;
+            w -= step;
+            if step.abs() <= constant::<T>(1e-4) * w.abs() {
+                break;
+            }
+        }
+        let middle = -constant::<T>(0.5) * (a + w);
+        let spread = middle * middle - fma(w + a, w, b);
+        let found = Self { direction, chart, poles: [w, middle, spread] };
+        if found.first(-one / x, forward) { Some(found) } else { None }
+    }
+
+    /// Whether no other root lies on the way from 1 / x = `from`.
+    #[inline]
+    fn first(&self, from: T, forward: bool) -> bool {
+        let [w, p, spread] = self.poles;
+        let beyond = |pole: T| if forward { pole > from } else { pole < from };
+        let others = spread < T::zero() || {
+            let r = spread.sqrt();
+            beyond(p - r) && beyond(p + r)
+        };
+        others && beyond(w)
+    }
+
+    /// kappa for an expansion that reaches 1 / x = `from`, and the ratio of its terms there.
+    #[inline]
+    fn balance(&self, from: T) -> (T, T) {
+        let [w, p, spread] = self.poles;
+        let half = constant::<T>(0.5);
+        let zero = T::zero();
+        let (kappa, square) = if spread >= zero {
+            let r = spread.sqrt();
+            let (lo, hi) = (p - r, p + r);
+            let (lo, hi) = (if w < lo { w } else { lo }, larger(w, hi));
+            ((lo + hi) * half, (hi - lo) * (hi - lo) * constant(0.25))
+        } else {
+            let kappa = p + spread / (from - p);
+            let pair = (p - kappa) * (p - kappa) - spread;
+            let kappa = if (w - kappa) * (w - kappa) <= pair {
+                kappa
+            } else {
+                (p * p - spread - w * w) * half / (p - w)
+            };
+            let pair = (p - kappa) * (p - kappa) - spread;
+            (kappa, larger(pair, (w - kappa) * (w - kappa)))
+        };
+        (kappa, square / ((from - kappa) * (from - kappa)))
+    }
+}
+
+/// A first guess at the root of H ahead, by the first three coefficients.
 #[inline]
-fn ahead<T: Scalar>(h: &[T; 5]) -> Option<T> {
-    let [h0, h1, h2, h3, h4] = *h;
+fn near<T: Scalar>(h: &[T; 5]) -> Option<T> {
+    let [h0, h1, h2, ..] = *h;
     let two = constant::<T>(2.0);
     let disc = h1 * h1 - constant::<T>(4.0) * h0 * h2;
-    let below = if disc > T::zero() { disc.sqrt() - h1 } else { -h1 };
-    if below <= T::zero() {
-        return None;
-    }
-    let mut x = two * h0 / below;
-    if x.abs() > two {
-        return None;
-    }
+    let below = if disc > T::zero() { disc.sqrt() - h1 } else { return None };
+    let x = two * h0 / below;
+    if below > T::zero() && x.abs() <= two { Some(x) } else { None }
+}
+
+/// The stable root of H that Newton's method finds from a guess.
+#[inline]
+fn stable<T: Scalar>(h: &[T; 5], mut x: T) -> Option<T> {
+    let [h0, h1, h2, h3, h4] = *h;
+    let two = constant::<T>(2.0);
+    let (d2, d3, d4) = (two * h2, constant::<T>(3.0) * h3, constant::<T>(4.0) * h4);
     for _ in 0..8 {
         let value = fma(fma(fma(fma(h4, x, h3), x, h2), x, h1), x, h0);
-        let slope = fma(fma(fma(constant::<T>(4.0) * h4, x, constant::<T>(3.0) * h3), x, two * h2), x, h1);
+        let slope = fma(fma(fma(d4, x, d3), x, d2), x, h1);
         let step = value / slope;
         x -= step;
         if step.abs() <= T::default_epsilon() * constant(4.0) * x.abs() {
-            let right = slope < T::zero() && x * h0 > T::zero() && x.abs() < two;
-            return if right { Some(x) } else { None };
+            return if slope < T::zero() { Some(x) } else { None };
         }
     }
     None
-}
-
-/// Whether every root of 1 + a x + b x^2 + c x^3 lies outside a circle of radius 4/3, by Cauchy's bound after two of Graeffe's squarings.
-#[inline]
-fn apart<T: Scalar>(mut a: T, mut b: T, mut c: T) -> bool {
-    for _ in 0..2 {
-        (a, b, c) = (b + b - a * a, b * b - (a + a) * c, -c * c);
-    }
-    // (3/4)^4
-    let q = constant::<T>(0.316);
-    ((q - a.abs()) * q - b.abs()) * q > c.abs()
 }
 
 impl<'a, T: Scalar> Root<'a, T> {
@@ -80,29 +168,29 @@ impl<'a, T: Scalar> Root<'a, T> {
     pub fn new(
         table: &'a mut Table<T>,
         contact: &Contact<T>,
-        chart: &Chart<T>,
+        ahead: &Ahead<T>,
         start: Start<T>,
     ) -> Option<Self> {
         if start.slip * larger(T::one(), contact.mu) > constant(FAST) {
             return None;
         }
-        let x = ahead(&chart.h)?;
         let one = T::one();
-        let size = one + x * x;
-        let (c, s) = ((one - x * x) / size, (x + x) / size);
-        let d = &start.direction;
-        let direction = Vector2::new(d.x * c - d.y * s, d.y * c + d.x * s);
-        let here = Chart::about(contact, &direction);
-        let [_, h1, h2, ..] = here.h;
-        let kappa = -constant::<T>(0.5) * h2 / h1;
-        let room = one + kappa * x;
-        let (kappa, room) = if room > constant(0.25) { (kappa, room) } else { (T::zero(), one) };
-        let here = here.with_kappa(kappa);
-        let scaled = Scaled::new(&here, -x / room, one / h1);
-        let [_, _, p2, p3, p4] = scaled.h;
+        let (d, direction) = (&start.direction, ahead.direction);
+        // tan of half the angle from the root to here.
+        let x = (direction.x * d.y - direction.y * d.x) / (one + direction.dot(d));
+        let from = one / x;
+        let (kappa, ratio) = ahead.balance(from);
+        let kappa = kappa.plain();
+        // The square of the ratio of the terms.
+        if !(ratio < constant(RATIO * RATIO)) {
+            return None;
+        }
+        let here = ahead.chart.with_kappa(kappa);
+        let [_, h1, ..] = here.h;
+        let scaled = Scaled::new(&here, one / (from - kappa), one / h1);
         let [alpha, ..] = scaled.k;
         let usable = alpha.abs() > constant(0.03) && alpha > constant(-0.95) && alpha < constant(6.0);
-        if !usable || !apart(p2, p3, p4) || turning(scaled.f, one).is_some() {
+        if !usable || turning(scaled.f, one).is_some() {
             return None;
         }
         let count = from_root(table, &scaled.taps(), &scaled.sources(true))?;
@@ -115,10 +203,15 @@ impl<'a, T: Scalar> Root<'a, T> {
             contact: *contact,
             start,
             direction,
+            across: [
+                contact.mu * contact.b.dot(&direction),
+                contact.mu * (contact.b.y * direction.x - contact.b.x * direction.y),
+            ],
             sigma,
             first: sum(terms, one),
             slip: Vector2::new(poly(scaled.c), poly(scaled.z)) * sigma,
             alpha,
+            ratio,
             log: &[],
             log_start: T::zero(),
         })
@@ -126,7 +219,7 @@ impl<'a, T: Scalar> Root<'a, T> {
 
     /// Prepares the expansion for points on the way; false if that takes too many terms.
     #[inline]
-    pub fn prepare(&mut self, log: &'a mut [T; TERMS]) -> bool {
+    pub fn prepare(&mut self, log: &'a mut [T; MOST]) -> bool {
         let [_, _, h2, h3, h4] = self.scaled.h;
         let [alpha, k1, k2, k3] = self.scaled.k;
         let (mut l1, mut l2, mut l3) = (k3 - alpha * h4, k2 - alpha * h3, k1 - alpha * h2);
@@ -134,16 +227,21 @@ impl<'a, T: Scalar> Root<'a, T> {
         let (mut a, mut b, mut c) = (l3, l2, l1);
         (l1, l2, l3) = (T::zero(), T::zero(), T::zero());
         let mut total = T::zero();
+        let mut count = 0;
+        let mut settled = false;
         for (slot, inverse) in log.iter_mut().zip(inverses()) {
             let l = a - h2 * l1 - h3 * l2 - h4 * l3;
             (a, b, c) = (b, c, T::zero());
             *slot = l * inverse;
             total += *slot;
             (l3, l2, l1) = (l2, l1, l);
+            count += 1;
+            if count % 8 == 0 && (l1.abs() + l2.abs()) * inverse <= T::default_epsilon() {
+                settled = true;
+                break;
+            }
         }
-        let [.., y, z] = log;
-        let settled = y.abs() + z.abs() <= constant::<T>(2.0) * T::default_epsilon();
-        self.log = log;
+        self.log = log.get(..count).unwrap_or(&[]);
         self.log_start = total;
         settled
     }
@@ -178,6 +276,27 @@ impl<'a, T: Scalar> Root<'a, T> {
         self.state(T::zero(), [T::zero(); 4], &Vector2::zeros())
     }
 
+    /// theta, sigma and the lanes.
+    #[inline(always)]
+    fn lanes(&self, lambda: T) -> (T, T, Row<T>) {
+        let theta = (-lambda).exp();
+        // The terms fall off like theta times the ratio: nearer to the root fewer of them count.
+        let (mut terms, mut log) = (self.terms, self.log);
+        let mut near = self.ratio;
+        for _ in 0..3 {
+            if theta * theta > near {
+                break;
+            }
+            terms = half(terms);
+            log = half(log);
+            near *= near;
+        }
+        let lanes = sum(terms, theta);
+        let log = sum_one(log, theta);
+        let sigma = self.sigma * (log * theta - self.log_start - self.alpha * lambda).exp();
+        (theta, sigma, lanes)
+    }
+
     /// dI_n / dlambda at the start.
     #[inline]
     pub fn first_rate(&self) -> T {
@@ -187,13 +306,16 @@ impl<'a, T: Scalar> Root<'a, T> {
     }
 }
 
+/// The first half of the terms, a multiple of eight.
+#[inline(always)]
+fn half<R>(terms: &[R]) -> &[R] {
+    terms.get(..(terms.len() + 8) / 16 * 8 + 8).unwrap_or(terms)
+}
+
 impl<T: Scalar> Arc<T> for Root<'_, T> {
     #[inline]
     fn at(&self, lambda: T) -> Point<T> {
-        let theta = (-lambda).exp();
-        let lanes = sum(self.terms, theta);
-        let log = sum_one(self.log, theta);
-        let sigma = self.sigma * (log * theta - self.log_start - self.alpha * lambda).exp();
+        let (theta, sigma, lanes) = self.lanes(lambda);
         let poly = |p: [T; 3]| (p[2] * theta + p[1]) * theta + p[0];
         let e = poly(self.scaled.e);
         let slip = Vector2::new(poly(self.scaled.c), poly(self.scaled.z)) * sigma;
@@ -205,6 +327,31 @@ impl<T: Scalar> Arc<T> for Root<'_, T> {
             rate: -(sigma + sigma) * e * e * self.scaled.inverse / h,
             slope: poly(self.scaled.f) / e,
             slip: Vector2::new(slip.x * d.x - slip.y * d.y, slip.x * d.y + slip.y * d.x),
+        }
+    }
+
+    #[inline]
+    fn value(&self, lambda: T, sought: &Sought<T>) -> (T, T) {
+        if let Sought::Work(_) = sought {
+            let point = self.at(lambda);
+            return (sought.of(&point.state), sought.slope(&point.state, point.rate, point.slope));
+        }
+        let (theta, sigma, [i, c, s, _]) = self.lanes(lambda);
+        let poly = |p: [T; 3]| fma(fma(p[2], theta, p[1]), theta, p[0]);
+        let [_, h1, h2, h3, h4] = self.scaled.h;
+        let h = fma(fma(fma(h4, theta, h3), theta, h2), theta, h1);
+        let e = poly(self.scaled.e);
+        let rate = -(sigma + sigma) * e * self.scaled.inverse / h;
+        let from = &self.start.state;
+        let [i1, c1, s1, _] = self.first;
+        let di = sigma * i - self.sigma * i1;
+        match *sought {
+            Sought::Velocity(target) => {
+                let [b1, b2] = self.across;
+                let (dc, ds) = (sigma * c - self.sigma * c1, sigma * s - self.sigma * s1);
+                (from.velocity - target + di - b1 * dc - b2 * ds, rate * poly(self.scaled.f))
+            }
+            Sought::Impulse(target) | Sought::Work(target) => (from.normal - target + di, rate * e),
         }
     }
 
@@ -222,6 +369,18 @@ impl<T: Scalar> Arc<T> for Root<'_, T> {
             return Point { state: self.stop(), rate: zero, slope: zero, slip: Vector2::zeros() };
         }
         self.at(end)
+    }
+
+    #[inline]
+    fn winds(&self) -> bool {
+        true
+    }
+
+    /// All quantities run like exp(-alpha lambda) in the end.
+    #[inline]
+    fn step(&self, newton: T) -> Option<T> {
+        let left = T::one() - self.alpha * newton;
+        Some(if left > constant(0.01) { -left.ln() / self.alpha } else { newton })
     }
 
     #[inline]

@@ -9,8 +9,10 @@ use core::cell::Cell;
 use super::chart::Chart;
 use crate::{scalar::Real as Scalar, scalar::constant, scalar::fma};
 
-/// Most terms of a series.
+/// Most terms of a series about a regular point.
 pub(super) const TERMS: usize = 64;
+/// Most terms of a series about a root.
+pub(super) const MOST: usize = 104;
 /// Rows of zeros before the first term, for the recurrence to start from.
 const LEAD: usize = 4;
 /// Terms with a right-hand side.
@@ -20,14 +22,14 @@ const HEAD: usize = 7;
 pub(super) type Row<T> = [T; 4];
 
 /// The coefficients, after four rows of zeros.
-pub(super) type Table<T> = [Row<T>; LEAD + TERMS];
+pub(super) type Table<T> = [Row<T>; LEAD + MOST];
 
 /// A table to write series into.
 ///
 /// Only its first rows must be zero. The others hold a number from the problem, because filling memory with zeros costs a call that takes longer.
 #[inline(always)]
 pub(super) fn table<T: Scalar>(any: T) -> Table<T> {
-    let mut table = [[any; 4]; LEAD + TERMS];
+    let mut table = [[any; 4]; LEAD + MOST];
     for row in table.iter_mut().take(LEAD) {
         *row = [T::zero(); 4];
     }
@@ -166,26 +168,46 @@ pub(super) fn from_rest<T: Scalar>(
 ) {
     let rows = Cell::from_mut(table.as_mut_slice()).as_slice_of_cells();
     let (Some(rows), Some(orders)) = (rows.get(from..to + LEAD), ORDERS.get(from..to)) else { return };
-    let mut windows = rows.windows(LEAD + 1).zip(orders);
+    let zero = [T::zero(); 4];
+    let mut blocks = rows.windows(LEAD + 4).step_by(4).zip(orders.as_chunks::<4>().0);
     if from == 0 {
-        for (source, (window, order)) in sources.iter().zip(&mut windows) {
-            four_taps(window, order, taps, *source);
+        // The sources end within the first two blocks.
+        let [w0, w1, w2, w3, w4, w5, w6] = *sources;
+        if let Some((window, orders)) = blocks.next() {
+            four_terms(window, orders, taps, &[w0, w1, w2, w3]);
+        }
+        if let Some((window, orders)) = blocks.next() {
+            four_terms(window, orders, taps, &[w4, w5, w6, zero]);
         }
     }
-    for (window, order) in windows {
-        four_taps(window, order, taps, [T::zero(); 4]);
+    for (window, orders) in blocks {
+        four_terms(window, orders, taps, &[zero; 4]);
     }
+}
+
+/// Four terms from the four before them.
+#[inline(always)]
+fn four_terms<T: Scalar>(
+    window: &[Cell<Row<T>>],
+    [o0, o1, o2, o3]: &[[f64; 2]; 4],
+    taps: &Taps<T>,
+    [s0, s1, s2, s3]: &[Row<T>; 4],
+) {
+    let [a, b, c, d, e, f, g, h] = window else { return };
+    four_taps([a, b, c, d, e], o0, taps, *s0);
+    four_taps([b, c, d, e, f], o1, taps, *s1);
+    four_taps([c, d, e, f, g], o2, taps, *s2);
+    four_taps([d, e, f, g, h], o3, taps, *s3);
 }
 
 /// One term from the four before it.
 #[inline(always)]
 fn four_taps<T: Scalar>(
-    window: &[Cell<Row<T>>],
+    [r3, r2, r1, r0, out]: [&Cell<Row<T>>; 5],
     [order, inverse]: &[f64; 2],
     taps: &Taps<T>,
     source: Row<T>,
 ) {
-    let [r3, r2, r1, r0, out] = window else { return };
     let [b0, b1, b2, b3] = taps.base;
     let [s0, s1, s2, s3] = taps.slope;
     let n = [constant::<T>(*order); 4];
@@ -277,10 +299,10 @@ fn three_taps<T: Scalar>(window: &[Cell<Row<T>>], [order, _]: &[f64; 2], taps: &
 }
 
 /// n and 1 / (n + 1).
-const ORDERS: [[f64; 2]; TERMS] = {
-    let mut table = [[0.0; 2]; TERMS];
+const ORDERS: [[f64; 2]; MOST] = {
+    let mut table = [[0.0; 2]; MOST];
     let mut n = 0;
-    while n < TERMS {
+    while n < MOST {
         table[n] = [n as f64, 1.0 / (n as f64 + 1.0)];
         n += 1;
     }

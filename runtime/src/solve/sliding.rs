@@ -8,8 +8,8 @@ use super::{
     chart::Chart,
     ledger::{Ledger, Line, State},
     regular::Regular,
-    root::Root,
-    series::{TERMS, table},
+    root::{Ahead, Root},
+    series::{MOST, table},
     terminal::Contact,
 };
 use crate::{scalar::Real as Scalar, scalar::constant, scalar::length};
@@ -40,6 +40,7 @@ pub(crate) fn slide<T: Scalar>(
     let noise = eps * (length(&c.b) + c.mu * (c.tt + c.ss));
     let mut at = Start { state: State::approach(), direction: from / speed, slip: speed };
     let mut table = table(speed);
+    let mut ahead = None;
     for _ in 0..PIECES {
         let chart = Chart::about(c, &at.direction);
         let [h0, h1, ..] = chart.h;
@@ -53,7 +54,13 @@ pub(crate) fn slide<T: Scalar>(
         // An end close by is better sought from here than from the root: a rough look at how far slip will turn and change.
         let away = ledger.remaining(&at.state, f0);
         let near = away * (g.abs() + h1.abs() * constant(0.5)) < at.slip * constant(0.4);
-        let rest = if near { None } else { Root::new(&mut table, c, &chart, at) };
+        if ahead.is_none() && !near {
+            ahead = Ahead::of(c, &chart, &at.direction);
+        }
+        let rest = match &ahead {
+            Some(ahead) if !near => Root::new(&mut table, c, ahead, at),
+            _ => None,
+        };
         if let Some(mut rest) = rest {
             let stops = rest.alpha > T::zero();
             let stop = rest.stop();
@@ -65,7 +72,7 @@ pub(crate) fn slide<T: Scalar>(
             } else {
                 rest.first_rate() * constant(0.25)
             };
-            let mut log = [at.slip; TERMS];
+            let mut log = [at.slip; MOST];
             if away > far && rest.prepare(&mut log) {
                 match follow(c, &rest, &at, rest.first_rate(), f0, ledger) {
                     Ok(point) => return Slide::Ended(point.state, point.slip),
