@@ -149,3 +149,42 @@ fn bodies_may_approach_twice() {
         assert_eq!(hit.compressions, 2);
     }
 }
+
+/// Steep friction on ill-conditioned contacts: where f changes sign it is known to mu |b| times the rounding only, and the arc must
+/// pass on all the same. The velocities are those of the integration (55).
+#[test]
+fn steep_friction_does_not_stop_the_arc_where_v_n_turns() {
+    let cases = [
+        (
+            [
+                0.3223414691164295,
+                -0.34342119009889105,
+                0.26490407549053085,
+                0.4224080478250662,
+                -0.35330814811247846,
+                0.3074049344324396,
+            ],
+            [-0.7079075719093231, -0.41982493158764256, 0.28679393103426165],
+            Surface { mu: 3.0346090856486168, e: 1.0, law: Law::Poisson },
+            0.99123_f64,
+        ),
+        (
+            [
+                6.268007035639618,
+                -3.2192551243982894,
+                5.370087709905249,
+                2.3941255607594942,
+                -4.081729864415486,
+                6.966477306335962,
+            ],
+            [-0.47557321732719365, -1.1152963858659208, 1.4171651645157413],
+            Surface { mu: 32.120212433742296, e: 1.0, law: Law::Stronge },
+            1.658955,
+        ),
+    ];
+    for ([nn, nt, ns, tt, ts, ss], v, surface, separation) in cases {
+        let matrix = ReducedMatrix { nn, nt, ns, tt, ts, ss };
+        let impact = solve(&matrix, &Vector3::from(v), &surface).expect("no wedge");
+        assert!((impact.velocity.x - separation).abs() < 1e-5, "{}", impact.velocity.x);
+    }
+}

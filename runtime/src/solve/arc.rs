@@ -312,19 +312,20 @@ fn cubic<T: Scalar>((x0, y0, s0): (T, T, T), (x, y, slope): (T, T, T)) -> T {
     x0 * w * w * (T::one() + u + u) + x * u * u * (T::one() + w + w) + u * w * rise * (w / s0 - u / slope)
 }
 
-/// The first theta in (0, limit) where F changes sign, if there is one.
+/// The first theta in (0, limit) where F changes sign, if there is one. `size`: how large the terms are of which f is made.
 #[inline]
-pub(super) fn turning<T: Scalar>(f: [T; 3], limit: T) -> Option<T> {
+pub(super) fn turning<T: Scalar>(f: [T; 3], limit: T, size: T) -> Option<T> {
     let [mut c, b, a] = f;
+    // The step began where f changes sign, as well as f can be known there: that root is behind. Measured against the
+    // whole of f and not against its change over the step, or steep friction would find the same root again and again.
+    let tiny = constant::<T>(64.0) * T::default_epsilon();
+    if c.abs() <= tiny * size {
+        c = T::zero();
+    }
     let b = b * limit;
     let a = a * limit * limit;
     if b.abs() + a.abs() < c.abs() {
         return None;
-    }
-    // The step began where f changes sign: that root is behind.
-    let tiny = constant::<T>(64.0) * T::default_epsilon();
-    if c.abs() <= tiny * (b.abs() + a.abs()) {
-        c = T::zero();
     }
     let mut best = None;
     for r in crate::solve::quadratic(a, b, c) {

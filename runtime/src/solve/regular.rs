@@ -185,7 +185,7 @@ impl<T: Scalar> Arc<T> for Regular<'_, T> {
 
     #[inline]
     fn end(&self) -> T {
-        super::arc::turning(self.scaled.f, self.limit).unwrap_or(self.limit)
+        super::arc::turning(self.scaled.f, self.limit, self.contact.size()).unwrap_or(self.limit)
     }
 
     #[inline]

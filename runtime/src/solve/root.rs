@@ -190,7 +190,7 @@ impl<'a, T: Scalar> Root<'a, T> {
         let scaled = Scaled::new(&here, one / (from - kappa), one / h1);
         let [alpha, ..] = scaled.k;
         let usable = alpha.abs() > constant(0.03) && alpha > constant(-0.95) && alpha < constant(6.0);
-        if !usable || turning(scaled.f, one).is_some() {
+        if !usable || turning(scaled.f, one, contact.size()).is_some() {
             return None;
         }
         let count = from_root(table, &scaled.taps(), &scaled.sources(true))?;

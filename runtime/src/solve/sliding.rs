@@ -79,8 +79,11 @@ pub(crate) fn slide<T: Scalar>(
                     Err(_) if stops => return Slide::Stopped(stop),
                     Err(point) => {
                         ledger.turns.moved(point.state.velocity);
-                        let speed = length(&point.slip);
-                        at = Start { state: point.state, direction: point.slip / speed, slip: speed };
+                        let slip = length(&point.slip);
+                        if slip <= eps * speed {
+                            return Slide::Stopped(point.state);
+                        }
+                        at = Start { state: point.state, direction: point.slip / slip, slip };
                         continue;
                     }
                 }
@@ -91,8 +94,11 @@ pub(crate) fn slide<T: Scalar>(
             Ok(point) => return Slide::Ended(point.state, point.slip),
             Err(point) => {
                 ledger.turns.moved(point.state.velocity);
-                let speed = length(&point.slip);
-                at = Start { state: point.state, direction: point.slip / speed, slip: speed };
+                let slip = length(&point.slip);
+                if slip <= eps * speed {
+                    return Slide::Stopped(point.state);
+                }
+                at = Start { state: point.state, direction: point.slip / slip, slip };
             }
         }
     }

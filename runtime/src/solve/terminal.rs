@@ -24,6 +24,12 @@ impl<T: Scalar> Contact<T> {
         )
     }
 
+    /// The size of the terms of which f is made: f is known to this times the rounding of the numbers.
+    #[inline]
+    pub fn size(&self) -> T {
+        T::one() + self.mu * (self.b.x.abs() + self.b.y.abs())
+    }
+
     /// f (31).
     #[inline]
     pub fn normal_rate(&self, d: &Vector2<T>) -> T {
