@@ -13,6 +13,8 @@ use crate::{derivation, report};
 /// The module of an inline model.
 pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
     let name = name(&model);
+    // The tokens are the user's; the call itself stands in the wrapper of the runtime.
+    let place = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
     let source = Source::inline("mechanism!", model);
     let checked = check(&source);
     let module = emit::names::snake_case(name.as_deref().unwrap_or("mechanism"));
@@ -23,7 +25,7 @@ pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
     };
     let manifest = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
     let shown = format!("derived/{module}.derivation");
-    let command = format!("hodograph derive {}", invoking_file(&manifest));
+    let command = format!("hodograph derive {}", invoking_file(place, &manifest));
     let path = manifest.join(&shown);
     let relative = format!("/{shown}");
     let tracked = quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative));
@@ -51,8 +53,8 @@ fn name(model: &TokenStream) -> Option<String> {
 }
 
 /// The source file that invokes the macro, relative to Cargo.toml where it is below.
-fn invoking_file(manifest: &Path) -> String {
-    let file = Span::call_site().unwrap().local_file().unwrap_or_else(|| PathBuf::from("src/lib.rs"));
+fn invoking_file(place: Span, manifest: &Path) -> String {
+    let file = place.unwrap().local_file().unwrap_or_else(|| PathBuf::from("src/lib.rs"));
     let absolute = std::path::absolute(&file).unwrap_or_else(|_| file.clone());
     absolute.strip_prefix(manifest).unwrap_or(&file).to_string_lossy().into_owned()
 }

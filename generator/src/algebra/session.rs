@@ -67,8 +67,14 @@ pub fn exclusively<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static)
 /// The lock file: one for all processes of a user, wherever they run.
 pub fn lock_path() -> PathBuf {
     let home = std::env::home_dir().filter(|home| home.is_dir());
-    home.map_or_else(std::env::temp_dir, |home| home.join(".cache").join("hodograph"))
-        .join("algebra-engine.lock")
+    let folder = home.map(|home| home.join(".cache").join("hodograph"));
+    let folder = folder.filter(|folder| std::fs::create_dir_all(folder).is_ok());
+    // Without a home of their own, users must not meet in one file.
+    let elsewhere = || {
+        let user = ["USER", "LOGNAME", "USERNAME"].into_iter().find_map(|name| std::env::var(name).ok());
+        std::env::temp_dir().join(format!("hodograph-{}", user.as_deref().unwrap_or("unnamed")))
+    };
+    folder.unwrap_or_else(elsewhere).join("algebra-engine.lock")
 }
 
 fn acquire() -> Result<File, SessionError> {
