@@ -199,3 +199,18 @@ fn without_slip_t_lies_along_an_axis() {
     assert_eq!(contact["tangent"], json!([0.0, 1.0, 0.0]));
     assert_eq!(numbers(&contact["v"])[1..], [0.0, 0.0]);
 }
+
+/// Parameters that no body has are named as the cause, not the state.
+#[test]
+fn impossible_masses_are_said_to_be() {
+    for command in ["eval", "collide"] {
+        let model = model("two_sleds");
+        let mut arguments = vec![command, model.as_str(), "--state", "-"];
+        if command == "collide" {
+            arguments.extend(["--contact", "BcAc", "--mu", "0.6", "--e", "0.8", "--law", "stronge"]);
+        }
+        let run = hodograph(&arguments, r#"{"parameters":{"m":-3}}"#);
+        assert_eq!(run.error_kind(), "inconsistent_state");
+        assert!(run.stdout.contains("masses and inertias"), "{}", run.stdout);
+    }
+}

@@ -39,7 +39,7 @@ pub fn collide<'a>(
     let of_contact = contact::QUANTITIES.into_iter().chain(more);
     let mut wanted: Vec<Quantity> =
         of_contact.map(|quantity| Quantity::Contact(index as u32, quantity)).collect();
-    wanted.push(Quantity::DependentSpeeds);
+    wanted.extend([Quantity::DependentSpeeds, Quantity::MassMatrix]);
     let numbers = machine.evaluate(state, &wanted)?;
     let contact = Contact::new(&numbers, index, &state.speeds);
     let impact = hodograph::solve(&ReducedMatrix::from(contact.reduced), &contact.slip, surface)?;

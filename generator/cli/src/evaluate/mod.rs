@@ -62,7 +62,7 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// `singular_state`.
+    /// `singular_state`; `inconsistent_state` where the mass matrix was asked for and is none.
     pub fn evaluate(&self, state: &State, quantities: &[Quantity]) -> Result<Numbers, Failure> {
         let inputs = Inputs {
             parameters: state.parameters.clone(),
@@ -86,6 +86,15 @@ impl Machine {
                 ),
                 other => Failure::new(Kind::SingularState, other.to_string()),
             })?;
+        for array in arrays.iter().filter(|array| array.quantity == Quantity::MassMatrix) {
+            if !positive_definite(array) {
+                return Err(Failure::new(
+                    Kind::InconsistentState,
+                    "the mass matrix is not positive definite, which no mechanism's is: check the masses and inertias \
+                     among the parameters",
+                ));
+            }
+        }
         Ok(Numbers { arrays: arrays.into_iter().map(positive_zeros).collect() })
     }
 
@@ -150,6 +159,22 @@ impl Machine {
         }
         Ok(())
     }
+}
+
+/// Has the symmetric matrix positive pivots?
+fn positive_definite(matrix: &interpret::Array) -> bool {
+    let mut rows: Vec<Vec<f64>> = matrix.rows().map(<[f64]>::to_vec).collect();
+    for step in 0..rows.len() {
+        let row = rows[step].clone();
+        if row[step].is_nan() || row[step] <= 0.0 {
+            return false;
+        }
+        for below in &mut rows[step + 1..] {
+            let factor = below[step] / row[step];
+            below.iter_mut().zip(&row).for_each(|(entry, above)| *entry -= factor * above);
+        }
+    }
+    true
 }
 
 /// A zero has no sign for a reader.
