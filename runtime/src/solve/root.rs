@@ -182,7 +182,7 @@ impl<'a, T: Scalar> Root<'a, T> {
         let (kappa, ratio) = ahead.balance(from);
         let kappa = kappa.plain();
         // The square of the ratio of the terms.
-        if !(ratio < constant(RATIO * RATIO)) {
+        if ratio.partial_cmp(&constant(RATIO * RATIO)) != Some(core::cmp::Ordering::Less) {
             return None;
         }
         let here = ahead.chart.with_kappa(kappa);
