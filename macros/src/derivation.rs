@@ -27,7 +27,7 @@ pub fn find(
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return absent(mechanism, shown, command);
+            return absent(source, mechanism, shown, command);
         }
         Err(error) => return Err(format!("the derivation `{shown}` cannot be read: {error}")),
     };
@@ -46,11 +46,14 @@ pub fn find(
 }
 
 #[cfg(feature = "derive")]
-fn absent(mechanism: &Mechanism, _shown: &str, _command: &str) -> Result<Found, String> {
+fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) -> Result<Found, String> {
+    use hodograph_generator::DerivationError;
+
     #[cfg(unix)]
     let _elsewhere = lead_stdout_elsewhere();
     match hodograph_generator::derive(mechanism) {
         Ok(derived) => Ok(Found { program: Program::new(&derived), checked_in: false }),
+        Err(DerivationError::Model(error)) => Err(error.diagnostic().compiler_text(source)),
         Err(error) => Err(format!("the equations could not be derived: {error}")),
     }
 }
@@ -67,7 +70,7 @@ fn lead_stdout_elsewhere() -> Box<dyn std::any::Any> {
 }
 
 #[cfg(not(feature = "derive"))]
-fn absent(_mechanism: &Mechanism, shown: &str, command: &str) -> Result<Found, String> {
+fn absent(_source: &Source, _mechanism: &Mechanism, shown: &str, command: &str) -> Result<Found, String> {
     Err(format!(
         "the model has no derivation `{shown}`; run this in the folder of the package's Cargo.toml and check the result \
          in:\n\n    {command}\n\n(or, while the model is being written, switch on the feature `derive` of hodograph)"

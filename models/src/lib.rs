@@ -19,6 +19,7 @@ use hodograph::mechanism;
 
 mechanism!("arm_7dof.mech");
 mechanism!("ball_joint_body.mech");
+mechanism!("ball_on_turntable.mech");
 mechanism!("cart_5_link.mech");
 mechanism!("chaplygin_sleigh.mech");
 mechanism!("driven_rotary_pendulum.mech");

@@ -4,20 +4,17 @@ mod common;
 
 use common::emitted::{Emitted, Hit, emitted};
 use common::random::samples;
-use common::{Model, models};
+use common::{Model, models, root};
 use hodograph::{Law, Surface};
 use hodograph_generator::interpret::Inputs;
 use hodograph_generator::program::routine::{ContactQuantity as C, Quantity as Q};
 
 #[test]
 fn every_model_has_its_module() {
-    let modules: Vec<&str> = emitted().iter().map(|module| module.name()).collect();
+    let library = std::fs::read_to_string(root().join("models/src/lib.rs")).expect("models/src/lib.rs");
     for model in models() {
-        let name = model.name;
-        assert!(
-            modules.contains(&name.as_str()),
-            "add `{name}` to `modules!` at the end of tests/tests/common/emitted.rs, and to models/src/lib.rs"
-        );
+        let line = format!("mechanism!(\"{}.mech\");", model.name);
+        assert!(library.contains(&line), "add `{line}` to models/src/lib.rs");
     }
 }
 
@@ -33,22 +30,67 @@ fn pairs() -> Vec<(Box<dyn Emitted>, Model)> {
 #[test]
 fn the_same_bits_as_the_interpreter() {
     for (module, model) in &pairs() {
+        let mechanism = &model.mechanism;
+        let mut tried = 0;
         for sample in samples(model, 5) {
-            let at = &sample.inputs;
-            let get = |quantity| model.get(at, quantity).values;
-            let name = module.name();
-            assert_eq!(module.mass_matrix(at), get(Q::MassMatrix), "{name}");
-            assert_eq!(module.forcing(at), get(Q::Forcing), "{name}");
-            assert_eq!(module.accelerations(at), get(Q::Accelerations), "{name}");
-            assert_eq!(module.coordinate_rates(at), get(Q::CoordinateRates), "{name}");
-            assert_eq!(module.dependent_speeds(at), get(Q::DependentSpeeds), "{name}");
-            assert_eq!([module.kinetic_energy(at)], get(Q::KineticEnergy)[..], "{name}");
-            for contact in 0..model.mechanism.contacts.len() {
-                let get = |quantity| get(Q::Contact(contact as u32, quantity));
-                assert_eq!(module.reduced_matrix(contact, at), get(C::Reduced)[..], "{name}");
-                assert_eq!(module.partial_velocities(contact, at), get(C::PartialVelocities), "{name}");
-                assert_eq!(module.contact_velocity(contact, at), get(C::Velocity)[..], "{name}");
+            let directions = mechanism.independent_states() + mechanism.inputs.len();
+            let tangent = (0..directions).map(|i| 1.0 - 0.3 * i as f64).collect();
+            let at = &Inputs { tangent, ..sample.inputs };
+            for output in &model.program.outputs {
+                let quantity = output.quantity;
+                if let Some(value) = module.get(mechanism, quantity, at) {
+                    assert_eq!(value, model.get(at, quantity).values, "{} {quantity:?}", module.name());
+                    tried += 1;
+                }
             }
+        }
+        assert!(tried >= 5 * 8, "{}: {tried}", module.name());
+    }
+}
+
+/// Every quantity that a derivation delivers has a routine, but for those that only collisions use.
+#[test]
+fn every_quantity_has_a_routine() {
+    for (module, model) in &pairs() {
+        let at = &samples(model, 1)[0].inputs;
+        for output in model.program.outputs.iter().filter(|output| !output.values.is_empty()) {
+            let inner = matches!(
+                output.quantity,
+                Q::Contact(
+                    _,
+                    C::Normal | C::First | C::Second | C::Response | C::DependentResponse | C::PrescribedWork
+                )
+            );
+            let at = Inputs {
+                tangent: vec![0.0; model.mechanism.independent_states() + at.inputs.len()],
+                ..at.clone()
+            };
+            let there = module.get(&model.mechanism, output.quantity, &at).is_some();
+            assert!(there || inner, "{}: {:?}", module.name(), output.quantity);
+        }
+    }
+}
+
+/// A column of the linearised equations is the directional derivative that the program delivers.
+#[test]
+fn linearisation_is_made_of_tangents() {
+    for (module, model) in &pairs() {
+        let m = &model.mechanism;
+        let Some(output) = model.program.output(Q::StateTangent) else { continue };
+        let (states, inputs) = (m.independent_states(), m.inputs.len());
+        assert_eq!(output.rows, states);
+        let at = &samples(model, 1)[0].inputs;
+        let both = module.call("linearise", at).expect("a linearisation").expect("a regular state");
+        let (a, b) = both.split_at(states * states);
+        for column in 0..states + inputs {
+            let tangent = (0..states + inputs).map(|i| f64::from(u8::from(i == column))).collect();
+            let expected = model.get(&Inputs { tangent, ..at.clone() }, Q::StateTangent).values;
+            let column: Vec<f64> = (0..states)
+                .map(|row| {
+                    if column < states { a[row * states + column] } else { b[row * inputs + column - states] }
+                })
+                .collect();
+            assert_eq!(column, expected, "{}", module.name());
         }
     }
 }
@@ -69,11 +111,11 @@ fn collisions_obey_mechanics() {
 /// Collides at a state, turned round if the bodies separate there; the number of collisions that have an outcome.
 fn collide(module: &dyn Emitted, model: &Model, contact: usize, at: &Inputs) -> usize {
     let mut at = at.clone();
-    if module.contact_velocity(contact, &at)[0] > 0.0 {
+    if approach(module, model, contact, &at) > 0.0 {
         at.speeds.iter_mut().for_each(|u| *u = -*u);
     }
     // With prescribed motion turning round need not make the bodies approach.
-    if module.contact_velocity(contact, &at)[0] > -1e-3 {
+    if approach(module, model, contact, &at) > -1e-3 {
         return 0;
     }
     let mut solved = 0;
@@ -118,17 +160,26 @@ fn check(
     assert!(i_n > 0.0 && hit.separation[0] >= -1e-11 * speed, "{name}");
     // (12a) ends at the velocity of separation.
     let after = Inputs { speeds: hit.speeds.clone(), ..at.clone() };
-    let [n, ..] = module.contact_velocity(contact, &after);
+    let n = approach(module, model, contact, &after);
     let size = speed + 1e-3 * hit.speeds.iter().fold(0.0_f64, |size, u| size.max(u.abs()));
     assert!((n - hit.separation[0]).abs() <= 1e-9 * size, "{name}: {n}");
     // (24): the change of energy that is reported is that of the kinetic energy.
-    let gained = module.kinetic_energy(&after) - module.kinetic_energy(at);
-    let scale = impulse * speed + 1e-2 * module.kinetic_energy(at).abs() + 1e-12;
+    let gained = kinetic_energy(module, model, &after) - kinetic_energy(module, model, at);
+    let scale = impulse * speed + 1e-2 * kinetic_energy(module, model, at).abs() + 1e-12;
     assert!((gained - hit.energy_change).abs() <= 1e-9 * scale, "{name}: {gained}");
     if surface.law == Law::Stronge {
         assert!(hit.contact_work <= 1e-12 * impulse * speed, "{name}");
     }
-    let _ = model;
+}
+
+/// Velocity of the contact along its normal.
+fn approach(module: &dyn Emitted, model: &Model, contact: usize, at: &Inputs) -> f64 {
+    let quantity = Q::Contact(contact as u32, C::Velocity);
+    module.get(&model.mechanism, quantity, at).expect("a velocity")[0]
+}
+
+fn kinetic_energy(module: &dyn Emitted, model: &Model, at: &Inputs) -> f64 {
+    module.get(&model.mechanism, Q::KineticEnergy, at).expect("a kinetic energy")[0]
 }
 
 fn norm(v: &[f64; 3]) -> f64 {

@@ -25,20 +25,8 @@ fn the_table_is_fresh() {
         return;
     }
     let advice = "run `HODOGRAPH_UPDATE=1 cargo test -p hodograph-tests --test gallery`";
-    let old: Vec<&str> = old.strip_prefix(HEAD).unwrap_or_default().lines().collect();
-    assert_eq!(old.len(), rows.len(), "the table of docs/gallery.md has other models: {advice}");
-    for (old, row) in old.iter().zip(&rows) {
-        // Roundoff differs between machines: what is reached may be ten times worse than what the table says.
-        let (facts, agreement) = old.trim_end_matches(" |").rsplit_once(" | ").expect("columns");
-        assert_eq!(facts, row.facts(), "docs/gallery.md is stale: {advice}");
-        let stated: f64 = agreement.parse().expect("a number");
-        assert!(
-            row.agreement <= 10.0 * stated,
-            "{}: {:e}, the table says {stated:e}",
-            row.name,
-            row.agreement
-        );
-    }
+    let fresh: String = rows.iter().map(Row::line).collect();
+    assert_eq!(old.strip_prefix(HEAD).unwrap_or_default(), fresh, "docs/gallery.md is stale: {advice}");
 }
 
 #[test]
@@ -137,6 +125,6 @@ fn agreement(model: &Model, samples: &[Sample]) -> f64 {
         compare(Q::CoordinateRates, &sample.numeric.rates);
         compare(Q::KineticEnergy, &[sample.numeric.kinetic_energy]);
     }
-    // A whole power of ten, so that the table does not change with every rounding.
-    10f64.powf(worst.max(1e-16).log10().ceil())
+    // A power of ten well above the rounding of either road, so that the table is the same on every machine.
+    10f64.powf((3.0 * worst).max(1e-14).log10().ceil())
 }

@@ -172,7 +172,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// `Ident` of a method of a contact.
+    /// Name of a method of a contact.
     pub fn contact_method(&self, prefix: &str, contact: usize) -> String {
         let name = self.mechanism.contacts.get(contact).map_or("", |contact| contact.name.as_str());
         format_ident!("{prefix}_{}", snake_case(name)).to_string()

@@ -12,6 +12,7 @@ pub mod order;
 mod outputs;
 
 use crate::algebra::{SessionError, exclusively};
+use crate::diagnostics::codes;
 use crate::kinematics::{DeriveError, Kinematics};
 use crate::model::mechanism::Mechanism;
 use crate::program::routine::Derived;
@@ -43,6 +44,7 @@ pub const MOST_SPEEDS: usize = 64;
 pub fn derive(mechanism: &Mechanism) -> Result<Derived, DerivationError> {
     if let Some(beyond) = mechanism.speeds.get(MOST_SPEEDS) {
         return Err(DerivationError::Model(DeriveError {
+            code: codes::TOO_LARGE,
             span: beyond.span,
             message: format!(
                 "the mechanism has {} speeds; at most {MOST_SPEEDS} are derived",

@@ -160,6 +160,11 @@ impl AxesTree {
 /// A symmetric matrix: xx, yy, zz, xy, yz, zx.
 pub type Symmetric = [Expr; 6];
 
+/// Is the dyadic a multiple of the unit dyadic, the same along any axes?
+pub fn is_isotropic(m: &Symmetric) -> bool {
+    m[0] == m[1] && m[1] == m[2] && m[3..].iter().all(Expr::is_zero)
+}
+
 /// Where entry (i, j) of a symmetric matrix stands.
 pub fn entry(i: usize, j: usize) -> usize {
     // the axis that is neither i nor j: z -> xy, x -> yz, y -> zx
@@ -175,8 +180,11 @@ impl AxesTree {
         from: AxesId,
         to: AxesId,
     ) -> Symmetric {
-        let top = self.common(from, to);
         let mut m = m.clone();
+        if is_isotropic(&m) {
+            return m;
+        }
+        let top = self.common(from, to);
         let mut at = from;
         while at != top {
             let Some((parent, turn)) = &self.axes[at].parent else { break };

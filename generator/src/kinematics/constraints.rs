@@ -4,25 +4,30 @@ use super::linear::LinearScalar;
 use super::solve::{SolveError, Solver};
 use super::{DeriveError, Kinematics};
 use crate::algebra::Expr;
+use crate::diagnostics::{Span, codes};
 
 impl Kinematics<'_> {
     /// Solves the constraints for the dependent speeds, and their time derivatives for those of the dependent speeds.
     pub(super) fn find_dependent_speeds(&mut self) -> Result<(), DeriveError> {
         let mechanism = self.mechanism;
         let mut equations = Vec::new();
+        let mut entangled = None;
         for equation in &mechanism.constraints {
-            for form in self.equation_forms(&equation.sides) {
-                if form.is_zero() {
-                    continue;
-                }
-                equations.push(form.map(|c| self.z.name(c.clone())));
+            let forms = self.equation_forms(&equation.sides);
+            if self.rank(&forms) < forms.len() {
+                entangled = entangled.or(Some(equation));
             }
+            equations.extend(forms.into_iter().map(|form| form.map(|c| self.z.name(c.clone()))));
         }
         let unknowns: Vec<usize> =
             (0..mechanism.speeds.len()).filter(|&slot| mechanism.speeds[slot].dependent).collect();
+        if let Some(equation) = entangled {
+            return Err(entangled_components(equation.span));
+        }
         if equations.len() != unknowns.len() {
             let span = mechanism.constraints.first().map_or_else(Default::default, |equation| equation.span);
             return Err(DeriveError {
+                code: codes::CONSTRAINT_COUNT,
                 span,
                 message: format!(
                     "the constraints amount to {} equations, but there are {} dependent speeds",
@@ -33,16 +38,21 @@ impl Kinematics<'_> {
             });
         }
         let solver = Solver::new(&mut self.z, &equations, &unknowns).map_err(|error| {
-            let (slot, what) = match &error {
-                SolveError::Undetermined(slot) => (*slot, "no constraint determines"),
-                SolveError::Dependent(block) => {
-                    (block[0], "the constraints repeat each other; they do not determine")
+            let (code, slot, what) = match &error {
+                SolveError::Undetermined(slot) => {
+                    (codes::CONSTRAINT_SINGULAR, *slot, "no constraint determines")
                 }
+                SolveError::Dependent(block) => (
+                    codes::CONSTRAINT_SINGULAR,
+                    block[0],
+                    "the constraints repeat each other; they do not determine",
+                ),
                 SolveError::TooLarge(block) => {
-                    (block[0], "too many constraints hang together, among them that of")
+                    (codes::TOO_LARGE, block[0], "too many constraints hang together, among them that of")
                 }
             };
             DeriveError {
+                code,
                 span: mechanism.speeds[slot].span,
                 message: format!("{what} the dependent speed `{}`", mechanism.speeds[slot].name),
                 help: "make another speed dependent, or state the constraint that is missing".into(),
@@ -82,5 +92,19 @@ impl Kinematics<'_> {
     /// Coefficient of an independent speed in a dependent one.
     pub fn dependence(&self, dependent: usize, independent: usize) -> Expr {
         self.dependent.get(&dependent).map_or_else(Expr::zero, |form| form.coefficient(independent))
+    }
+}
+
+/// A vector equation whose components depend on each other along all axes that were tried.
+fn entangled_components(span: Span) -> DeriveError {
+    DeriveError {
+        code: codes::CONSTRAINT_COUNT,
+        span,
+        message: "the components of this equation depend on each other, and along the axes of no frame is one of them \
+                  identically 0"
+            .into(),
+        help: "orient a frame along the direction in which the equation says nothing, or state the others one by one, along \
+               vectors of your own: `dot(velocity(C), v) = 0;`"
+            .into(),
     }
 }

@@ -4,13 +4,14 @@ use super::axes::{self, AxesId, AxesTree, Turn};
 use super::linear::{self, LinearScalar, LinearVector, Triple};
 use super::{DeriveError, Kinematics, MixedLinear};
 use crate::algebra::Expr;
+use crate::diagnostics::codes;
 use crate::model::mechanism::{
     Against, Axis, DefinitionValue, EquationSides, FrameId, LoadKind, Mechanism, Orientation, Place, Scalar,
     Vector,
 };
 
-/// Which frames' own axes the model uses for anything but their orientation. The angular velocity of the others is
-/// kept along the axes of their parents, which spares the rotation.
+/// Which frames' own axes the model's expressions use for anything but their orientation. The angular velocity of frames that
+/// nothing uses is kept along the axes of their parents, which spares the rotation.
 pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
     let mut used = vec![false; mechanism.frames.len()];
     used[0] = true;
@@ -36,11 +37,6 @@ pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
         }
         point.velocity.iter().for_each(|v| scan.vector(v));
     }
-    for body in &mechanism.bodies {
-        if let Some(inertia) = &body.inertia {
-            scan.used[inertia.frame.0] = true;
-        }
-    }
     for load in &mechanism.loads {
         match &load.kind {
             LoadKind::Gravity(v) => scan.vector(v),
@@ -63,16 +59,6 @@ pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
             scan.vector(v);
         }
         contact.gap.iter().for_each(|gap| scan.scalar(gap));
-    }
-    // What a used frame is oriented in is used as well.
-    for i in 1..mechanism.frames.len() {
-        let mut at = FrameId(i);
-        while used[i]
-            && let Some(parent) = mechanism.frames[at.0].parent
-        {
-            used[parent.0] = true;
-            at = parent;
-        }
     }
     used
 }
@@ -131,7 +117,32 @@ impl Kinematics<'_> {
             let place = format!("the orientation of frame `{}`", self.mechanism.frames[id].name);
             self.within(place, |k| k.orient_frame(FrameId(id)))?;
         }
+        self.use_axes_of_inertias();
         Ok(())
+    }
+
+    /// The axes along which inertias are given are used too, and what a used frame is oriented in. The inertia of a ball is
+    /// the same along any axes, so it uses none.
+    fn use_axes_of_inertias(&mut self) {
+        let mechanism = self.mechanism;
+        for body in &mechanism.bodies {
+            let Some(inertia) = &body.inertia else { continue };
+            let place = format!("body `{}`", body.name);
+            let components =
+                self.within(place, |k| [0, 1, 2, 3, 4, 5].map(|i| k.scalar(&inertia.components[i])));
+            if inertia.about.is_some() || !axes::is_isotropic(&components) {
+                self.used_axes[inertia.frame.0] = true;
+            }
+        }
+        for i in 1..mechanism.frames.len() {
+            let mut at = FrameId(i);
+            while self.used_axes[i]
+                && let Some(parent) = mechanism.frames[at.0].parent
+            {
+                self.used_axes[parent.0] = true;
+                at = parent;
+            }
+        }
     }
 
     fn orient_frame(&mut self, id: FrameId) -> Result<(), DeriveError> {
@@ -146,6 +157,7 @@ impl Kinematics<'_> {
         }
         let Some(parent_axes) = self.frame_axes[parent.0] else {
             return Err(DeriveError {
+                code: codes::NO_AXES,
                 span: frame.span,
                 message: format!("frame `{}` is oriented in a frame without axes", frame.name),
                 help: "orient it in a frame that is not made by `spin`".into(),
@@ -246,6 +258,7 @@ impl Kinematics<'_> {
                 for component in &axis {
                     if !self.rate_of(component).is_zero() {
                         return Err(DeriveError {
+                            code: codes::FRAME,
                             span: frame.span,
                             message: format!("the axis of rotation of frame `{}` moves", frame.name),
                             help: "make it of parameters only, or compose the rotation of simple ones".into(),
@@ -273,6 +286,7 @@ impl Kinematics<'_> {
             }
             Orientation::Quaternion(_) => {
                 return Err(DeriveError {
+                    code: codes::QUATERNION,
                     span: frame.span,
                     message: format!("the angular velocity of frame `{}` must be stated", frame.name),
                     help: format!("write `angular_velocities {{ {} = ..; }}` in terms of speeds", frame.name),

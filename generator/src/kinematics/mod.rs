@@ -7,6 +7,7 @@
 
 pub mod axes;
 pub mod constraints;
+pub mod equations;
 pub mod evaluate;
 pub mod frames;
 pub mod linear;
@@ -18,8 +19,8 @@ pub mod vectors;
 
 use std::collections::BTreeMap;
 
-use crate::algebra::{Direction, Expr, Intermediates, SymbolId, View};
-use crate::diagnostics::Span;
+use crate::algebra::{Direction, Expr, Intermediates, Sample, SymbolId, View};
+use crate::diagnostics::{Code, Diagnostic, Span};
 use crate::model::mechanism::{CoordinateId, FrameId, Mechanism, PointId};
 use crate::program::graph::Input;
 
@@ -29,6 +30,8 @@ use linear::{LinearScalar, LinearVector, Triple};
 /// What stops a derivation: a property of the model that only the derivation can see.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeriveError {
+    /// its kind
+    pub code: Code,
     /// the place in the model
     pub span: Span,
     /// what is wrong
@@ -37,9 +40,16 @@ pub struct DeriveError {
     pub help: String,
 }
 
+impl DeriveError {
+    /// As it is reported with the other mistakes of a model.
+    pub fn diagnostic(&self) -> Diagnostic {
+        Diagnostic::new(self.code, self.span, self.message.clone()).help(self.help.clone())
+    }
+}
+
 impl std::fmt::Display for DeriveError {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(out, "{}: {}", self.message, self.help)
+        write!(out, "{}: {} ({})", self.message, self.help, self.code)
     }
 }
 
@@ -128,6 +138,8 @@ pub struct Kinematics<'m> {
     pub dependent_bias: BTreeMap<usize, Expr>,
     /// what must not vanish
     pub guards: Vec<GuardedValue>,
+    /// arbitrary states, at which it shows what is identically 0
+    samples: Vec<Sample>,
     partials: BTreeMap<SymbolId, Vec<(usize, Expr)>>,
     definitions: evaluate::Definitions,
     /// what is being evaluated, for messages about divisors
@@ -181,6 +193,7 @@ impl<'m> Kinematics<'m> {
             dependent: BTreeMap::new(),
             dependent_bias: BTreeMap::new(),
             guards: Vec::new(),
+            samples: equations::samples(mechanism),
             partials: BTreeMap::new(),
             definitions: evaluate::Definitions::new(mechanism),
             place: "an equation".to_string(),

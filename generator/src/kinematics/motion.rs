@@ -19,6 +19,7 @@ impl Kinematics<'_> {
             let motion = match &frame.angular_velocity {
                 Some((base, declared)) => {
                     let declared = self.linear_vector(declared);
+                    let home = self.stated_home(id, home, &declared);
                     FrameMotion { base: *base, home, relative: self.express_linear(&declared, home) }
                 }
                 None => {
@@ -42,6 +43,14 @@ impl Kinematics<'_> {
             self.points[id.0] = motion;
         }
         Ok(())
+    }
+
+    /// Axes for a stated angular velocity: those in which it is stated, where nothing needs the frame's own.
+    fn stated_home(&self, id: FrameId, home: AxesId, declared: &MixedLinear) -> AxesId {
+        match declared.keys().collect::<Vec<_>>()[..] {
+            [&axes] if !self.used_axes[id.0] => axes,
+            _ => home,
+        }
     }
 
     /// Every point after the one it starts from.

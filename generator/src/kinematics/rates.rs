@@ -5,8 +5,8 @@ use super::solve::{SolveError, Solver};
 use super::vectors::{add_linear, scale_linear};
 use super::{DeriveError, Kinematics, MixedLinear};
 use crate::algebra::{Direction, Expr, size};
-use crate::diagnostics::Span;
-use crate::model::mechanism::{EquationSides, FrameId, Orientation, Place, PointId};
+use crate::diagnostics::{Span, codes};
+use crate::model::mechanism::{FrameId, Orientation, Place, PointId};
 use crate::number::Number;
 use crate::program::graph::Input;
 
@@ -91,26 +91,6 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// Left minus right, as forms: one, or the components that are not identically 0.
-    pub fn equation_forms(&mut self, sides: &EquationSides) -> Vec<LinearScalar> {
-        match sides {
-            EquationSides::Scalar(a, b) => {
-                let form = self.linear_scalar(a).sub(&self.linear_scalar(b));
-                vec![form.map(|c| self.z.simplify(c))]
-            }
-            EquationSides::Vector(a, b) => {
-                let (a, b) = (self.linear_vector(a), self.linear_vector(b));
-                let difference = add_linear(&a, &scale_linear(&Expr::integer(-1), &b));
-                let axes = self.meeting(difference.keys().copied(), std::iter::empty());
-                let form = self.express_linear(&difference, axes);
-                (0..3)
-                    .map(|i| form.component(i).map(|c| self.z.simplify(c)))
-                    .filter(|component| !component.is_zero())
-                    .collect()
-            }
-        }
-    }
-
     fn push_components(
         &mut self,
         difference: &MixedLinear,
@@ -119,12 +99,7 @@ impl Kinematics<'_> {
         equations: &mut Vec<(LinearScalar, Span)>,
     ) {
         let form = self.express_linear(difference, axes);
-        for i in 0..3 {
-            let component = form.component(i).map(|c| self.z.simplify(c));
-            if !component.is_zero() {
-                equations.push((component, span));
-            }
-        }
+        equations.extend(self.components(&form).into_iter().map(|component| (component, span)));
     }
 
     /// Rates of quaternion coordinates: e' = 1/2 E(e) w, with the stated angular velocity w in the parent.
@@ -182,6 +157,7 @@ impl Kinematics<'_> {
             let speed = mechanism.speeds.iter().position(|s| Some(&s.name) == speed.as_ref());
             let Some(speed) = speed else {
                 return Err(DeriveError {
+                    code: codes::NO_RATE,
                     span: coordinate.span,
                     message: format!("nothing says how coordinate `{}` changes", coordinate.name),
                     help: format!("add `d({})/dt = ..;` to `kinematics`", coordinate.name),
@@ -210,7 +186,12 @@ impl Kinematics<'_> {
                 "separate them",
             ),
         };
+        let code = match error {
+            SolveError::TooLarge(_) => codes::TOO_LARGE,
+            _ => codes::KINEMATICS_SINGULAR,
+        };
         DeriveError {
+            code,
             span: coordinate(slot).span,
             message: format!("{message} `{}`", coordinate(slot).name),
             help: help.into(),

@@ -29,6 +29,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     use crate::stop::Stop;
     use hodograph_generator::DerivationError;
     use hodograph_generator::artifact;
+    use hodograph_generator::diagnostics::render;
     use hodograph_generator::model::check;
     use hodograph_generator::program::{Program, cost};
     use hodograph_generator::source::Source;
@@ -40,10 +41,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mechanism = check(&source).mechanism.ok_or(Stop::Said)?;
     let derived = hodograph_generator::derive(&mechanism).map_err(|error| match error {
         DerivationError::Model(error) => {
-            let place = source
-                .location(error.span)
-                .map_or(String::new(), |place| format!(":{}:{}", place.line, place.column));
-            eprintln!("{}{place}: error: {}; {}", arguments.name, error.message, error.help);
+            eprint!("{}", render(&[error.diagnostic()], &source));
             Stop::Said
         }
         DerivationError::Session(error) => Stop::Fault(error.to_string()),

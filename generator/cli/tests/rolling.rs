@@ -1,0 +1,128 @@
+//! Balls that roll, said in every way the language has: along some direction the vector equation says nothing, and along which,
+//! the derivation must find.
+
+mod common;
+
+use common::{Run, hodograph, number, numbers};
+use hodograph_generator::model::check;
+use hodograph_generator::numeric::{self, State};
+use hodograph_generator::source::Source;
+use serde_json::Value;
+
+/// A uniform ball on the plane `{plane}.x, {plane}.y`.
+fn on_plane(plane: &str, tilt: &str, orientation: &str, along: &str) -> String {
+    let (coordinates, frame) = match orientation {
+        "quaternion" => {
+            ("e0: 1 = 0.8, e1: 1 = 0.4, e2: 1 = -0.2, e3: 1 = 0.4", "N.quaternion(e0, e1, e2, e3)")
+        }
+        "euler" => ("a: rad = 0.4, b: rad = 0.5, c: rad = 0.6", "N.euler(zxz, a, b, c)"),
+        other => panic!("{other}"),
+    };
+    format!(
+        "mechanism Ball;
+        parameters {{ m: kg = 1, r: m = 0.2, J: kg*m^2 = 0.016, g: m/s^2 = 9.81, tilt: rad = {tilt} }}
+        coordinates {{ x: m = 0.3, y: m = 0.1, {coordinates} }}
+        speeds {{ w1: rad/s = 0.3, w2: rad/s = 0.2, w3: rad/s = 0.1 }}
+        dependent {{ vx: m/s, vy: m/s }}
+        frames {{ Plane = N.rotate(x, tilt); B = {frame}; }}
+        angular_velocities {{ B = w1*{along}.x + w2*{along}.y + w3*{along}.z; }}
+        points {{ G = O + x*{plane}.x + y*{plane}.y + r*{plane}.z; C of B = G - r*{plane}.z; }}
+        velocities {{ G = vx*{plane}.x + vy*{plane}.y; }}
+        bodies {{ Ball {{ frame: B, centre: G, mass: m, inertia: [J, J, J] }} }}
+        loads {{ gravity: -g*N.z; }}
+        constraints {{ velocity(C) = 0; }}"
+    )
+}
+
+/// A uniform ball in a spherical bowl, or in a tube along N.x; `F.z` points from it to the middle.
+fn in_hollow(tube: bool, along: &str) -> String {
+    let (q2, u2, frames, arm) = if tube {
+        ("m", "m/s", "F = N.rotate(x, q1);", "q2*N.x")
+    } else {
+        ("rad", "rad/s", "A = N.rotate(x, q1); F = A.rotate(y, q2);", "0")
+    };
+    format!(
+        "mechanism Ball;
+        parameters {{ m: kg = 1, r: m = 0.2, R: m = 1, J: kg*m^2 = 0.016, g: m/s^2 = 9.81 }}
+        coordinates {{ q1: rad = 0.3, q2: {q2} = 0.4, e0: 1 = 0.8, e1: 1 = 0.4, e2: 1 = -0.2, e3: 1 = 0.4 }}
+        speeds {{ w1: rad/s = 0.3, w2: rad/s = 0.2, w3: rad/s = 0.1 }}
+        dependent {{ u1: rad/s, u2: {u2} }}
+        frames {{ {frames} B = N.quaternion(e0, e1, e2, e3); }}
+        angular_velocities {{ B = w1*{along}.x + w2*{along}.y + w3*{along}.z; }}
+        points {{ G = O + {arm} - (R - r)*F.z; C of B = G - r*F.z; }}
+        bodies {{ Ball {{ frame: B, centre: G, mass: m, inertia: [J, J, J] }} }}
+        loads {{ gravity: -g*N.z; }}
+        constraints {{ velocity(C) = 0; }}"
+    )
+}
+
+fn eval(text: &str) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ball.mech");
+    std::fs::write(&path, text).unwrap();
+    hodograph(&["eval", path.to_str().unwrap()], "")
+}
+
+/// The numbers of the derived equations, which must be those of the numeric road.
+fn evaluated(text: &str) -> Value {
+    let run = eval(text);
+    assert_eq!(run.code, 0, "{text}\n{}", run.stderr);
+    let answer = run.line();
+    let mechanism = check(&Source::file("ball.mech", text)).mechanism.unwrap();
+    let expected = numeric::evaluate(&mechanism, &State::of(&mechanism)).unwrap();
+    for (found, expected) in [
+        (numbers(&answer["mass_matrix"]), expected.mass_matrix.concat()),
+        (numbers(&answer["forcing"]), expected.forcing),
+    ] {
+        assert!(common::difference(&found, &expected, 1e-3) < 1e-12, "{text}\n{found:?}\n{expected:?}");
+    }
+    answer
+}
+
+#[test]
+fn on_a_plane() {
+    for (plane, tilt, sine) in [("N", "0", 0.0), ("Plane", "0.3", 0.3f64.sin())] {
+        for orientation in ["quaternion", "euler"] {
+            for along in ["N", "B", "Plane"] {
+                let answer = evaluated(&on_plane(plane, tilt, orientation, along));
+                // down the plane, which is tilted about x: 5/7 g sin(tilt)
+                let (x, y) = (number(&answer["udot"]["vx"]), number(&answer["udot"]["vy"]));
+                let expected = -5.0 / 7.0 * 9.81 * sine;
+                assert!(
+                    x.abs() < 1e-13 && (y - expected).abs() < 1e-13,
+                    "{plane} {orientation} {along}: {x} {y}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn in_a_bowl_and_in_a_tube() {
+    for tube in [false, true] {
+        for along in ["F", "N", "B"] {
+            evaluated(&in_hollow(tube, along));
+        }
+    }
+}
+
+/// Where no frame has the direction along which nothing is said, the error says so, at its place and with its code.
+#[test]
+fn on_a_surface_without_frames() {
+    let vectors = "definitions { n = unit(N.vec(-2*x/R, -2*y/R, 1)); }";
+    let text = in_hollow(false, "N")
+        .replace("q1: rad = 0.3, q2: rad = 0.4", "x: m = 0.3, y: m = 0.2")
+        .replace("u1: rad/s, u2: rad/s", "vx: m/s, vy: m/s")
+        .replace("frames { A = N.rotate(x, q1); F = A.rotate(y, q2);", &format!("{vectors} frames {{"))
+        .replace("0 - (R - r)*F.z", "x*N.x + y*N.y + (x^2 + y^2)/R*N.z + r*n")
+        .replace("G - r*F.z", "G - r*n")
+        .replace("constraints", "kinematics { d(x)/dt = vx; d(y)/dt = vy; } constraints");
+    let run = eval(&text);
+    assert_ne!(run.code, 0, "{}", run.stdout);
+    for part in ["error[E070]", "^^^^^^^^^^^^^^^", "velocity(C) = 0", "state the others one by one"] {
+        assert!(run.stderr.contains(part), "{}", run.stderr);
+    }
+    // The way out that it names.
+    let stated = "dot(velocity(C), N.x + 2*x/R*N.z) = 0; dot(velocity(C), N.y + 2*y/R*N.z) = 0;";
+    evaluated(&text.replace("velocity(C) = 0;", stated));
+}

@@ -1,0 +1,232 @@
+//! Equations as forms linear in the speeds: left minus right, without what is identically 0.
+//!
+//! A vector equation may say nothing in some direction: a point of a ball that rolls on a plane has no velocity along the
+//! normal whatever the speeds. That shows only along axes to which the direction belongs, and after it has been turned to other
+//! axes not to the algebra; so axes are looked for along which the equation has as few components as it has independent ones.
+
+use std::collections::HashMap;
+
+use super::Kinematics;
+use super::axes::{AxesId, AxesTree};
+use super::linear::{LinearScalar, LinearVector};
+use crate::algebra::{Expr, Sample};
+use crate::model::mechanism::{
+    DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Quantity, Vector,
+};
+use crate::program::graph::Input;
+
+/// States at which it is decided whether something is identically 0.
+const SAMPLES: u64 = 4;
+
+impl Kinematics<'_> {
+    /// Left minus right, as forms: one, or the components that are not identically 0.
+    pub fn equation_forms(&mut self, sides: &EquationSides) -> Vec<LinearScalar> {
+        match sides {
+            EquationSides::Scalar(a, b) => {
+                let form = self.linear_scalar(a).sub(&self.linear_scalar(b));
+                vec![self.tidy_scalar(&form)]
+            }
+            EquationSides::Vector(a, b) => {
+                let difference = Vector::Add(vec![a.clone(), Vector::Neg(Box::new(b.clone()))]);
+                self.vector_equation(&difference)
+            }
+        }
+    }
+
+    /// The components of a vector that vanishes, along the first axes on which they are independent.
+    fn vector_equation(&mut self, vector: &Vector) -> Vec<LinearScalar> {
+        let form = self.linear_vector(vector);
+        let first = self.meeting(form.keys().copied(), std::iter::empty());
+        let form = self.express_linear(&form, first);
+        let mut best = self.components(&form);
+        let rank = self.rank(&best);
+        for axes in self.axes_of(vector).into_iter().filter(|&axes| axes != first) {
+            if best.len() <= rank {
+                break;
+            }
+            let form = self.vector_along(vector, axes);
+            let forms = self.components(&form);
+            if forms.len() < best.len() {
+                best = forms;
+            }
+        }
+        best
+    }
+
+    /// The components of a form that are not identically 0.
+    pub(super) fn components(&mut self, form: &LinearVector) -> Vec<LinearScalar> {
+        (0..3)
+            .map(|i| self.tidy_scalar(&form.component(i)))
+            .filter(|component| !component.is_zero())
+            .collect()
+    }
+
+    /// The form with short coefficients, without those that are identically 0.
+    fn tidy_scalar(&mut self, form: &LinearScalar) -> LinearScalar {
+        form.map(|c| {
+            let c = self.z.simplify(c);
+            if self.vanishes(&c) { Expr::zero() } else { c }
+        })
+    }
+
+    /// Is the expression identically 0, as far as arbitrary states show?
+    pub fn vanishes(&mut self, expr: &Expr) -> bool {
+        let seen: Vec<bool> =
+            self.samples.iter_mut().filter_map(|sample| sample.vanishes(&self.z, expr)).collect();
+        expr.is_zero() || (seen.len() > 1 && seen.iter().all(|&zero| zero))
+    }
+
+    /// How many of the forms are independent at arbitrary states; all, where that cannot be seen.
+    pub(super) fn rank(&mut self, forms: &[LinearScalar]) -> usize {
+        let slots: Vec<usize> = forms.iter().flat_map(|form| form.terms.keys().copied()).collect();
+        let z = &self.z;
+        let ranks = self.samples.iter_mut().filter_map(|sample| {
+            let rows: Option<Vec<Vec<f64>>> = forms
+                .iter()
+                .map(|form| {
+                    let terms = slots.iter().map(|&slot| form.coefficient(slot)).chain([form.rest.clone()]);
+                    terms.map(|term| sample.value(z, &term)).collect()
+                })
+                .collect();
+            rows.map(rank)
+        });
+        ranks.max().unwrap_or(forms.len())
+    }
+
+    /// A vector as a form along given axes, by the shortest way: velocities do not pass through the axes of bodies that they do
+    /// not depend on.
+    fn vector_along(&mut self, vector: &Vector, axes: AxesId) -> LinearVector {
+        match vector {
+            Vector::Add(terms) => {
+                terms.iter().fold(LinearVector::zero(), |sum, term| sum.add(&self.vector_along(term, axes)))
+            }
+            Vector::Neg(inner) => self.vector_along(inner, axes).scale(&Expr::integer(-1)),
+            Vector::Velocity(point) if self.solved => self.partial_velocities(*point, axes),
+            Vector::Definition(id) => {
+                let mechanism = self.mechanism;
+                match &mechanism.definitions[id.0].value {
+                    DefinitionValue::Vector(value) => self.vector_along(value, axes),
+                    DefinitionValue::Scalar(_) => LinearVector::zero(),
+                }
+            }
+            other => {
+                let form = self.linear_vector(other);
+                self.express_linear(&form, axes)
+            }
+        }
+    }
+
+    /// All axes that a vector has to do with, and those against which they are turned, N's first.
+    fn axes_of(&mut self, vector: &Vector) -> Vec<AxesId> {
+        let form = self.linear_vector(vector);
+        let mut found: Vec<AxesId> = form.keys().copied().collect();
+        let mut points = Vec::new();
+        self.points_of(vector, &mut points);
+        for point in points {
+            for on_the_way in self.way(point) {
+                found.extend(self.step(on_the_way).into_keys());
+            }
+        }
+        let mut all = vec![AxesTree::N];
+        for axes in found {
+            let mut at = Some(axes);
+            while let Some(axes) = at {
+                all.push(axes);
+                at = self.tree.parent(axes);
+            }
+        }
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    fn points_of(&self, vector: &Vector, points: &mut Vec<PointId>) {
+        match vector {
+            Vector::Velocity(point) => points.push(*point),
+            Vector::Position { of, from } => points.extend([*of, *from]),
+            Vector::Add(terms) => terms.iter().for_each(|term| self.points_of(term, points)),
+            Vector::Neg(inner) | Vector::Unit(inner, _) | Vector::Scale(_, inner) => {
+                self.points_of(inner, points);
+            }
+            Vector::Cross(a, b) => [a, b].into_iter().for_each(|v| self.points_of(v, points)),
+            Vector::Definition(id) => {
+                if let DefinitionValue::Vector(value) = &self.mechanism.definitions[id.0].value {
+                    self.points_of(value, points);
+                }
+            }
+            Vector::Zero | Vector::Components(..) | Vector::AngularVelocity { .. } => {}
+        }
+    }
+}
+
+impl LinearVector {
+    /// Product with an expression free of the unknowns.
+    fn scale(&self, k: &Expr) -> Self {
+        self.map(|p| super::linear::scale(k, p))
+    }
+}
+
+/// The number of independent rows.
+fn rank(mut rows: Vec<Vec<f64>>) -> usize {
+    let size = |row: &[f64]| row.iter().fold(0.0_f64, |size, c| size.max(c.abs()));
+    rows.iter_mut().for_each(|row| {
+        let size = size(row);
+        row.iter_mut().for_each(|c| *c /= if size > 0.0 { size } else { 1.0 });
+    });
+    let mut rank = 0;
+    while let Some(at) = (0..rows.len()).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b]))) {
+        let row = rows.swap_remove(at);
+        let Some(column) = (0..row.len()).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())) else {
+            break;
+        };
+        if row[column].abs() < 1e-9 {
+            break;
+        }
+        for other in &mut rows {
+            let factor = other[column] / row[column];
+            other.iter_mut().zip(&row).for_each(|(entry, above)| *entry -= factor * above);
+        }
+        rank += 1;
+    }
+    rank
+}
+
+/// Arbitrary states near the initial values, the same ones every time. Parameters are moved as well: what is 0 only with their
+/// default values is not identically 0.
+pub(super) fn samples(mechanism: &Mechanism) -> Vec<Sample> {
+    (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
+}
+
+fn sample(mechanism: &Mechanism, seed: u64) -> Sample {
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * seed + 1);
+    let mut next = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let mut inputs = HashMap::from([(Input::Time, next())]);
+    let given = |quantity: &Quantity| quantity.value.filter(|value| *value != 0.0);
+    for (i, parameter) in mechanism.parameters.iter().enumerate() {
+        // small where the model says 0, so that roots of what it says keep their domain
+        let share = next();
+        let value = given(parameter).map_or(0.05 + 0.1 * share, |value| value * (0.9 + 0.2 * share));
+        inputs.insert(Input::Parameter(i as u32), value);
+    }
+    for i in 0..mechanism.inputs.len() {
+        inputs.insert(Input::Input(i as u32), next());
+    }
+    let mut coordinates: Vec<f64> = mechanism
+        .coordinates
+        .iter()
+        .map(|coordinate| coordinate.value.unwrap_or(0.0) + 0.6 * (next() - 0.4))
+        .collect();
+    for frame in &mechanism.frames {
+        if let Orientation::Quaternion(parts) = &frame.orientation {
+            let length = parts.iter().map(|part| coordinates[part.0].powi(2)).sum::<f64>().sqrt();
+            parts.iter().for_each(|part| coordinates[part.0] /= length);
+        }
+    }
+    inputs.extend(coordinates.into_iter().enumerate().map(|(i, q)| (Input::Coordinate(i as u32), q)));
+    Sample::new(inputs)
+}

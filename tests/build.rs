@@ -1,0 +1,144 @@
+//! Writes down how the modules of `hodograph-models` are called: one `impl Emitted` per file in `models/`, from what the
+//! generator emits for it. So the tests try every routine of every model, and adding a model needs no entry anywhere.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use hodograph_generator::emit::names::snake_case;
+use hodograph_generator::emit::{self, Options, names};
+use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::source::Source;
+use hodograph_generator::{artifact, model};
+
+fn main() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
+    println!("cargo::rerun-if-changed={}", folder.display());
+    let mut paths: Vec<_> = std::fs::read_dir(&folder)
+        .expect("the folder models")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "mech"))
+        .collect();
+    paths.sort();
+    let mut text = String::new();
+    let mut modules = Vec::new();
+    for path in paths {
+        let derivation = path.with_extension("derivation");
+        println!("cargo::rerun-if-changed={}", path.display());
+        println!("cargo::rerun-if-changed={}", derivation.display());
+        // A model that is not accepted or not derived is a matter for the tests, which say so.
+        let Some(mechanism) = model::check(&Source::read(&path)).mechanism else { continue };
+        let Ok(derived) = std::fs::read_to_string(derivation) else { continue };
+        let Ok(artifact) = artifact::decode(&derived) else { continue };
+        let module = path.file_stem().expect("a stem").to_string_lossy().into_owned();
+        let options =
+            Options { krate: "hodograph".parse().expect("a path"), module: module.clone(), tracked: vec![] };
+        let Ok(tokens) = emit::module(&mechanism, &artifact.program, &options) else { continue };
+        write_module(&mut text, &module, &mechanism, &tokens.to_string());
+        modules.push(module);
+    }
+    writeln!(text, "/// All of them.\npub fn emitted() -> Vec<Box<dyn Emitted>> {{\n    vec![").unwrap();
+    modules.iter().for_each(|module| writeln!(text, "        Box::new({module}),").unwrap());
+    writeln!(text, "    ]\n}}").unwrap();
+    let output = Path::new(&std::env::var_os("OUT_DIR").expect("a folder for output")).join("emitted.rs");
+    std::fs::write(output, text).expect("written");
+}
+
+fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
+    let path = format!("hodograph_models::{module}");
+    let name = names::type_name(&mechanism.name);
+    let mut routines = String::new();
+    let mut collisions = String::new();
+    for method in code.split("pub fn ").skip(1) {
+        let Some((method, rest)) = method.split_once('(') else { continue };
+        let method = method.trim();
+        // the arguments, between the parentheses
+        let mut depth = 1;
+        let end = rest.find(|c| {
+            depth += i32::from(c == '(') - i32::from(c == ')');
+            depth == 0
+        });
+        let Some((arguments, after)) = end.map(|end| rest.split_at(end)) else { continue };
+        let Some(arguments) = arguments.trim().strip_prefix("& self") else { continue };
+        let names: Vec<&str> = arguments
+            .split(" : ")
+            .filter_map(|before| before.rsplit([' ', ',']).find(|word| !word.is_empty()))
+            .collect();
+        // the last word is of the last type
+        let names = &names[..names.len().saturating_sub(1)];
+        let passed: Vec<&str> = names
+            .iter()
+            .map(|name| match *name {
+                "time" => "at.time",
+                "q" => "&array(&at.coordinates).into()",
+                "u" => "&array(&at.speeds).into()",
+                "acceleration" => "&array(&at.accelerations).into()",
+                "inputs" => "&array(&at.inputs).into()",
+                "tangent" => "&array(&at.tangent)",
+                "surface" => "surface",
+                other => panic!("{module}::{method} has an argument {other} that tests do not know"),
+            })
+            .collect();
+        let call = format!("Self::machine(at).{method}({})", passed.join(", "));
+        if method.starts_with("collide_") {
+            let position = mechanism.contacts.iter().position(|contact| {
+                method.strip_prefix("collide_") == Some(snake_case(&contact.name).as_str())
+            });
+            if let Some(index) = position {
+                writeln!(collisions, "            {index} => hit!({call}),").unwrap();
+            }
+        } else if after.contains("StateError") {
+            let result = after.split("StateError").next().unwrap_or_default();
+            let flat = if result.contains("Result < (") {
+                // what collisions use
+                continue;
+            } else if result.contains("SMatrix") || result.contains("Matrix3") {
+                "by_rows(value)"
+            } else if result.contains("ReducedMatrix") {
+                "<[f64; 6]>::from(value).to_vec()"
+            } else if ["Coordinates", "Speeds"].iter().any(|record| result.contains(record)) {
+                "<[f64; _]>::from(value).to_vec()"
+            } else if result.contains("Linearisation") {
+                "[by_rows(value.a), by_rows(value.b)].concat()"
+            } else if result.contains("Result < T ,") {
+                "vec![value]"
+            } else {
+                panic!("{module}::{method} has a result that tests do not know: {result}")
+            };
+            writeln!(
+                routines,
+                "            \"{method}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
+            )
+            .unwrap();
+        }
+    }
+    write!(
+        text,
+        "
+#[allow(non_camel_case_types)]
+struct {module};
+
+impl {module} {{
+    fn machine(at: &Inputs) -> {path}::{name}<f64> {{
+        {path}::{name}::new(array(&at.parameters).into()).expect(\"good parameters\")
+    }}
+}}
+
+impl Emitted for {module} {{
+    fn name(&self) -> &'static str {{
+        \"{module}\"
+    }}
+    fn call(&self, routine: &str, at: &Inputs) -> Option<Result<Vec<f64>, String>> {{
+        Some(match routine {{
+{routines}            _ => return None,
+        }})
+    }}
+    fn collide(&self, contact: usize, at: &Inputs, surface: &Surface<f64>) -> Result<Hit, String> {{
+        match contact {{
+{collisions}            _ => panic!(\"no contact {{contact}}\"),
+        }}
+    }}
+}}
+"
+    )
+    .unwrap();
+}
