@@ -78,6 +78,11 @@ impl Diagnostic {
         }
     }
 
+    /// Does it leave the meaning of the model open?
+    pub fn hides_meaning(&self) -> bool {
+        self.severity == Severity::Error && !self.code.is_of_form()
+    }
+
     /// Says a few words at the place itself.
     pub fn label(mut self, text: impl Into<String>) -> Self {
         self.primary.text = text.into();

@@ -10,6 +10,7 @@
 //!              | interpret   numbers
 //!              | explain     equations to read
 //!              | artifact    the checked-in derivation
+//!              | expand      what `mechanism!` becomes: all of this in the compiler
 //! ```
 //!
 //! Only `algebra` (feature `derive`) names the algebra engine; everything else builds without it.
@@ -17,8 +18,10 @@
 #[cfg(feature = "derive")]
 pub mod algebra;
 pub mod artifact;
+mod compiler;
 pub mod diagnostics;
 pub mod emit;
+pub mod expand;
 pub mod explain;
 pub mod interpret;
 #[cfg(feature = "derive")]
@@ -29,6 +32,7 @@ pub mod model;
 pub mod number;
 pub mod numeric;
 pub mod program;
+pub mod reading;
 pub mod source;
 pub mod syntax;
 

@@ -5,7 +5,9 @@ use std::borrow::Cow;
 use proc_macro2::{Span as RustSpan, TokenStream};
 use sha2::{Digest, Sha256};
 
+use crate::compiler;
 use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::reading;
 use crate::syntax::token::{Token, TokenKind};
 use crate::syntax::{inline, lexer};
 
@@ -65,15 +67,17 @@ impl Source {
     /// Reads a model from a file. What goes wrong is reported by `check`.
     pub fn read(path: &std::path::Path) -> Source {
         let name = path.display().to_string();
-        // do not read what is too large to be a model
-        match std::fs::metadata(path) {
-            Ok(data) if data.len() > MAX_BYTES as u64 => return Source::too_large(name),
-            _ => {}
-        }
-        match std::fs::read(path) {
+        Source::read_as(name, path)
+    }
+
+    /// As [`Source::read`], with the name that messages give it.
+    pub fn read_as(name: impl Into<String>, path: &std::path::Path) -> Source {
+        match reading::bytes(path, MAX_BYTES) {
             Ok(bytes) => Source::bytes(name, bytes),
+            Err(error) if error.kind() == std::io::ErrorKind::FileTooLarge => Source::too_large(name.into()),
             Err(error) => {
-                Source::unreadable(name, format!("the file cannot be read: {error}"), "check the path")
+                let message = format!("the file cannot be read: {error}");
+                Source::unreadable(name.into(), message, "check the path")
             }
         }
     }
@@ -127,6 +131,28 @@ impl Source {
         Ok(tokens)
     }
 
+    /// The words of an inline model at a place, as they were written but for blanks; long ones end in `..`.
+    pub fn words(&self, span: Span) -> String {
+        let Content::Inline { tokens, .. } = &self.content else { return String::new() };
+        let mut words = String::new();
+        for token in tokens.get(span.range()).unwrap_or_default() {
+            let sign = match token.kind {
+                TokenKind::Sign(c) | TokenKind::Open(c) | TokenKind::Close(c) => c.to_string(),
+                _ => token.text.clone(),
+            };
+            let apart = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+            if apart(words.chars().last()) && apart(sign.chars().next()) {
+                words.push(' ');
+            }
+            if words.chars().count() > 40 {
+                words.push_str("..");
+                break;
+            }
+            words.push_str(&sign);
+        }
+        words
+    }
+
     /// The user's tokens at a place of an inline model: the first and the last.
     pub fn rust_spans(&self, span: Span) -> Option<(RustSpan, RustSpan)> {
         let Content::Inline { places, .. } = &self.content else { return None };
@@ -135,8 +161,11 @@ impl Source {
         Some((*first, *last))
     }
 
-    /// Line and column of the beginning of a place in a file.
+    /// Line and column of the beginning of a place; of an inline model as the compiler tells them.
     pub fn location(&self, span: Span) -> Option<Location> {
+        if let Some((first, _)) = self.rust_spans(span) {
+            return compiler::location(first);
+        }
         let text = self.text()?;
         let start = (span.start as usize).min(text.len());
         let before = text.get(..start)?;

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use hodograph_generator::artifact::{self, Artifact};
 use hodograph_generator::program::Program;
+use hodograph_generator::reading;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::model::Model;
@@ -37,7 +38,7 @@ pub enum Found {
 
 /// Looks for the derivation of a model.
 pub fn find(path: &Path, model: &Model) -> Found {
-    let text = match fs::read_to_string(path) {
+    let text = match reading::text(path, artifact::MAX_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Absent,
         Err(error) => return Found::Stale(format!("it cannot be read: {error}")),
@@ -83,7 +84,11 @@ fn run(model: &Model, limits: &Limits, trace: Option<&Path>) -> Outcome<(Program
         ));
     }
     let fault = |what: &str, error: std::io::Error| Stop::Fault(format!("{what}: {error}"));
-    let folder = tempfile::tempdir().map_err(|error| fault("cannot make a temporary directory", error))?;
+    let folder = tempfile::tempdir().map_err(|error| {
+        Stop::Fault(format!(
+            "cannot make a temporary directory: {error}; set TMPDIR to a directory that can be written"
+        ))
+    })?;
     let (input, output) = (folder.path().join("model"), folder.path().join("derivation"));
     let text = model.source.text().unwrap_or_default();
     fs::write(&input, text).map_err(|error| Stop::unwritable(&input, &error))?;
@@ -102,9 +107,11 @@ fn run(model: &Model, limits: &Limits, trace: Option<&Path>) -> Outcome<(Program
     if !status.success() {
         return Err(match status.code() {
             Some(1) => Stop::Said,
-            _ => {
-                Stop::Fault(format!("deriving {} ended with {status}: please report it", model.source.name()))
-            }
+            _ => Stop::Fault(format!(
+                "deriving {} ended with {status}; what was said of it is above. The algebra engine ends the process where another \
+                 program of this user holds it: then try again. If it does so alone, please report it with the model",
+                model.source.name()
+            )),
         });
     }
     let text = fs::read_to_string(&output).map_err(|error| Stop::unreadable(&output, &error))?;

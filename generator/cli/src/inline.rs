@@ -3,10 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use hodograph_generator::reading;
 use hodograph_generator::source::Source;
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::stop::{Outcome, Stop};
+
+/// A Rust file with models has at most so many bytes.
+const MAX_BYTES: usize = 16 << 20;
 
 /// What a `mechanism!` in a Rust file names.
 #[derive(Clone, Debug)]
@@ -23,7 +27,7 @@ pub enum Invocation {
 ///
 /// The file cannot be read, or is no Rust.
 pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
-    let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
+    let text = reading::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
     if !text.contains("mechanism") {
         return Ok(Vec::new());
     }

@@ -1,17 +1,20 @@
 //! Models from files: read, checked, and with their equations.
 
-use std::io::Read;
 use std::path::Path;
 
 use hodograph_generator::artifact::place;
 use hodograph_generator::diagnostics::render;
 use hodograph_generator::model::check;
 use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::reading;
 use hodograph_generator::source::Source;
 
 use crate::derivation::{self, Found, Limits};
 use crate::evaluate::Machine;
 use crate::stop::{Outcome, Stop};
+
+/// A state has at most so many bytes.
+const MAX_STATE: usize = 16 << 20;
 
 /// A model without mistakes.
 #[derive(Clone, Debug)]
@@ -85,14 +88,10 @@ pub fn state_text(argument: Option<&str>) -> Outcome<Option<String>> {
     let bytes = match argument {
         None => return Ok(None),
         Some(text) if text.trim_start().starts_with('{') => return Ok(Some(text.to_owned())),
-        Some("-") => {
-            let mut bytes = Vec::new();
-            std::io::stdin()
-                .read_to_end(&mut bytes)
-                .map_err(|error| Stop::Call(format!("cannot read standard input: {error}")))?;
-            bytes
-        }
-        Some(path) => std::fs::read(path).map_err(|error| Stop::unreadable(Path::new(path), &error))?,
+        Some("-") => reading::up_to(std::io::stdin().lock(), MAX_STATE)
+            .map_err(|error| Stop::Call(format!("cannot read the state from standard input: {error}")))?,
+        Some(path) => reading::bytes(Path::new(path), MAX_STATE)
+            .map_err(|error| Stop::unreadable(Path::new(path), &error))?,
     };
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();

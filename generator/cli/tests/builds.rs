@@ -96,3 +96,46 @@ fn derivations_at_once_wait_for_each_other() {
         }
     }
 }
+
+/// The lock belongs to the user, not to the environment: different homes and temporary directories are no way around it.
+#[test]
+fn derivations_with_different_homes_wait_for_each_other() {
+    let folders: Vec<PathBuf> = (0..4).map(|i| folder(&format!("home {i}"))).collect();
+    let running: Vec<_> = folders
+        .iter()
+        .map(|folder| {
+            let (home, temporary) = (folder.join("home"), folder.join("tmp"));
+            fs::create_dir_all(&home)
+                .and_then(|()| fs::create_dir_all(&temporary))
+                .expect("folders for the test");
+            let mut command = tool();
+            command.arg("derive").args(MODELS.map(|model| folder.join(format!("{model}.mech"))));
+            command.env("HOME", home).env("TMPDIR", temporary).env_remove("XDG_CACHE_HOME");
+            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the tool starts")
+        })
+        .collect();
+    for child in running {
+        succeeded(&child.wait_with_output().expect("the tool ends"));
+    }
+}
+
+/// What the engine would end the process for is said before, with what to do about it.
+#[test]
+#[cfg(unix)]
+fn a_home_that_cannot_be_written_is_named() {
+    let folder = folder("no home");
+    let (model, file) = (folder.join("two_sleds.mech"), folder.join("a file"));
+    fs::write(&file, "").expect("a file");
+    let with = |variable: &str| {
+        let output = tool().arg("derive").arg(&model).env(variable, &file).output().expect("the tool runs");
+        assert_eq!(output.status.code(), Some(1));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
+    let said = with("HOME");
+    assert!(said.contains("home directory") && said.contains("set HOME to one"), "{said}");
+    let said = with("TMPDIR");
+    assert!(said.contains("temporary directory") && said.contains("set TMPDIR"), "{said}");
+    for said in [with("HOME"), with("TMPDIR")] {
+        assert!(!said.contains("SIGABRT") && !said.contains("report"), "{said}");
+    }
+}

@@ -30,6 +30,9 @@ use crate::program::Program;
 /// The version of the format. It changes when a program of one version would mean something else in another.
 pub const FORMAT: u32 = 1;
 
+/// A file with a derivation has at most so many bytes: a thousand times what shipped models have.
+pub const MAX_BYTES: usize = 128 << 20;
+
 /// A derivation as read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Artifact {

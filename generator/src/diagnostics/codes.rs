@@ -12,6 +12,11 @@ impl Code {
         if self.0.starts_with('W') { Severity::Warning } else { Severity::Error }
     }
 
+    /// Is only the form wrong? Then the model means what it would mean without the mistake, and all checks go on.
+    pub fn is_of_form(self) -> bool {
+        [SECTION_ORDER, SECTION_TWICE, SECOND_MECHANISM, STRAY_DOCS, COLLISION].contains(&self)
+    }
+
     /// What it means, in a few words.
     pub fn title(self) -> &'static str {
         ALL.iter().find(|(code, _)| *code == self).map_or("", |(_, title)| title)
@@ -47,6 +52,7 @@ codes! {
     BAD_EXPRESSION = "E012", "not an expression";
     FIELD = "E013", "a field is unknown, missing or given twice";
     EMPTY = "E014", "the model has no body or no speed";
+    SECOND_MECHANISM = "E015", "a second mechanism in one model";
     UNKNOWN_NAME = "E020", "unknown name";
     DUPLICATE_NAME = "E021", "a name is declared twice";
     RESERVED_NAME = "E022", "a name that cannot be declared";

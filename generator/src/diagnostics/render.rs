@@ -102,6 +102,15 @@ impl Diagnostic {
         if !self.primary.text.is_empty() {
             text.push_str(&format!("\n{}", self.primary.text));
         }
+        // the compiler underlines one place: the others are named
+        for label in &self.related {
+            let at = source
+                .location(label.span)
+                .map_or(String::new(), |at| format!(", line {}, column {}", at.line, at.column));
+            let words = format!("`{}`", source.words(label.span));
+            let words = if label.text.contains(&words) { String::new() } else { format!(": {words}") };
+            text.push_str(&format!("\nnote: {}{words}{at}", label.text));
+        }
         if let Some(help) = &self.help {
             text.push_str(&format!("\nhelp: {help}"));
         }

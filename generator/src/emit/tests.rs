@@ -26,8 +26,14 @@ fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Quantity 
 /// A particle on a massless rod of length l about O, whose end strikes the wall with normal -N.x.
 fn mechanism() -> Mechanism {
     let span = Span::default();
-    let point =
-        |name: &str, place| Point { name: name.into(), docs: String::new(), place, velocity: None, span };
+    let point = |name: &str, place| Point {
+        name: name.into(),
+        docs: String::new(),
+        place,
+        velocity: None,
+        span,
+        motion_span: span,
+    };
     Mechanism {
         name: "Pendulum".into(),
         docs: "A particle on a rod, and a wall.".into(),
@@ -47,6 +53,8 @@ fn mechanism() -> Mechanism {
             orientation: Orientation::Aligned,
             angular_velocity: None,
             span,
+            orientation_span: span,
+            motion_span: span,
         }],
         points: vec![point("O", Place::Origin), point("P", Place::Velocity(Vector::Zero))],
         bodies: vec![Body {
@@ -55,6 +63,7 @@ fn mechanism() -> Mechanism {
             frame: None,
             centre: PointId(1),
             mass: Scalar::Parameter(ParameterId(0)),
+            mass_span: span,
             inertia: None,
             span,
         }],
@@ -69,6 +78,7 @@ fn mechanism() -> Mechanism {
             body: Some(BodyId(0)),
             against: Against::Fixed,
             normal: Vector::Zero,
+            normal_span: span,
             gap: None,
             span,
         }],

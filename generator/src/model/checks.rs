@@ -34,8 +34,11 @@ pub fn physics(m: &Mechanism) -> Vec<Diagnostic> {
 fn look(m: &Mechanism) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     let states: Vec<State> = DISTANCES.iter().enumerate().map(|(i, d)| state(m, *d, i as u64)).collect();
-    bodies(m, &states, &mut out);
     axes(m, &states, &mut out);
+    // without proper axes nothing turns as it should
+    if out.is_empty() {
+        bodies(m, &states, &mut out);
+    }
     if !out.is_empty() {
         return out;
     }
@@ -67,9 +70,11 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
             let help = format!(
                 "the body turns in `{frame}`, but not about an axis of symmetry; give its inertia in its own frame"
             );
-            out.push(Diagnostic::new(codes::INERTIA, body.span, message).help(help));
+            let span = body.inertia.as_ref().map_or(body.span, |inertia| inertia.span);
+            out.push(Diagnostic::new(codes::INERTIA, span, message).help(help));
         }
         inertia_of_speeds(m, &seen, &mut out);
+        out.extend(super::members::strangers(m, &seen));
         contacts(m, &seen, &mut out);
     }
     out
@@ -132,7 +137,9 @@ fn bodies(m: &Mechanism, states: &[State], out: &mut Vec<Diagnostic>) {
         {
             let message =
                 format!("the mass of `{}` is {} with the values of the model", body.name, number(mass.re));
-            out.push(Diagnostic::new(codes::MASS, body.span, message).help("a mass is positive"));
+            out.push(Diagnostic::new(codes::MASS, body.mass_span, message).help("a mass is positive"));
+            // the inertia mostly has it as a factor
+            continue;
         }
         let Ok(Some(i)) = numeric::central_inertia(&values, body) else { continue };
         let trace = i[0][0] + i[1][1] + i[2][2];
@@ -152,7 +159,8 @@ fn bodies(m: &Mechanism, states: &[State], out: &mut Vec<Diagnostic>) {
                 "the largest principal moment exceeds the sum of the two others"
             };
             let help = if about { format!("about the mass centre, {help}") } else { help.to_owned() };
-            out.push(Diagnostic::new(code, body.span, message).help(help));
+            let span = body.inertia.as_ref().map_or(body.span, |inertia| inertia.span);
+            out.push(Diagnostic::new(code, span, message).help(help));
         }
     }
 }
@@ -223,7 +231,7 @@ fn axes(m: &Mechanism, states: &[State], out: &mut Vec<Diagnostic>) {
             Some(squares.sum::<Option<f64>>()?.sqrt())
         });
         let message = |length| format!("the axis of `{}` has the length {length}, not 1", frame.name);
-        not_unit(codes::FRAME, frame.span, lengths.collect(), message, out);
+        not_unit(codes::FRAME, frame.orientation_span, lengths.collect(), message, out);
     }
     for load in &m.loads {
         let LoadKind::Torsion { axis, .. } = &load.kind else { continue };
@@ -245,7 +253,11 @@ fn not_unit(
 ) {
     let off = |length: &f64| length.is_finite() && (length - 1.0).abs() > 1e-9;
     if let Some(first) = lengths.first().filter(|_| lengths.iter().all(off)) {
-        let help = if *first < 1e-12 { "it is zero" } else { "`unit(v)` is the unit vector along v" };
+        let help = match code {
+            _ if *first < 1e-12 => "it is zero",
+            codes::FRAME => "divide its components by its length",
+            _ => "`unit(v)` is the unit vector along v",
+        };
         out.push(Diagnostic::new(code, span, message(number(*first))).help(help));
     }
 }
@@ -351,7 +363,7 @@ fn contacts(m: &Mechanism, seen: &[Evaluation], out: &mut Vec<Diagnostic>) {
         if has_values(m) {
             let lengths = seen.iter().map(|e| length(&e.contacts[i].normal)).collect();
             let message = |length| format!("the normal of `{}` has the length {length}, not 1", contact.name);
-            not_unit(codes::NORMAL, contact.span, lengths, message, out);
+            not_unit(codes::NORMAL, contact.normal_span, lengths, message, out);
         }
         let moves = seen.iter().any(|e| {
             let contact = &e.contacts[i];

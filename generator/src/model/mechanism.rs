@@ -157,6 +157,10 @@ pub struct Frame {
     pub angular_velocity: Option<(FrameId, Vector)>,
     /// where it is declared
     pub span: Span,
+    /// where its orientation is stated; of a rotation about a vector, where the vector stands
+    pub orientation_span: Span,
+    /// where its angular velocity is stated; else where it is declared
+    pub motion_span: Span,
 }
 
 /// How a frame is oriented in its parent.
@@ -208,6 +212,8 @@ pub struct Point {
     pub velocity: Option<Vector>,
     /// where it is declared
     pub span: Span,
+    /// where its velocity is stated; else where it is declared
+    pub motion_span: Span,
 }
 
 /// How a point's position or velocity is known.
@@ -248,6 +254,8 @@ pub struct Body {
     pub centre: PointId,
     /// its mass, kg
     pub mass: Scalar,
+    /// where the mass is stated
+    pub mass_span: Span,
     /// its inertia; `None`: a particle
     pub inertia: Option<Inertia>,
     /// where it is declared
@@ -263,6 +271,8 @@ pub struct Inertia {
     pub frame: FrameId,
     /// the point it is about; `None`: the mass centre
     pub about: Option<PointId>,
+    /// where it is stated
+    pub span: Span,
 }
 
 /// What acts on the mechanism.
@@ -362,6 +372,8 @@ pub struct Contact {
     pub against: Against,
     /// unit vector n from what is struck to what strikes
     pub normal: Vector,
+    /// where the normal is stated
+    pub normal_span: Span,
     /// distance, m
     pub gap: Option<Scalar>,
     /// where it is declared

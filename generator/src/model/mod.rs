@@ -3,8 +3,10 @@
 mod checks;
 mod counts;
 pub mod dimension;
+pub mod habits;
 mod lower;
 pub mod mechanism;
+mod members;
 mod names;
 mod order;
 pub mod similar;
@@ -66,10 +68,10 @@ pub fn check(source: &Source) -> Checked {
         (Some(mechanism), diagnostics)
     };
     // what follows looks at the mechanism as a whole, so it must be whole
-    let errors = |list: &[Diagnostic]| list.iter().any(|d| d.severity == Severity::Error);
-    if let Some(mechanism) = mechanism.as_ref().filter(|_| !errors(&diagnostics)) {
+    let unclear = |list: &[Diagnostic]| list.iter().any(Diagnostic::hides_meaning);
+    if let Some(mechanism) = mechanism.as_ref().filter(|_| !unclear(&diagnostics)) {
         diagnostics.extend(counts::counts(mechanism));
-        if !errors(&diagnostics) {
+        if !unclear(&diagnostics) {
             diagnostics.extend(checks::physics(mechanism));
         }
     }
@@ -77,6 +79,6 @@ pub fn check(source: &Source) -> Checked {
     let mut places = std::collections::HashSet::new();
     diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
     diagnostics.sort_by_key(|d| (d.primary.span, d.code));
-    let failed = errors(&diagnostics);
+    let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     Checked { mechanism: mechanism.filter(|_| !failed), diagnostics }
 }

@@ -1,7 +1,7 @@
 //! Units: what `kg*m^2` or `mm` means in SI.
 
 use super::dimension::{Dimension, Exponent};
-use super::similar;
+use super::{habits, similar};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::number::Number;
 use crate::syntax::tree::{Expr, ExprKind};
@@ -83,6 +83,11 @@ fn symbol(name: &str) -> Option<Unit> {
     })
 }
 
+/// Is it the symbol of a unit, perhaps with a prefix?
+pub fn is_symbol(name: &str) -> bool {
+    symbol(name).is_some()
+}
+
 /// Reads a unit.
 pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
     let wrong = || {
@@ -150,23 +155,11 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
 
 fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, format!("there is no unit `{name}`"));
-    let habits = [
-        ("Nm", "N*m"),
-        ("degree", "deg"),
-        ("degrees", "deg"),
-        ("radian", "rad"),
-        ("radians", "rad"),
-        ("meter", "m"),
-        ("metre", "m"),
-        ("sec", "s"),
-        ("second", "s"),
-        ("rpm", "rev/min"),
-        ("ton", "Mg"),
-        ("t", "Mg"),
-        ("hr", "h"),
-    ];
-    if let Some((_, right)) = habits.iter().find(|(wrong, _)| *wrong == name) {
+    if let Some(right) = habits::unit(name) {
         return error.help(format!("write `{right}`"));
+    }
+    if let Some(advice) = habits::unit_advice(name) {
+        return error.help(advice);
     }
     let prefixed =
         PREFIXES.iter().find(|(p, _)| name.strip_prefix(p).is_some_and(|r| SYMBOLS.iter().any(|s| s.0 == r)));

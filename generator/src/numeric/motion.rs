@@ -129,7 +129,7 @@ impl<'m> Instant<'m> {
             if let Some((within, value)) = &frame.angular_velocity {
                 let declared = values.vector(value, Level::Motion)?;
                 let found = values.turning_by_geometry(FrameId(i), *within)?;
-                out.extend(sub(declared, found).map(|r| (r, frame.span)));
+                out.extend(sub(declared, found).map(|r| (r, frame.motion_span)));
             }
             if let Orientation::Quaternion(ids) = &frame.orientation {
                 let at = |id: CoordinateId| Scalar::Coordinate(id);
@@ -147,7 +147,7 @@ impl<'m> Instant<'m> {
             {
                 let declared = values.vector(value, Level::Motion)?;
                 let found = values.velocity_by_position(PointId(i))?;
-                out.extend(sub(declared, found).map(|r| (r, point.span)));
+                out.extend(sub(declared, found).map(|r| (r, point.motion_span)));
             }
         }
         Ok(out)

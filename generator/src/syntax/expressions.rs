@@ -54,14 +54,22 @@ impl Parser<'_> {
                 return Ok(Expr { kind: ExprKind::Product(factors), span });
             }
             self.at += 1;
-            if self.is_sign('*') {
-                let error = Diagnostic::new(codes::BAD_EXPRESSION, self.here(), "`**` is no operator")
-                    .help("write `^` for a power");
+            let power = !divides && self.is_sign('*');
+            if power {
+                let error = Diagnostic::new(
+                    codes::BAD_EXPRESSION,
+                    self.before().to(self.here()),
+                    "`**` is no operator",
+                )
+                .help("write `^` for a power");
                 self.report(error);
-                return Err(Lost);
+                self.at += 1;
             }
-            let factor = self.signed()?;
+            let mut factor = self.signed()?;
             span = span.to(factor.span);
+            if power {
+                factor.kind = ExprKind::Error;
+            }
             factors.push((divides, factor));
         }
     }
@@ -100,6 +108,11 @@ impl Parser<'_> {
 
     fn postfix(&mut self) -> Result<Expr, Lost> {
         let mut base = self.primary()?;
+        while self.is_sign('\'') {
+            let _ = self.expected("an operator or the end of the expression");
+            self.at += 1;
+            base.kind = ExprKind::Error;
+        }
         let mut length = 0;
         while self.take_sign('.') {
             length += 1;
@@ -187,8 +200,17 @@ impl Parser<'_> {
         Ok(Expr { kind: ExprKind::Rate(Box::new(inner)), span })
     }
 
+    /// A bracket that closes; what else could follow an operand is `expected`.
+    fn close_operand(&mut self, expected: &str) -> Result<(), Lost> {
+        let closed = self.close(expected);
+        if closed.is_err() && self.at_operand() {
+            self.advise("a product is written `a*b`".to_owned());
+        }
+        closed
+    }
+
     fn close_expression(&mut self) -> Result<(), Lost> {
-        self.close("an operator or the closing bracket")
+        self.close_operand("an operator or the closing bracket")
     }
 
     fn arguments(&mut self) -> Result<Vec<Expr>, Lost> {
@@ -205,7 +227,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.close("`,`, an operator or the closing bracket")?;
+        self.close_operand("`,`, an operator or the closing bracket")?;
         Ok(items)
     }
 }

@@ -57,7 +57,26 @@ impl<'a> Lexer<'a> {
             ')' | ']' | '}' => self.push(TokenKind::Close(first), 1, String::new()),
             '+' | '-' | '*' | '/' | '^' | '=' | '.' | ',' | ';' | ':' | '<' | '>' | '!' | '%' | '&' | '|'
             | '?' | '@' | '#' | '$' | '~' | '\'' => self.push(TokenKind::Sign(first), 1, String::new()),
-            _ => self.push(TokenKind::Bad(Bad::Character), first.len_utf8(), first.to_string()),
+            _ => {
+                let start = self.at;
+                self.push(TokenKind::Bad(Bad::Character), first.len_utf8(), first.to_string());
+                self.meant(first, start);
+            }
+        }
+    }
+
+    /// A sign of mathematical print is refused, and then read as what it stands for: it is one mistake.
+    fn meant(&mut self, sign: char, start: usize) {
+        let kinds: &[(TokenKind, &str)] = match sign {
+            '−' | '–' => &[(TokenKind::Sign('-'), "")],
+            '×' | '·' | '⋅' => &[(TokenKind::Sign('*'), "")],
+            '²' => &[(TokenKind::Sign('^'), ""), (TokenKind::Number, "2")],
+            '³' => &[(TokenKind::Sign('^'), ""), (TokenKind::Number, "3")],
+            _ => &[],
+        };
+        let span = Span { start: start as u32, end: self.at as u32 };
+        for (kind, text) in kinds {
+            self.tokens.push(Token { kind: *kind, text: (*text).to_owned(), span });
         }
     }
 
@@ -111,7 +130,8 @@ impl<'a> Lexer<'a> {
     }
 
     fn name(&mut self) {
-        let length = self.run(0, |c| c == '_' || unicode_ident::is_xid_continue(c));
+        // Unicode lets the dot of a product continue a name
+        let length = self.run(0, |c| c != '·' && (c == '_' || unicode_ident::is_xid_continue(c)));
         let name = &self.rest()[..length];
         if name == "r" && self.rest()[length..].starts_with('#') {
             let length = self.run(length + 1, |c| c == '_' || unicode_ident::is_xid_continue(c));
@@ -123,7 +143,8 @@ impl<'a> Lexer<'a> {
 
     fn number(&mut self) {
         let rest = self.rest();
-        let digit = |c: char| c.is_ascii_digit();
+        // Rust's numbers may hold `_`: they are one token here too, and refused
+        let digit = |c: char| c.is_ascii_digit() || c == '_';
         let mut length = self.run(0, digit);
         // `1.5` and `1.` are numbers; `1.x` is a number, a point and a name, as in Rust
         if rest[length..].starts_with('.') && !rest[length + 1..].starts_with(|c| c == '.' || begins_name(c))
@@ -137,7 +158,7 @@ impl<'a> Lexer<'a> {
                 length = self.run(length + 1 + sign, digit);
             }
         }
-        let end = self.run(length, |c| c == '_' || unicode_ident::is_xid_continue(c));
+        let end = self.run(length, |c| c != '·' && (c == '_' || unicode_ident::is_xid_continue(c)));
         let text = rest[..end].to_owned();
         let kind = classify_number(&text);
         self.push(kind, end, text);

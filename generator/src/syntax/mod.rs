@@ -3,6 +3,7 @@
 mod expressions;
 pub mod inline;
 pub mod lexer;
+mod outline;
 mod parser;
 mod sections;
 pub mod token;

@@ -37,10 +37,10 @@ fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
     let (code, message, help) = match bad {
         Bad::Character => (
             codes::BAD_TOKEN,
-            format!("`{}` cannot be part of a model", shown.escape_default()),
+            format!("`{}` cannot be part of a model", shown.escape_debug()),
             match shown.as_str() {
-                "°" => "write the unit `deg`",
-                "×" | "·" => "write `*` for a product, `dot(v, w)` or `cross(v, w)` for vectors",
+                "°" => "declare the quantity in `deg`, as in `q1: deg = 30`",
+                "×" | "·" | "⋅" => "write `*` for a product, `dot(v, w)` or `cross(v, w)` for vectors",
                 "²" => "write `^2`",
                 "³" => "write `^3`",
                 "−" | "–" => "write the plain minus sign `-`",
@@ -179,7 +179,7 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn before_is(&self, sign: char) -> bool {
+    pub(super) fn before_is(&self, sign: char) -> bool {
         self.at.checked_sub(1).and_then(|i| self.tokens.get(i)).is_some_and(|token| token.is_sign(sign))
     }
 
@@ -198,6 +198,13 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// Says what to do about the mistake that was reported last.
+    pub(super) fn advise(&mut self, help: String) {
+        if let Some(error) = self.diagnostics.last_mut() {
+            error.help = Some(help);
+        }
+    }
+
     pub(super) fn is_sign(&self, sign: char) -> bool {
         self.peek().is_some_and(|token| token.is_sign(sign))
     }
@@ -208,6 +215,13 @@ impl<'a> Parser<'a> {
 
     pub(super) fn is_open(&self, open: char) -> bool {
         self.peek().is_some_and(|token| token.kind == TokenKind::Open(open))
+    }
+
+    /// Could what stands here be multiplied?
+    pub(super) fn at_operand(&self) -> bool {
+        self.peek().is_some_and(|token| {
+            matches!(token.kind, TokenKind::Name | TokenKind::Number | TokenKind::Open('('))
+        })
     }
 
     pub(super) fn is_close(&self) -> bool {
@@ -239,6 +253,10 @@ impl<'a> Parser<'a> {
             Some(TokenKind::Bad(_)) => return Lost,
             None => error.label("the model ends here"),
             Some(TokenKind::Sign('\'')) => error.help("a time derivative is written `d(q1)/dt`"),
+            Some(TokenKind::Sign('#' | '%')) => error.help("comments begin with `//`"),
+            Some(TokenKind::Open('{')) if what == "an expression" => {
+                error.help("parts of an expression are grouped by `(` and `)`")
+            }
             Some(TokenKind::Sign('=')) if self.before_is('=') => error.help("an equation has one `=`"),
             Some(TokenKind::Sign('<' | '>')) => error.help("there are no inequalities in a model"),
             Some(_) => error,

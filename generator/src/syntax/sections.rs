@@ -1,159 +1,14 @@
-//! Sections and what stands in them.
+//! What stands in the sections.
 
-use super::parser::{Docs, Lost, Parser};
+use super::parser::{Lost, Parser};
 use super::token::TokenKind;
 use super::tree::*;
-use crate::diagnostics::{Diagnostic, Span, codes};
-use crate::model::similar;
+use crate::diagnostics::{Diagnostic, codes};
+use crate::model::units;
 
 impl Parser<'_> {
-    /// The whole model.
-    pub(super) fn model(&mut self) {
-        let mut docs = Docs::default();
-        while let Some(token) = self.peek() {
-            match token.kind {
-                TokenKind::InnerDoc => docs.line(&token.text),
-                TokenKind::OuterDoc => {
-                    let error = Diagnostic::new(
-                        codes::STRAY_DOCS,
-                        token.span,
-                        "`///` does not document the mechanism",
-                    )
-                    .help("the documentation of the mechanism begins with `//!`");
-                    self.report(error);
-                }
-                _ => break,
-            }
-            self.at += 1;
-        }
-        self.tree.docs = docs.0;
-        if self.header().is_err() {
-            while self.peek().is_some_and(|t| !t.is_sign(';') && Section::of_word(&t.text).is_none()) {
-                self.at += 1;
-            }
-            self.take_sign(';');
-        }
-        while self.peek().is_some() {
-            self.section();
-        }
-    }
-
-    fn header(&mut self) -> Result<(), Lost> {
-        if !self.is_word("mechanism") {
-            let message = format!("a model begins with `mechanism Name;`, found {}", self.found());
-            let error = Diagnostic::new(codes::EXPECTED, self.here(), message)
-                .help("write `mechanism Name;` before the first section");
-            self.report(error);
-            return Err(Lost);
-        }
-        self.at += 1;
-        self.tree.name = Some(self.name("the name of the mechanism")?);
-        self.semicolon()
-    }
-
-    fn section(&mut self) {
-        let docs = self.docs();
-        let Some(token) = self.peek() else { return };
-        if token.kind == TokenKind::InnerDoc {
-            let error =
-                Diagnostic::new(codes::STRAY_DOCS, token.span, "`//!` stands at the top of a model only")
-                    .help("use `///` before what you document, or `//` for a plain comment");
-            self.report(error);
-            self.at += 1;
-            return;
-        }
-        let section = Section::of_word(&token.text).filter(|_| token.kind == TokenKind::Name);
-        let opens = self.peek_at(1).is_some_and(|next| next.kind == TokenKind::Open('{'));
-        let Some(section) = section else {
-            self.no_section(opens);
-            return;
-        };
-        if !docs.is_empty() {
-            let error =
-                Diagnostic::new(codes::STRAY_DOCS, self.before(), "a section is not documented with `///`")
-                    .help("use `//` for a plain comment");
-            self.report(error);
-        }
-        self.at += 1;
-        self.body(section, token.span);
-    }
-
-    /// What follows the word of a section.
-    fn body(&mut self, section: Section, span: Span) {
-        self.order(section, span);
-        if self.open('{', &format!(" after `{}`", section.word())).is_err() {
-            return;
-        }
-        self.entries(section);
-        // the closing brace; what is before it has been read or passed over
-        self.at += 1;
-    }
-
-    fn no_section(&mut self, opens: bool) {
-        let Some(token) = self.peek() else { return };
-        let (span, kind) = (token.span, token.kind);
-        if kind == TokenKind::Name {
-            let words = Section::ALL.map(Section::word);
-            let error = Diagnostic::new(
-                codes::SECTION_UNKNOWN,
-                span,
-                format!("there is no section `{}`", token.text),
-            );
-            let near = similar::nearest(&token.text, words.into_iter());
-            let error = match near {
-                Some(word) => error.help(format!("did you mean `{word}`?")),
-                None => error.help(format!("the sections are {}", words.join(", "))),
-            };
-            self.report(error);
-            // read on as if it had been written right
-            if let Some(section) = near.and_then(Section::of_word).filter(|_| opens) {
-                self.at += 1;
-                self.body(section, span);
-                return;
-            }
-        } else {
-            self.expected("a section such as `parameters { .. }`");
-        }
-        self.tree.incomplete = true;
-        self.at += usize::from(!matches!(kind, TokenKind::Open(_)));
-        // pass over to behind the next braces, or to the next section
-        if opens || matches!(kind, TokenKind::Open(_)) {
-            self.skip_group();
-            return;
-        }
-        while let Some(token) = self.peek() {
-            let opens = self.peek_at(1).is_some_and(|next| next.kind == TokenKind::Open('{'));
-            if token.kind == TokenKind::Name && opens && Section::of_word(&token.text).is_some() {
-                return;
-            }
-            if matches!(token.kind, TokenKind::Open(_)) {
-                self.skip_group();
-                return;
-            }
-            self.at += 1;
-        }
-    }
-
-    fn order(&mut self, section: Section, span: Span) {
-        if let Some(&(_, first)) = self.tree.sections.iter().find(|(s, _)| *s == section) {
-            let message = format!("the section `{}` appears twice", section.word());
-            let error = Diagnostic::new(codes::SECTION_TWICE, span, message)
-                .related(first, "first here")
-                .help("put all entries into one section");
-            self.report(error);
-        } else if let Some(&(before, place)) = self.tree.sections.iter().find(|(s, _)| *s > section) {
-            let message = format!("`{}` stands after `{}`", section.word(), before.word());
-            let error = Diagnostic::new(codes::SECTION_ORDER, span, message)
-                .label(format!("this belongs before `{}`", before.word()))
-                .related(place, format!("`{}` is here", before.word()))
-                .help("sections stand in a fixed order; move this one up");
-            self.report(error);
-        }
-        self.tree.sections.push((section, span));
-    }
-
     /// All entries of a section; stops before the closing brace.
-    fn entries(&mut self, section: Section) {
+    pub(super) fn entries(&mut self, section: Section) {
         use Section::*;
         let separator = match section {
             Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => ',',
@@ -165,13 +20,11 @@ impl Parser<'_> {
             let result = match self.entry(section) {
                 Ok(()) if separator == ',' => self.comma(),
                 Ok(()) => self.semicolon(),
-                Err(lost) => {
-                    self.broken(start);
-                    Err(lost)
-                }
+                Err(lost) => Err(lost),
             };
             if result.is_err() {
                 self.skip_entry(separator, nesting);
+                self.broken(start, nesting);
             }
             if self.at == start {
                 self.at += 1;
@@ -179,15 +32,24 @@ impl Parser<'_> {
         }
     }
 
-    /// An entry that could not be read still declares its name.
-    fn broken(&mut self, start: usize) {
-        let words = self.tokens[start..].iter().take(40);
-        let name = words
-            .skip_while(|t| t.kind == TokenKind::OuterDoc || t.is_word("fixed") || t.is_word("dependent"))
-            .find(|_| true)
-            .filter(|token| token.kind == TokenKind::Name);
-        if let Some(token) = name {
-            self.tree.broken.push(Name { text: token.text.clone(), span: token.span });
+    /// What could not be read still declares its names: the first, and whatever stands before a `:`, `=` or `{`.
+    fn broken(&mut self, start: usize, nesting: u32) {
+        let passed = start..self.at.min(self.tokens.len());
+        let mut first = true;
+        for i in passed {
+            let token = self.tokens[i];
+            if token.kind != TokenKind::Name || self.nesting[i] != nesting {
+                continue;
+            }
+            let declares = self
+                .tokens
+                .get(i + 1)
+                .is_some_and(|next| matches!(next.kind, TokenKind::Sign(':' | '=') | TokenKind::Open('{')));
+            let modifier = token.is_word("fixed") || token.is_word("dependent");
+            if declares || first && !modifier {
+                self.tree.broken.push(Name { text: token.text.clone(), span: token.span });
+            }
+            first &= modifier;
         }
     }
 
@@ -209,7 +71,7 @@ impl Parser<'_> {
         self.missing(',')
     }
 
-    fn semicolon(&mut self) -> Result<(), Lost> {
+    pub(super) fn semicolon(&mut self) -> Result<(), Lost> {
         self.trailing_docs();
         if self.take_sign(';') {
             return Ok(());
@@ -232,10 +94,9 @@ impl Parser<'_> {
             self.at += 1;
             return Ok(());
         }
-        let error =
+        let mut error =
             Diagnostic::new(codes::EXPECTED, self.before(), format!("expected `{separator}`, found {found}"))
                 .label(format!("`{separator}` is missing after this"));
-        self.report(error);
         let begins = match self.peek().map(|token| token.kind) {
             Some(TokenKind::OuterDoc) => true,
             Some(TokenKind::Name) => self.peek_at(1).is_some_and(|next| {
@@ -244,7 +105,45 @@ impl Parser<'_> {
             }),
             _ => false,
         };
+        if self.at_operand() && !begins {
+            error = error.help("or is an operator missing? A product is written `a*b`");
+        }
+        self.report(error);
         if self.is_close() || begins { Ok(()) } else { Err(Lost) }
+    }
+
+    /// A word before the name that an entry begins with, as in `let x = ..` or `const m: kg`: said, and passed over.
+    fn stray_word(&mut self, section: Section) {
+        use Section::*;
+        let begins = |kind| match section {
+            Parameters | Inputs | Coordinates | Speeds | Dependent => kind == TokenKind::Sign(':'),
+            Definitions | Frames | Points | Velocities => kind == TokenKind::Sign('='),
+            Bodies | Particles | Contacts => kind == TokenKind::Open('{'),
+            _ => false,
+        };
+        let [Some(word), Some(name), Some(sign)] = [0, 1, 2].map(|ahead| self.peek_at(ahead)) else { return };
+        let modifies = word.is_word("fixed") || word.is_word("dependent");
+        if word.kind != TokenKind::Name || name.kind != TokenKind::Name || !begins(sign.kind) || modifies {
+            return;
+        }
+        let message = format!("`{}` cannot stand before `{}`", word.text, name.text);
+        let help =
+            if matches!(section, Parameters) && matches!(word.text.as_str(), "const" | "static" | "final") {
+                format!(
+                    "remove it, or write `fixed {}` for a parameter that is folded in at build time",
+                    name.text
+                )
+            } else {
+                "remove it: an entry begins with its name".to_owned()
+            };
+        self.report(Diagnostic::new(codes::EXPECTED, word.span, message).help(help));
+        self.at += 1;
+    }
+
+    /// `=` for `:`, or a sign too many before a brace: said, and read as meant.
+    fn colon_meant(&mut self, message: &str, help: String) {
+        self.report(Diagnostic::new(codes::EXPECTED, self.here(), message).help(help));
+        self.at += 1;
     }
 
     fn entry(&mut self, section: Section) -> Result<(), Lost> {
@@ -253,6 +152,7 @@ impl Parser<'_> {
         if self.is_close() {
             return Ok(());
         }
+        self.stray_word(section);
         match section {
             Parameters | Inputs | Coordinates | Speeds | Dependent => {
                 let quantity = self.quantity(docs)?;
@@ -312,6 +212,17 @@ impl Parser<'_> {
             }
             Bodies | Particles | Contacts => {
                 let name = self.name("a name")?;
+                let braces = self.peek_at(1).is_some_and(|next| next.kind == TokenKind::Open('{'));
+                if braces && (self.is_sign(':') || self.is_sign('=')) {
+                    let message =
+                        format!("expected `{{` and fields such as `mass: m`, found {}", self.found());
+                    self.colon_meant(&message, format!("write `{} {{ .. }}`", name.text));
+                } else if self.is_sign('-') {
+                    let _ = self.expected("`{` and fields such as `mass: m`");
+                    let help = format!("a name is made of letters, digits and `_`: `{}_..`", name.text);
+                    self.advise(help);
+                    return Err(Lost);
+                }
                 let fields = self.fields()?;
                 let record = Record { docs, name, fields };
                 match section {
@@ -347,12 +258,17 @@ impl Parser<'_> {
                 modifier = Some((Modifier::Dependent, word.span));
             }
         }
+        if self.before_is(',') && self.peek().is_some_and(|token| token.kind == TokenKind::Number) {
+            let _ = self.expected("the name of a quantity");
+            self.advise("decimals are written with a point, as in `9.81`".to_owned());
+            return Err(Lost);
+        }
         let name = self.name("the name of a quantity")?;
         if !self.is_sign(':') {
             let message = format!("expected `:` and the unit of `{}`, found {}", name.text, self.found());
             let error = Diagnostic::new(codes::EXPECTED, self.here(), message).help(format!(
-                "write `{}: m` for a length, `{}: 1` for a plain number",
-                name.text, name.text
+                "state the unit, as in `{0}: kg = 1` for a mass; a plain number has the unit 1: `{0}: 1 = 1`",
+                name.text
             ));
             self.report(error);
             return Err(Lost);
@@ -360,7 +276,35 @@ impl Parser<'_> {
         self.at += 1;
         let unit = self.expression()?;
         let value = if self.take_sign('=') { Some(self.expression()?) } else { None };
+        if value.is_some() {
+            self.unit_of_value(&name, &unit)?;
+        }
         Ok(Quantity { docs, modifier, name, unit, value })
+    }
+
+    /// `q: rad = 30 deg`: a value has no unit of its own.
+    fn unit_of_value(&mut self, name: &Name, stated: &Expr) -> Result<(), Lost> {
+        let is_unit =
+            |token: &super::token::Token| token.kind == TokenKind::Name && units::is_symbol(&token.text);
+        let declares = self.peek_at(1).is_some_and(|next| next.is_sign(':'));
+        if declares || !self.peek().is_some_and(is_unit) {
+            return Ok(());
+        }
+        let start = self.here();
+        let written = self.expression()?;
+        let span = start.to(self.before());
+        let text = |unit: &Expr| units::read(unit).ok().map(|unit| unit.text);
+        let help = match (text(stated), text(&written)) {
+            (Some(stated), Some(written)) if stated == written => {
+                format!("remove it: `{}` is in {stated} already", name.text)
+            }
+            (_, Some(written)) => {
+                format!("the value is counted in the declared unit: write `{}: {written} = ..`", name.text)
+            }
+            _ => "the value is counted in the declared unit".to_owned(),
+        };
+        self.report(Diagnostic::new(codes::EXPECTED, span, "a value has no unit of its own").help(help));
+        Ok(())
     }
 
     /// `{ name: value, .. }`
@@ -398,7 +342,17 @@ impl Parser<'_> {
 
     fn field(&mut self) -> Result<Field, Lost> {
         let name = self.name("the name of a field")?;
-        self.sign(':', " after the name of a field")?;
+        if self.is_sign('=') {
+            let help = format!("fields are written `{}: ..`", name.text);
+            self.colon_meant("expected `:` after the name of a field, found `=`", help);
+        } else {
+            self.sign(':', " after the name of a field")?;
+        }
+        if name.text == "inertia" && self.is_open('{') {
+            let _ = self.expected("the components of inertia");
+            self.advise("write `[xx, yy, zz]` or `[xx, yy, zz, xy, yz, zx]`".to_owned());
+            return Err(Lost);
+        }
         let mut notes = Vec::new();
         // `velocity` is a word here unless it is all there is: then it is the name of a point
         let alone = self.peek_at(1).is_none_or(|next| {
@@ -421,7 +375,7 @@ impl Parser<'_> {
         let start = self.here();
         let word = self.name("a load: gravity, force, torque, spring or torsion")?;
         let (mut ends, mut about) = (Vec::new(), None);
-        while !self.is_sign(':') {
+        while !self.is_sign(':') && !self.is_sign('=') {
             if self.take_word("about").is_some() {
                 about = Some(self.expression()?);
                 break;
@@ -433,12 +387,21 @@ impl Parser<'_> {
                 None
             };
             if self.peek().is_none_or(|token| token.kind != TokenKind::Name) {
-                return Err(self.expected("a name or `:`"));
+                let lost = self.expected("a name or `:`");
+                if self.is_sign(',') {
+                    self.advise(format!("state a {} for each", word.text));
+                }
+                return Err(lost);
             }
             let name = self.name("a name")?;
             ends.push((mark, name));
         }
-        self.sign(':', " before the value of the load")?;
+        if self.is_sign('=') {
+            let help = format!("loads are stated with `:`, as in `{}`", example_of_load(&word.text));
+            self.colon_meant("expected `:` before the value of the load, found `=`", help);
+        } else {
+            self.sign(':', " before the value of the load")?;
+        }
         let (mut value, mut fields) = (None, Vec::new());
         if self.is_open('{') {
             fields = self.fields()?;
@@ -448,6 +411,16 @@ impl Parser<'_> {
         let span = start.to(self.before());
         self.tree.loads.push(Load { word, ends, about, value, fields, span });
         Ok(())
+    }
+}
+
+fn example_of_load(word: &str) -> &'static str {
+    match word {
+        "force" => "force on P: F*N.x;",
+        "torque" => "torque on B: tau*N.z;",
+        "spring" => "spring P to H: { stiffness: k };",
+        "torsion" => "torsion B about N.z: { angle: q1, stiffness: k };",
+        _ => "gravity: -g*N.z;",
     }
 }
 

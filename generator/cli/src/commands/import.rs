@@ -5,11 +5,15 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use hodograph_generator::diagnostics::render;
 use hodograph_generator::model::check;
+use hodograph_generator::reading;
 use hodograph_generator::source::Source;
 
 use crate::import::{Options, import};
 use crate::output;
 use crate::stop::{Outcome, Stop};
+
+/// A robot description has at most so many bytes.
+const MAX_BYTES: usize = 64 << 20;
 
 /// Turn a robot description (URDF) into a model file, written to standard output
 ///
@@ -47,7 +51,8 @@ enum Base {
 /// The file cannot be read ([`Stop::Call`]) or imported ([`Stop::Said`]).
 pub fn run(arguments: &Arguments) -> Outcome {
     let file = arguments.file.display().to_string();
-    let bytes = std::fs::read(&arguments.file).map_err(|error| Stop::unreadable(&arguments.file, &error))?;
+    let bytes = reading::bytes(&arguments.file, MAX_BYTES)
+        .map_err(|error| Stop::unreadable(&arguments.file, &error))?;
     let source = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         Stop::Fault(format!("{file}: this is no UTF-8 at byte {at}: save it as UTF-8"))

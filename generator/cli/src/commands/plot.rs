@@ -1,10 +1,10 @@
 //! `hodograph plot`: the course of collisions as a drawing.
 
-use std::io::Read;
 use std::path::PathBuf;
 
 use hodograph::ReducedMatrix;
 use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::reading;
 
 use crate::derivation::Limits;
 use crate::evaluate::contact::{self, Contact};
@@ -73,14 +73,18 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
 }
 
+/// A collision in JSON has at most so many bytes.
+const MAX_BYTES: usize = 1 << 20;
+
 /// What collides: a title, the reduced matrix and the velocity of approach.
 fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64; 3])> {
     let e = arguments.e;
     let Some(path) = &arguments.model else {
-        let mut text = String::new();
-        std::io::stdin()
-            .read_to_string(&mut text)
-            .map_err(|error| Stop::Call(format!("cannot read standard input: {error}")))?;
+        let unreadable =
+            |error: String| Stop::Call(format!("cannot read the collision from standard input: {error}"));
+        let bytes = reading::up_to(std::io::stdin().lock(), MAX_BYTES)
+            .map_err(|error| unreadable(error.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
         let case = Fields::new(Json::parse(&text)?, "a collision")?;
         let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
         let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;

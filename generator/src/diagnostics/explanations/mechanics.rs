@@ -44,7 +44,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: POINT,
-        text: "A position is another point plus a vector. Points are not added or subtracted; the vector from Q to P is `position(P, Q)`.",
+        text: "A position is another point plus a vector. Points are not added or subtracted; the vector from Q to P is `position(P, Q)`. In `P of B = Q + ..` Q moves with B: it is its mass centre, a hinge, or another point of it.",
         wrong: Some("points { G = -l/2*B.y; P = O - l*B.y; }"),
         right: Some("points { G = O - l/2*B.y; P = O - l*B.y; }"),
     },

@@ -1,4 +1,4 @@
-//! E001 to E014: reading.
+//! E001 to E015: reading.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;
@@ -52,7 +52,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: SECTION_ORDER,
-        text: "Sections stand in one order, so that every reader knows where to look. Names may be used before the line that declares them; only the sections are fixed.",
+        text: "Sections stand in one order, so that every reader knows where to look. Names may be used before the line that declares them; only the sections are fixed. However many sections must move, it is said once, with the right order; everything else in the model is checked as if they stood right.",
         wrong: Some(
             "mechanism Cart;\nparameters { m: kg = 1 }\nspeeds { u1: m/s }\ncoordinates { q1: m }\npoints { P = O + q1*N.x; }\nparticles { Cart { point: P, mass: m } }",
         ),
@@ -101,6 +101,16 @@ pub(super) const TABLE: &[Explanation] = &[
         text: "A mechanism has at least one body or particle, and at least one independent speed.",
         wrong: Some(
             "mechanism Cart;\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\npoints { P = O + q1*N.x; }\nloads { gravity: 0; force on P: 0; }\ncontacts { wall { point: P, normal: -N.x } }",
+        ),
+        right: Some(
+            "mechanism Cart;\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\npoints { P = O + q1*N.x; }\nparticles { Cart { point: P, mass: m } }",
+        ),
+    },
+    Explanation {
+        code: SECOND_MECHANISM,
+        text: "A model is one mechanism. Give each a file, or in Rust a `mechanism!`, of its own; what belongs to one system (two bodies that collide) is one mechanism.",
+        wrong: Some(
+            "mechanism Cart;\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\npoints { P = O + q1*N.x; }\nparticles { Cart { point: P, mass: m } }\n\nmechanism Another;\nparameters { m: kg = 2 }",
         ),
         right: Some(
             "mechanism Cart;\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\npoints { P = O + q1*N.x; }\nparticles { Cart { point: P, mass: m } }",

@@ -2,7 +2,7 @@
 
 use super::super::dimension::Dimension;
 use super::super::mechanism::{Body, FrameId, Inertia, PointId, Scalar};
-use super::super::similar;
+use super::super::{habits, similar};
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::number::Number;
@@ -49,17 +49,23 @@ impl Lowering<'_> {
             let Some(i) = known.iter().position(|name| *name == field.name.text) else {
                 let message = format!("{what} has no field `{}`", field.name.text);
                 let error = Diagnostic::new(codes::FIELD, field.name.span, message);
-                let near = similar::nearest(&field.name.text, known.into_iter());
-                let near = near.or(match field.name.text.as_str() {
-                    "center" | "com" => Some("centre").filter(|c| known.contains(c)),
-                    _ => None,
-                });
+                let near = habits::field(&field.name.text, &known)
+                    .or_else(|| similar::nearest(&field.name.text, known.into_iter()));
                 self.report(match near {
                     Some(near) => {
                         meant.push(near);
                         error.help(format!("did you mean `{near}`?"))
                     }
-                    None => error.help(format!("its fields are {}", known.join(", "))),
+                    None => error.help(match (what, field.name.text.as_str()) {
+                        ("a particle", "inertia" | "frame") => {
+                            "a particle has neither frame nor inertia: what has them stands under `bodies`"
+                                .to_owned()
+                        }
+                        ("a contact", "mu" | "e" | "law" | "friction" | "restitution") => {
+                            "friction and restitution are given when the collision is solved".to_owned()
+                        }
+                        _ => format!("its fields are {}", known.join(", ")),
+                    }),
                 });
                 continue;
             };
@@ -161,6 +167,7 @@ impl Lowering<'_> {
             frame.and_then(|field| self.name_in(field, "a frame")).and_then(|name| self.proper_frame(&name));
         let centre =
             centre.and_then(|field| self.name_in(field, "a point")).and_then(|name| self.point_named(&name));
+        let mass_span = mass.map_or(record.name.span, |field| field.value.span);
         let mass = mass.and_then(|field| self.mass(&field.value));
         let inertia = inertia.and_then(|field| self.inertia(field, frame));
         let zero = || Scalar::Number(Number::integer(0));
@@ -170,6 +177,7 @@ impl Lowering<'_> {
             frame: Some(frame.unwrap_or(FrameId::N)),
             centre: centre.unwrap_or(PointId::O),
             mass: mass.unwrap_or_else(zero),
+            mass_span,
             inertia,
             span: record.name.span,
         });
@@ -195,6 +203,7 @@ impl Lowering<'_> {
         }
         let point =
             point.and_then(|field| self.name_in(field, "a point")).and_then(|name| self.point_named(&name));
+        let mass_span = mass.map_or(record.name.span, |field| field.value.span);
         let mass = mass.and_then(|field| self.mass(&field.value));
         self.out.bodies.push(Body {
             name: record.name.text.clone(),
@@ -202,6 +211,7 @@ impl Lowering<'_> {
             frame: None,
             centre: point.unwrap_or(PointId::O),
             mass: mass.unwrap_or_else(|| Scalar::Number(Number::integer(0))),
+            mass_span,
             inertia: None,
             span: record.name.span,
         });
@@ -221,6 +231,16 @@ impl Lowering<'_> {
             }
             return None;
         };
+        if items.iter().all(|item| matches!(item.kind, ExprKind::List(_))) && !items.is_empty() {
+            let error = Diagnostic::new(
+                codes::INERTIA,
+                field.value.span,
+                "an inertia is a list of components, no matrix",
+            )
+            .help("write `[xx, yy, zz, xy, yz, zx]`, products with a plus sign as in the matrix");
+            self.report(error);
+            return None;
+        }
         let mut components = Vec::new();
         for item in items {
             let what = "a component of inertia";
@@ -276,6 +296,6 @@ impl Lowering<'_> {
             None => None,
             Some(point) => Some(point?),
         };
-        Some(Inertia { components: Box::new(components), frame, about })
+        Some(Inertia { components: Box::new(components), frame, about, span: field.value.span })
     }
 }

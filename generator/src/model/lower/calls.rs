@@ -3,8 +3,8 @@
 use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
 use super::super::names::Symbol;
-use super::super::similar;
 use super::super::typed::{Traits, Typed, Value};
+use super::super::{habits, similar};
 use super::{Lowering, in_words};
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::syntax::tree::{Expr, ExprKind, Name};
@@ -112,6 +112,17 @@ impl Lowering<'_> {
     }
 
     fn unknown_function(&mut self, name: &Name, arguments: &[Expr], span: Span) -> Typed {
+        if let ([inner] | [inner, _], true) = (arguments, habits::differentiates(&name.text)) {
+            self.expression(inner);
+            let error =
+                Diagnostic::new(codes::FUNCTION, name.span, format!("there is no function `{}`", name.text));
+            let example = match &inner.kind {
+                ExprKind::Name(text) => text.as_str(),
+                _ => "q1",
+            };
+            self.report(error.help(format!("a time derivative is written `d({example})/dt`")));
+            return Typed::poison(span);
+        }
         for argument in arguments {
             self.expression(argument);
         }
@@ -127,18 +138,12 @@ impl Lowering<'_> {
                     name.span,
                     format!("there is no function `{}`", name.text),
                 );
-                let habits = [
-                    ("arctan", "atan"),
-                    ("arcsin", "asin"),
-                    ("arccos", "acos"),
-                    ("ln", "log"),
-                    ("fabs", "abs"),
-                    ("sgn", "sign"),
-                ];
-                let habit = habits.iter().find(|(wrong, _)| *wrong == name.text).map(|(_, right)| *right);
-                match habit.or_else(|| similar::nearest(&name.text, all.clone())) {
-                    Some(near) => error.help(format!("did you mean `{near}`?")),
-                    None => error.help(format!("the functions are {}", all.collect::<Vec<_>>().join(", "))),
+                match (habits::function(&name.text), similar::nearest(&name.text, all.clone())) {
+                    (Some(advice), _) => error.help(advice),
+                    (None, Some(near)) => error.help(format!("did you mean `{near}`?")),
+                    (None, None) => {
+                        error.help(format!("the functions are {}", all.collect::<Vec<_>>().join(", ")))
+                    }
                 }
             }
         };
@@ -365,7 +370,11 @@ impl Lowering<'_> {
             let text = &method.text;
             let error =
                 Diagnostic::new(codes::WRONG_KIND, method.span, format!("`{text}` does not make a vector"));
-            let error = if making.contains(&text.as_str()) {
+            let function = SCALAR_FUNCTIONS.iter().any(|(function, _)| function == text)
+                || OTHER_FUNCTIONS.contains(&text.as_str());
+            let error = if function {
+                error.help(format!("a function stands alone: `{text}(..)`"))
+            } else if making.contains(&text.as_str()) {
                 error.help("it makes a frame and stands under `frames` only")
             } else if ["x", "y", "z"].contains(&text.as_str()) {
                 error.help("an axis takes no arguments: `A.x`; put `*` before the parenthesis for a product")
@@ -378,7 +387,7 @@ impl Lowering<'_> {
         let frame = self.frame_with_axes(base);
         let typed: Vec<Typed> = arguments.iter().map(|argument| self.expression(argument)).collect();
         if typed.len() != 3 {
-            self.wrong_count(method, "three arguments", typed.len(), span);
+            self.wrong_count(method, "three arguments, the components along x, y and z", typed.len(), span);
             return Typed::poison(span);
         }
         let scalars: Vec<Option<Scalar>> = typed.iter().map(|c| self.need_scalar(c, "a component")).collect();

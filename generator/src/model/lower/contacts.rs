@@ -26,11 +26,14 @@ impl Lowering<'_> {
             self.name_in(field, "a point").and_then(|name| self.point_named(&name))
         });
         let against = against.map_or(Some(Against::Fixed), |field| self.against(field));
+        let normal_span = normal.map_or(record.name.span, |field| field.value.span);
         let normal = normal.and_then(|field| {
             self.notes(field, &[]);
             let typed = self.expression(&field.value);
             if typed.is_zero() {
-                self.error(codes::NORMAL, typed.span, "the normal is the zero vector");
+                let error = Diagnostic::new(codes::NORMAL, typed.span, "the normal is the zero vector")
+                    .help("it is a unit vector from what is struck to what strikes, such as `N.y`");
+                self.report(error);
                 return None;
             }
             let vector = self.need_vector(&typed, "the normal")?;
@@ -61,6 +64,7 @@ impl Lowering<'_> {
             body,
             against: against.unwrap_or(Against::Fixed),
             normal: normal.unwrap_or(Vector::Zero),
+            normal_span,
             gap: gap.flatten(),
             span: record.name.span,
         });
@@ -181,7 +185,7 @@ impl Lowering<'_> {
             );
         }
         // one mistake may hide the use of many names
-        if self.diagnostics.iter().all(|d| d.severity == crate::diagnostics::Severity::Warning) {
+        if !self.diagnostics.iter().any(Diagnostic::hides_meaning) {
             self.diagnostics.extend(warnings);
         }
     }

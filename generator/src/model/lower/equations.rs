@@ -1,6 +1,6 @@
 //! Kinematical equations, velocity constraints and configuration constraints.
 
-use super::super::mechanism::{Equation, EquationSides, Vector};
+use super::super::mechanism::{Equation, EquationSides, Scalar, Vector};
 use super::super::typed::{Typed, Value};
 use super::{Lowering, in_words, quantity};
 use crate::diagnostics::{Diagnostic, codes};
@@ -24,6 +24,7 @@ impl Lowering<'_> {
             let left = self.expression(&equation.left);
             let right = self.expression(&equation.right);
             let Some(sides) = self.sides(&left, &right, what) else { continue };
+            self.rate_forgotten(&left, &right, linear);
             for side in [&left, &right] {
                 if linear {
                     self.need_linear(side, what);
@@ -49,6 +50,24 @@ impl Lowering<'_> {
             out.push(Equation { sides, span: equation.span() });
         }
         out
+    }
+
+    /// `q1 = u1` where `d(q1)/dt = u1` is meant.
+    fn rate_forgotten(&mut self, left: &Typed, right: &Typed, linear: bool) {
+        let (Value::Scalar(Scalar::Coordinate(q)), Value::Scalar(Scalar::Speed(u))) =
+            (&left.value, &right.value)
+        else {
+            return;
+        };
+        let (q, u) = (&self.out.coordinates[q.0].name, &self.out.speeds[u.0].name);
+        let help = format!("did you mean `d({q})/dt = {u}`?");
+        if let Some(error) = self
+            .diagnostics
+            .last_mut()
+            .filter(|error| linear && error.code == codes::DIMENSION && error.primary.span == right.span)
+        {
+            error.help = Some(help);
+        }
     }
 
     fn sides(&mut self, left: &Typed, right: &Typed, what: &str) -> Option<EquationSides> {

@@ -44,7 +44,7 @@ impl Lowering<'_> {
                 }
                 let error =
                     Diagnostic::new(codes::BAD_EXPRESSION, expr.span, "a list in brackets is no vector")
-                        .help("name the frame: `A.vec(a, b, c)`");
+                        .help("name the frame of its components: `N.vec(a, b, c)`");
                 self.report(error);
                 Typed::poison(expr.span)
             }
@@ -57,8 +57,13 @@ impl Lowering<'_> {
     fn in_range(&mut self, typed: Typed) -> Typed {
         match typed.constant {
             Some(value) if !value.is_finite() => {
-                let error = Diagnostic::new(codes::NUMBER_RANGE, typed.span, "this constant is out of range")
-                    .help("its size must lie between 1e-300 and 1e300");
+                let error = if value.is_nan() {
+                    Diagnostic::new(codes::NUMBER_RANGE, typed.span, "this constant is no number")
+                        .help("sqrt and log take no negative number; asin and acos take numbers from -1 to 1")
+                } else {
+                    Diagnostic::new(codes::NUMBER_RANGE, typed.span, "this constant is out of range")
+                        .help("its size must lie between 1e-300 and 1e300")
+                };
                 self.report(error);
                 Typed::poison(typed.span)
             }
@@ -405,6 +410,10 @@ impl Lowering<'_> {
         };
         if typed.traits.degree > 0 {
             self.need_free_of_speeds(&typed, "what is differentiated");
+            if let Some(error) = self.diagnostics.last_mut() {
+                error.help =
+                    Some("accelerations are results, not terms of a model: inertia needs no load".to_owned());
+            }
             return Typed::poison(span);
         }
         self.need_rate(&typed, "what is differentiated");

@@ -44,6 +44,9 @@ impl Lowering<'_> {
             return;
         };
         self.need_axes(parent, base.span);
+        if let Some(Expr { kind: ExprKind::List(_), span }) = arguments.first() {
+            self.out.frames[i].orientation_span = *span;
+        }
         if operation.text == "spin" {
             // its angular velocity is read later
             self.frames[i].no_axes = true;
@@ -105,9 +108,20 @@ impl Lowering<'_> {
             return Some((Orientation::Simple { axis, negative, angle }, traits));
         }
         let ExprKind::List(items) = &axis.kind else {
-            let mut error = Diagnostic::new(codes::FRAME, axis.span, "this is no axis");
-            error = error.help("an axis is `x`, `y`, `z`, `-x`, `-y`, `-z`, or `[a, b, c]`, a unit vector in the axes of the frame before `.rotate`");
-            self.report(error);
+            let error = Diagnostic::new(codes::FRAME, axis.span, "this is no axis");
+            let is_axis =
+                |expr: &Expr| matches!(&expr.kind, ExprKind::Name(text) if axis_named(text).is_some());
+            let meant = match &inner.kind {
+                ExprKind::Field(_, name) => Some(name.text.to_lowercase()),
+                ExprKind::Name(text) => Some(text.to_lowercase()),
+                _ => None,
+            };
+            let meant = meant.filter(|text| axis_named(text).is_some());
+            self.report(match meant {
+                Some(axis) => error.help(format!("did you mean `{}{axis}`?", if negative { "-" } else { "" })),
+                None if is_axis(angle) => error.help("the axis comes first, then the angle: `N.rotate(z, q1)`"),
+                None => error.help("an axis is `x`, `y`, `z`, `-x`, `-y`, `-z`, or `[a, b, c]`, a unit vector in the axes of the frame before `.rotate`"),
+            });
             return None;
         };
         let mut traits = Traits::default();
@@ -151,9 +165,11 @@ impl Lowering<'_> {
         };
         let angles: Vec<Option<(Scalar, Traits)>> = angles.iter().map(|angle| self.angle(angle)).collect();
         let Some(Ok(axes)) = axes.map(<[Axis; 3]>::try_from) else {
-            let error = Diagnostic::new(codes::FRAME, sequence.span, "this is no sequence of axes")
-                .help("write three of x, y, z together, as in `xyz` or `zxz`");
-            self.report(error);
+            let error = Diagnostic::new(codes::FRAME, sequence.span, "this is no sequence of axes");
+            self.report(match sequence_meant(sequence) {
+                Some(meant) => error.help(format!("did you mean `{meant}`?")),
+                None => error.help("write three of x, y, z together, as in `xyz` or `zxz`"),
+            });
             return None;
         };
         if axes[0] == axes[1] || axes[1] == axes[2] {
@@ -214,6 +230,8 @@ impl Lowering<'_> {
                             .help("declare four coordinates for it, with the unit 1");
                         self.report(error);
                     }
+                    // the others are of the same mistake
+                    return None;
                 }
             }
         }
@@ -279,4 +297,17 @@ impl Lowering<'_> {
             self.out.frames[i].angular_velocity = Some((within, vector));
         }
     }
+}
+
+/// `ZYX`, `321` and `"zyx"` as others write `zyx`.
+fn sequence_meant(expr: &Expr) -> Option<String> {
+    let (ExprKind::Name(text) | ExprKind::Number(text)) = &expr.kind else { return None };
+    let axis = |c: char| match c {
+        'x' | 'X' | '1' => Some('x'),
+        'y' | 'Y' | '2' => Some('y'),
+        'z' | 'Z' | '3' => Some('z'),
+        _ => None,
+    };
+    let meant: String = text.chars().map(axis).collect::<Option<_>>()?;
+    (meant.len() == 3).then_some(meant)
 }

@@ -2,8 +2,8 @@
 
 use super::super::dimension::Dimension;
 use super::super::mechanism::{Load, LoadKind, Scalar};
-use super::super::similar;
 use super::super::typed::Typed;
+use super::super::{habits, similar};
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::number::Number;
@@ -33,7 +33,8 @@ impl Lowering<'_> {
                 other => {
                     let error =
                         Diagnostic::new(codes::LOAD, load.word.span, format!("there is no load `{other}`"));
-                    self.report(match similar::nearest(other, WORDS.into_iter()) {
+                    let near = habits::load(other).or_else(|| similar::nearest(other, WORDS.into_iter()));
+                    self.report(match near {
                         Some(near) => error.help(format!("did you mean `{near}`?")),
                         None => error.help("loads are gravity, force, torque, spring and torsion"),
                     });
@@ -55,17 +56,19 @@ impl Lowering<'_> {
         form: &str,
     ) -> Option<[Option<&'l Name>; N]> {
         let mut found: [Option<&Name>; N] = [None; N];
-        let mut wrong = false;
+        let mut wrong = None;
         for (word, name) in &load.ends {
             let text = word.as_ref().map_or("", |word| word.text.as_str());
             match words.iter().position(|w| *w == text) {
                 Some(i) if found[i].is_none() => found[i] = Some(name),
-                _ => wrong = true,
+                _ => wrong = wrong.or(Some(word.as_ref().unwrap_or(name).span)),
             }
         }
-        if wrong || found.iter().take(needed).any(Option::is_none) {
+        if wrong.is_some() || found.iter().take(needed).any(Option::is_none) {
             let message = format!("this {} is not stated correctly", load.word.text);
-            self.report(Diagnostic::new(codes::LOAD, load.span, message).help(format!("write `{form}`")));
+            let error = Diagnostic::new(codes::LOAD, wrong.unwrap_or(load.word.span), message);
+            let error = if wrong.is_some() { error.label("this does not belong here") } else { error };
+            self.report(error.help(format!("write `{form}`")));
             return None;
         }
         Some(found)

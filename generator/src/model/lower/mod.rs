@@ -14,11 +14,12 @@ mod rates;
 use std::collections::HashSet;
 
 use super::dimension::Dimension;
+use super::habits;
 use super::mechanism::*;
 use super::names::{Names, Symbol};
 use super::order::{Item, Stated, order};
 use super::typed::{Traits, Typed, Value};
-use super::units::Unit;
+use super::units::{self, Unit};
 use crate::diagnostics::{Code, Diagnostic, Span, codes};
 use crate::syntax::tree::{ExprKind, Name, Tree};
 
@@ -182,28 +183,35 @@ impl<'a> Lowering<'a> {
                 span: definition.name.span,
             });
         }
-        let frame = |name: &str, docs: &str, span| Frame {
+        let frame = |name: &str, docs: &str, span, orientation_span, motion_span| Frame {
             name: name.to_owned(),
             docs: docs.to_owned(),
             parent: None,
             orientation: Orientation::Aligned,
             angular_velocity: None,
             span,
+            orientation_span,
+            motion_span,
         };
-        self.out.frames.push(frame("N", "", nowhere));
+        self.out.frames.push(frame("N", "", nowhere, nowhere, nowhere));
         for f in &self.tree.frames {
-            self.out.frames.push(frame(&f.name.text, &f.docs, f.name.span));
+            let stated = self.stated.angular_velocities.get(f.name.text.as_str());
+            let motion = stated.map_or(f.name.span, |stated| stated.frame.span);
+            self.out.frames.push(frame(&f.name.text, &f.docs, f.name.span, f.value.span, motion));
         }
-        let point = |name: &str, docs: &str, span| Point {
+        let point = |name: &str, docs: &str, span, motion_span| Point {
             name: name.to_owned(),
             docs: docs.to_owned(),
             place: Place::Origin,
             velocity: None,
             span,
+            motion_span,
         };
-        self.out.points.push(point("O", "", nowhere));
+        self.out.points.push(point("O", "", nowhere, nowhere));
         for p in &self.tree.points {
-            self.out.points.push(point(&p.name.text, &p.docs, p.name.span));
+            let stated = self.stated.velocities.get(p.name.text.as_str());
+            let motion = stated.map_or(p.name.span, |stated| stated.point.span);
+            self.out.points.push(point(&p.name.text, &p.docs, p.name.span, motion));
         }
         self.stated_motions();
     }
@@ -286,6 +294,10 @@ impl<'a> Lowering<'a> {
             None => {}
         }
         let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, format!("unknown name `{}`", name.text));
+        if let Some(advice) = self.meant_by(&name.text) {
+            self.report(error.help(advice));
+            return None;
+        }
         // comparing spellings is slow; nobody reads so many suggestions
         let near =
             if self.unknown.len() <= MAX_SUGGESTIONS { self.names.nearest(&name.text, fits) } else { None };
@@ -300,6 +312,28 @@ impl<'a> Lowering<'a> {
             None => error.help("declare it, or correct the spelling"),
         };
         self.report(error);
+        None
+    }
+
+    /// What an author means by a name of another language.
+    fn meant_by(&self, text: &str) -> Option<String> {
+        let declared =
+            |name: &str| matches!(self.names.get(name), Some(Symbol::Coordinate(_) | Symbol::Definition(_)));
+        if let Some(name) = habits::rate_of(text, declared) {
+            return Some(format!("a time derivative is written `d({name})/dt`"));
+        }
+        if text.contains('·') {
+            return Some("write `*` for a product".to_owned());
+        }
+        if let Some(given) = habits::name(text) {
+            return Some(format!("did you mean `{given}`?"));
+        }
+        // a name that is nearly right is likelier than a unit of one letter
+        if text.chars().count() > 1 && units::is_symbol(text) {
+            return Some(format!(
+                "units stand in declarations only: declare a quantity in it, as in `a: {text} = ..`"
+            ));
+        }
         None
     }
 
@@ -319,7 +353,7 @@ impl<'a> Lowering<'a> {
                 }
             }
             other => {
-                self.wrong_kind(name, "a frame", &format!("`{}` is {}", name.text, other.kind()));
+                self.wrong_kind(name, "a frame or body", &format!("`{}` is {}", name.text, other.kind()));
                 None
             }
         }
@@ -362,18 +396,45 @@ impl<'a> Lowering<'a> {
         if dimension == wanted || typed.is_poison() {
             return;
         }
-        let needed =
-            if wanted.is_none() { "in rad or a plain number".to_owned() } else { format!("in {wanted}") };
+        let needed = match (wanted.is_none(), typed.is_vector()) {
+            (true, true) => "without dimension".to_owned(),
+            (true, false) => "in rad or a plain number".to_owned(),
+            (false, _) => format!("in {wanted}"),
+        };
         let message = format!("{what} must be {needed}, but this is {}", in_words(dimension));
         let error = Diagnostic::new(codes::DIMENSION, typed.span, message)
             .label(format!("this is {}", in_words(dimension)));
-        self.report(if dimension.is_none() {
-            error.help(format!(
+        self.report(match self.declaration(typed) {
+            // the use is right and the declaration wrong, or the reverse: both are shown
+            Some((name, place)) => error.related(place, format!("`{name}` is declared here")),
+            None if dimension.is_none() => error.help(format!(
                 "a number has no unit; declare a parameter with one, such as `a: {wanted} = ..`"
-            ))
-        } else {
-            error
+            )),
+            None if wanted.is_none() && dimension == Dimension::of(0, 0, 1) => error.help(
+                "a number has no unit; declare an angular frequency, such as `w: rad/s = ..`, and write `w*time`",
+            ),
+            None => error,
         });
+    }
+
+    /// The quantity or definition that an expression is, alone or with a sign, and its place.
+    fn declaration(&self, typed: &Typed) -> Option<(String, Span)> {
+        let Value::Scalar(mut scalar) = typed.value.clone() else { return None };
+        while let Scalar::Neg(inner) = scalar {
+            scalar = *inner;
+        }
+        let of = |quantity: &Quantity| Some((quantity.name.clone(), quantity.span));
+        match scalar {
+            Scalar::Parameter(i) => of(&self.out.parameters[i.0]),
+            Scalar::Input(i) => of(&self.out.inputs[i.0]),
+            Scalar::Coordinate(i) => of(&self.out.coordinates[i.0]),
+            Scalar::Speed(i) => of(&self.out.speeds[i.0]),
+            Scalar::Definition(i) => {
+                let definition = &self.out.definitions[i.0];
+                Some((definition.name.clone(), definition.span))
+            }
+            _ => None,
+        }
     }
 
     /// Demands a scalar.
@@ -447,6 +508,7 @@ impl<'a> Lowering<'a> {
                 }
                 _ => error = error.label("this does not enter linearly"),
             }
+            error = error.help("each term holds one speed at most, times a factor that is free of speeds");
             self.report(error);
         }
     }

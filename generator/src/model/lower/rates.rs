@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::super::mechanism::*;
 use super::super::names::Symbol;
 use super::Lowering;
-use crate::diagnostics::{Diagnostic, Severity, codes};
+use crate::diagnostics::{Diagnostic, codes};
 
 /// A set of coordinates.
 #[derive(Clone, Default)]
@@ -50,7 +50,7 @@ impl Lowering<'_> {
     /// Adds `d(q..)/dt = u..` for the coordinates of whose rates no equation speaks.
     pub(super) fn default_rates(&mut self) {
         // with mistakes around, what is missing may only be hidden; a cycle would not end
-        if self.diagnostics.iter().any(|d| d.severity == Severity::Error) {
+        if self.diagnostics.iter().any(Diagnostic::hides_meaning) {
             return;
         }
         let mut walk = Walk { mechanism: &self.out, known: HashMap::new() };

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use hodograph_generator::artifact;
-use hodograph_generator::model::mechanism::Mechanism;
-use hodograph_generator::program::Program;
-use hodograph_generator::source::Source;
+use crate::artifact;
+use crate::model::mechanism::Mechanism;
+use crate::program::Program;
+use crate::reading;
+use crate::source::Source;
 
 /// Where a program comes from.
 pub struct Found {
@@ -24,7 +25,7 @@ pub fn find(
     shown: &str,
     command: &str,
 ) -> Result<Found, String> {
-    let text = match std::fs::read_to_string(path) {
+    let text = match reading::text(path, artifact::MAX_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
             return absent(source, mechanism, shown, command);
@@ -51,7 +52,7 @@ fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) 
 
     #[cfg(unix)]
     let _elsewhere = lead_stdout_elsewhere();
-    match hodograph_generator::derive(mechanism) {
+    match crate::derive(mechanism) {
         Ok(derived) => Ok(Found { program: Program::new(&derived), checked_in: false }),
         Err(DerivationError::Model(error)) => Err(error.diagnostic().compiler_text(source)),
         Err(error) => Err(format!("the equations could not be derived: {error}")),
@@ -79,7 +80,7 @@ fn absent(_source: &Source, _mechanism: &Mechanism, shown: &str, command: &str) 
 
 #[cfg(test)]
 mod tests {
-    use hodograph_generator::model::check;
+    use crate::model::check;
 
     use super::*;
 

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::emit;
-use hodograph_generator::model::check;
-use hodograph_generator::source::Source;
+use crate::emit;
+use crate::model::check;
+use crate::source::Source;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
-use crate::{derivation, report};
+use super::{derivation, report};
+use crate::compiler;
 
 /// The path that the user wrote, and where.
 pub struct ModelPath {
@@ -44,13 +45,12 @@ struct Place {
     in_package: bool,
 }
 
-fn find(path: &ModelPath) -> Result<Place, String> {
-    let manifest = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
-    let in_package = manifest.join(&path.text);
+fn find(path: &ModelPath, package: &Path) -> Result<Place, String> {
+    let in_package = package.join(&path.text);
     if in_package.is_file() {
         return Ok(Place { path: in_package, in_package: true });
     }
-    let source = path.span.unwrap().local_file();
+    let source = compiler::file(path.span);
     let beside = source.as_deref().and_then(Path::parent).map(|folder| folder.join(&path.text));
     match beside {
         Some(beside) if beside.is_file() => Ok(Place { path: beside, in_package: false }),
@@ -73,12 +73,12 @@ fn tracked(text: &str, in_package: bool) -> TokenStream {
 }
 
 /// The module of a model in a file.
-pub fn expand(path: &ModelPath, krate: &TokenStream) -> TokenStream {
+pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStream {
     let stem = Path::new(&path.text)
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let module = emit::names::snake_case(&stem);
-    let place = match find(path) {
+    let place = match find(path, package) {
         Ok(place) => place,
         Err(message) => {
             let error = report::error(path.span, path.span, &message);
@@ -91,14 +91,7 @@ pub fn expand(path: &ModelPath, krate: &TokenStream) -> TokenStream {
         let skeleton = emit::skeleton(&module, Some(&stem), tracked);
         quote!(#error #skeleton)
     };
-    let bytes = match std::fs::read(&place.path) {
-        Ok(bytes) => bytes,
-        Err(error) => {
-            let message = format!("the model `{}` cannot be read: {error}", path.text);
-            return failed(report::error(path.span, path.span, &message), &[]);
-        }
-    };
-    let source = Source::bytes(path.text.clone(), bytes);
+    let source = Source::read_as(path.text.clone(), &place.path);
     let checked = check(&source);
     let Some(mechanism) = checked.mechanism else {
         return failed(report::of_file(&source, &checked.diagnostics, path.span), &tracked_files);

@@ -2,19 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::emit;
-use hodograph_generator::model::check;
-use hodograph_generator::source::Source;
+use crate::emit;
+use crate::model::check;
+use crate::source::Source;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
-use crate::{derivation, report};
+use super::{derivation, report};
+use crate::compiler;
 
 /// The module of an inline model.
-pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
-    let name = name(&model);
+pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenStream {
     // The tokens are the user's; the call itself stands in the wrapper of the runtime.
-    let place = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
+    let first = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
+    let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
     let source = Source::inline("mechanism!", model);
     let checked = check(&source);
     let module = emit::names::snake_case(name.as_deref().unwrap_or("mechanism"));
@@ -23,10 +24,9 @@ pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
         let skeleton = emit::skeleton(&module, name.as_deref(), &[]);
         return quote!(#errors #skeleton);
     };
-    let manifest = std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default();
     let shown = format!("derived/{module}.derivation");
-    let command = format!("hodograph derive {}", invoking_file(place, &manifest));
-    let path = manifest.join(&shown);
+    let command = format!("hodograph derive {}", invoking_file(first, package));
+    let path = package.join(&shown);
     let relative = format!("/{shown}");
     let tracked = quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative));
     let result = derivation::find(&source, &mechanism, &path, &shown, &command).and_then(|found| {
@@ -35,7 +35,7 @@ pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
         emit::module(&mechanism, &found.program, &options)
     });
     result.unwrap_or_else(|message| {
-        let error = report::error(Span::call_site(), Span::call_site(), &message);
+        let error = report::error(at, at, &message);
         let tracked = if path.is_file() { vec![tracked] } else { vec![] };
         let options = emit::Options { krate: krate.clone(), module: module.clone(), tracked };
         let stub = emit::stub(&mechanism, &options);
@@ -43,18 +43,19 @@ pub fn expand(model: TokenStream, krate: &TokenStream) -> TokenStream {
     })
 }
 
-/// The name after `mechanism`, which follows the documentation.
-fn name(model: &TokenStream) -> Option<String> {
+/// The name after `mechanism`, which follows the documentation, and where it stands.
+fn name(model: &TokenStream) -> Option<(String, Span)> {
     let mut trees = model.clone().into_iter();
     trees.by_ref().find(|tree| tree.to_string() == "mechanism")?;
-    let name = trees.next()?.to_string();
+    let token = trees.next()?;
+    let name = token.to_string();
     let is_name = name.starts_with(|c: char| c == '_' || c.is_alphabetic());
-    is_name.then_some(name)
+    is_name.then(|| (name, token.span()))
 }
 
 /// The source file that invokes the macro, relative to Cargo.toml where it is below.
-fn invoking_file(place: Span, manifest: &Path) -> String {
-    let file = place.unwrap().local_file().unwrap_or_else(|| PathBuf::from("src/lib.rs"));
+fn invoking_file(first: Span, package: &Path) -> String {
+    let file = compiler::file(first).unwrap_or_else(|| PathBuf::from("src/lib.rs"));
     let absolute = std::path::absolute(&file).unwrap_or_else(|_| file.clone());
-    absolute.strip_prefix(manifest).unwrap_or(&file).to_string_lossy().into_owned()
+    absolute.strip_prefix(package).unwrap_or(&file).to_string_lossy().into_owned()
 }

@@ -1,7 +1,7 @@
 //! Mistakes as `compile_error!`.
 
-use hodograph_generator::diagnostics::{Diagnostic, Severity};
-use hodograph_generator::source::Source;
+use crate::diagnostics::{Diagnostic, Severity};
+use crate::source::Source;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 
 /// A `compile_error!` that underlines from the first to the last token.

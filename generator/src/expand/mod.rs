@@ -1,0 +1,44 @@
+//! What `mechanism!` does: finds the model and its derivation, reports mistakes, or gives the module. It runs in the compiler and
+//! in editors' macro servers, which live long and expand often, from several threads.
+
+mod derivation;
+mod file;
+mod inline;
+mod report;
+
+use std::path::{Path, PathBuf};
+
+use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use quote::quote;
+
+/// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is `($crate)
+/// "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime is `::hodograph`. `package` is
+/// the folder of the invoking package's `Cargo.toml`.
+pub fn expand(input: TokenStream, package: &Path) -> TokenStream {
+    let expand = std::panic::AssertUnwindSafe(|| module(input, package));
+    std::panic::catch_unwind(expand).unwrap_or_else(|_| {
+        let message = "the generator failed on this model, which is a mistake of Hodograph: please report it with the model";
+        quote!(::core::compile_error!(#message);)
+    })
+}
+
+/// The folder of the `Cargo.toml` of the package that is compiled.
+pub fn package() -> PathBuf {
+    std::env::var_os("CARGO_MANIFEST_DIR").map(PathBuf::from).unwrap_or_default()
+}
+
+fn module(input: TokenStream, package: &Path) -> TokenStream {
+    let mut trees: Vec<TokenTree> = input.into_iter().collect();
+    let krate = match trees.first() {
+        Some(TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
+            let krate = group.stream();
+            trees.remove(0);
+            krate
+        }
+        _ => quote!(::hodograph),
+    };
+    match file::path(&trees) {
+        Some(path) => file::expand(&path, &krate, package),
+        None => inline::expand(trees.into_iter().collect(), &krate, package),
+    }
+}

@@ -1,0 +1,263 @@
+//! Words that authors bring from other languages and textbooks, and what is written here instead. "Did you mean" looks here
+//! first: the nearest spelling of such a word is often something quite different.
+
+/// What a table says of a word.
+fn look(table: &[(&str, &'static str)], word: &str) -> Option<&'static str> {
+    table.iter().find(|(habit, _)| *habit == word).map(|(_, here)| *here)
+}
+
+/// The section that is meant.
+pub fn section(word: &str) -> Option<&'static str> {
+    let table = [
+        ("constants", "parameters"),
+        ("consts", "parameters"),
+        ("params", "parameters"),
+        ("fixed", "parameters"),
+        ("controls", "inputs"),
+        ("generalized_coordinates", "coordinates"),
+        ("coords", "coordinates"),
+        ("positions", "coordinates"),
+        ("generalized_speeds", "speeds"),
+        ("dependent_speeds", "dependent"),
+        ("variables", "definitions"),
+        ("let", "definitions"),
+        ("where", "definitions"),
+        ("rotations", "frames"),
+        ("orientations", "frames"),
+        ("body", "bodies"),
+        ("links", "bodies"),
+        ("rigid_bodies", "bodies"),
+        ("masses", "particles"),
+        ("forces", "loads"),
+        ("torques", "loads"),
+        ("gravity", "loads"),
+        ("springs", "loads"),
+        ("actuators", "loads"),
+        ("equations", "kinematics"),
+        ("kinematic", "kinematics"),
+        ("nonholonomic", "constraints"),
+        ("holonomic", "configuration"),
+        ("loops", "configuration"),
+        ("collisions", "contacts"),
+        ("impacts", "contacts"),
+    ];
+    look(&table, word)
+}
+
+/// The load that is meant.
+pub fn load(word: &str) -> Option<&'static str> {
+    let table = [
+        ("weight", "gravity"),
+        ("g", "gravity"),
+        ("moment", "torque"),
+        ("couple", "torque"),
+        ("motor", "torque"),
+        ("damper", "spring"),
+        ("dashpot", "spring"),
+        ("linear_spring", "spring"),
+        ("torsional_spring", "torsion"),
+        ("torsion_spring", "torsion"),
+        ("rotational_spring", "torsion"),
+    ];
+    look(&table, word)
+}
+
+/// The field that is meant, if the record has it.
+pub fn field(word: &str, known: &[&str]) -> Option<&'static str> {
+    let table = [
+        ("center", "centre"),
+        ("com", "centre"),
+        ("cog", "centre"),
+        ("cm", "centre"),
+        ("mass_center", "centre"),
+        ("mass_centre", "centre"),
+        ("origin", "centre"),
+        ("point", "centre"),
+        ("centre", "point"),
+        ("center", "point"),
+        ("com", "point"),
+        ("position", "point"),
+        ("m", "mass"),
+        ("weight", "mass"),
+        ("I", "inertia"),
+        ("J", "inertia"),
+        ("moment_of_inertia", "inertia"),
+        ("orientation", "frame"),
+        ("n", "normal"),
+        ("direction", "normal"),
+        ("distance", "gap"),
+        ("on", "against"),
+        ("with", "against"),
+        ("surface", "against"),
+        ("k", "stiffness"),
+        ("constant", "stiffness"),
+        ("c", "damping"),
+        ("d", "damping"),
+        ("b", "damping"),
+        ("l0", "length"),
+        ("free_length", "length"),
+        ("rest_length", "length"),
+        ("natural_length", "length"),
+        ("theta", "angle"),
+        ("rest_angle", "rest"),
+    ];
+    table.iter().find(|(habit, here)| *habit == word && known.contains(here)).map(|(_, here)| *here)
+}
+
+/// What to write for a unit.
+pub fn unit(word: &str) -> Option<&'static str> {
+    let table = [
+        ("Nm", "N*m"),
+        ("degree", "deg"),
+        ("degrees", "deg"),
+        ("radian", "rad"),
+        ("radians", "rad"),
+        ("meter", "m"),
+        ("meters", "m"),
+        ("metre", "m"),
+        ("metres", "m"),
+        ("sec", "s"),
+        ("second", "s"),
+        ("seconds", "s"),
+        ("newton", "N"),
+        ("newtons", "N"),
+        ("Newton", "N"),
+        ("kilogram", "kg"),
+        ("kilograms", "kg"),
+        ("gram", "g"),
+        ("grams", "g"),
+        ("joule", "J"),
+        ("watt", "W"),
+        ("pascal", "Pa"),
+        ("hertz", "Hz"),
+        ("minute", "min"),
+        ("hour", "h"),
+        ("hr", "h"),
+        ("rpm", "rev/min"),
+        ("turn", "rev"),
+        ("turns", "rev"),
+        ("ton", "Mg"),
+        ("tonne", "Mg"),
+        ("t", "Mg"),
+    ];
+    look(&table, word)
+}
+
+/// What is said where an author writes a unit or a type that no conversion can save.
+pub fn unit_advice(word: &str) -> Option<&'static str> {
+    match word {
+        "lb" | "lbs" | "lbm" | "lbf" | "in" | "inch" | "ft" | "foot" | "feet" | "oz" | "slug" | "mi"
+        | "mph" => Some("only SI units: convert the value"),
+        "f32" | "f64" | "float" | "double" | "real" | "Real" | "int" => Some(
+            "after the colon stands a unit, such as `kg` or `m/s`; the type of numbers is chosen in Rust",
+        ),
+        "scalar" | "none" | "None" | "dimensionless" | "unitless" | "number" => {
+            Some("a plain number has the unit `1`")
+        }
+        "A" | "V" | "C" | "K" | "F" | "T" | "ohm" | "mol" | "cd" => {
+            Some("a mechanism is measured in m, kg, s and what follows from them")
+        }
+        _ => None,
+    }
+}
+
+/// What to do about a function of other languages.
+pub fn function(word: &str) -> Option<&'static str> {
+    let table = [
+        ("arctan", "did you mean `atan`?"),
+        ("arcsin", "did you mean `asin`?"),
+        ("arccos", "did you mean `acos`?"),
+        ("arctan2", "did you mean `atan2`?"),
+        ("ln", "did you mean `log`? It is the natural logarithm"),
+        ("log10", "write `log(x)/log(10)`"),
+        ("log2", "write `log(x)/log(2)`"),
+        ("fabs", "did you mean `abs`?"),
+        ("sgn", "did you mean `sign`?"),
+        ("sqr", "write `x^2` for the square, `sqrt(x)` for the square root"),
+        ("square", "write `x^2`"),
+        ("cbrt", "write `x^(1/3)`"),
+        ("hypot", "write `sqrt(a^2 + b^2)`, or `norm(v)` for a vector"),
+        ("sec", "write `1/cos(x)`"),
+        ("csc", "write `1/sin(x)`"),
+        ("cot", "write `1/tan(x)`"),
+        ("sinh", "write `(exp(x) - exp(-x))/2`"),
+        ("cosh", "write `(exp(x) + exp(-x))/2`"),
+        ("tanh", "write `1 - 2/(exp(2*x) + 1)`"),
+        ("power", "write `x^2` or `pow(a, b)`"),
+        ("magnitude", "did you mean `norm`?"),
+        ("mag", "did you mean `norm`?"),
+        ("length", "the length of a vector is `norm(v)`"),
+        ("normalize", "did you mean `unit`?"),
+        ("normalise", "did you mean `unit`?"),
+        ("vec", "name the frame: `N.vec(a, b, c)`"),
+        ("vector", "name the frame: `N.vec(a, b, c)`"),
+        ("pos", "did you mean `position`?"),
+        ("vel", "did you mean `velocity`?"),
+        ("ang_vel", "did you mean `angular_velocity`?"),
+        ("omega", "did you mean `angular_velocity`?"),
+        ("radians", "declare the quantity in `deg`, as in `q1: deg = 30`: it is converted where it is used"),
+        ("deg2rad", "declare the quantity in `deg`, as in `q1: deg = 30`: it is converted where it is used"),
+        ("deg", "declare the quantity in `deg`, as in `q1: deg = 30`: it is converted where it is used"),
+        ("rotate", "a rotation is stated under `frames`, as in `B = N.rotate(z, q1);`"),
+    ];
+    look(&table, word)
+}
+
+/// Is it how others call the derivative?
+pub fn differentiates(function: &str) -> bool {
+    matches!(function, "diff" | "der" | "ddt" | "derivative" | "Derivative" | "deriv" | "dot_" | "dt" | "D")
+}
+
+/// The name that is meant: words for what is given.
+pub fn name(word: &str) -> Option<&'static str> {
+    look(&[("t", "time"), ("T", "time"), ("PI", "pi"), ("Pi", "pi"), ("π", "pi"), ("M_PI", "pi")], word)
+}
+
+/// The name whose rate is meant by `q1_dot`, `q1dot`, `dq1`, `qd1`, `qdot1`, `q1d`, `q1_d`, if it is declared.
+pub fn rate_of(word: &str, declared: impl Fn(&str) -> bool) -> Option<String> {
+    let mut candidates: Vec<String> = Vec::new();
+    for mark in ["_dot", "dot", "_d", "_p", "d", "p"] {
+        candidates.extend(word.strip_suffix(mark).map(str::to_owned));
+    }
+    for mark in ["dot_", "d_", "dot", "d"] {
+        candidates.extend(word.strip_prefix(mark).map(str::to_owned));
+    }
+    // `qd1` and `qdot1` for `q1`, `qd_hip` for `q_hip`
+    for mark in ["dot", "d"] {
+        if let Some((before, after)) = word.split_once(mark)
+            && !before.is_empty()
+        {
+            candidates.push(format!("{before}{after}"));
+        }
+    }
+    candidates.into_iter().find(|name| !name.is_empty() && declared(name))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::syntax::tree::Section;
+
+    #[test]
+    fn rates_are_recognised() {
+        let declared = |name: &str| ["q1", "q_hip", "theta", "d"].contains(&name);
+        for word in ["q1_dot", "q1dot", "dq1", "qd1", "qdot1", "q1d", "d_q1", "q1_d", "q1p"] {
+            assert_eq!(rate_of(word, declared).as_deref(), Some("q1"), "{word}");
+        }
+        assert_eq!(rate_of("theta_dot", declared).as_deref(), Some("theta"));
+        assert_eq!(rate_of("qd_hip", declared).as_deref(), Some("q_hip"));
+        assert_eq!(rate_of("speed", declared), None);
+    }
+
+    #[test]
+    fn what_is_advised_exists() {
+        for word in
+            ["constants", "forces", "body", "holonomic", "impacts", "variables", "controls", "equations"]
+        {
+            assert!(section(word).and_then(Section::of_word).is_some(), "{word}");
+        }
+        assert_eq!(field("com", &["centre", "mass"]), Some("centre"));
+        assert_eq!(field("com", &["point", "mass"]), Some("point"));
+        assert_eq!(field("com", &["stiffness"]), None);
+    }
+}
