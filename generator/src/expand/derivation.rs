@@ -48,7 +48,7 @@ pub fn find(
 
 #[cfg(feature = "derive")]
 fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) -> Result<Found, String> {
-    use hodograph_generator::DerivationError;
+    use crate::DerivationError;
 
     #[cfg(unix)]
     let _elsewhere = lead_stdout_elsewhere();
