@@ -46,8 +46,8 @@ impl<T: Scalar> Characteristics<T> {
         let c = contact(matrix, mu);
         let hold = c.hold();
         let mu_c = hold.norm();
-        let rate = T::one() - c.b.dot(&hold);
-        let sticking = if rate > T::default_epsilon() {
+        let rate = c.held_rate(&hold);
+        let sticking = if rate > T::zero() {
             let n = T::one() / (rate * matrix.nn);
             Some([n, -hold.x * n, -hold.y * n])
         } else {

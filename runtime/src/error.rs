@@ -12,7 +12,7 @@ use crate::Law;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ImpactError<T> {
-    /// An input is infinite or not a number.
+    /// An input is infinite or not a number, or the outcome is too large for the number type.
     NotFinite {
         /// The value found.
         value: T,
@@ -72,7 +72,7 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
         match self {
             Self::NotFinite { value } => write!(
                 out,
-                "an input is not finite ({value}): check the state and the parameters for overflow or division by zero"
+                "an input or the outcome is not finite ({value}): check the state and the parameters for overflow or division by zero"
             ),
             Self::NegativeFriction { mu } => {
                 write!(out, "the coefficient of friction is {mu}: it must not be negative")
@@ -97,7 +97,12 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
             Self::Wedged { normal_velocity, law } => write!(
                 out,
                 "the contact wedges at normal velocity {normal_velocity}: no impulse ends the collision under {law:?}'s hypothesis; \
-                 lower the friction or, if the bodies merely jam, use Poisson's hypothesis"
+                 lower the friction{}",
+                match law {
+                    // It ends a collision that jams with v_n = 0, but not one that is still approaching.
+                    Law::Poisson => "",
+                    Law::Newton | Law::Stronge => " or, if the bodies merely jam, use Poisson's hypothesis",
+                }
             ),
         }
     }

@@ -51,7 +51,9 @@ pub(crate) trait Real:
     fn abs(self) -> Self;
     fn sqrt(self) -> Self;
     fn exp(self) -> Self;
+    fn exp_m1(self) -> Self;
     fn ln(self) -> Self;
+    fn ln_1p(self) -> Self;
     fn mul_add(self, a: Self, b: Self) -> Self;
 }
 
@@ -91,8 +93,16 @@ impl<T: RealField + Copy> Real for T {
         nalgebra::ComplexField::exp(self)
     }
     #[inline(always)]
+    fn exp_m1(self) -> Self {
+        nalgebra::ComplexField::exp_m1(self)
+    }
+    #[inline(always)]
     fn ln(self) -> Self {
         nalgebra::ComplexField::ln(self)
+    }
+    #[inline(always)]
+    fn ln_1p(self) -> Self {
+        nalgebra::ComplexField::ln_1p(self)
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

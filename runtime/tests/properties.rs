@@ -188,3 +188,80 @@ fn steep_friction_does_not_stop_the_arc_where_v_n_turns() {
         assert!((impact.velocity.x - separation).abs() < 1e-5, "{}", impact.velocity.x);
     }
 }
+
+/// A rank of two to rounding, and friction so great that it holds what hardly resists: what the rounding of the entries leaves of the
+/// mobility along n means nothing, and depends on the axes. Poisson's and Stronge's laws end before slip stops.
+#[test]
+fn mobility_below_rounding_is_none_in_any_axes() {
+    let m = ReducedMatrix::new(
+        3.852970302730755,
+        -0.23837615420540645,
+        -0.8503755802810522,
+        0.2139100892518178,
+        0.7374727477468874,
+        2.542725653445507,
+    );
+    let v = Vector3::new(-0.9309556048390211, 1.029104814813254, 3.5462059466068716);
+    for k in 0..64 {
+        let (sin, cos) = (0.1 * f64::from(k)).sin_cos();
+        let turned = m.turned(cos, sin);
+        let w = Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
+        let [newton, poisson, stronge] =
+            LAWS.map(|law| solve(&turned, &w, &Surface { mu: 554.76, e: 1.0, law }));
+        assert!(matches!(newton, Err(ImpactError::Wedged { .. })), "{newton:?}");
+        let (poisson, stronge) = (poisson.expect("an outcome"), stronge.expect("an outcome"));
+        assert!((poisson.impulse.x - 0.003770801929870645_f64).abs() < 1e-14);
+        assert!((stronge.impulse.x - 0.0055326172078848_f64).abs() < 1e-12);
+    }
+}
+
+/// Whatever has an outcome in the range of the numbers is solved, denormal or huge; what leaves the range is said to be not finite.
+#[test]
+fn magnitudes_do_not_matter() {
+    let of = |mass: f64, speed: f64| {
+        let m = ReducedMatrix::new(mass, 0.1 * mass, 0.2 * mass, mass, 0.1 * mass, mass);
+        let v = Vector3::new(-speed, 0.5 * speed, 0.2 * speed);
+        solve(&m, &v, &Surface { mu: 0.3, e: 0.5, law: Law::Stronge })
+    };
+    let one = of(1.0, 1.0).expect("an outcome");
+    for (mass, speed) in [
+        (1e-310, 1e-310),
+        (1e-310, 1e-160),
+        (1e-300, 1.0),
+        (1e-160, 1e-300),
+        (1e160, 1.0),
+        (1e160, 1e160),
+        (1e300, 1e300),
+    ] {
+        let hit = of(mass, speed).unwrap_or_else(|e| panic!("{mass:e} {speed:e}: {e}"));
+        // A denormal has some ten digits left.
+        let digits = if mass < 1e-307 || speed < 1e-307 { 1e-12 } else { 1e-14 };
+        let separation = hit.velocity.x / speed;
+        assert!((separation - one.velocity.x).abs() < digits, "{mass:e} {speed:e}: {separation}");
+        assert!((hit.impulse.x * mass / speed - one.impulse.x).abs() < digits);
+    }
+    for (mass, speed) in [(1e-310, 1.0), (1e-160, 1e160), (1e160, 1e300)] {
+        assert_eq!(of(mass, speed).expect_err("an impulse or work beyond the range").kind(), "not_finite");
+    }
+    // A matrix whose entries lie 36 orders apart, without friction.
+    let m = ReducedMatrix::new(2e-18, -1.08e-11, 3.127, 0.8585, -3.378e7, 9.78e18);
+    for v in [[-1.0_f64, 0.5, 0.3], [-0.1, 0.0, 3.0], [-1e-9, 1e3, 1.0], [-1.0, 0.0, 0.0]] {
+        for law in LAWS {
+            let hit = solve(&m, &Vector3::from(v), &Surface { mu: 0.0, e: 0.5, law }).expect("an outcome");
+            let expected = -1.5 * v[0] / m.nn;
+            assert!((hit.impulse.x - expected).abs() < 1e-14 * expected && hit.impulse.yz().norm() == 0.0);
+        }
+    }
+}
+
+/// Advice must not be what has just failed.
+#[test]
+fn poissons_wedge_does_not_advise_poisson() {
+    let wedge = ReducedMatrix::new(1.0, 1.0, 0.0, 1.0, 0.0, 0.0);
+    for law in LAWS {
+        let error = solve(&wedge, &Vector3::new(-1.0, -0.1, 1.0), &Surface { mu: 2.0, e: 0.5, law })
+            .expect_err("wedged")
+            .to_string();
+        assert_eq!(error.contains("use Poisson's"), law != Law::Poisson, "{error}");
+    }
+}

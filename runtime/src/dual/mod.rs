@@ -75,8 +75,17 @@ impl<T: Scalar, const N: usize> Real for Dual<T, N> {
         self.chain(value, value)
     }
     #[inline]
+    fn exp_m1(self) -> Self {
+        let value = self.value.exp_m1();
+        self.chain(value, value + T::one())
+    }
+    #[inline]
     fn ln(self) -> Self {
         self.chain(self.value.ln(), T::one() / self.value)
+    }
+    #[inline]
+    fn ln_1p(self) -> Self {
+        self.chain(self.value.ln_1p(), T::one() / (self.value + T::one()))
     }
     #[inline]
     fn mul_add(self, a: Self, b: Self) -> Self {

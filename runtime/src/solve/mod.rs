@@ -60,7 +60,6 @@ pub(crate) fn collide<T: Real>(
     mut ledger: Ledger<T>,
     slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Ledger<T>) -> Slide<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
-    let unit = T::one() / matrix.nn;
     let speed = -approach.x;
     let contact = contact(matrix, surface.mu);
     let tangential = Vector2::new(approach.y, approach.z) / speed;
@@ -89,7 +88,7 @@ pub(crate) fn collide<T: Real>(
     let slides = path == Path::Sliding && !stops;
     sensitivity.ended(&contact, &mut ledger, &end, slides.then_some(&velocity));
     let slip_end = stops.then_some(state);
-    let scale = speed * unit;
+    let scale = speed / matrix.nn;
     let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
     let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
     let normal_work = end.work * scale * speed;
@@ -162,13 +161,14 @@ fn after_slip<T: Real>(
 /// The tangential part of a contact in units where m_nn = 1.
 #[inline]
 pub(crate) fn contact<T: Real>(matrix: &ReducedMatrix<T>, mu: T) -> Contact<T> {
-    let unit = T::one() / matrix.nn;
+    // The inverse of a tiny m_nn may be infinite where no quotient is.
+    let nn = matrix.nn;
     Contact {
         mu,
-        b: Vector2::new(matrix.nt, matrix.ns) * unit,
-        tt: matrix.tt * unit,
-        ts: matrix.ts * unit,
-        ss: matrix.ss * unit,
+        b: Vector2::new(matrix.nt / nn, matrix.ns / nn),
+        tt: matrix.tt / nn,
+        ts: matrix.ts / nn,
+        ss: matrix.ss / nn,
     }
 }
 
@@ -196,9 +196,10 @@ pub(crate) fn check<T: Real>(
             return Err(ImpactError::NotPositiveSemidefinite { minor });
         }
     }
-    // Correlations, so that units and mixed magnitudes do not matter.
+    // Correlations, so that units and mixed magnitudes do not matter. Roots first: products may overflow or vanish.
+    let (n, t, s) = (m.nn.sqrt(), m.tt.sqrt(), m.ss.sqrt());
     let part = |x: T, p: T, q: T| {
-        let scale = (p * q).sqrt();
+        let scale = p * q;
         if scale > T::zero() {
             Some(x / scale)
         } else if x == T::zero() {
@@ -207,7 +208,7 @@ pub(crate) fn check<T: Real>(
             None
         }
     };
-    let (nt, ns, ts) = (part(m.nt, m.nn, m.tt), part(m.ns, m.nn, m.ss), part(m.ts, m.tt, m.ss));
+    let (nt, ns, ts) = (part(m.nt, n, t), part(m.ns, n, s), part(m.ts, t, s));
     if m.nn == T::zero() && nt.is_some() && ns.is_some() {
         return Err(ImpactError::NoNormalMobility { nn: m.nn });
     }

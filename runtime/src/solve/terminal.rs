@@ -60,6 +60,18 @@ impl<T: Scalar> Contact<T> {
         if swap { Vector2::new(x.y, x.x) } else { x }
     }
 
+    /// dv_n / dI_n while the tangential impulse `hold` keeps the contact from slipping; zero where the contact can no longer move along n.
+    ///
+    /// Formed so that an error of `hold` counts by its square. What remains is what the rounding of the entries does: much if the contact
+    /// hardly resists in the direction of `hold`. Below that a rate means nothing, and depends on how the axes are turned.
+    #[inline]
+    pub fn held_rate(&self, hold: &Vector2<T>) -> T {
+        let pulled = Vector2::new(self.tt * hold.x + self.ts * hold.y, self.ts * hold.x + self.ss * hold.y);
+        let rate = T::one() - (self.b + self.b - pulled).dot(hold);
+        let known = T::one() + (self.tt + self.ss) * hold.dot(hold);
+        if rate <= constant::<T>(32.0) * T::default_epsilon() * known { T::zero() } else { rate }
+    }
+
     /// The direction phi_hat of renewed sliding for mu < mu_c: (mu T + g) d = b with g > 0.
     ///
     /// Newton's method on 1 / |(mu T + g)^-1 b| = 1, from below, where it rises to the root without crossing it.
@@ -90,7 +102,15 @@ impl<T: Scalar> Contact<T> {
                 g = next;
             }
         }
-        d
+        // The determinant may have lost digits: what they left in h, taken away.
+        let rate = self.slip_rate(&d);
+        let across = Vector2::new(-d.y, d.x);
+        let fall = rate.dot(&d) + tt * d.y * d.y - (ts + ts) * d.x * d.y + ss * d.x * d.x;
+        let turn = rate.dot(&across) / fall;
+        if turn.abs() > constant(1e-4) {
+            return d;
+        }
+        d * (T::one() - turn * turn * constant(0.5)) + across * turn
     }
 }
 
@@ -114,14 +134,14 @@ impl<T: Scalar> Terminal<T> {
         let hold = contact.hold();
         let mu_c = length(&hold);
         if mu_c <= contact.mu {
-            let rate = T::one() - contact.b.dot(&hold);
-            // Below rounding the contact can no longer move along the normal.
-            let tiny = constant::<T>(64.0) * T::default_epsilon();
-            let rate = if rate <= tiny { T::zero() } else { rate };
+            let rate = contact.held_rate(&hold);
             return Self { sticks: true, push: hold, gain: Vector2::zeros(), rate, mu_c };
         }
         let d = contact.renewal();
         let g = contact.slip_rate(&d).dot(&d);
-        Self { sticks: false, push: d * contact.mu, gain: d * g, rate: contact.normal_rate(&d), mu_c }
+        // f >= mu g > 0 of a positive semidefinite matrix, where f is a difference lost to rounding.
+        let rate = contact.normal_rate(&d);
+        let rate = if rate > T::zero() { rate } else { contact.mu * g };
+        Self { sticks: false, push: d * contact.mu, gain: d * g, rate, mu_c }
     }
 }

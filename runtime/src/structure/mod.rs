@@ -1,9 +1,18 @@
 //! Structure of a contact that is known while compiling, and what it spares.
 //!
-//! The marker types say which entries vanish; those are then not read, whatever they hold. [`Planar`] and [`Frictionless`] have closed forms
-//! without any series. [`Balanced`], [`Diagonal`] and [`Isotropic`] let the compiler drop the terms that vanish from the general sliding arc.
+//! The marker types say which entries vanish; those are then not read, whatever they hold. Each has its own closed form of the sliding arc:
+//!
+//! | structure | slip | impulse |
+//! | --- | --- | --- |
+//! | [`Planar`], [`Frictionless`] | linear in I_n | is the variable |
+//! | [`Isotropic`] | exponentials of sigma, dI_n = s dsigma | exponentials of sigma |
+//! | [`Balanced`], [`Diagonal`] | exponentials of sigma | an incomplete beta function of the direction |
 
+mod balanced;
+mod course;
+mod diagonal;
 mod frictionless;
+mod isotropic;
 mod planar;
 
 use nalgebra::{Vector2, Vector3};
@@ -44,7 +53,7 @@ pub struct General;
 #[derive(Clone, Copy, Debug)]
 pub struct Planar;
 
-/// m_nt = m_ns = 0: friction does not act on v_n, and the three laws agree.
+/// m_nt = m_ns = 0: friction does not act on v_n, which is linear in I_n, and the three laws agree.
 #[derive(Clone, Copy, Debug)]
 pub struct Balanced;
 
@@ -68,30 +77,6 @@ impl Structure for Isotropic {}
 impl Structure for Frictionless {}
 
 impl Shape for General {}
-
-#[expect(private_bounds, reason = "nobody else implements this")]
-impl Shape for Balanced {
-    #[inline(always)]
-    fn impose<T: Real>(m: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {
-        (m.nt, m.ns) = (T::zero(), T::zero());
-    }
-}
-
-#[expect(private_bounds, reason = "nobody else implements this")]
-impl Shape for Diagonal {
-    #[inline(always)]
-    fn impose<T: Real>(m: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {
-        (m.nt, m.ns, m.ts) = (T::zero(), T::zero(), T::zero());
-    }
-}
-
-#[expect(private_bounds, reason = "nobody else implements this")]
-impl Shape for Isotropic {
-    #[inline(always)]
-    fn impose<T: Real>(m: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {
-        (m.ts, m.ss) = (T::zero(), m.tt);
-    }
-}
 
 /// Solves one collision of known structure: the same outcome and errors as [`crate::solve`] with the vanishing entries set to zero.
 ///

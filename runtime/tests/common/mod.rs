@@ -1,5 +1,10 @@
 //! The reference collisions, read from `tests/data`.
 
+#[allow(dead_code)]
+pub mod double_double;
+#[allow(dead_code)]
+pub mod second_road;
+
 use hodograph::{Impact, Law, ReducedMatrix, Surface};
 use nalgebra::Vector3;
 use serde_json::Value;

@@ -1,0 +1,235 @@
+//! Where friction does not act on v_n (m_nt = m_ns = 0), v_n is linear in I_n, and slip decays by itself.
+//!
+//! In the eigenbasis of T the components of slip are exponentials of sigma, dI_n = s dsigma: v_1' = -alpha v_1, v_2' = -nu v_2 with
+//! alpha = mu lambda_1 >= nu = mu lambda_2, so that v_2 ~ v_1^(lambda_2 / lambda_1). The impulse, the integral of s, is an incomplete beta
+//! function of the direction, summed here by two series that complement each other.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{
+    Balanced, Shape,
+    course::{Course, Point, decayed, elapsed, follow, stays},
+};
+use crate::{
+    ReducedMatrix, Surface,
+    scalar::{Real, constant, length},
+    solve::{Contact, Ledger, Slide, State, straight},
+};
+
+/// (v_2 / v_1)^2 up to which slip is expanded about the direction of v_1.
+const NEAR: f64 = 0.5;
+
+/// Terms of either series: enough for ratios of 1/2 and 2/3.
+const TERMS: u32 = 128;
+
+#[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
+impl Shape for Balanced {
+    #[inline(always)]
+    fn impose<T: Real>(m: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {
+        (m.nt, m.ns) = (T::zero(), T::zero());
+    }
+
+    #[inline]
+    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+        let (axis, values) = principal(c);
+        decay(c, from, speed, axis, values, ledger)
+    }
+}
+
+/// Unit vector along the axis of the greater eigenvalue of T, and both eigenvalues, the greater first.
+fn principal<T: Real>(c: &Contact<T>) -> (Vector2<T>, [T; 2]) {
+    let (one, zero) = (T::one(), T::zero());
+    let half = constant::<T>(0.5);
+    let (middle, difference) = ((c.tt + c.ss) * half, (c.tt - c.ss) * half);
+    let radius = (difference * difference + c.ts * c.ts).sqrt();
+    if radius <= zero {
+        return (Vector2::new(one, zero), [middle; 2]);
+    }
+    let greater = middle + radius;
+    let lesser = (c.tt * c.ss - c.ts * c.ts) / greater;
+    // The longer of two vectors along the axis.
+    let axis = if difference >= zero {
+        Vector2::new(difference + radius, c.ts)
+    } else {
+        Vector2::new(c.ts, radius - difference)
+    };
+    (axis / length(&axis), [greater, if lesser > zero { lesser } else { zero }])
+}
+
+/// Slides where T has these eigenvalues, the first for the direction `axis`.
+#[inline]
+pub(super) fn decay<T: Real>(
+    c: &Contact<T>,
+    from: Vector2<T>,
+    speed: T,
+    axis: Vector2<T>,
+    [greater, lesser]: [T; 2],
+    ledger: &mut Ledger<T>,
+) -> Slide<T> {
+    let (first, second) = (axis.dot(&from), axis.x * from.y - axis.y * from.x);
+    let (fast, slow) = (c.mu * greater, c.mu * lesser);
+    let difference = fast - slow;
+    let turns = (difference * first * second).abs() > T::default_epsilon() * fast * speed * speed;
+    if !turns || stays(first, second) {
+        return straight(c, from / speed, speed, State::approach(), ledger);
+    }
+    follow(&Decay { mu: c.mu, axis, start: [first, second], rates: [fast, slow], difference }, ledger)
+}
+
+/// The arc; xi = (1 - e^(-nu sigma)) / nu, in which I_n soon becomes linear.
+struct Decay<T: Real> {
+    mu: T,
+    axis: Vector2<T>,
+    /// v_1 and v_2 at the start.
+    start: [T; 2],
+    /// alpha and nu.
+    rates: [T; 2],
+    /// alpha - nu
+    difference: T,
+}
+
+impl<T: Real> Decay<T> {
+    fn plane(&self, first: T, second: T) -> Vector2<T> {
+        self.axis * first + Vector2::new(-self.axis.y, self.axis.x) * second
+    }
+
+    /// The state at a normal impulse, when v_1 and v_2 have gone through these times their size at the start.
+    fn state(&self, normal: T, first: T, second: T) -> State<T> {
+        let [v1, v2] = self.start;
+        State {
+            normal,
+            tangential: -self.plane(v1 * first, v2 * second) * self.mu,
+            velocity: normal - T::one(),
+            work: normal * (normal * constant(0.5) - T::one()),
+        }
+    }
+
+    /// I_n after sigma; all that is left if there is none.
+    fn impulse(&self, sigma: Option<T>) -> T {
+        let [first, second] = self.start;
+        let [fast, slow] = self.rates;
+        let ratio = second / first;
+        let square = ratio * ratio;
+        let near = constant::<T>(NEAR);
+        if square >= near {
+            return self.far(first, second, sigma);
+        }
+        // Where the one expansion gives way to the other: nothing depends on it.
+        let change = ((near / square).ln() / (self.difference + self.difference)).plain();
+        match sigma {
+            Some(sigma) if sigma <= change => self.near(sigma),
+            _ => {
+                let (first, second) = (first * (-fast * change).exp(), second * (-slow * change).exp());
+                self.near(change) + self.far(first, second, sigma.map(|sigma| sigma - change))
+            }
+        }
+    }
+
+    /// From the start, where |v_2| is the lesser: |v_1| (1 + z)^(1/2) term by term, z = (v_2 / v_1)^2 growing.
+    fn near(&self, sigma: T) -> T {
+        let [first, second] = self.start;
+        let [fast, _] = self.rates;
+        let double = self.difference + self.difference;
+        let ratio = second / first;
+        let z = ratio * ratio;
+        let grown = z * (double * sigma).exp();
+        let left = (-fast * sigma).exp();
+        let (mut now, mut then, mut binomial) = (T::one(), left, T::one());
+        let mut sum = T::zero();
+        for k in 0..TERMS {
+            let rate = fast - double * constant(f64::from(k));
+            let x = rate * sigma;
+            // Where z^k |v_1| neither grows nor decays the quotient would be 0 / 0.
+            let lasting =
+                if x.abs() <= constant(0.5) { now * decayed(rate, sigma) } else { (now - then) / rate };
+            let term = binomial * lasting;
+            sum += term;
+            if term.abs() <= last::<T>() * sum.abs() {
+                break;
+            }
+            binomial *= constant((1.0 - 2.0 * f64::from(k)) / (2.0 * f64::from(k) + 2.0));
+            now *= z;
+            then *= grown;
+        }
+        first.abs() * sum
+    }
+
+    /// From any point where |v_2| is not small: the integral of |v_2|, and that of s - |v_2| = s R with R analytic in u = (v_1 / s)^2.
+    fn far(&self, first: T, second: T, sigma: Option<T>) -> T {
+        let (one, zero) = (T::one(), T::zero());
+        let [fast, slow] = self.rates;
+        let double = self.difference + self.difference;
+        let slip = length(&Vector2::new(first, second));
+        if slip <= zero {
+            return zero;
+        }
+        let (c, s) = (first / slip, second / slip);
+        let u = c * c;
+        // Of s and of u: what is left after sigma, and what is gone, without cancellation.
+        let (steady, [kept, gone], [stays, lost]) = match sigma {
+            None => (one / slow, [zero, one], [zero, one]),
+            Some(sigma) => {
+                let (a, b) = (-(-fast * sigma).exp_m1(), -(-slow * sigma).exp_m1());
+                let gone = u * a * (constant::<T>(2.0) - a) + s * s * b * (constant::<T>(2.0) - b);
+                let (x, y) = (c * (one - a), s * (one - b));
+                let kept = (x * x + y * y).sqrt();
+                let part = -(-double * sigma).exp_m1();
+                let scale = one - u * part;
+                (
+                    decayed(slow, sigma),
+                    [kept, gone / (one + kept)],
+                    [(one - part) / scale, part * s * s / scale],
+                )
+            }
+        };
+        // 1 - (1 - u)^(1/2) = (slow + difference u) R + 2 difference u (1 - u) R', all coefficients positive.
+        let half = constant::<T>(0.5);
+        let (mut left, mut coefficient, mut power, mut sum) = (half, zero, u, zero);
+        let (mut kept, mut gone) = (kept, gone);
+        for k in 1..TERMS {
+            let n = f64::from(k);
+            let of_last = self.difference * constant(2.0 * n - 3.0) * coefficient;
+            coefficient = (of_last + left) / (slow + double * constant(n));
+            // s u^k less what is left of it.
+            gone += kept * lost;
+            kept *= stays;
+            let term = coefficient * power * gone;
+            sum += term;
+            if term <= last::<T>() * sum {
+                break;
+            }
+            left *= constant((2.0 * n - 1.0) / (2.0 * n + 2.0));
+            power *= u;
+        }
+        second.abs() * steady + slip * sum
+    }
+}
+
+/// The size of a term, over the sum, after which a series ends; derivatives need some more of them.
+#[inline]
+fn last<T: Real>() -> T {
+    T::default_epsilon() * if T::refined() { constant(1.0 / 4096.0) } else { constant(0.125) }
+}
+
+impl<T: Real> Course<T> for Decay<T> {
+    fn at(&self, xi: T) -> Point<T> {
+        let [fast, slow] = self.rates;
+        let [first, second] = self.start;
+        let sigma = elapsed(slow, xi);
+        let left = T::one() - slow * xi;
+        let state = self.state(self.impulse(Some(sigma)), decayed(fast, sigma), xi);
+        let slip = self.plane(first * (-fast * sigma).exp(), second * left);
+        // dxi = e^(-nu sigma) dsigma
+        Point { state, slip, rate: length(&slip) / left, slope: T::one() }
+    }
+
+    fn stop(&self) -> Option<(T, State<T>)> {
+        let one = T::one();
+        let [fast, slow] = self.rates;
+        (slow > T::zero()).then(|| (one / slow, self.state(self.impulse(None), one / fast, one / slow)))
+    }
+
+    fn turn(&self) -> Option<T> {
+        None
+    }
+}

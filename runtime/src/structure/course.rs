@@ -1,0 +1,222 @@
+//! A sliding arc in closed form, and the search for the end of the collision on it.
+
+use nalgebra::Vector2;
+
+use crate::{
+    Law,
+    scalar::{Real, constant, length},
+    solve::{Ledger, Slide, State},
+};
+
+/// How often a step that leads nowhere yet is doubled.
+const DOUBLINGS: u32 = 200;
+
+/// Steps of one search.
+const STEPS: u32 = 100;
+
+/// A point of a course.
+#[derive(Clone, Copy)]
+pub(super) struct Point<T: Real> {
+    pub state: State<T>,
+    /// Tangential velocity.
+    pub slip: Vector2<T>,
+    /// dI_n / dxi.
+    pub rate: T,
+    /// f = dv_n / dI_n (31).
+    pub slope: T,
+}
+
+/// A sliding arc over a parameter xi that starts at zero and grows with I_n.
+pub(super) trait Course<T: Real> {
+    /// The point at xi.
+    fn at(&self, xi: T) -> Point<T>;
+    /// Where slip stops, if it ever does: xi and the state there.
+    fn stop(&self) -> Option<(T, State<T>)>;
+    /// Where f changes sign, if it does.
+    fn turn(&self) -> Option<T>;
+}
+
+/// What a search looks for: a quantity less its target.
+#[derive(Clone, Copy)]
+enum Sought<T> {
+    Velocity(T),
+    Impulse(T),
+    Work(T),
+}
+
+impl<T: Real> Sought<T> {
+    fn of(&self, state: &State<T>) -> T {
+        match *self {
+            Self::Velocity(target) => state.velocity - target,
+            Self::Impulse(target) => state.normal - target,
+            Self::Work(target) => state.work - target,
+        }
+    }
+
+    /// Its derivative by xi.
+    fn slope(&self, point: &Point<T>) -> T {
+        match self {
+            Self::Velocity(_) => point.rate * point.slope,
+            Self::Impulse(_) => point.rate,
+            Self::Work(_) => point.rate * point.state.velocity,
+        }
+    }
+}
+
+/// Follows a course until the law ends the collision or slip stops.
+pub(super) fn follow<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -> Slide<T> {
+    let mut from = (T::zero(), course.at(T::zero()));
+    let stop = course.stop();
+    let turn = course.turn().filter(|xi| *xi > T::zero() && stop.is_none_or(|(end, _)| *xi < end));
+    if let Some(xi) = turn {
+        let to = (xi, course.at(xi));
+        if let Some(end) = piece(course, ledger, from, (to.0, to.1.state)) {
+            return Slide::Ended(end.state, end.slip);
+        }
+        ledger.turns.moved(to.1.state.velocity);
+        from = to;
+    }
+    if let Some((xi, state)) = stop {
+        return match piece(course, ledger, from, (xi, state)) {
+            Some(end) => Slide::Ended(end.state, end.slip),
+            None => Slide::Stopped(state),
+        };
+    }
+    // Slip goes on for ever: as far as the law needs.
+    let mut step = T::one() / from.1.rate;
+    for _ in 0..DOUBLINGS {
+        let xi = from.0 + step;
+        let to = (xi, course.at(xi));
+        if !to.1.state.normal.is_finite() {
+            break;
+        }
+        if let Some(end) = piece(course, ledger, from, (xi, to.1.state)) {
+            return Slide::Ended(end.state, end.slip);
+        }
+        from = to;
+        step += step;
+    }
+    Slide::Endless(from.1.state)
+}
+
+/// The end of the collision between two points, between which v_n is monotone.
+fn piece<T: Real>(
+    course: &impl Course<T>,
+    ledger: &mut Ledger<T>,
+    from: (T, Point<T>),
+    to: (T, State<T>),
+) -> Option<Point<T>> {
+    let zero = T::zero();
+    let law = ledger.law();
+    let (mut from, mut to) = (from, to);
+    if ledger.passes(&from.1.state, &to.1) {
+        return None;
+    }
+    if let Some(stop) = ledger.stop {
+        return Some(find(course, &Sought::Impulse(stop), T::one(), &from, to.0).1);
+    }
+    if from.1.state.velocity < zero {
+        if law == Law::Newton && ledger.target > zero && !ledger.thorough {
+            // Newton's law need not know where compression ends.
+            ledger.compressed_somewhere();
+        } else {
+            from = find(course, &Sought::Velocity(zero), T::one(), &from, to.0);
+            if ledger.compressed(&from.1.state) {
+                return Some(from.1);
+            }
+            from.1.state.velocity = zero;
+        }
+    } else if to.1.velocity < zero {
+        let (xi, point) = find(course, &Sought::Velocity(zero), -T::one(), &from, to.0);
+        to = (xi, point.state);
+        ledger.falls(&to.1);
+    }
+    let target = ledger.target;
+    if ledger.watched(&to.1) < target || (law == Law::Newton && ledger.watched(&from.1.state) >= target) {
+        return None;
+    }
+    let sought = match law {
+        Law::Newton => Sought::Velocity(target),
+        Law::Poisson => Sought::Impulse(target),
+        Law::Stronge => Sought::Work(target),
+    };
+    Some(find(course, &sought, T::one(), &from, to.0).1)
+}
+
+/// The point between `from` and `hi` where what is sought vanishes, rising (`sign` = 1) or falling (-1): Newton's method inside a bracket.
+fn find<T: Real>(
+    course: &impl Course<T>,
+    sought: &Sought<T>,
+    sign: T,
+    (from, begin): &(T, Point<T>),
+    hi: T,
+) -> (T, Point<T>) {
+    let half = constant::<T>(0.5);
+    let (mut lo, mut hi) = (*from, hi);
+    let y = sought.of(&begin.state);
+    let slope = sought.slope(begin);
+    // Work begins to grow like a square after compression.
+    let v = begin.state.velocity;
+    let guess = match sought {
+        Sought::Work(_) => {
+            let square = v * v - (y + y) * begin.slope;
+            let after = if square > T::zero() { square.sqrt() } else { T::zero() };
+            lo - (y + y) / ((v + after) * begin.rate)
+        }
+        _ => lo - y / slope,
+    };
+    let mut xi = if guess > lo && guess < hi { guess } else { (lo + hi) * half };
+    let small = constant::<T>(4.0) * T::default_epsilon();
+    for _ in 0..STEPS {
+        let point = course.at(xi);
+        let y = sought.of(&point.state);
+        if y * sign < T::zero() {
+            lo = xi;
+        } else {
+            hi = xi;
+        }
+        let step = -y / sought.slope(&point);
+        let next = xi + step;
+        let done = step.abs() <= small * xi;
+        xi = if next >= lo && next <= hi { next } else { (lo + hi) * half };
+        if done || hi - lo <= small * hi {
+            break;
+        }
+    }
+    if T::refined() {
+        // A derivative is one step of Newton's behind its value.
+        let plain = xi.plain();
+        let point = course.at(plain);
+        xi = plain - sought.of(&point.state) / sought.slope(&point);
+    }
+    (xi, course.at(xi))
+}
+
+/// (1 - e^(-k sigma)) / k, which is sigma for k = 0.
+#[inline]
+pub(super) fn decayed<T: Real>(k: T, sigma: T) -> T {
+    let x = k * sigma;
+    if x.abs() <= constant(1e-5) {
+        // Three terms; the next is below rounding.
+        return sigma * (T::one() - x * constant(0.5) * (T::one() - x * constant(1.0 / 3.0)));
+    }
+    -(-x).exp_m1() / k
+}
+
+/// sigma from xi = (1 - e^(-k sigma)) / k.
+#[inline]
+pub(super) fn elapsed<T: Real>(k: T, xi: T) -> T {
+    let x = k * xi;
+    if x.abs() <= constant(1e-5) {
+        return xi * (T::one() + x * constant(0.5) * (T::one() + x * constant(2.0 / 3.0)));
+    }
+    -(-x).ln_1p() / k
+}
+
+/// Whether slip has a direction that stays, exactly, with components `along` and `across` the axes of symmetry.
+#[inline]
+pub(super) fn stays<T: Real>(along: T, across: T) -> bool {
+    let v = Vector2::new(along, across);
+    let none = constant::<T>(0.25) * T::default_epsilon() * length(&v);
+    along.abs() <= none || across.abs() <= none
+}

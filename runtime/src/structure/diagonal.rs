@@ -1,0 +1,28 @@
+//! The balanced contact whose axes are t and s: its eigenbasis is at hand.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{Diagonal, Shape, balanced::decay};
+use crate::{
+    ReducedMatrix, Surface,
+    scalar::Real,
+    solve::{Contact, Ledger, Slide},
+};
+
+#[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
+impl Shape for Diagonal {
+    #[inline(always)]
+    fn impose<T: Real>(m: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {
+        (m.nt, m.ns, m.ts) = (T::zero(), T::zero(), T::zero());
+    }
+
+    #[inline]
+    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+        let (one, zero) = (T::one(), T::zero());
+        if c.tt >= c.ss {
+            decay(c, from, speed, Vector2::new(one, zero), [c.tt, c.ss], ledger)
+        } else {
+            decay(c, from, speed, Vector2::new(zero, one), [c.ss, c.tt], ledger)
+        }
+    }
+}

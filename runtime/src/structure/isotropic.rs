@@ -1,0 +1,149 @@
+//! Where the contact plane resists alike in all directions, sliding is elementary.
+//!
+//! With m_ts = 0, m_tt = m_ss and slip (v_1, v_2) along b and across it, P = (s + v_1) / 2 and M = (s - v_1) / 2 obey P' = (beta - kappa) P and
+//! M' = -(beta + kappa) M, where dI_n = s dsigma, beta = |b| and kappa = mu m_tt. So everything on the arc is a sum of exponentials of
+//! sigma; without sigma it reads s sin(psi) ~ tan(psi/2)^(kappa/beta), psi counted from b.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{
+    Isotropic, Shape,
+    course::{Course, Point, decayed, elapsed, follow},
+};
+use crate::{
+    ReducedMatrix, Surface,
+    scalar::{Real, constant, length},
+    solve::{Contact, Ledger, Slide, State, straight},
+};
+
+#[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
+impl Shape for Isotropic {
+    #[inline(always)]
+    fn impose<T: Real>(m: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {
+        (m.ts, m.ss) = (T::zero(), m.tt);
+    }
+
+    #[inline]
+    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+        let d = from / speed;
+        let beta = length(&c.b);
+        let across = d.x * c.b.y - d.y * c.b.x;
+        let noise = constant::<T>(4.0) * T::default_epsilon() * (beta + c.mu * (c.tt + c.ss));
+        if across.abs() <= noise {
+            return straight(c, d, speed, State::approach(), ledger);
+        }
+        let axis = c.b / beta;
+        let (along, across) = (axis.dot(&from), axis.x * from.y - axis.y * from.x);
+        let half = constant::<T>(0.5);
+        let kappa = c.mu * c.tt;
+        // The lesser of P and M from P M = v_2^2 / 4.
+        let large = (speed + along.abs()) * half;
+        let small = across * across * constant(0.25) / large;
+        let forward = along > T::zero();
+        let (p, m) = if forward { (large, small) } else { (small, large) };
+        let arc = Arc {
+            mu: c.mu,
+            axis,
+            across,
+            kappa,
+            rates: [kappa - beta, kappa + beta],
+            sizes: [p, m],
+            gains: [T::one() - c.mu * beta, T::one() + c.mu * beta],
+        };
+        follow(&arc, ledger)
+    }
+}
+
+/// The arc; xi = (1 - e^(-(kappa - beta) sigma)) / (kappa - beta), in which I_n soon becomes linear.
+struct Arc<T: Real> {
+    mu: T,
+    /// Unit vector along b.
+    axis: Vector2<T>,
+    /// v_2 at the start.
+    across: T,
+    kappa: T,
+    /// At which P and M decay.
+    rates: [T; 2],
+    /// P and M at the start.
+    sizes: [T; 2],
+    /// dv_n / dI_n along b and against it.
+    gains: [T; 2],
+}
+
+impl<T: Real> Arc<T> {
+    /// The state where P, M and v_2 have gone through these times their size at the start, and P after M through `mixed` times both.
+    fn state(&self, [p, m, across]: [T; 3], mixed: T) -> State<T> {
+        let half = constant::<T>(0.5);
+        let [a, b] = self.gains;
+        let [size_p, size_m] = self.sizes;
+        let (p, m) = (size_p * p, size_m * m);
+        let normal = p + m;
+        let rubbed = self.axis * (p - m) + Vector2::new(-self.axis.y, self.axis.x) * (self.across * across);
+        let mixed = size_p * size_m * mixed;
+        State {
+            normal,
+            tangential: -rubbed * self.mu,
+            velocity: a * p + b * m - T::one(),
+            work: half * (a * p * p + b * m * m) + b * mixed + a * (p * m - mixed) - normal,
+        }
+    }
+}
+
+impl<T: Real> Course<T> for Arc<T> {
+    fn at(&self, xi: T) -> Point<T> {
+        let [p, m] = self.rates;
+        let sigma = elapsed(p, xi);
+        let state = self.state([xi, decayed(m, sigma), decayed(self.kappa, sigma)], mixed(p, m, sigma));
+        // dxi = e^(-p sigma) dsigma
+        let left = T::one() - p * xi;
+        let fast = (-m * sigma).exp();
+        let [size_p, size_m] = self.sizes;
+        let (now_p, now_m) = (size_p * left, size_m * fast);
+        let across = self.across * (-self.kappa * sigma).exp();
+        let s = now_p + now_m;
+        let [a, b] = self.gains;
+        Point {
+            state,
+            slip: self.axis * (now_p - now_m) + Vector2::new(-self.axis.y, self.axis.x) * across,
+            rate: size_p + now_m / left,
+            slope: (a * now_p + b * now_m) / s,
+        }
+    }
+
+    fn stop(&self) -> Option<(T, State<T>)> {
+        let [p, m] = self.rates;
+        let one = T::one();
+        (p > T::zero()).then(|| {
+            let mixed = one / (p * (p + m));
+            (one / p, self.state([one / p, one / m, one / self.kappa], mixed))
+        })
+    }
+
+    /// a P + b M = 0 with M / P = e^(-2 beta sigma) M_0 / P_0.
+    fn turn(&self) -> Option<T> {
+        let [a, b] = self.gains;
+        let [p, m] = self.rates;
+        let [size_p, size_m] = self.sizes;
+        let ratio = -b * size_m / (a * size_p);
+        (a < T::zero() && ratio > T::one()).then(|| decayed(p, ratio.plain().ln() / (m - p)))
+    }
+}
+
+/// The integral of e^(-p t) (1 - e^(-m t)) / m from 0 to sigma.
+fn mixed<T: Real>(p: T, m: T, sigma: T) -> T {
+    let (x, y) = (-p * sigma, -(p + m) * sigma);
+    if y.abs() > T::one() || x.abs() > T::one() {
+        return (decayed(p, sigma) - decayed(p + m, sigma)) / m;
+    }
+    // The second divided difference of the exponential at 0, x and y, by its series.
+    let (mut power, mut sum) = (T::one(), T::one());
+    let mut factor = constant::<T>(0.5);
+    let mut total = factor;
+    for k in 1..20_u32 {
+        power *= y;
+        sum = x * sum + power;
+        factor /= constant::<T>(f64::from(k) + 2.0);
+        total += sum * factor;
+    }
+    sigma * sigma * total
+}
