@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use super::forces::Wrenches;
 use crate::algebra::Expr;
-use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, AxesTree, unit};
 use crate::kinematics::linear::{self, LinearVector, Triple};
-use crate::model::mechanism::{Against, Contact, Function, PointId};
+use crate::kinematics::{Kinematics, vectors};
+use crate::model::mechanism::{Against, Body, BodyId, Contact, FrameId, Function, PointId, Vector};
 
 /// A contact, as algebra.
 pub struct ContactForms {
@@ -20,6 +21,8 @@ pub struct ContactForms {
     pub gap: Option<Expr>,
     /// is there no velocity along the second tangential axis, whatever the speeds?
     pub planar: bool,
+    /// unit forces along the axes of the basis, if they act on nothing but the mechanism
+    pub forces: Option<[Wrenches; 3]>,
 }
 
 /// The forms of a contact.
@@ -40,51 +43,103 @@ pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact) -> ContactForms 
     });
     let remainder: Triple = std::array::from_fn(|i| k.z.name(linear::dot(&relative.rest, &along[i])));
     let planar = partials[2].is_empty() && remainder[2].is_zero();
+    let forces = unit_forces(k, contact, axes, &along);
     let basis = along.map(|v| {
         let v = linear::name(&mut k.z, v);
         k.tree.convert(&mut k.z, &v, axes, AxesTree::N)
     });
     let gap = contact.gap.as_ref().map(|gap| k.scalar(gap));
-    ContactForms { basis, partials, remainder, gap, planar }
+    ContactForms { basis, partials, remainder, gap, planar, forces }
+}
+
+/// What moves with a velocity.
+enum Mover<'m> {
+    /// a point
+    Point(PointId),
+    /// the material point of a frame that coincides with a point, and the frame's reference point
+    Material(PointId, FrameId, PointId),
+    /// a surface of given velocity
+    Surface(&'m Vector),
+}
+
+/// The material point of a body at a point; the point itself where there is no body or none that turns.
+fn material<'m>(k: &Kinematics<'m>, point: PointId, body: Option<BodyId>) -> Mover<'m> {
+    match body.map(|body| &k.mechanism.bodies[body.0]) {
+        Some(Body { frame: Some(frame), centre, .. }) if k.connected(point, *centre) => {
+            Mover::Material(point, *frame, *centre)
+        }
+        _ => Mover::Point(point),
+    }
+}
+
+/// What strikes and what is struck; `None`: the ground.
+fn movers<'m>(k: &Kinematics<'m>, contact: &'m Contact) -> (Mover<'m>, Option<Mover<'m>>) {
+    let struck = match &contact.against {
+        Against::Fixed => None,
+        Against::Point(struck, body) => Some(material(k, *struck, *body)),
+        Against::Body(body) => Some(match material(k, contact.point, Some(*body)) {
+            Mover::Point(_) => Mover::Point(k.mechanism.bodies[body.0].centre),
+            of_body => of_body,
+        }),
+        Against::Velocity(velocity) => Some(Mover::Surface(velocity)),
+    };
+    (material(k, contact.point, contact.body), struck)
 }
 
 /// v^R of (3), of all speeds, along given axes.
 fn relative_velocity(k: &mut Kinematics<'_>, contact: &Contact, axes: AxesId) -> LinearVector {
-    let mechanism = k.mechanism;
-    let of_point = match contact.body.map(|body| &mechanism.bodies[body.0]) {
-        Some(body) => match body.frame {
-            Some(frame) if k.connected(contact.point, body.centre) => {
-                k.partial_velocities_of_material_point(contact.point, body.centre, frame, axes)
-            }
-            _ => k.partial_velocities(contact.point, axes),
-        },
-        None => k.partial_velocities(contact.point, axes),
-    };
-    let of_struck = match &contact.against {
-        Against::Fixed => LinearVector::zero(),
-        Against::Point(struck, body) => match body.map(|body| &mechanism.bodies[body.0]) {
-            Some(body) if body.frame.is_some() && k.connected(*struck, body.centre) => {
-                let frame = body.frame.unwrap_or(crate::model::mechanism::FrameId::N);
-                k.partial_velocities_of_material_point(*struck, body.centre, frame, axes)
-            }
-            _ => k.partial_velocities(*struck, axes),
-        },
-        Against::Body(body) => {
-            let body = &mechanism.bodies[body.0];
-            match body.frame {
-                Some(frame) if k.connected(contact.point, body.centre) => {
-                    k.partial_velocities_of_material_point(contact.point, body.centre, frame, axes)
-                }
-                _ => k.partial_velocities(body.centre, axes),
-            }
+    let (striking, struck) = movers(k, contact);
+    let difference = match struck {
+        None => velocity(k, &striking, axes),
+        Some(struck) => {
+            let of_point = velocity(k, &striking, axes);
+            let of_struck = velocity(k, &struck, axes);
+            of_point.add(&of_struck.map(|p| linear::scale(&Expr::integer(-1), p)))
         }
-        Against::Velocity(velocity) => {
+    };
+    difference.map(|p| linear::name(&mut k.z, p.clone()))
+}
+
+fn velocity(k: &mut Kinematics<'_>, of: &Mover<'_>, axes: AxesId) -> LinearVector {
+    match *of {
+        Mover::Point(point) => k.partial_velocities(point, axes),
+        Mover::Material(point, frame, centre) => {
+            k.partial_velocities_of_material_point(point, centre, frame, axes)
+        }
+        Mover::Surface(velocity) => {
             let velocity = k.linear_vector(velocity);
             k.express_linear(&velocity, axes)
         }
-    };
-    let difference = of_point.add(&of_struck.map(|p| linear::scale(&Expr::integer(-1), p)));
-    difference.map(|p| linear::name(&mut k.z, p.clone()))
+    }
+}
+
+/// Unit forces along given vectors on what strikes and against what is struck; `None` where a surface of given velocity takes them.
+fn unit_forces(
+    k: &mut Kinematics<'_>,
+    contact: &Contact,
+    axes: AxesId,
+    along: &[Triple; 3],
+) -> Option<[Wrenches; 3]> {
+    let (striking, struck) = movers(k, contact);
+    let mut wrenches = [Wrenches::default(), Wrenches::default(), Wrenches::default()];
+    for (wrenches, along) in wrenches.iter_mut().zip(along) {
+        let against = linear::scale(&Expr::integer(-1), along);
+        for (mover, force) in [(Some(&striking), along), (struck.as_ref(), &against)] {
+            match mover {
+                None => {}
+                Some(Mover::Surface(_)) => return None,
+                Some(&Mover::Point(point)) => wrenches.force(k, point, &vectors::mixed(axes, force.clone())),
+                Some(&Mover::Material(point, frame, centre)) => {
+                    wrenches.force(k, centre, &vectors::mixed(axes, force.clone()));
+                    let arm = k.position(point, centre);
+                    let arm = k.express(&arm, axes);
+                    let torque = linear::name(&mut k.z, linear::cross(&arm, force));
+                    wrenches.torque(k, frame, &vectors::mixed(axes, torque));
+                }
+            }
+        }
+    }
+    Some(wrenches)
 }
 
 /// The form in independent speeds alone.

@@ -28,14 +28,16 @@ pub struct Wrenches {
 }
 
 impl Wrenches {
-    fn force(&mut self, k: &mut Kinematics<'_>, on: PointId, force: &Mixed) {
+    /// Adds a force on a point.
+    pub fn force(&mut self, k: &mut Kinematics<'_>, on: PointId, force: &Mixed) {
         let home = k.points[on.0].home;
         let force = k.express(force, home);
         let sum = self.forces.get(&on).map_or_else(|| force.clone(), |have| linear::add(have, &force));
         self.forces.insert(on, sum);
     }
 
-    fn torque(&mut self, k: &mut Kinematics<'_>, on: FrameId, torque: &Mixed) {
+    /// Adds a torque on a frame.
+    pub fn torque(&mut self, k: &mut Kinematics<'_>, on: FrameId, torque: &Mixed) {
         let on = k.turning(on);
         if on == FrameId::N {
             return;

@@ -8,6 +8,7 @@
 use std::collections::BTreeMap;
 
 use super::lumps::{Lump, Seat};
+use super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{Symmetric, entry};
@@ -42,13 +43,13 @@ pub fn full_mass_matrix(
         if let Some(point) = point {
             points.push(point);
             if !lump.mass.is_zero() {
-                sum_into(&mut form.mass, point, &lump.mass);
+                sum_scalar(&mut form.mass, point, &lump.mass);
             }
         }
         if frame != FrameId::N {
             frames.push(frame);
             let inertia = lump.inertia(k);
-            form.add_inertia(frame, &inertia);
+            sum_symmetric(&mut form.inertia, frame, &inertia);
             if let Some(point) = point {
                 sum_triple(&mut form.moment, (point, frame), &lump.moment);
             }
@@ -66,19 +67,6 @@ pub fn full_mass_matrix(
         k.z.name(value)
     };
     form.matrix.into_iter().map(|(at, value)| (at, tidy(value))).collect()
-}
-
-fn sum_into<K: Ord>(map: &mut BTreeMap<K, Expr>, key: K, value: &Expr) {
-    let sum = map.get(&key).map_or_else(|| value.clone(), |have| have.add(value));
-    map.insert(key, sum);
-}
-
-fn sum_triple<K: Ord>(map: &mut BTreeMap<K, Triple>, key: K, value: &Triple) {
-    if linear::is_zero(value) {
-        return;
-    }
-    let sum = map.get(&key).map_or_else(|| value.clone(), |have| linear::add(have, value));
-    map.insert(key, sum);
 }
 
 /// Partial velocities of a relation, the remainder under the slot after the last speed.
@@ -116,21 +104,13 @@ fn times(m: &Symmetric, v: &Triple) -> Triple {
 }
 
 impl Form {
-    fn add_inertia(&mut self, frame: FrameId, inertia: &Symmetric) {
-        let sum = match self.inertia.get(&frame) {
-            Some(have) => std::array::from_fn(|i| have[i].add(&inertia[i])),
-            None => inertia.clone(),
-        };
-        self.inertia.insert(frame, sum);
-    }
-
     /// Adds `value * u_r * u_s` to the form.
     fn add_product(&mut self, r: usize, s: usize, value: &Expr) {
         if value.is_zero() {
             return;
         }
         let value = if r == s { value.mul(&Expr::integer(2)) } else { value.clone() };
-        sum_into(&mut self.matrix, (r.min(s), r.max(s)), &value);
+        sum_scalar(&mut self.matrix, (r.min(s), r.max(s)), &value);
     }
 
     /// Adds `w_f . X . w_g`, rows of X along f's home axes, columns along g's.
@@ -140,7 +120,7 @@ impl Form {
         }
         if f == g {
             let both = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| x[i][j].add(&x[j][i]));
-            self.add_inertia(f, &both.map(|c| k.z.name(c)));
+            sum_symmetric(&mut self.inertia, f, &both.map(|c| k.z.name(c)));
             return;
         }
         let (key, x) = if f < g {
@@ -148,11 +128,7 @@ impl Form {
         } else {
             ((g, f), std::array::from_fn(|i| std::array::from_fn(|j| x[j][i].clone())))
         };
-        let sum = match self.coupling.get(&key) {
-            Some(have) => std::array::from_fn(|i| linear::add(&have[i], &x[i])),
-            None => x,
-        };
-        self.coupling.insert(key, sum);
+        sum_matrix(&mut self.coupling, key, &x);
     }
 
     /// Inserts `w = w_base + sum a u`.
@@ -189,7 +165,7 @@ impl Form {
                     let value = linear::dot(b, &column);
                     // 1/2 w.I.w counts the square once and a mixed product of two speeds fully.
                     if other == slot {
-                        sum_into(&mut self.matrix, (*slot, *slot), &value);
+                        sum_scalar(&mut self.matrix, (*slot, *slot), &value);
                     } else {
                         self.add_product(*other, *slot, &value);
                     }
@@ -197,7 +173,7 @@ impl Form {
             }
             if base != FrameId::N {
                 let turned = k.tree.convert_symmetric(&mut k.z, &inertia, home, base_home);
-                self.add_inertia(base, &turned);
+                sum_symmetric(&mut self.inertia, base, &turned);
             }
         }
         for key in
@@ -273,7 +249,7 @@ impl Form {
         if let Some(mass) = self.mass.remove(&point) {
             let mass = k.z.name(mass);
             if let Some(base) = base {
-                sum_into(&mut self.mass, base, &mass);
+                sum_scalar(&mut self.mass, base, &mass);
             }
             for (i, (frame, arm)) in arms.iter().enumerate() {
                 let moment = linear::name(&mut k.z, linear::scale(&mass, arm));
@@ -281,7 +257,7 @@ impl Form {
                     sum_triple(&mut self.moment, (base, *frame), &moment);
                 }
                 let own = spread(&moment, arm).map(|c| k.z.name(c));
-                self.add_inertia(*frame, &own);
+                sum_symmetric(&mut self.inertia, *frame, &own);
                 for (other, second) in &arms[..i] {
                     self.couple_arms(k, (*frame, &moment), (*other, second));
                 }
@@ -296,7 +272,7 @@ impl Form {
                 for (other, c) in &partials[..=i] {
                     let value = linear::dot(c, &momentum);
                     if other == slot {
-                        sum_into(&mut self.matrix, (*slot, *slot), &value);
+                        sum_scalar(&mut self.matrix, (*slot, *slot), &value);
                     } else {
                         self.add_product(*other, *slot, &value);
                     }
@@ -313,7 +289,7 @@ impl Form {
                 if *other == frame {
                     // v.(w x S) with v = w x r: w.(r.S 1 - r S').w, twice that of the halved form
                     let both = spread(&moment, arm).map(|c| k.z.name(c.mul(&Expr::integer(2))));
-                    self.add_inertia(frame, &both);
+                    sum_symmetric(&mut self.inertia, frame, &both);
                 } else {
                     self.couple_arms(k, (frame, &moment), (*other, arm));
                 }

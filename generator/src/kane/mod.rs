@@ -3,6 +3,7 @@
 pub mod accelerations;
 pub mod articulated;
 pub mod bodies;
+mod bounds;
 pub mod contacts;
 pub mod energy;
 pub mod forces;
@@ -10,6 +11,7 @@ pub mod inertia;
 pub mod lumps;
 pub mod order;
 mod outputs;
+mod sums;
 
 use crate::algebra::{SessionError, exclusively};
 use crate::diagnostics::codes;

@@ -2,15 +2,17 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::articulated::Articulated;
 use super::contacts::{ContactForms, contact_forms, point_jacobian};
+use super::forces::{self, Wrenches};
 use super::lumps::{self, Lump, Seat};
-use super::{articulated, energy, forces, inertia};
+use super::{bounds, energy, inertia};
 use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesTree, unit};
 use crate::kinematics::linear::LinearScalar;
 use crate::kinematics::solve::Solver;
-use crate::model::mechanism::{FrameId, Place, PointId};
+use crate::model::mechanism::{Contact, FrameId, Place, PointId};
 use crate::program::differentiate::differentiate;
 use crate::program::graph::{Graph, Input, Node};
 use crate::program::linear::{Factor, factorise};
@@ -28,6 +30,19 @@ struct Writer<'k, 'm> {
     lumps: BTreeMap<Seat, Lump>,
     /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where dependent speeds enter
     largest: Vec<Node>,
+    /// the mass matrix in another guise, where the mechanism permits
+    articulated: Option<Articulated>,
+}
+
+/// Where the entries of a reduced matrix stand.
+const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+
+/// What a mechanism answers to unit impulses at a contact.
+struct Responses {
+    /// V M^-1 V', its upper half
+    reduced: Vec<Node>,
+    /// M^-1 V'
+    columns: Vec<Vec<Node>>,
 }
 
 /// Derives and writes all quantities.
@@ -47,16 +62,19 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
         dependent,
         lumps,
         largest: Vec::new(),
+        articulated: None,
     };
     writer.kinematics();
     let (matrix, prescribed) = writer.mass_matrix();
     let factor = factorise(&mut writer.graph, &matrix);
     writer.guard_pivots(&factor);
-    writer.dynamics(&factor);
+    let contacts = writer.contact_forms();
+    let acting = writer.articulate(&contacts);
+    writer.dynamics(&factor, acting);
     writer.linearisation();
     writer.energies();
     writer.configuration();
-    let structures = writer.contacts(&factor, &prescribed);
+    let structures = writer.contacts(&contacts, &factor, &prescribed);
     writer.points();
     writer.orientations();
     writer.guards();
@@ -144,9 +162,8 @@ impl Writer<'_, '_> {
             }
         }
         let prescribed: Vec<Expr> = independent.iter().map(|&r| reduced(r, remainder)).collect();
-        // Bounds of what angles do depend on parameters alone, so they cost nothing at run time.
         if dependent.is_empty() {
-            let largest: Vec<Expr> = (0..independent.len()).map(|i| self.k.z.bound(&matrix[i][i])).collect();
+            let largest = bounds::diagonal(self.k, &self.lumps);
             self.largest = self.nodes(&largest);
         }
         let matrix: Vec<Vec<Node>> = matrix.iter().map(|row| self.nodes(row)).collect();
@@ -181,45 +198,65 @@ impl Writer<'_, '_> {
         self.nodes(&result)
     }
 
-    /// Accelerations of the independent speeds by articulated inertias, where the mechanism permits.
-    fn articulated(&mut self, at_rest: &[Expr]) -> Option<(Vec<Node>, Vec<Guard>)> {
-        let wrenches = forces::wrenches(self.k, &self.lumps, at_rest.to_vec());
-        let solved = articulated::accelerations(self.k, &self.lumps, wrenches)?;
-        let nodes = self.nodes(&solved.accelerations);
-        let mut guards = Vec::new();
-        for (pivot, slot) in solved.pivots {
+    /// Derivatives of all speeds where those of the independent ones vanish.
+    fn bias(&self) -> Vec<Expr> {
+        let of = |slot| self.k.dependent_bias.get(&slot).cloned().unwrap_or_else(Expr::zero);
+        (0..self.k.speeds.len()).map(of).collect()
+    }
+
+    /// Sets up articulated inertias for all forces of the mechanism and its contacts, where it permits; the forces.
+    fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
+        let bias = self.bias();
+        let acting = forces::wrenches(self.k, &self.lumps, bias);
+        let all = || contacts.iter().flat_map(|forms| forms.forces.iter().flatten()).chain([&acting]);
+        let points = all().flat_map(|wrenches| wrenches.forces.keys().copied()).collect();
+        let frames = all().flat_map(|wrenches| wrenches.torques.keys().copied()).collect();
+        self.articulated = Articulated::new(self.k, &self.lumps, points, frames);
+        acting
+    }
+
+    /// Makes sure that articulated inertias that are used are checked.
+    fn guard_articulated(&mut self, articulated: &Articulated) {
+        for (pivot, slot) in articulated.pivots() {
             let value = self.node(&pivot);
-            if self.graph.as_number(value).is_none() {
+            if self.graph.as_number(value).is_none() && !self.guards.iter().any(|guard| guard.value == value)
+            {
                 let speed = &self.k.mechanism.speeds[slot].name;
                 let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
                 let row = self.independent.iter().position(|&independent| independent == slot);
                 let scale = row.and_then(|row| self.largest.get(row).copied());
-                guards.push(Guard { value, scale, message });
+                self.guards.push(Guard { value, scale, message });
             }
         }
-        Some((nodes, guards))
     }
 
-    fn dynamics(&mut self, factor: &Factor) {
-        let slots = self.k.speeds.len();
-        let bias =
-            |k: &Kinematics<'_>, slot: usize| k.dependent_bias.get(&slot).cloned().unwrap_or_else(Expr::zero);
-        let at_rest: Vec<Expr> = (0..slots).map(|slot| bias(self.k, slot)).collect();
+    /// Accelerations of the independent speeds by articulated inertias.
+    fn accelerations(&mut self, articulated: &Articulated, acting: Wrenches) -> Option<Vec<Node>> {
+        let loads = articulated.inwards(self.k, acting)?;
+        let accelerations = articulated.outwards(self.k, &loads);
+        Some(self.nodes(&accelerations))
+    }
+
+    fn dynamics(&mut self, factor: &Factor, acting: Wrenches) {
+        let at_rest = self.bias();
         let forcing = self.reduced_forces(at_rest.clone());
         self.put(Quantity::Forcing, forcing.len(), 1, forcing.clone());
 
         let half = factor.half_solve(&mut self.graph, &forcing);
         let mut accelerations = factor.finish(&mut self.graph, &half);
-        if let Some((nodes, guards)) = self.articulated(&at_rest)
-            && self.graph.cost(&nodes) < self.graph.cost(&accelerations)
-        {
-            accelerations = nodes;
-            self.guards.extend(guards);
+        if let Some(articulated) = self.articulated.take() {
+            if let Some(nodes) = self.accelerations(&articulated, acting)
+                && self.graph.cost(&nodes) < self.graph.cost(&accelerations)
+            {
+                accelerations = nodes;
+                self.guard_articulated(&articulated);
+            }
+            self.articulated = Some(articulated);
         }
         self.put(Quantity::Accelerations, accelerations.len(), 1, accelerations.clone());
         let mut dependent = Vec::new();
         for &d in &self.dependent.clone() {
-            let mut terms = vec![self.node(&bias(self.k, d))];
+            let mut terms = vec![self.node(&at_rest[d])];
             for (i, &r) in self.independent.clone().iter().enumerate() {
                 let by = self.k.dependence(d, r);
                 let by = self.node(&by);
@@ -232,12 +269,12 @@ impl Writer<'_, '_> {
         // The same forces with accelerations from outside, with the opposite sign.
         let given: Vec<Expr> =
             (0..self.independent.len()).map(|i| self.k.z.input(Input::Acceleration(i as u32))).collect();
-        let mut derivatives = vec![Expr::zero(); slots];
+        let mut derivatives = at_rest;
         for (i, &slot) in self.independent.iter().enumerate() {
             derivatives[slot] = given[i].clone();
         }
         for &slot in &self.dependent {
-            let mut sum = bias(self.k, slot);
+            let mut sum = derivatives[slot].clone();
             for (i, &r) in self.independent.iter().enumerate() {
                 sum = sum.add(&self.k.dependence(slot, r).mul(&given[i]));
             }
@@ -358,15 +395,35 @@ impl Writer<'_, '_> {
         self.put(Quantity::ConfigurationJacobian, rows, dependent.len(), nodes);
     }
 
-    fn contacts(&mut self, factor: &Factor, prescribed: &[Node]) -> Vec<Structure> {
+    fn contact_forms(&mut self) -> Vec<ContactForms> {
         let mechanism = self.k.mechanism;
-        let mut structures = Vec::new();
-        for (number, contact) in mechanism.contacts.iter().enumerate() {
+        let forms = |contact: &Contact| {
             let place = format!("contact `{}`", contact.name);
-            let forms = self.k.within(place, |k| contact_forms(k, contact));
-            structures.push(self.contact(number as u32, &forms, factor, prescribed));
+            self.k.within(place, |k| contact_forms(k, contact))
+        };
+        mechanism.contacts.iter().map(forms).collect()
+    }
+
+    fn contacts(&mut self, forms: &[ContactForms], factor: &Factor, prescribed: &[Node]) -> Vec<Structure> {
+        let numbered = forms.iter().enumerate();
+        numbered.map(|(number, forms)| self.contact(number as u32, forms, factor, prescribed)).collect()
+    }
+
+    /// V M^-1 V' and the columns of M^-1 V' by articulated inertias.
+    fn responses(&mut self, articulated: &Articulated, forces: &[Wrenches; 3]) -> Option<Responses> {
+        let mut loads = Vec::new();
+        for wrenches in forces {
+            loads.push(articulated.inwards(self.k, wrenches.clone())?);
         }
-        structures
+        let reduced: Vec<Expr> =
+            UPPER.iter().map(|&(i, j)| articulated.product(self.k, &loads[i], &loads[j])).collect();
+        let reduced = self.nodes(&reduced);
+        let mut columns = Vec::new();
+        for loads in &loads {
+            let column = articulated.outwards(self.k, loads);
+            columns.push(self.nodes(&column));
+        }
+        Some(Responses { reduced, columns })
     }
 
     fn contact(
@@ -413,10 +470,8 @@ impl Writer<'_, '_> {
 
         let halves: Vec<Vec<Node>> =
             partials.iter().map(|row| factor.half_solve(&mut self.graph, row)).collect();
-        let reduced: Vec<Node> = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]
-            .into_iter()
-            .map(|(i, j)| factor.product(&mut self.graph, &halves[i], &halves[j]))
-            .collect();
+        let mut reduced: Vec<Node> =
+            UPPER.iter().map(|&(i, j)| factor.product(&mut self.graph, &halves[i], &halves[j])).collect();
         let zero = |i: usize| self.graph.is_zero(reduced[i]);
         let structure = match (zero(1), zero(2), zero(4)) {
             _ if forms.planar => Structure::Planar,
@@ -424,9 +479,26 @@ impl Writer<'_, '_> {
             (true, true, false) => Structure::Balanced,
             _ => Structure::General,
         };
-        self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
-        let columns: Vec<Vec<Node>> =
+        let mut columns: Vec<Vec<Node>> =
             halves.iter().map(|half| factor.finish(&mut self.graph, half)).collect();
+        if let Some(articulated) = self.articulated.take() {
+            let shared = partials.concat();
+            let cost = |graph: &Graph, reduced: &[Node]| graph.cost(&[&shared, reduced].concat());
+            if let Some(forces) = &forms.forces
+                && let Some(other) = self.responses(&articulated, forces)
+                && cost(&self.graph, &other.reduced) < cost(&self.graph, &reduced)
+            {
+                // What is 0 whatever the state is 0 to the last bit.
+                let kept = reduced.iter().zip(&other.reduced);
+                reduced = kept
+                    .map(|(&by_factor, &other)| if self.graph.is_zero(by_factor) { by_factor } else { other })
+                    .collect();
+                columns = other.columns;
+                self.guard_articulated(&articulated);
+            }
+            self.articulated = Some(articulated);
+        }
+        self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
         let response: Vec<Node> = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
         self.put(of(ContactQuantity::Response), p, 3, response);
         let mut dependent = Vec::new();

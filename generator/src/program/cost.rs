@@ -131,13 +131,8 @@ impl Program {
 
 /// What the passes do to a derivation, in their order; the first step is the derivation as it comes.
 pub fn trace(derived: &Derived) -> Vec<Step> {
-    let mut derived = passes::prune(derived);
     let step = |pass, program: &Program| Step { pass, cost: program.cost(&program.quantities()) };
-    let mut steps = vec![step("derivation", &lower::lower(&derived))];
-    for pass in passes::PASSES {
-        derived = (pass.run)(&derived);
-        steps.push(step(pass.name, &lower::lower(&derived)));
-    }
-    steps.push(step("fuse", &passes::fuse::fuse(&lower::lower(&derived))));
+    let mut steps = vec![step("none", &lower::lower(derived))];
+    passes::run(derived, |pass, program| steps.push(step(pass, &program())));
     steps
 }

@@ -1,7 +1,7 @@
 //! Straight-line programs: what is computed, in which order, at which stage.
 //!
 //! ```text
-//! graph (sums, products, functions)  ->  passes on the graph  ->  lower (binary operations)  ->  passes on the operations
+//! graph (sums, products, functions)  ->  passes, one of which lowers it to binary operations  ->  program
 //! ```
 
 pub mod arithmetic;
@@ -64,11 +64,7 @@ pub const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
 impl Program {
     /// The program of a derivation. The same derivation gives the same program.
     pub fn new(derived: &Derived) -> Self {
-        let mut derived = passes::prune(derived);
-        for pass in passes::PASSES {
-            derived = (pass.run)(&derived);
-        }
-        passes::fuse::fuse(&lower::lower(&derived))
+        passes::run(derived, |_, _| {})
     }
 
     /// What a value is.

@@ -106,3 +106,21 @@ pub fn difference(found: &[f64], expected: &[f64], floor: f64) -> f64 {
     let worst = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     if worst == 0.0 { 0.0 } else { worst / largest }
 }
+
+/// Every kind of joint, on parents that move and are turned.
+pub const ALL_JOINTS: &str = r#"<robot name="all joints">
+<link name="world"/>
+<link name="trunk"><inertial><origin xyz="0.1 -0.2 0.3" rpy="0.3 0.2 -0.4"/><mass value="3"/>
+ <inertia ixx="0.5" iyy="0.6" izz="0.7" ixy="0.02" iyz="-0.03" ixz="0.04"/></inertial></link>
+<link name="arm"><inertial><origin xyz="0.2 0.1 0"/><mass value="1"/><inertia ixx="0.2" iyy="0.2" izz="0.3" ixy="0" iyz="0" ixz="0"/></inertial></link>
+<link name="tray"><inertial><origin xyz="0 0.05 0.1"/><mass value="0.5"/><inertia ixx="0.1" iyy="0.2" izz="0.15" ixy="0" iyz="0" ixz="0"/></inertial></link>
+<link name="bird"><inertial><origin xyz="0.05 0 0.1"/><mass value="0.4"/><inertia ixx="0.1" iyy="0.12" izz="0.15" ixy="0.01" iyz="0" ixz="0"/></inertial></link>
+<link name="hook"><inertial><origin xyz="0.1 0 0" rpy="1 0 0"/><mass value="0.2"/><inertia ixx="0.01" iyy="0.012" izz="0.015" ixy="0.001" iyz="0" ixz="0"/></inertial></link>
+<link name="rod"><inertial><origin xyz="0 0 0.2"/><mass value="0.3"/><inertia ixx="0.01" iyy="0.01" izz="0.001" ixy="0" iyz="0" ixz="0"/></inertial></link>
+<joint name="base" type="floating"><parent link="world"/><child link="trunk"/><origin xyz="1 0 0" rpy="0.1 0.2 0.3"/></joint>
+<joint name="a" type="continuous"><parent link="trunk"/><child link="arm"/><origin xyz="0.1 0.2 0.3" rpy="0.4 -0.5 0.6"/><axis xyz="0.6 0 -0.8"/></joint>
+<joint name="p" type="planar"><parent link="arm"/><child link="tray"/><origin xyz="0.3 0 0" rpy="0 0.5 0"/><axis xyz="0.6 0.8 0"/></joint>
+<joint name="f" type="floating"><parent link="tray"/><child link="bird"/><origin xyz="0 0 0.2" rpy="0 0 0.7"/></joint>
+<joint name="w" type="fixed"><parent link="arm"/><child link="hook"/><origin xyz="0.1 0.2 0" rpy="0 1.5707963267948966 0.3"/></joint>
+<joint name="s" type="prismatic"><parent link="hook"/><child link="rod"/><origin xyz="0 0.1 0" rpy="0 0 0.2"/><axis xyz="0 -1 0"/></joint>
+</robot>"#;

@@ -109,3 +109,55 @@ impl Collected {
         graph.product([front, sum])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{keeps_the_meaning, late, small, speeds};
+    use super::*;
+
+    #[test]
+    fn like_terms_of_nested_sums_become_one() {
+        let derived = small(|g| {
+            let [a, b, ..] = speeds(g);
+            let two = g.integer(2);
+            let (inner, twice, minus) = (g.sum([a, b]), g.product([two, a]), g.neg(b));
+            vec![g.sum([inner, twice, minus])]
+        });
+        assert_eq!(late(&derived), ["Add", "Mul", "Sub", "Add"]);
+        assert_eq!(late(&collect(&derived)), ["Mul"], "3 a");
+    }
+
+    #[test]
+    fn what_cancels_is_exactly_zero() {
+        let derived = small(|g| {
+            let [a, b, ..] = speeds(g);
+            let (product, same) = (g.product([a, b]), g.product([b, a]));
+            vec![g.sub(product, same)]
+        });
+        let collected = collect(&derived);
+        assert!(collected.graph.is_zero(collected.outputs[0].nodes[0]));
+    }
+
+    #[test]
+    fn a_sum_that_others_use_stays_closed() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let shared = g.sum([a, b]);
+            vec![g.sum([shared, c]), g.sum([shared, d])]
+        });
+        assert_eq!(late(&collect(&derived)), ["Add", "Add", "Add"]);
+    }
+
+    #[test]
+    fn a_common_magnitude_and_the_first_sign_come_out() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let half = g.number(Number::ratio(-1, 2));
+            let (x, y) = (g.product([half, a]), g.product([half, b]));
+            let minus = g.neg(c);
+            vec![g.sum([x, y]), g.sum([minus, d])]
+        });
+        assert_eq!(late(&collect(&derived)), ["Add", "Mul", "Sub", "Neg", "Neg"], "-1/2 (a + b), -(c - d)");
+        keeps_the_meaning(collect);
+    }
+}

@@ -190,3 +190,64 @@ fn best(terms: &[Term]) -> Option<Factor> {
     }
     best.map(|(_, factor)| factor)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{keeps_the_meaning, late, parameters, small, speeds};
+    use super::*;
+
+    #[test]
+    fn a_common_factor_is_taken_out() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let products = [g.product([a, b]), g.product([a, c]), g.product([a, d])];
+            vec![g.sum(products)]
+        });
+        assert_eq!(late(&factor(&derived)), ["Add", "Add", "Mul"], "a (b + c + d)");
+    }
+
+    #[test]
+    fn parameters_gather_in_one_coefficient() {
+        let derived = small(|g| {
+            let ([a, b, ..], [m1, m2, l]) = (speeds(g), parameters(g));
+            let products = [g.product([m1, l, a, b]), g.product([m2, l, a, b])];
+            vec![g.sum(products)]
+        });
+        assert_eq!(late(&factor(&derived)), ["Mul", "Mul"], "(m1 l + m2 l) a b");
+    }
+
+    #[test]
+    fn a_product_that_others_use_is_left_whole() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let (ab, ac, ad) = (g.product([a, b]), g.product([a, c]), g.product([a, d]));
+            vec![g.sum([ab, ac, ad]), ab, ac, ad]
+        });
+        assert_eq!(late(&factor(&derived)), late(&derived));
+    }
+
+    #[test]
+    fn what_is_known_at_construction_is_left_alone() {
+        let derived = small(|g| {
+            let [m1, m2, l] = parameters(g);
+            let products = [g.product([m1, l]), g.product([m2, l])];
+            vec![g.sum(products)]
+        });
+        let sum = |derived: &Derived| derived.graph.value(derived.outputs[0].nodes[0]).clone();
+        assert!(
+            matches!((sum(&derived), sum(&factor(&derived))), (Value::Sum(a), Value::Sum(b)) if a.len() == b.len())
+        );
+    }
+
+    #[test]
+    fn squares_and_cubes_are_factors_too() {
+        let derived = small(|g| {
+            let [a, b, ..] = speeds(g);
+            let square = g.power(a, 2);
+            let product = g.product([a, b]);
+            vec![g.sum([square, product])]
+        });
+        assert_eq!(late(&factor(&derived)), ["Add", "Mul"], "a (a + b)");
+        keeps_the_meaning(factor);
+    }
+}

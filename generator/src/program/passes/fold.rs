@@ -46,3 +46,67 @@ fn bits(number: &Number) -> u64 {
 fn double(graph: &Graph, node: Node) -> Option<f64> {
     graph.as_number(node).map(Number::to_f64)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{keeps_the_meaning, late, parameters, small, speeds};
+    use super::*;
+    use crate::model::mechanism::Function;
+
+    fn folded(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Vec<Value> {
+        let folded = fold(&small(build));
+        folded.outputs[0].nodes.iter().map(|&node| folded.graph.value(node).clone()).collect()
+    }
+
+    #[test]
+    fn rational_numbers_stay_exact() {
+        let third = |g: &mut Graph| {
+            let (n, d) = (g.integer(1), g.integer(3));
+            let third = g.div(n, d);
+            let sixth = g.number(Number::ratio(1, 6));
+            vec![g.sum([third, sixth])]
+        };
+        assert_eq!(folded(third), [Value::Number(Number::ratio(1, 2))]);
+    }
+
+    #[test]
+    fn functions_of_numbers_become_the_double_that_the_interpreter_computes() {
+        let sine = |g: &mut Graph| {
+            let (pi, third) = (g.pi(), g.number(Number::ratio(1, 3)));
+            let angle = g.product([pi, third]);
+            vec![g.call(Function::Sin, vec![angle])]
+        };
+        let [Value::Number(number)] = &folded(sine)[..] else { panic!("not folded") };
+        assert_eq!(number.to_f64(), call(Function::Sin, std::f64::consts::PI * (1.0 / 3.0)));
+    }
+
+    #[test]
+    fn what_is_not_finite_is_left_for_the_evaluation_to_report() {
+        let root = |g: &mut Graph| {
+            let minus = g.integer(-1);
+            vec![g.call(Function::Sqrt, vec![minus])]
+        };
+        assert!(matches!(folded(root)[..], [Value::Call(Function::Sqrt, _)]));
+    }
+
+    #[test]
+    fn long_numbers_are_rounded_to_doubles() {
+        let long = |g: &mut Graph| {
+            let third = g.number(Number::ratio(1, 3));
+            vec![g.power(third, 400)]
+        };
+        let [Value::Number(number)] = &folded(long)[..] else { panic!("no number") };
+        assert!(number.to_f64() > 0.0, "{number:?}");
+        assert_eq!(BigRational::from_float(number.to_f64()).as_ref(), Some(&number.0));
+    }
+
+    #[test]
+    fn parameters_are_no_numbers() {
+        let derived = small(|g| {
+            let ([m, ..], [u, ..]) = (parameters(g), speeds(g));
+            vec![g.product([m, u])]
+        });
+        assert_eq!(late(&fold(&derived)), ["Mul"]);
+        keeps_the_meaning(fold);
+    }
+}

@@ -1,11 +1,11 @@
-//! Marks a * b + c where the product serves sums alone, and drops operations that nothing needs.
+//! Marks a * b + c as one operation where the product serves sums alone: then no product is computed twice for it.
 
 use std::collections::HashMap;
 
+use crate::program::Program;
 use crate::program::operation::{Operation, Stage, Value};
-use crate::program::{Guard, Output, Program};
 
-/// Marks fused operations.
+/// Marks fused operations; the products that go into them are left for [`super::sweep`].
 pub fn fuse(program: &Program) -> Program {
     let stages = program.stages();
     let mut uses: HashMap<Value, Uses> = HashMap::new();
@@ -46,7 +46,7 @@ pub fn fuse(program: &Program) -> Program {
             other => other,
         };
     }
-    compact(&Program { operations, ..program.clone() })
+    Program { operations, ..program.clone() }
 }
 
 #[derive(Default)]
@@ -55,40 +55,78 @@ struct Uses {
     sums: u32,
 }
 
-/// The same program without operations that nothing needs.
-pub fn compact(program: &Program) -> Program {
-    let mut needed = vec![false; program.operations.len()];
-    let outputs = program.outputs.iter().flat_map(|output| output.values.iter().copied());
-    for value in
-        outputs.chain(program.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten())
-    {
-        needed[value.index()] = true;
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{agree, bits, operations, random, small, speeds};
+    use super::super::{lower, sweep::sweep};
+    use super::*;
+    use crate::program::arithmetic::FUSED;
+
+    fn fused(derived: &crate::program::routine::Derived) -> Vec<String> {
+        operations(&sweep(&fuse(&lower(derived))))
     }
-    for index in (0..program.operations.len()).rev() {
-        if needed[index] {
-            for operand in program.operations[index].operands() {
-                needed[operand.index()] = true;
+
+    #[test]
+    fn the_three_kinds_of_fused_operations() {
+        let plus = small(|g| {
+            let [a, b, c, _] = speeds(g);
+            let product = g.product([a, b]);
+            vec![g.sum([product, c])]
+        });
+        let minus = small(|g| {
+            let [a, b, c, _] = speeds(g);
+            let product = g.product([a, b]);
+            vec![g.sub(c, product)]
+        });
+        let less = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let (first, second) = (g.product([a, b]), g.product([c, d]));
+            vec![g.sub(first, second)]
+        });
+        assert_eq!(fused(&plus), ["MulAdd"]);
+        assert_eq!(fused(&minus), ["NegMulAdd"]);
+        assert_eq!(fused(&less), ["Mul", "NegMulAdd"]);
+    }
+
+    #[test]
+    fn a_product_that_is_wanted_itself_is_not_computed_twice() {
+        let derived = small(|g| {
+            let [a, b, c, _] = speeds(g);
+            let product = g.product([a, b]);
+            vec![g.sum([product, c]), product]
+        });
+        assert_eq!(fused(&derived), ["Mul", "Add"]);
+    }
+
+    #[test]
+    fn a_product_that_serves_two_sums_goes_into_both() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let product = g.product([a, b]);
+            vec![g.sum([product, c]), g.sub(d, product)]
+        });
+        assert_eq!(fused(&derived), ["MulAdd", "NegMulAdd"]);
+    }
+
+    #[test]
+    fn what_is_computed_at_construction_keeps_its_rounding() {
+        let derived = small(|g| {
+            let [m, l, j] = super::super::testing::parameters(g);
+            let product = g.product([m, l]);
+            vec![g.sum([product, j])]
+        });
+        assert_eq!(fused(&derived), ["Mul", "Add"]);
+    }
+
+    #[test]
+    fn the_meaning_stays_and_without_the_instruction_every_bit() {
+        for seed in 1..150 {
+            let program = lower(&random(seed));
+            let fused = fuse(&program);
+            agree(&program, &fused, &format!("seed {seed}"));
+            if !FUSED {
+                assert_eq!(bits(&program), bits(&fused), "seed {seed}");
             }
         }
     }
-    let mut renamed = vec![Value(0); program.operations.len()];
-    let mut operations = Vec::new();
-    for (index, operation) in program.operations.iter().enumerate() {
-        if needed[index] {
-            renamed[index] = Value(operations.len() as u32);
-            operations.push(operation.map(|operand| renamed[operand.index()]));
-        }
-    }
-    let of = |value: Value| renamed[value.index()];
-    let outputs = program.outputs.iter().map(|output| Output {
-        values: output.values.iter().map(|&value| of(value)).collect(),
-        ..output.clone()
-    });
-    let guards = program.guards.iter().map(|guard| Guard {
-        value: of(guard.value),
-        scale: guard.scale.map(of),
-        message: guard.message.clone(),
-    });
-    let (outputs, guards) = (outputs.collect(), guards.collect());
-    Program { operations, outputs, guards, structures: program.structures.clone() }
 }

@@ -1,36 +1,85 @@
-//! The passes on the graph, in order. Each keeps what every output means; the interpreter is the referee.
+//! The passes, in one list: each keeps what every output means, the interpreter is the referee.
+//!
+//! A derivation is a graph until it is lowered to operations; the list says where.
 
 mod collect;
 mod factor;
 mod fold;
-pub mod fuse;
+mod fuse;
 mod pairs;
+mod prune;
 mod share;
+mod sweep;
 mod terms;
+#[cfg(test)]
+mod testing;
 
 use std::collections::HashMap;
 
+use super::Program;
 use super::graph::{Graph, Node, Value};
-use super::lower::{operands, reachable};
+use super::lower::{lower, operands, reachable};
 use super::operation::Stage;
 use super::routine::{Derived, Guard, Output};
 
-/// A pass on the graph.
+/// A pass.
 #[derive(Clone, Copy)]
 pub struct Pass {
     /// its name, as cost tables show it
     pub name: &'static str,
-    /// what it does
-    pub run: fn(&Derived) -> Derived,
+    work: Work,
+}
+
+/// What a pass works on.
+#[derive(Clone, Copy)]
+enum Work {
+    Graph(fn(&Derived) -> Derived),
+    Lower(fn(&Derived) -> Program),
+    Operations(fn(&Program) -> Program),
 }
 
 /// The passes in their order.
-pub const PASSES: [Pass; 4] = [
-    Pass { name: "fold", run: fold::fold },
-    Pass { name: "collect", run: collect::collect },
-    Pass { name: "factor", run: factor::factor },
-    Pass { name: "share", run: share::share },
+pub const PASSES: [Pass; 8] = [
+    Pass { name: "prune", work: Work::Graph(prune::prune) },
+    Pass { name: "fold", work: Work::Graph(fold::fold) },
+    Pass { name: "collect", work: Work::Graph(collect::collect) },
+    Pass { name: "factor", work: Work::Graph(factor::factor) },
+    Pass { name: "share", work: Work::Graph(share::share) },
+    Pass { name: "lower", work: Work::Lower(lower) },
+    Pass { name: "fuse", work: Work::Operations(fuse::fuse) },
+    Pass { name: "sweep", work: Work::Operations(sweep::sweep) },
 ];
+
+/// A derivation on its way through the passes.
+enum Form {
+    Graph(Derived),
+    Operations(Program),
+}
+
+/// Sends a derivation through the passes, and shows what it is after each as a program.
+pub fn run(derived: &Derived, mut show: impl FnMut(&'static str, &dyn Fn() -> Program)) -> Program {
+    let mut form = Form::Graph(derived.clone());
+    for pass in PASSES {
+        form = match (pass.work, form) {
+            (Work::Graph(run), Form::Graph(derived)) => Form::Graph(run(&derived)),
+            (Work::Lower(run), Form::Graph(derived)) => Form::Operations(run(&derived)),
+            (Work::Operations(run), Form::Operations(program)) => Form::Operations(run(&program)),
+            // The list has one pass that lowers, after those on the graph: a test holds it to that.
+            (_, form) => form,
+        };
+        show(pass.name, &|| form.program());
+    }
+    form.program()
+}
+
+impl Form {
+    fn program(&self) -> Program {
+        match self {
+            Form::Graph(derived) => lower(derived),
+            Form::Operations(program) => program.clone(),
+        }
+    }
+}
 
 /// What passes look up about the nodes of a graph.
 pub struct Survey {
@@ -86,15 +135,6 @@ pub fn stage(value: &Value, mut of: impl FnMut(Node) -> Stage) -> Stage {
 pub fn roots(derived: &Derived) -> impl Iterator<Item = Node> {
     let outputs = derived.outputs.iter().flat_map(|output| output.nodes.iter().copied());
     outputs.chain(derived.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten())
-}
-
-/// Drops the guards that no output needs.
-pub fn prune(derived: &Derived) -> Derived {
-    let wanted = derived.outputs.iter().flat_map(|output| output.nodes.iter().copied());
-    let reachable = reachable(&derived.graph, wanted);
-    let mut pruned = derived.clone();
-    pruned.guards.retain(|guard| reachable[guard.value.0 as usize]);
-    pruned
 }
 
 /// A new graph, node by node: `form` makes the new node of an old one, whose operands are new already.
@@ -160,4 +200,36 @@ pub fn rebuild(graph: &mut Graph, value: &Value, renamed: &Renamed) -> Node {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::testing::{agree, random};
+    use super::*;
+
+    #[test]
+    fn all_passes_together_keep_the_meaning() {
+        for seed in 1..150 {
+            let derived = random(seed);
+            agree(&lower(&derived), &run(&derived, |_, _| {}), &format!("seed {seed}"));
+        }
+    }
+
+    #[test]
+    fn one_pass_lowers_after_those_on_the_graph_and_before_those_on_operations() {
+        let order = PASSES.map(|pass| match pass.work {
+            Work::Graph(_) => 0,
+            Work::Lower(_) => 1,
+            Work::Operations(_) => 2,
+        });
+        assert!(order.is_sorted() && order.iter().filter(|&&kind| kind == 1).count() == 1, "{order:?}");
+    }
+
+    #[test]
+    fn what_is_shown_is_what_the_next_pass_gets() {
+        let (derived, mut shown) = (random(7), Vec::new());
+        let last = run(&derived, |name, program| shown.push((name, program())));
+        assert!(shown.iter().map(|(name, _)| *name).eq(PASSES.iter().map(|pass| pass.name)));
+        assert_eq!(shown.last().map(|(_, program)| program), Some(&last));
+        for pair in shown.windows(2) {
+            agree(&pair[0].1, &pair[1].1, pair[1].0);
+        }
+    }
+}

@@ -206,3 +206,53 @@ impl Parts {
         node
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{keeps_the_meaning, late, parameters, small, speeds};
+    use super::*;
+
+    #[test]
+    fn a_part_of_two_products_is_computed_once_whatever_the_signs() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let minus = g.integer(-1);
+            vec![g.product([a, b, c]), g.product([minus, a, b, d])]
+        });
+        assert_eq!(late(&share(&derived)), ["Mul", "Mul", "Mul", "Neg"], "a b, (a b) c, -(a b) d");
+    }
+
+    #[test]
+    fn a_sum_and_its_opposite_are_one() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let minus = g.neg(c);
+            let (first, opposite) = (g.sum([a, b, minus]), g.sub(c, b));
+            let opposite = g.sub(opposite, a);
+            vec![first, g.product([opposite, d])]
+        });
+        let before = late(&derived).len();
+        let shared = late(&share(&derived));
+        assert_eq!(shared, ["Sub", "Add", "Mul", "Neg"], "x = a + (b - c), -(x d)");
+        assert_eq!(before, 5);
+    }
+
+    #[test]
+    fn what_is_known_at_construction_counts_as_one_factor() {
+        let derived = small(|g| {
+            let ([a, b, ..], [m, l, _]) = (speeds(g), parameters(g));
+            vec![g.product([m, l, a]), g.product([m, l, b])]
+        });
+        assert_eq!(late(&share(&derived)), ["Mul", "Mul"], "(m l) a, (m l) b");
+    }
+
+    #[test]
+    fn what_occurs_once_keeps_its_operations() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            vec![g.product([a, b]), g.sum([c, d])]
+        });
+        assert_eq!(late(&share(&derived)), ["Mul", "Add"]);
+        keeps_the_meaning(share);
+    }
+}

@@ -47,3 +47,34 @@ pub fn factors(graph: &Graph, node: Node) -> (Number, Vec<Node>) {
     factors.sort_unstable();
     (number, factors)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::speeds;
+    use super::*;
+
+    #[test]
+    fn numbers_come_apart_from_what_they_multiply() {
+        let mut g = Graph::new();
+        let [a, b, ..] = speeds(&mut g);
+        let three = g.integer(3);
+        let product = g.product([three, a, b]);
+        let rest = g.product([a, b]);
+        assert_eq!(coefficient(&mut g, product), (Number::integer(3), Some(rest)));
+        assert_eq!(coefficient(&mut g, a), (Number::integer(1), Some(a)));
+        assert_eq!(coefficient(&mut g, three), (Number::integer(3), None));
+    }
+
+    #[test]
+    fn low_powers_are_written_out_and_high_ones_and_divisors_are_not() {
+        let mut g = Graph::new();
+        let [a, b, ..] = speeds(&mut g);
+        let (square, high, inverse) = (g.power(a, 2), g.power(b, 4), g.power(b, -1));
+        let product = g.product([square, high, inverse]);
+        let mut expected = vec![a, a, high, inverse];
+        expected.sort_unstable();
+        assert_eq!(factors(&g, product), (Number::integer(1), expected));
+        let sum = g.sum([a, b]);
+        assert_eq!((terms(&g, sum), terms(&g, a)), (vec![a, b], vec![a]));
+    }
+}

@@ -1,0 +1,88 @@
+//! How the acceleration of a point follows from those of its base and its frame, as matrices.
+
+use std::collections::BTreeMap;
+
+use super::super::sums::sum_triple;
+use crate::algebra::Expr;
+use crate::kinematics::Kinematics;
+use crate::kinematics::axes::AxesId;
+use crate::kinematics::linear::{self, Triple};
+use crate::model::mechanism::{FrameId, PointId};
+
+/// Rows along the first's home axes, columns along the second's.
+pub type Matrix = [Triple; 3];
+
+/// `da = da_base + dalpha x r + sum b u'`, along the home axes of the point.
+pub struct PointRelation {
+    /// those axes
+    pub home: AxesId,
+    /// the base point, with its home axes
+    pub base: Option<(PointId, AxesId)>,
+    /// the matrix that takes dalpha along the frame's home axes to dalpha x r
+    pub arm: Option<(FrameId, Matrix)>,
+    /// b, per slot
+    pub partials: BTreeMap<usize, Triple>,
+}
+
+impl PointRelation {
+    /// `None` if more than one frame carries the point.
+    pub fn of(k: &mut Kinematics<'_>, point: PointId) -> Option<Self> {
+        let motion = k.points[point.0].clone();
+        let home = motion.home;
+        if motion.arms.iter().any(|arm| arm.frame != motion.arms[0].frame) {
+            return None;
+        }
+        let arm = motion.arms.first().map(|first| first.frame).map(|frame| {
+            let from = k.frames[frame.0].home;
+            let total = motion.arms.iter().fold(linear::zero(), |sum, arm| {
+                let turned = k.tree.convert(&mut k.z, &arm.arm, arm.axes, from);
+                linear::add(&sum, &turned)
+            });
+            let r = linear::name(&mut k.z, total);
+            (frame, turn_rows(k, &arm_matrix(&r), from, home))
+        });
+        let mut partials: BTreeMap<usize, Triple> = BTreeMap::new();
+        for (axes, relative) in &motion.relative {
+            for (&slot, b) in &relative.terms {
+                let turned = k.tree.convert(&mut k.z, b, *axes, home);
+                sum_triple(&mut partials, slot, &turned);
+            }
+        }
+        let base = motion.base.map(|base| (base, k.points[base.0].home));
+        Some(PointRelation { home, base, arm, partials })
+    }
+}
+
+/// A column.
+pub fn column(m: &Matrix, j: usize) -> Triple {
+    std::array::from_fn(|i| m[i][j].clone())
+}
+
+/// The transposed matrix.
+pub fn transposed(m: &Matrix) -> Matrix {
+    std::array::from_fn(|i| column(m, i))
+}
+
+/// The rows along other axes.
+pub fn turn_rows(k: &mut Kinematics<'_>, m: &Matrix, from: usize, to: usize) -> Matrix {
+    if from == to {
+        return m.clone();
+    }
+    let columns: Matrix = std::array::from_fn(|j| k.tree.convert(&mut k.z, &column(m, j), from, to));
+    transposed(&columns)
+}
+
+/// `m v`.
+pub fn times(m: &Matrix, v: &Triple) -> Triple {
+    std::array::from_fn(|i| linear::dot(&m[i], v))
+}
+
+/// `-[r]x`: the matrix that takes w to w x r.
+pub fn arm_matrix(r: &Triple) -> Matrix {
+    let [x, y, z] = r;
+    [
+        [Expr::zero(), z.clone(), y.neg()],
+        [z.neg(), Expr::zero(), x.clone()],
+        [y.clone(), x.neg(), Expr::zero()],
+    ]
+}

@@ -1,0 +1,43 @@
+//! Sums that gather in maps.
+
+use std::collections::BTreeMap;
+
+use crate::algebra::Expr;
+use crate::kinematics::axes::Symmetric;
+use crate::kinematics::linear::{self, Triple};
+
+/// Adds to a number.
+pub fn sum_scalar<K: Ord>(map: &mut BTreeMap<K, Expr>, key: K, value: &Expr) {
+    let sum = map.get(&key).map_or_else(|| value.clone(), |have| have.add(value));
+    map.insert(key, sum);
+}
+
+/// Adds to a vector; zeros make no entry.
+pub fn sum_triple<K: Ord>(map: &mut BTreeMap<K, Triple>, key: K, value: &Triple) {
+    if linear::is_zero(value) {
+        return;
+    }
+    let sum = map.get(&key).map_or_else(|| value.clone(), |have| linear::add(have, value));
+    map.insert(key, sum);
+}
+
+/// Adds to a matrix by rows; zeros make no entry.
+pub fn sum_matrix<K: Ord>(map: &mut BTreeMap<K, [Triple; 3]>, key: K, value: &[Triple; 3]) {
+    if value.iter().all(linear::is_zero) {
+        return;
+    }
+    let sum = match map.get(&key) {
+        Some(have) => std::array::from_fn(|i| linear::add(&have[i], &value[i])),
+        None => value.clone(),
+    };
+    map.insert(key, sum);
+}
+
+/// Adds to a symmetric matrix.
+pub fn sum_symmetric<K: Ord>(map: &mut BTreeMap<K, Symmetric>, key: K, value: &Symmetric) {
+    let sum = match map.get(&key) {
+        Some(have) => std::array::from_fn(|i| have[i].add(&value[i])),
+        None => value.clone(),
+    };
+    map.insert(key, sum);
+}
