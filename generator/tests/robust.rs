@@ -108,6 +108,49 @@ fn ten_thousand_parameters() {
     assert!(begun.elapsed() < Duration::from_secs(30));
 }
 
+/// A chain of links that turn about x, y, z in turn.
+fn chain(links: usize, inertia: &str) -> String {
+    let list =
+        |of: &dyn Fn(usize) -> String, between: &str| (1..=links).map(of).collect::<Vec<_>>().join(between);
+    let before = |i: usize, first: &str, name: &str| {
+        if i == 1 { first.to_owned() } else { format!("{name}{}", i - 1) }
+    };
+    format!(
+        "mechanism Chain; parameters {{ m: kg = 1, l: m = 0.5, J: kg*m^2 = 0.1 }}
+         coordinates {{ {} }} speeds {{ {} }} frames {{ {} }} points {{ {} }} bodies {{ {} }}",
+        list(&|i| format!("q{i}: rad = 0.{}", i % 9 + 1), ", "),
+        list(&|i| format!("u{i}: rad/s"), ", "),
+        list(&|i| format!("B{i} = {}.rotate({}, q{i});", before(i, "N", "B"), ["x", "y", "z"][i % 3]), " "),
+        list(&|i| format!("P{i} = {} - l*B{i}.y;", before(i, "O", "P")), " "),
+        list(&|i| format!("R{i} {{ frame: B{i}, centre: P{i}, mass: m, inertia: {inertia} }}"), ", "),
+    )
+}
+
+/// The largest mechanism that can be derived is looked at in numbers too; a larger one is refused here already.
+#[test]
+fn the_largest_mechanism() {
+    let begun = Instant::now();
+    let checked = model::check(&Source::file("chain.mech", chain(64, "[J, J, J]")));
+    assert!(
+        checked.mechanism.is_some() && checked.diagnostics.is_empty(),
+        "{:?}",
+        checked.diagnostics.first()
+    );
+    let checked = model::check(&Source::file("chain.mech", chain(64, "[J, J, 3*J]")));
+    assert!(checked.diagnostics.len() == 64 && checked.diagnostics.iter().all(|d| d.code == codes::INERTIA));
+    assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
+    refused("65 speeds", chain(65, "[J, J, J]"), codes::TOO_LARGE);
+}
+
+/// What is not looked at is said.
+#[test]
+fn too_many_parts_to_look_at() {
+    let frames: String = (0..2000).map(|i| format!("F{i} = N; ")).collect();
+    let checked = model::check(&Source::file("many.mech", with(&format!("frames {{ {frames} }}"))));
+    assert!(checked.mechanism.is_some());
+    assert_eq!(checked.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>(), [codes::UNCHECKED]);
+}
+
 #[test]
 fn files_that_are_no_text() {
     let checked = model::check(&Source::bytes("x.mech", vec![b'm', 0xff, 0xfe]));

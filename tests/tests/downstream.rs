@@ -1,20 +1,27 @@
 //! Packages outside of the workspace, built by a child cargo as a user would: features are not unified with the workspace's.
 //!
 //! * `downstream`: a crate with its own models, `no_std`, the dependency renamed, every warning an error, without the algebra engine;
+//! * `parallel`: a workspace of three crates with models, which cargo builds at the same time;
 //! * `freestanding`: a program without operating system, libc and allocator. It links only if nothing in a generated collision
 //!   can panic.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 fn package(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
 }
 
 fn cargo(name: &str, arguments: &[&str]) -> Output {
+    command(name, arguments).output().expect("cargo runs")
+}
+
+fn command(name: &str, arguments: &[&str]) -> Command {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    // what two of them need in the same way is built once
+    let shared = if name == "parallel" { "downstream" } else { name };
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join(shared);
     let mut command = Command::new(cargo);
     command
         .args(arguments)
@@ -28,7 +35,7 @@ fn cargo(name: &str, arguments: &[&str]) -> Output {
             command.env_remove(key);
         }
     }
-    command.output().expect("cargo runs")
+    command
 }
 
 fn succeeds(name: &str, arguments: &[&str]) -> String {
@@ -46,6 +53,44 @@ fn a_users_crate_builds_and_collides() {
     for line in messages.lines() {
         assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "not JSON: {line}");
     }
+}
+
+/// `cargo build` of three crates with models, and beside it `cargo check`, as an editor runs it: nothing waits for ever, nothing aborts, and
+/// standard output stays JSON.
+#[test]
+fn three_crates_with_models_build_at_once() {
+    let commands = [
+        &["build", "--workspace", "--message-format=json"][..],
+        &["check", "--workspace", "--message-format=json"],
+        &["check", "--workspace", "--tests", "--message-format=json"],
+    ];
+    let running: Vec<_> = commands
+        .iter()
+        .map(|arguments| {
+            let mut command = command("parallel", arguments);
+            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("cargo starts")
+        })
+        .collect();
+    for (child, arguments) in running.into_iter().zip(commands) {
+        let output = child.wait_with_output().expect("cargo ends");
+        assert!(output.status.success(), "cargo {arguments:?}:\n{}", String::from_utf8_lossy(&output.stderr));
+        for line in String::from_utf8_lossy(&output.stdout).lines() {
+            assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "not JSON: {line}");
+        }
+    }
+}
+
+/// The command that repairs it names the file in which the user wrote the model, and the place is the user's own.
+#[test]
+fn an_inline_model_without_derivation_names_its_own_file() {
+    let output = cargo("parallel", &["check", "-p", "robot", "--features", "absent"]);
+    assert!(!output.status.success());
+    let said = String::from_utf8_lossy(&output.stderr).replace('\\', "/");
+    assert!(said.contains("the model has no derivation `derived/arm.derivation`"), "{said}");
+    assert!(said.contains("hodograph derive src/parts/arm.rs"), "{said}");
+    assert!(said.contains("robot/src/parts/arm.rs:5:15"), "{said}");
+    let errors = said.lines().filter(|line| line.starts_with("error")).count();
+    assert_eq!(errors, 2, "one mistake, and that cargo stops:\n{said}");
 }
 
 #[test]
@@ -79,7 +124,7 @@ fn locked_versions_are_those_of_the_workspace() {
         pairs.collect()
     };
     let workspace = versions(&package("../Cargo.lock"));
-    for name in ["downstream", "freestanding"] {
+    for name in ["downstream", "freestanding", "parallel"] {
         let other = versions(&package(name).join("Cargo.lock"));
         let missing: Vec<_> = other.difference(&workspace).collect();
         assert!(

@@ -95,4 +95,5 @@ codes! {
     UNUSED_PARAMETER = "W001", "a parameter is never used";
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";
+    UNCHECKED = "W004", "a mechanism too large to be looked at in numbers";
 }

@@ -14,7 +14,6 @@ mod outputs;
 mod sums;
 
 use crate::algebra::{SessionError, exclusively};
-use crate::diagnostics::codes;
 use crate::kinematics::{DeriveError, Kinematics};
 use crate::model::mechanism::Mechanism;
 use crate::program::routine::Derived;
@@ -39,22 +38,8 @@ impl std::fmt::Display for DerivationError {
 
 impl std::error::Error for DerivationError {}
 
-/// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with their cube.
-pub const MOST_SPEEDS: usize = 64;
-
 /// Derives the equations of a mechanism: waits for its turn at the algebra engine and works there on a thread of its own.
 pub fn derive(mechanism: &Mechanism) -> Result<Derived, DerivationError> {
-    if let Some(beyond) = mechanism.speeds.get(MOST_SPEEDS) {
-        return Err(DerivationError::Model(DeriveError {
-            code: codes::TOO_LARGE,
-            span: beyond.span,
-            message: format!(
-                "the mechanism has {} speeds; at most {MOST_SPEEDS} are derived",
-                mechanism.speeds.len()
-            ),
-            help: "divide the mechanism, or lump links that hardly move against each other".into(),
-        }));
-    }
     let mechanism = mechanism.clone();
     match exclusively(move || {
         let mut kinematics = Kinematics::new(&mechanism)?;

@@ -13,7 +13,7 @@ pub mod similar;
 mod typed;
 pub mod units;
 
-use crate::diagnostics::{Diagnostic, Severity, codes};
+use crate::diagnostics::{Diagnostic, Severity, Span, codes};
 use crate::source::Source;
 use crate::syntax::{self, tree::Tree};
 use mechanism::Mechanism;
@@ -34,20 +34,35 @@ impl Checked {
     }
 }
 
-/// A mechanism has at most so many coordinates, and so many speeds.
-const MAX_FREEDOMS: usize = 1000;
+/// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with their cube.
+pub const MOST_SPEEDS: usize = 64;
+/// Most coordinates: a quaternion for each speed.
+pub const MOST_COORDINATES: usize = 4 * MOST_SPEEDS;
 
 fn too_many(tree: &Tree) -> Option<Diagnostic> {
-    let (quantity, what) = match (tree.coordinates.get(MAX_FREEDOMS), tree.speeds.get(MAX_FREEDOMS)) {
-        (Some(quantity), _) => (quantity, "coordinates"),
-        (None, Some(quantity)) => (quantity, "speeds"),
-        (None, None) => (tree.dependent.get(MAX_FREEDOMS)?, "dependent speeds"),
-    };
-    let message = format!("a mechanism has at most {MAX_FREEDOMS} {what}");
-    Some(
-        Diagnostic::new(codes::TOO_LARGE, quantity.name.span, message)
-            .help("quantities that do not move are parameters"),
-    )
+    let speed = tree.speeds.iter().chain(&tree.dependent).nth(MOST_SPEEDS);
+    let coordinate = tree.coordinates.get(MOST_COORDINATES);
+    let error =
+        |span, message: String, help: &str| Diagnostic::new(codes::TOO_LARGE, span, message).help(help);
+    match (coordinate, speed) {
+        (Some(coordinate), _) => Some(error(
+            coordinate.name.span,
+            format!(
+                "a mechanism has at most {MOST_COORDINATES} coordinates, this has {}",
+                tree.coordinates.len()
+            ),
+            "quantities that do not move are parameters",
+        )),
+        (None, Some(speed)) => Some(error(
+            speed.name.span,
+            format!(
+                "a mechanism has at most {MOST_SPEEDS} speeds, this has {}",
+                tree.speeds.len() + tree.dependent.len()
+            ),
+            "divide the mechanism, or lump links that hardly move against each other",
+        )),
+        (None, None) => None,
+    }
 }
 
 /// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
@@ -72,7 +87,8 @@ pub fn check(source: &Source) -> Checked {
     if let Some(mechanism) = mechanism.as_ref().filter(|_| !unclear(&diagnostics)) {
         diagnostics.extend(counts::counts(mechanism));
         if !unclear(&diagnostics) {
-            diagnostics.extend(checks::physics(mechanism));
+            let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
+            diagnostics.extend(checks::physics(mechanism, name));
         }
     }
     // one mistake at a place: what else is found there follows from it

@@ -25,6 +25,7 @@ fn main() {
     let first = arguments.next().unwrap_or(0);
     let good = models();
     let start = Instant::now();
+    let mut reasons = std::collections::BTreeSet::new();
     let (mut derived, mut refused, mut slowest) = (0u64, 0u64, Duration::ZERO);
     let mut seed = first;
     while derived + refused < count {
@@ -41,9 +42,20 @@ fn main() {
                 println!("seed {seed} panics: {what}\n{}", String::from_utf8_lossy(&bytes));
                 std::process::exit(1);
             }
-            Err(_) => refused += 1,
+            Err(error) => {
+                refused += 1;
+                // the front end should have said it: the first of each kind is shown
+                let reason = error.to_string();
+                let kind: String = reason.split('`').step_by(2).collect::<Vec<_>>().join("..");
+                if reasons.insert(kind) {
+                    println!("seed {seed} is accepted and then refused: {reason}");
+                }
+            }
         }
         slowest = slowest.max(begun.elapsed());
+        if (derived + refused) % 1000 == 0 {
+            println!("{} mutated models, {derived} derived, {refused} refused", seed - first);
+        }
     }
     let models = seed - first;
     println!(

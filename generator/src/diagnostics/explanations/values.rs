@@ -110,4 +110,10 @@ pub(super) const TABLE: &[Explanation] = &[
         wrong: Some("definitions { h = l/2; }"),
         right: Some("definitions { h = l/2; }\npoints { G = O - h*B.y; P = O - l*B.y; }"),
     },
+    Explanation {
+        code: UNCHECKED,
+        text: "Some mistakes show in numbers alone: inertias that no body has, constraints that determine nothing, normals that are no unit vectors. They are not looked for in a mechanism of more than 2000 points, frames, definitions, bodies and contacts together, for it would take too long.",
+        wrong: None,
+        right: None,
+    },
 ];

@@ -1,0 +1,3 @@
+//! Parts of the robot.
+
+pub mod arm;
