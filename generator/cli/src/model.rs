@@ -90,8 +90,12 @@ pub fn state_text(argument: Option<&str>) -> Outcome<Option<String>> {
         Some(text) if text.trim_start().starts_with('{') => return Ok(Some(text.to_owned())),
         Some("-") => reading::up_to(std::io::stdin().lock(), MAX_STATE)
             .map_err(|error| Stop::Call(format!("cannot read the state from standard input: {error}")))?,
-        Some(path) => reading::bytes(Path::new(path), MAX_STATE)
-            .map_err(|error| Stop::unreadable(Path::new(path), &error))?,
+        Some(path) => reading::bytes(Path::new(path), MAX_STATE).map_err(|error| {
+            Stop::Call(format!(
+                "cannot read the state from {path}: {error}; a state is a file, `-` for standard input, or the object itself, as in \
+                 '{{\"q\":{{\"q1\":0.3}}}}'"
+            ))
+        })?,
     };
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();

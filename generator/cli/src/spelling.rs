@@ -14,9 +14,15 @@ pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
         .map(|(_, other)| other)
 }
 
+/// The only name that begins with these letters.
+fn completed<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let mut longer = names.into_iter().filter(|other| name.len() > 2 && other.starts_with(name));
+    longer.next().filter(|_| longer.next().is_none())
+}
+
 /// The end of a message about an unknown name: a near one if there is one, else the first few that there are.
 pub fn hint<'a>(name: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
-    if let Some(other) = nearest(name, names.clone()) {
+    if let Some(other) = nearest(name, names.clone()).or_else(|| completed(name, names.clone())) {
         return format!("did you mean `{other}`?");
     }
     let all: Vec<&str> = names.into_iter().collect();

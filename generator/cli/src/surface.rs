@@ -38,8 +38,16 @@ impl SurfaceArguments {
     ///
     /// # Errors
     ///
-    /// `unknown_name`.
+    /// `unknown_name`, `not_finite`.
     pub fn surface(&self) -> Result<Surface<f64>, Failure> {
+        for (option, value) in [("--mu", self.mu), ("--e", self.e)] {
+            if !value.is_finite() {
+                return Err(Failure::new(
+                    Kind::NotFinite,
+                    format!("{option} is {value}: give a finite number"),
+                ));
+            }
+        }
         Ok(Surface { mu: self.mu, e: self.e, law: law(&self.law)? })
     }
 }

@@ -41,7 +41,7 @@ fn devices_are_no_models() {
     let two_sleds = model("two_sleds");
     let state = run(&["eval", &two_sleds, "--state", "/dev/zero"]);
     assert_eq!(state.code, 2);
-    assert!(state.stderr.contains("cannot read /dev/zero: it is a pipe or a device"), "{}", state.stderr);
+    assert!(state.stderr.contains("the state from /dev/zero: it is a pipe or a device"), "{}", state.stderr);
     let urdf = run(&["import", "/dev/zero"]);
     assert_eq!(urdf.code, 2);
     assert!(urdf.stderr.contains("cannot read /dev/zero: it is a pipe or a device"), "{}", urdf.stderr);

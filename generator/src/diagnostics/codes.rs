@@ -96,4 +96,5 @@ codes! {
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";
     UNCHECKED = "W004", "a mechanism too large to be looked at in numbers";
+    NOT_CLOSED = "W005", "a loop that does not close";
 }

@@ -36,6 +36,7 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     let states: Vec<State> = DISTANCES.iter().enumerate().map(|(i, d)| state(m, *d, i as u64)).collect();
     axes(m, &states, &mut out);
+    quaternions(m, &mut out);
     // without proper axes nothing turns as it should
     if out.is_empty() {
         bodies(m, &states, &mut out);
@@ -59,7 +60,12 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
             Err(failure) => failures.push((state, failure)),
         }
     }
-    if seen.is_empty() {
+    if seen.is_empty() && failures.iter().all(|(_, f)| matches!(f, Failure::NotClosed(_))) {
+        let message = "the configuration equations have no solution near the values of the model";
+        let span = m.configuration.first().map_or(Span::default(), |equation| equation.span);
+        let help = "check the lengths, and the guesses of the dependent coordinates; until they fit, what shows in numbers is not looked at";
+        out.push(Diagnostic::new(codes::NOT_CLOSED, span, message).help(help));
+    } else if seen.is_empty() {
         // the first state is the most general one
         if let Some((state, failure)) = failures.iter().find(|(_, f)| !matches!(f, Failure::NotClosed(_))) {
             out.extend(nowhere(m, state, failure));
@@ -242,6 +248,24 @@ fn axes(m: &Mechanism, states: &[State], out: &mut Vec<Diagnostic>) {
         });
         let message = |length| format!("the axis of this torsion spring has the length {length}, not 1");
         not_unit(codes::LOAD, load.span, lengths.collect(), message, out);
+    }
+}
+
+/// Initial values of quaternions: all left out (or 0) is the identity.
+fn quaternions(m: &Mechanism, out: &mut Vec<Diagnostic>) {
+    for frame in &m.frames {
+        let Orientation::Quaternion(ids) = &frame.orientation else { continue };
+        let values = ids.map(|id| m.coordinates[id.0].value.unwrap_or(0.0));
+        let norm = values.iter().map(|e| e * e).sum::<f64>().sqrt();
+        if norm > 0.0 && (norm - 1.0).abs() > 1e-10 {
+            let message = format!(
+                "the initial values of the quaternion of `{}` have the norm {}, not 1",
+                frame.name,
+                number(norm)
+            );
+            let help = "divide them by it; left out, they are those of the identity";
+            out.push(Diagnostic::new(codes::QUATERNION, m.coordinates[ids[0].0].span, message).help(help));
+        }
     }
 }
 

@@ -27,11 +27,21 @@ impl Parser<'_> {
             self.at += 1;
         }
         self.tree.docs = docs.0;
+        let before = self.diagnostics.len();
         if self.header().is_err() {
             while self.peek().is_some_and(|t| !t.is_sign(';') && Section::of_word(&t.text).is_none()) {
                 self.at += 1;
             }
             self.take_sign(';');
+        }
+        let anything = |token: &&super::token::Token| {
+            token.kind == TokenKind::Name && Section::of_word(&token.text).is_some()
+        };
+        if self.tree.name.is_none() && !self.tokens.iter().any(anything) {
+            // it is no model at all, and nothing more is to be said of it
+            self.diagnostics.drain(..before);
+            self.diagnostics.truncate(1);
+            return;
         }
         while self.peek().is_some() {
             if self.another_mechanism() {
@@ -46,10 +56,31 @@ impl Parser<'_> {
     fn header(&mut self) -> Result<(), Lost> {
         if !self.is_word("mechanism") {
             let message = format!("a model begins with `mechanism Name;`, found {}", self.found());
-            let error = Diagnostic::new(codes::EXPECTED, self.here(), message)
-                .help("write `mechanism Name;` before the first section");
-            self.report(error);
-            return Err(Lost);
+            let quoted =
+                self.peek().is_some_and(|token| matches!(token.text.as_str(), "hodograph" | "mechanism"));
+            let help = match self.peek().map(|token| token.kind) {
+                Some(TokenKind::Sign('<')) => "is it a URDF? `hodograph import` makes a model of it",
+                _ if quoted => "a model file holds what stands between the braces of `mechanism! { .. }`",
+                _ => "write `mechanism Name;` before the first section",
+            };
+            self.report(Diagnostic::new(codes::EXPECTED, self.here(), message).help(help));
+            // `hodograph::mechanism! {`
+            let ahead = self.tokens.iter().skip(self.at).take(8);
+            let brace = ahead
+                .take_while(|token| !token.is_sign(';'))
+                .position(|token| token.kind == TokenKind::Open('{'));
+            let Some(brace) = brace.filter(|_| quoted) else { return Err(Lost) };
+            self.at += brace;
+            self.unwrap_braces();
+            while self
+                .peek()
+                .is_some_and(|token| matches!(token.kind, TokenKind::InnerDoc | TokenKind::OuterDoc))
+            {
+                self.at += 1;
+            }
+            if !self.is_word("mechanism") {
+                return Err(Lost);
+            }
         }
         self.at += 1;
         self.tree.name = Some(self.name("the name of the mechanism")?);

@@ -234,7 +234,12 @@ impl Parser<'_> {
             Loads => self.load()?,
             Kinematics | Constraints | Configuration => {
                 let left = self.expression()?;
-                self.sign('=', " and the right side of the equation")?;
+                let ends = self.is_sign(';') || self.is_close();
+                let sign = self.sign('=', " and the right side of the equation");
+                if sign.is_err() && ends {
+                    self.advise("an equation has two sides, as in `a - b = 0`".to_owned());
+                }
+                sign?;
                 let right = self.expression()?;
                 let equation = Equation { left, right };
                 match section {

@@ -37,13 +37,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
     state: Option<String>,
     /// when to end, s
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     until: f64,
     /// a line each so many seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.01, allow_hyphen_values = true)]
     step: f64,
     /// relative and absolute tolerance of the integration
-    #[arg(long, value_name = "NUMBER", default_value_t = 1e-9)]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1e-9, allow_hyphen_values = true)]
     tolerance: f64,
     #[command(flatten)]
     surface: SurfaceArguments,

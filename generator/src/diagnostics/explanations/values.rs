@@ -116,4 +116,14 @@ pub(super) const TABLE: &[Explanation] = &[
         wrong: None,
         right: None,
     },
+    Explanation {
+        code: NOT_CLOSED,
+        text: "With the values of the model the configuration equations have no solution near the initial values, where dependent coordinates are guesses: a link is too short, or a guess is far away. Other parameters may close the loop, so it is no error.",
+        wrong: Some(
+            "mechanism Slider;\nparameters { m: kg = 1, a: m = 1, b: m = 0.2 }\ncoordinates { q1: rad = 1.5, dependent q2: m = 0.5 }\nspeeds { u1: rad/s }\ndependent { u2: m/s }\nframes { A = N.rotate(z, q1); }\npoints { P = O + a*A.x; S = O + q2*N.x; }\nparticles { Pin { point: P, mass: m }, Block { point: S, mass: m } }\nconstraints { dot(velocity(P, S), position(P, S)) = 0; }\nconfiguration { dot(position(P, S), position(P, S)) = b^2; }",
+        ),
+        right: Some(
+            "mechanism Slider;\nparameters { m: kg = 1, a: m = 1, b: m = 2 }\ncoordinates { q1: rad = 1.5, dependent q2: m = 1.8 }\nspeeds { u1: rad/s }\ndependent { u2: m/s }\nframes { A = N.rotate(z, q1); }\npoints { P = O + a*A.x; S = O + q2*N.x; }\nparticles { Pin { point: P, mass: m }, Block { point: S, mass: m } }\nconstraints { dot(velocity(P, S), position(P, S)) = 0; }\nconfiguration { dot(position(P, S), position(P, S)) = b^2; }",
+        ),
+    },
 ];

@@ -94,8 +94,7 @@ impl Lowering<'_> {
                 codes::FIELD
             };
             let message = format!("`{}` has no {}", owner.text, missing.join(" and no "));
-            let first = missing[0].trim_matches('`').to_owned();
-            let example = match first.as_str() {
+            let example = |field: &String| match field.trim_matches('`') {
                 "mass" => "mass: m",
                 "inertia" => "inertia: [Ixx, Iyy, Izz]",
                 "frame" => "frame: B",
@@ -105,7 +104,9 @@ impl Lowering<'_> {
                 "angle" => "angle: q1",
                 _ => "",
             };
-            self.report(Diagnostic::new(code, owner.span, message).help(format!("add `{example}`")));
+            let examples: Vec<&str> = missing.iter().map(example).collect();
+            let help = format!("add `{}`", examples.join(", "));
+            self.report(Diagnostic::new(code, owner.span, message).help(help));
         }
         found
     }

@@ -233,6 +233,9 @@ impl Lowering<'_> {
         let of = points[0];
         let from = points.get(1).copied().unwrap_or(PointId::O);
         let (a, b) = (self.points[of.0].clone(), self.points[from.0].clone());
+        if a.broken || b.broken {
+            return Typed::poison(span);
+        }
         if name.text == "velocity" {
             let traits = a.velocity.plus(b.velocity).seen_from(span);
             let dimension = Some(Dimension::of(1, 0, -1));
@@ -279,6 +282,9 @@ impl Lowering<'_> {
             return Typed::poison(span);
         };
         let (of, in_frame) = (frames[0], frames.get(1).copied().unwrap_or(FrameId::N));
+        if self.frames[of.0].broken || self.frames[in_frame.0].broken {
+            return Typed::poison(span);
+        }
         let traits = self.frames[of.0].angular_velocity.plus(self.frames[in_frame.0].angular_velocity);
         let dimension = Some(Dimension::of(0, 0, -1));
         Typed::vector(Vector::AngularVelocity { of, in_frame }, dimension, traits.seen_from(span), span)
@@ -308,6 +314,9 @@ impl Lowering<'_> {
                     && let Some(frame) = super::super::order::body_frame(self.tree, b)
                 {
                     error = error.help(format!("its frame is `{}`", frame.text));
+                } else if let Symbol::Point(_) = symbol {
+                    error = error
+                        .help(format!("a component of its position is `dot(position({}), N.x)`", name.text));
                 }
                 self.report(error);
                 return None;
@@ -318,6 +327,9 @@ impl Lowering<'_> {
 
     /// A frame made by `spin` has no axes.
     pub(super) fn need_axes(&mut self, frame: FrameId, at: Span) -> Option<FrameId> {
+        if self.frames[frame.0].broken {
+            return None;
+        }
         if !self.frames[frame.0].no_axes {
             return Some(frame);
         }

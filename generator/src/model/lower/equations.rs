@@ -1,10 +1,11 @@
 //! Kinematical equations, velocity constraints and configuration constraints.
 
 use super::super::mechanism::{Equation, EquationSides, Scalar, Vector};
+use super::super::names::Symbol;
 use super::super::typed::{Typed, Value};
 use super::{Lowering, in_words, quantity};
 use crate::diagnostics::{Diagnostic, codes};
-use crate::syntax::tree;
+use crate::syntax::tree::{self, ExprKind};
 
 impl Lowering<'_> {
     pub(super) fn equations(&mut self) {
@@ -21,6 +22,9 @@ impl Lowering<'_> {
     fn section(&mut self, equations: &[tree::Equation], what: &str, linear: bool) -> Vec<Equation> {
         let mut out = Vec::new();
         for equation in equations {
+            if self.points_equated(equation, linear) {
+                continue;
+            }
             let left = self.expression(&equation.left);
             let right = self.expression(&equation.right);
             let Some(sides) = self.sides(&left, &right, what) else { continue };
@@ -50,6 +54,22 @@ impl Lowering<'_> {
             out.push(Equation { sides, span: equation.span() });
         }
         out
+    }
+
+    /// `P = Q` where their positions or velocities are meant.
+    fn points_equated(&mut self, equation: &tree::Equation, linear: bool) -> bool {
+        let (ExprKind::Name(p), ExprKind::Name(q)) = (&equation.left.kind, &equation.right.kind) else {
+            return false;
+        };
+        let point = |name: &String| matches!(self.names.get(name), Some(Symbol::Point(_)));
+        if !point(p) || !point(q) {
+            return false;
+        }
+        let function = if linear { "velocity" } else { "position" };
+        let error = Diagnostic::new(codes::WRONG_KIND, equation.span(), "points cannot be equated")
+            .help(format!("did you mean `{function}({p}) = {function}({q})`?"));
+        self.report(error);
+        true
     }
 
     /// `q1 = u1` where `d(q1)/dt = u1` is meant.

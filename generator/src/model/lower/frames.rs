@@ -15,7 +15,13 @@ const OPERATIONS: [&str; 5] = ["rotate", "euler", "space", "quaternion", "spin"]
 impl Lowering<'_> {
     /// The orientation of frame `i` in its parent.
     pub(super) fn orientation(&mut self, i: usize) {
-        let Some(index) = i.checked_sub(1) else { return };
+        if i > 0 {
+            self.frames[i].broken = self.read_orientation(i).is_none();
+        }
+    }
+
+    fn read_orientation(&mut self, i: usize) -> Option<()> {
+        let index = i.checked_sub(1)?;
         let source = &self.tree.frames[index];
         let value = &source.value;
         let Some(base) = base_frame(value) else {
@@ -24,16 +30,16 @@ impl Lowering<'_> {
                     .help("write `B = N;`, `B = N.rotate(z, q1);`, or use euler, space, quaternion or spin");
                 self.report(error);
             }
-            return;
+            return None;
         };
-        let Some(parent) = self.proper_frame(&base) else { return };
+        let parent = self.proper_frame(&base)?;
         self.out.frames[i].parent = Some(parent);
         let ExprKind::Method(_, operation, arguments) = &value.kind else {
             if let ExprKind::Field(..) = value.kind {
                 let error = Diagnostic::new(codes::FRAME, value.span, "this is not an orientation")
                     .help("write `B = N;` or `B = N.rotate(z, q1);`");
                 self.report(error);
-                return;
+                return None;
             }
             // the same axes, or the same lack of them
             if self.need_axes(parent, base.span).is_some() {
@@ -41,9 +47,9 @@ impl Lowering<'_> {
             } else {
                 self.frames[i].no_axes = true;
             }
-            return;
+            return Some(());
         };
-        self.need_axes(parent, base.span);
+        let axes = self.need_axes(parent, base.span);
         if let Some(Expr { kind: ExprKind::List(_), span }) = arguments.first() {
             self.out.frames[i].orientation_span = *span;
         }
@@ -52,8 +58,9 @@ impl Lowering<'_> {
             self.frames[i].no_axes = true;
             if arguments.len() != 1 {
                 self.arguments_expected(operation, "the angular velocity, as in `A.spin(u3*A.y)`", value);
+                return None;
             }
-            return;
+            return axes.map(drop);
         }
         let read = match operation.text.as_str() {
             "rotate" => self.rotate(operation, arguments, value),
@@ -69,10 +76,10 @@ impl Lowering<'_> {
                 None
             }
         };
-        if let Some((orientation, traits)) = read {
-            self.out.frames[i].orientation = orientation;
-            self.frames[i].orientation = traits.plus(self.frames[parent.0].orientation);
-        }
+        let (orientation, traits) = read?;
+        self.out.frames[i].orientation = orientation;
+        self.frames[i].orientation = traits.plus(self.frames[parent.0].orientation);
+        (axes.is_some() && !self.frames[parent.0].broken).then_some(())
     }
 
     fn arguments_expected(&mut self, operation: &Name, what: &str, value: &Expr) {

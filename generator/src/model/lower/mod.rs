@@ -76,6 +76,8 @@ pub(super) struct DefinitionFacts {
 /// What is known of a frame.
 #[derive(Clone, Default)]
 pub(super) struct FrameFacts {
+    /// it could not be read: what rests on it is no further mistake
+    pub broken: bool,
     /// it has axes: neither itself nor what it is oriented in is made by `spin`
     pub no_axes: bool,
     /// on what its orientation depends
@@ -87,6 +89,8 @@ pub(super) struct FrameFacts {
 /// What is known of a point.
 #[derive(Clone, Default)]
 pub(super) struct PointFacts {
+    /// it could not be read: what rests on it is no further mistake
+    pub broken: bool,
     /// the point from which its position is known: O, or a point known by its velocity only
     pub root: usize,
     /// on what its position from there depends
@@ -301,6 +305,13 @@ impl<'a> Lowering<'a> {
         // comparing spellings is slow; nobody reads so many suggestions
         let near =
             if self.unknown.len() <= MAX_SUGGESTIONS { self.names.nearest(&name.text, fits) } else { None };
+        if near.is_none() && units::is_symbol(&name.text) && name.text.chars().count() > 1 {
+            self.report(error.help(format!(
+                "units stand in declarations only: declare a quantity in it, as in `a: {} = ..`",
+                name.text
+            )));
+            return None;
+        }
         let error = match near {
             Some(near) => {
                 let help = format!("did you mean `{near}`?");
@@ -327,12 +338,6 @@ impl<'a> Lowering<'a> {
         }
         if let Some(given) = habits::name(text) {
             return Some(format!("did you mean `{given}`?"));
-        }
-        // a name that is nearly right is likelier than a unit of one letter
-        if text.chars().count() > 1 && units::is_symbol(text) {
-            return Some(format!(
-                "units stand in declarations only: declare a quantity in it, as in `a: {text} = ..`"
-            ));
         }
         None
     }

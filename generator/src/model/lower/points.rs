@@ -12,7 +12,13 @@ use crate::syntax::tree::{Expr, ExprKind, Name};
 impl Lowering<'_> {
     /// The place of point `i`.
     pub(super) fn position(&mut self, i: usize) {
-        let Some(index) = i.checked_sub(1) else { return };
+        if i > 0 {
+            self.points[i].broken = self.read_position(i).is_none();
+        }
+    }
+
+    fn read_position(&mut self, i: usize) -> Option<()> {
+        let index = i.checked_sub(1)?;
         let source = &self.tree.points[index];
         self.points[i].root = 0;
         let frame = source.of.as_ref().map(|of| self.frame_named(of));
@@ -27,17 +33,18 @@ impl Lowering<'_> {
                 .help("remove `of ..`, or state a position with `=`");
                 self.report(error);
             }
-            return;
+            return Some(());
         }
-        let Some((from, by, traits)) = self.offset(&source.value) else { return };
+        let (from, by, traits) = self.offset(&source.value)?;
         let origin = self.points[from.0].clone();
         self.points[i].root = origin.root;
         self.points[i].position = origin.position.plus(traits);
         self.out.points[i].place = match frame {
             None => Place::Offset { from, by },
             Some(Some(frame)) => Place::Material { frame, from, by },
-            Some(None) => return,
+            Some(None) => return None,
         };
+        (!origin.broken).then_some(())
     }
 
     /// `Q + vector`: the point and the vector.
