@@ -2,11 +2,12 @@
 //!
 //! Generated code computes the same bits under the same floating-point backend: it consists of the same operations.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use crate::program::arithmetic::{call, call2, mul_add, sin_cos};
 use crate::program::graph::Input;
-use crate::program::operation::Operation;
+use crate::program::operation::{Operation, Value};
 use crate::program::routine::Quantity;
 use crate::program::slice::Slice;
 use crate::program::{Guard, Program, VANISHING};
@@ -81,6 +82,8 @@ pub enum Failure {
         message: String,
         /// the value that counts as zero
         value: f64,
+        /// the coordinates on which that value depends, by their numbers
+        coordinates: Vec<u32>,
     },
     /// a result, or a value that must not vanish, is infinite or not a number
     NotFinite,
@@ -122,7 +125,7 @@ impl<'a> Evaluator<'a> {
         let slice = self.program.slice(quantities);
         let numbers = self.numbers(inputs, &slice);
         for guard in &slice.guards {
-            check(guard, &numbers)?;
+            self.check(guard, &numbers)?;
         }
         let mut arrays = Vec::with_capacity(slice.outputs.len());
         for output in &slice.outputs {
@@ -146,7 +149,7 @@ impl<'a> Evaluator<'a> {
         for &value in &slice.order {
             use Operation::*;
             let operation = self.program.operation(value);
-            let of = |value: crate::program::operation::Value| numbers[value.index()].0;
+            let of = |value: Value| numbers[value.index()].0;
             let number = match operation {
                 Constant(bits) => bits.get(),
                 Input(input) => inputs.get(input),
@@ -172,16 +175,32 @@ impl<'a> Evaluator<'a> {
         }
         numbers
     }
-}
 
-fn check(guard: &Guard, numbers: &[(f64, f64)]) -> Result<(), Failure> {
-    let value = numbers[guard.value.index()].0;
-    let bound = guard.scale.map_or(0.0, |scale| VANISHING * numbers[scale.index()].0.abs());
-    if value.abs() > bound {
-        Ok(())
-    } else if value.is_finite() && bound.is_finite() {
-        Err(Failure::Singular { message: guard.message.clone(), value })
-    } else {
-        Err(Failure::NotFinite)
+    fn check(&self, guard: &Guard, numbers: &[(f64, f64)]) -> Result<(), Failure> {
+        let value = numbers[guard.value.index()].0;
+        let bound = guard.scale.map_or(0.0, |scale| VANISHING * numbers[scale.index()].0.abs());
+        if value.abs() > bound {
+            Ok(())
+        } else if value.is_finite() && bound.is_finite() {
+            let coordinates = self.coordinates_of(guard.value);
+            Err(Failure::Singular { message: guard.message.clone(), value, coordinates })
+        } else {
+            Err(Failure::NotFinite)
+        }
+    }
+
+    fn coordinates_of(&self, value: Value) -> Vec<u32> {
+        let (mut seen, mut open, mut found) = (BTreeSet::new(), vec![value], BTreeSet::new());
+        while let Some(value) = open.pop() {
+            if !seen.insert(value) {
+                continue;
+            }
+            let operation = self.program.operation(value);
+            if let Operation::Input(Input::Coordinate(index)) = operation {
+                found.insert(index);
+            }
+            open.extend(operation.operands());
+        }
+        found.into_iter().collect()
     }
 }

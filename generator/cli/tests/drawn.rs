@@ -125,3 +125,74 @@ fn costs_are_a_table() {
         assert!(run.stdout.contains("all, after pass fuse"), "{}{}", run.stdout, run.stderr);
     }
 }
+
+/// The box begins with its corner on the ground, to within rounding even below it, and falls: it strikes at once.
+#[test]
+fn what_touches_at_the_start_strikes_at_once() {
+    let gap = |state: &str| {
+        let run = hodograph(&["eval", &model("free_box_corner"), "--state", state], "");
+        number(&run.line()["contacts"]["corner"]["gap"])
+    };
+    assert!(gap("{}") <= 0.0, "the case is not tried");
+    for step in ["0.01", "0.1"] {
+        let call = [
+            "simulate",
+            &model("free_box_corner"),
+            "--until",
+            "0.1",
+            "--step",
+            step,
+            "--mu",
+            "0.3",
+            "--e",
+            "0.5",
+            "--law",
+            "stronge",
+        ];
+        let run = hodograph(&call, "");
+        assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
+        let lines = run.lines();
+        assert_eq!(
+            (number(&lines[1]["t"]), lines[1]["contact"].as_str()),
+            (0.0, Some("corner")),
+            "{}",
+            run.stdout
+        );
+        for sample in lines.iter().filter(|line| line.get("q").is_some()) {
+            let state = json!({"q": sample["q"]});
+            assert!(gap(&state.to_string()) > -1e-9, "{sample}");
+        }
+    }
+}
+
+/// Bounces far shorter than a step are not missed.
+#[test]
+fn short_bounces_are_followed() {
+    let state = r#"{"q":{"z":0.3},"u":{"u1":0,"u2":0,"u3":0,"u4":0,"u5":0},"parameters":{"l":0.5}}"#;
+    let call = [
+        "simulate",
+        &model("slender_rod_5dof"),
+        "--until",
+        "1.5",
+        "--step",
+        "0.5",
+        "--mu",
+        "0",
+        "--e",
+        "0.3",
+        "--law",
+        "newton",
+        "--state",
+        state,
+    ];
+    let run = hodograph(&call, "");
+    let lines = run.lines();
+    let hits: Vec<f64> =
+        lines.iter().filter(|line| line.get("contact").is_some()).map(|line| number(&line["t"])).collect();
+    assert!(hits.len() > 3, "{}{}", run.stdout, run.stderr);
+    assert!(hits.windows(2).all(|pair| pair[1] - pair[0] < 0.05), "{hits:?}");
+    for line in lines.iter().filter(|line| line.get("contact").is_none()) {
+        let (z, q5) = (number(&line["q"]["z"]), number(&line["q"]["q5"]));
+        assert!(z - 0.5 * q5.sin() > -1e-9, "{line}");
+    }
+}

@@ -117,6 +117,72 @@ fn singular_states_are_said_not_computed() {
     assert_eq!(run.error_kind(), "singular_state");
 }
 
+/// The message names what cannot be found, and where.
+#[test]
+fn singular_states_are_said_where() {
+    let pole = std::f64::consts::FRAC_PI_2;
+    for (name, state, what, place) in [
+        ("free_box_corner", json!({"q": {"q5": pole}}), "the rate of q4, q6 at this q5", "(q5 = 1.57"),
+        ("ball_joint_body", json!({"q": {"q2": 0}}), "the rate of q1, q3 at this q2", "(q2 = 0,"),
+        ("spherical_pendulum", json!({"q": {"q2": 0}}), "the rate of q1 at this q2", "(q2 = 0,"),
+        ("slender_rod_5dof", json!({"q": {"q5": pole}}), "the rate of q4 at this q5", "(q5 = 1.57"),
+        ("rolling_disc", json!({"q": {"q2": pole}}), "the rate of q1, q3 at this q2", "(q2 = 1.57"),
+        ("rattleback", json!({"q": {"q2": pole}}), "the rate of q1, q3 at this q2", "(q2 = 1.57"),
+    ] {
+        let run = eval(name, &state);
+        assert_eq!(run.error_kind(), "singular_state");
+        assert!(message(&run).contains(what) && message(&run).contains(place), "{name}: {}", message(&run));
+    }
+}
+
+/// Where a linkage folds, its completed coordinates are known to the root of the rounding error only: no number follows from
+/// them. A little beside all do.
+#[test]
+fn folded_linkages_are_singular() {
+    let folded = [
+        ("four_bar", json!({"d": 1.2, "l3": 0.7}), std::f64::consts::PI, -1.0),
+        ("slider_crank", json!({"l1": 0.8, "l2": 0.5}), 0.625f64.asin(), -1.0),
+    ];
+    for (name, parameters, q1, side) in folded {
+        let at = |q1: f64| eval(name, &json!({"parameters": parameters, "q": {"q1": q1}}));
+        for q1 in [q1, q1 + side * 1e-16, q1 + side * 1e-15] {
+            let run = at(q1);
+            assert_eq!(run.error_kind(), "singular_state", "{name} at {q1}");
+            assert!(message(&run).contains("dead centre where q2 = "), "{}", message(&run));
+        }
+        for distance in [1e-3, 1e-2] {
+            let run = at(q1 + side * distance);
+            assert_eq!(run.code, 0, "{name}: {}", run.stdout);
+            for value in run.line()["udot"].as_object().unwrap().values() {
+                assert!(number(value).abs() < 1e6, "{name}: {}", run.stdout);
+            }
+        }
+    }
+}
+
+/// A loop that is closed by its velocities alone stays open if it begins so: that is said, with the distance.
+#[test]
+fn open_loops_are_reported() {
+    let text = std::fs::read_to_string(model("four_bar")).unwrap();
+    let (before, after) = text.split_once("configuration {").unwrap();
+    let after = after.split_once('}').unwrap().1;
+    let text = format!("{before}{after}").replace("dependent q", "q");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("four_bar.mech");
+    for equation in ["velocity(EB) = velocity(EC)", "velocity(EB, EC) = 0", "0 = velocity(EB) - velocity(EC)"]
+    {
+        std::fs::write(&path, text.replace("velocity(EB) = velocity(EC)", equation)).unwrap();
+        let at = |state: &str| hodograph(&["eval", path.to_str().unwrap(), "--state", state], "");
+        let closed = at("{}");
+        assert_eq!(closed.code, 0, "{}{}", closed.stdout, closed.stderr);
+        assert_eq!(closed.line()["udot"], eval("four_bar", &json!({})).line()["udot"]);
+        let open = at(r#"{"q":{"q1":1.0}}"#);
+        assert_eq!(open.error_kind(), "inconsistent_state");
+        let said = message(&open);
+        assert!(said.contains("EB is off EC by [0.1") || said.contains("EC is off EB by [-0.1"), "{said}");
+    }
+}
+
 fn collide(name: &str, more: &[&str]) -> Run {
     hodograph(&[&["collide", &model(name)], more].concat(), "")
 }

@@ -363,6 +363,48 @@ impl Intermediates {
         bound
     }
 
+    /// The expression with names replaced by what they stand for, as long as it stays within a size.
+    pub fn opened(&self, expr: &Expr, most: usize) -> Expr {
+        let mut best = expr.clone();
+        loop {
+            let named = best.symbols().into_iter().find_map(|symbol| match self.meaning(symbol) {
+                Meaning::Named(value) => Some((symbol, value.clone())),
+                _ => None,
+            });
+            let Some((symbol, value)) = named else { return best };
+            let next = best.replace(symbol, &value);
+            if size(&next) > most {
+                return best;
+            }
+            best = next;
+        }
+    }
+
+    /// Is anything in the expression, through any names, divided by this?
+    pub fn is_divided_by(&self, expr: &Expr, divisor: &Expr) -> bool {
+        let mut seen = vec![false; self.meanings.len()];
+        let mut open = vec![expr.clone()];
+        while let Some(expr) = open.pop() {
+            match expr.view() {
+                View::Number(_) => {}
+                View::Symbol(symbol) => {
+                    if std::mem::replace(&mut seen[symbol as usize], true) {
+                        continue;
+                    }
+                    match self.meaning(symbol) {
+                        Meaning::Named(value) => open.push(value.clone()),
+                        Meaning::Call(_, arguments) => open.extend(arguments.iter().cloned()),
+                        _ => {}
+                    }
+                }
+                View::Sum(parts) | View::Product(parts) => open.extend(parts),
+                View::Power(base, n) if n < 0 && &base == divisor => return true,
+                View::Power(base, _) => open.push(base),
+            }
+        }
+        false
+    }
+
     /// Does the expression depend, through any names, on a symbol that `matters`?
     pub fn depends(&self, expr: &Expr, matters: &mut impl FnMut(SymbolId) -> bool) -> bool {
         let mut seen = vec![false; self.meanings.len()];

@@ -97,4 +97,5 @@ codes! {
     UNUSED_DEFINITION = "W003", "a definition is never used";
     UNCHECKED = "W004", "a mechanism too large to be looked at in numbers";
     NOT_CLOSED = "W005", "a loop that does not close";
+    NEVER_APPROACHES = "W006", "a contact that only slides";
 }

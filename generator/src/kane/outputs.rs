@@ -351,14 +351,17 @@ impl Writer<'_, '_> {
                 equations.push(form);
             }
         }
-        let solver = Solver::new(&mut self.k.z, &equations, &dependent).ok()?;
-        for (determinant, block) in &solver.determinants {
-            let names: Vec<_> = block.iter().map(|&i| mechanism.coordinates[i].name.as_str()).collect();
-            let message = format!("the configuration equations cannot be solved for {}", names.join(", "));
-            self.k.guard(determinant, message);
-        }
+        let solver = Solver::new(&mut self.k.z, &mut self.k.samples, &equations, &dependent).ok()?;
         let z = &mut self.k.z;
-        Some(solver.solve(&equations, |c| z.name(c)))
+        let solved = solver.solve(&equations, |c| z.name(c));
+        let forms: Vec<(String, LinearScalar)> =
+            solved.iter().map(|(&i, form)| (mechanism.coordinates[i].name.clone(), form.clone())).collect();
+        for determinant in &solver.determinants {
+            self.k.guard_determinant(determinant, &forms, |names| {
+                format!("the configuration equations cannot be solved for {names}")
+            });
+        }
+        Some(solved)
     }
 
     fn energies(&mut self) {

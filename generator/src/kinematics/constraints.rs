@@ -37,7 +37,7 @@ impl Kinematics<'_> {
                 help: "declare as many speeds in `dependent` as there are independent constraints".into(),
             });
         }
-        let solver = Solver::new(&mut self.z, &equations, &unknowns).map_err(|error| {
+        let solver = Solver::new(&mut self.z, &mut self.samples, &equations, &unknowns).map_err(|error| {
             let (code, slot, what) = match &error {
                 SolveError::Undetermined(slot) => {
                     (codes::CONSTRAINT_SINGULAR, *slot, "no constraint determines")
@@ -58,12 +58,18 @@ impl Kinematics<'_> {
                 help: "make another speed dependent, or state the constraint that is missing".into(),
             }
         })?;
-        for (determinant, block) in &solver.determinants {
-            let names: Vec<_> = block.iter().map(|&slot| mechanism.speeds[slot].name.as_str()).collect();
-            self.guard(determinant, format!("the constraints cannot be solved for {}", names.join(", ")));
-        }
         let z = &mut self.z;
         self.dependent = solver.solve(&equations, |c| z.name(c));
+        let forms: Vec<(String, LinearScalar)> = self
+            .dependent
+            .iter()
+            .map(|(&slot, form)| (mechanism.speeds[slot].name.clone(), form.clone()))
+            .collect();
+        for determinant in &solver.determinants {
+            self.guard_determinant(determinant, &forms, |names| {
+                format!("the constraints cannot be solved for {names}")
+            });
+        }
         for (&slot, form) in &self.dependent.clone() {
             let value = self.value(form);
             self.z.define(self.speeds[slot], value);

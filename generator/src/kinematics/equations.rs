@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use super::Kinematics;
 use super::axes::{AxesId, AxesTree};
 use super::linear::{LinearScalar, LinearVector};
-use crate::algebra::{Expr, Sample};
+use crate::algebra::{Expr, Intermediates, Sample};
 use crate::model::mechanism::{
     DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Quantity, Vector,
 };
@@ -71,9 +71,7 @@ impl Kinematics<'_> {
 
     /// Is the expression identically 0, as far as arbitrary states show?
     pub fn vanishes(&mut self, expr: &Expr) -> bool {
-        let seen: Vec<bool> =
-            self.samples.iter_mut().filter_map(|sample| sample.vanishes(&self.z, expr)).collect();
-        expr.is_zero() || (seen.len() > 1 && seen.iter().all(|&zero| zero))
+        expr.is_zero() || vanishes(&self.z, &mut self.samples, expr)
     }
 
     /// How many of the forms are independent at arbitrary states; all, where that cannot be seen.
@@ -164,6 +162,12 @@ impl LinearVector {
     fn scale(&self, k: &Expr) -> Self {
         self.map(|p| super::linear::scale(k, p))
     }
+}
+
+/// Is the expression 0 at all samples at which it has a value?
+pub(super) fn vanishes(z: &Intermediates, samples: &mut [Sample], expr: &Expr) -> bool {
+    let seen: Vec<bool> = samples.iter_mut().filter_map(|sample| sample.vanishes(z, expr)).collect();
+    seen.len() > 1 && seen.iter().all(|&zero| zero)
 }
 
 /// The number of independent rows.

@@ -139,7 +139,7 @@ pub struct Kinematics<'m> {
     /// what must not vanish
     pub guards: Vec<GuardedValue>,
     /// arbitrary states, at which it shows what is identically 0
-    samples: Vec<Sample>,
+    pub samples: Vec<Sample>,
     partials: BTreeMap<SymbolId, Vec<(usize, Expr)>>,
     definitions: evaluate::Definitions,
     /// what is being evaluated, for messages about divisors
@@ -290,25 +290,66 @@ impl<'m> Kinematics<'m> {
 
     /// Notes that a value must not vanish.
     pub fn guard(&mut self, value: &Expr, message: impl Into<String>) {
-        // A product divides by each of its factors.
         let message = message.into();
-        match value.view() {
-            View::Number(_) => return,
-            View::Product(factors) => {
-                return factors.iter().for_each(|factor| self.guard(factor, message.clone()));
-            }
-            View::Power(base, _) => return self.guard(&base, message),
-            View::Symbol(_) | View::Sum(_) => {}
+        for factor in factors(value) {
+            self.guard_factor(&factor, message.clone());
         }
+    }
+
+    /// Notes that a determinant must not vanish: `message` says what cannot be found where one of its factors does, from the names of
+    /// the unknowns whose forms it divides.
+    pub fn guard_determinant(
+        &mut self,
+        determinant: &Expr,
+        unknowns: &[(String, LinearScalar)],
+        message: impl Fn(&str) -> String,
+    ) {
+        for factor in factors(determinant) {
+            let divided = |form: &LinearScalar| {
+                form.terms.values().chain([&form.rest]).any(|c| self.z.is_divided_by(c, &factor))
+            };
+            let found: Vec<_> =
+                unknowns.iter().filter(|(_, form)| divided(form)).map(|(name, _)| name.as_str()).collect();
+            // Where a factor is hidden in a name every unknown may be concerned.
+            let all = || unknowns.iter().map(|(name, _)| name.as_str()).collect();
+            let names: Vec<&str> = if found.is_empty() { all() } else { found };
+            self.guard_factor(&factor, message(&names.join(", ")));
+        }
+    }
+
+    fn guard_factor(&mut self, value: &Expr, message: String) {
         if self.guards.iter().any(|guard| &guard.value == value) {
             return;
         }
+        let place = self.coordinates_of(value);
+        let message = match &place[..] {
+            [] => message,
+            [one] => format!("{message} at this {one}"),
+            several => format!("{message} at these {}", several.join(", ")),
+        };
         let scale = self.z.bound(value);
         self.guards.push(GuardedValue { value: value.clone(), scale, message });
+    }
+
+    /// The names of the coordinates on which an expression depends.
+    fn coordinates_of(&self, expr: &Expr) -> Vec<&str> {
+        let names = self.mechanism.coordinates.iter().map(|coordinate| coordinate.name.as_str());
+        let depends = |symbol: SymbolId| self.z.depends(expr, &mut |s| s == symbol);
+        names.zip(&self.coordinates).filter(|&(_, &symbol)| depends(symbol)).map(|(name, _)| name).collect()
     }
 
     /// A coordinate's name.
     pub fn coordinate_name(&self, id: CoordinateId) -> &str {
         &self.mechanism.coordinates[id.0].name
+    }
+}
+
+/// What a value divides by where something is divided by it: its factors.
+fn factors(value: &Expr) -> Vec<Expr> {
+    match value.view() {
+        View::Number(_) => Vec::new(),
+        View::Product(parts) => parts.iter().flat_map(factors).collect(),
+        View::Power(base, _) => factors(&base),
+        View::Symbol(_) | View::Sum(_) => vec![value.clone()],
     }
 }

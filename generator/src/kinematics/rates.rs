@@ -10,6 +10,9 @@ use crate::model::mechanism::{FrameId, Orientation, Place, PointId};
 use crate::number::Number;
 use crate::program::graph::Input;
 
+/// Coefficients of kinematical equations up to this size are written out, for what their sines and cosines cancel.
+const OPEN: usize = 24;
+
 impl Kinematics<'_> {
     /// Solves the kinematical equations for the rates of the coordinates.
     pub(super) fn find_rates(&mut self) -> Result<(), DeriveError> {
@@ -51,20 +54,19 @@ impl Kinematics<'_> {
         let quaternion = |slot: usize| quaternions.get(slot.wrapping_sub(slots)).and_then(Option::as_ref);
         let forms: Vec<LinearScalar> = equations
             .iter()
-            .map(|(form, _)| form.substitute(|slot| quaternion(slot).cloned()).map(|c| self.z.simplify(c)))
+            .map(|(form, _)| form.substitute(|slot| quaternion(slot).cloned()))
+            .map(|form| {
+                form.map(|c| {
+                    let open = self.z.opened(c, OPEN);
+                    self.z.simplify(&open)
+                })
+            })
             .filter(|form| form.terms.keys().any(|&slot| slot >= slots))
             .collect();
         let unknowns: Vec<usize> =
             (0..self.coordinates.len()).filter(|&i| quaternions[i].is_none()).map(|i| slots + i).collect();
-        let solver =
-            Solver::new(&mut self.z, &forms, &unknowns).map_err(|error| self.rates_error(error, slots))?;
-        for (determinant, block) in &solver.determinants {
-            let names: Vec<_> =
-                block.iter().map(|slot| mechanism.coordinates[slot - slots].name.as_str()).collect();
-            let message =
-                format!("the kinematical equations cannot be solved for the rate of {}", names.join(", "));
-            self.guard(determinant, message);
-        }
+        let solver = Solver::new(&mut self.z, &mut self.samples, &forms, &unknowns)
+            .map_err(|error| self.rates_error(error, slots))?;
         let z = &mut self.z;
         let solved = solver.solve(&forms, |c| {
             let short = z.simplify(&c);
@@ -85,6 +87,15 @@ impl Kinematics<'_> {
             directions.push((self.coordinates[i], value));
         }
         self.time = Direction::new(directions);
+        let rates: Vec<(String, LinearScalar)> = unknowns
+            .iter()
+            .map(|slot| (mechanism.coordinates[slot - slots].name.clone(), self.rates[slot - slots].clone()))
+            .collect();
+        for determinant in &solver.determinants {
+            self.guard_determinant(determinant, &rates, |names| {
+                format!("the kinematical equations cannot be solved for the rate of {names}")
+            });
+        }
         self.partials.clear();
         self.solved = true;
         self.definitions.clear();

@@ -5,8 +5,9 @@
 
 use std::collections::BTreeMap;
 
+use super::equations::vanishes;
 use super::linear::LinearScalar;
-use crate::algebra::{Expr, Intermediates};
+use crate::algebra::{Expr, Intermediates, Sample};
 
 /// Largest block that is solved in closed form.
 pub const LARGEST_BLOCK: usize = 8;
@@ -23,8 +24,8 @@ struct Block {
 #[derive(Clone, Debug)]
 pub struct Solver {
     blocks: Vec<Block>,
-    /// determinants that must not vanish, with the unknowns of their blocks
-    pub determinants: Vec<(Expr, Vec<usize>)>,
+    /// determinants that must not vanish
+    pub determinants: Vec<Expr>,
 }
 
 /// Why a system cannot be solved.
@@ -40,9 +41,10 @@ pub enum SolveError {
 
 impl Solver {
     /// Prepares to solve `equations` (each = 0) for the `unknowns`. Equations that are not needed are left alone; of
-    /// several that would do, earlier ones are taken.
+    /// several that would do, earlier ones are taken. `samples` show what is constant without looking so.
     pub fn new(
         z: &mut Intermediates,
+        samples: &mut [Sample],
         equations: &[LinearScalar],
         unknowns: &[usize],
     ) -> Result<Self, SolveError> {
@@ -69,12 +71,12 @@ impl Solver {
                 .iter()
                 .map(|&row| slots.iter().map(|&slot| equations[row].coefficient(slot)).collect())
                 .collect();
-            let (inverse, determinant) = invert(z, &matrix);
+            let (inverse, determinant) = invert(z, samples, &matrix);
             if determinant.is_zero() {
                 return Err(SolveError::Dependent(slots));
             }
             if !determinant.is_number() {
-                solver.determinants.push((determinant, slots.clone()));
+                solver.determinants.push(determinant);
             }
             solver.blocks.push(Block { unknowns: slots, equations: rows, inverse });
         }
@@ -190,11 +192,12 @@ fn blocks(matched: &[usize], columns: &[Vec<usize>]) -> Vec<Vec<usize>> {
 }
 
 /// Inverse and determinant, by cofactors with shared minors.
-fn invert(z: &mut Intermediates, matrix: &[Vec<Expr>]) -> (Vec<Vec<Expr>>, Expr) {
+fn invert(z: &mut Intermediates, samples: &mut [Sample], matrix: &[Vec<Expr>]) -> (Vec<Vec<Expr>>, Expr) {
     let n = matrix.len();
     let mut minors: BTreeMap<(u32, u32), Expr> = BTreeMap::new();
     let all = (1u32 << n) - 1;
     let determinant = minor(z, matrix, all, all, &mut minors);
+    let determinant = constant(z, samples, determinant);
     let reciprocal = if determinant.is_zero() { Expr::zero() } else { determinant.pow(-1) };
     let inverse = (0..n)
         .map(|i| {
@@ -208,6 +211,15 @@ fn invert(z: &mut Intermediates, matrix: &[Vec<Expr>]) -> (Vec<Vec<Expr>>, Expr)
         })
         .collect();
     (inverse, determinant)
+}
+
+/// The determinant, or the number that it is: 1 or -1 where the matrix is a rotation, 0 where its rows depend on each other.
+fn constant(z: &Intermediates, samples: &mut [Sample], determinant: Expr) -> Expr {
+    let is = |n: i64, samples: &mut [Sample]| vanishes(z, samples, &determinant.sub(&Expr::integer(n)));
+    match [0, 1, -1].into_iter().find(|&n| !determinant.is_number() && is(n, samples)) {
+        Some(n) => Expr::integer(n),
+        None => determinant,
+    }
 }
 
 fn minor(

@@ -390,15 +390,22 @@ fn contacts(m: &Mechanism, seen: &[Evaluation], out: &mut Vec<Diagnostic>) {
             let message = |length| format!("the normal of `{}` has the length {length}, not 1", contact.name);
             not_unit(codes::NORMAL, contact.normal_span, lengths, message, out);
         }
-        let moves = seen.iter().any(|e| {
+        let velocities = |e: &'_ Evaluation| {
             let contact = &e.contacts[i];
-            contact.partial_velocities.iter().chain([&contact.remainder]).any(|v| length(v) > 1e-12)
-        });
-        if !moves {
+            contact.partial_velocities.iter().chain([&contact.remainder]).copied().collect::<Vec<_>>()
+        };
+        let any = |moves: &dyn Fn(&[f64; 3], &[f64; 3]) -> bool| {
+            seen.iter().any(|e| velocities(e).iter().any(|v| moves(v, &e.contacts[i].normal)))
+        };
+        if !any(&|v, _| length(v) > 1e-12) {
             let message =
                 format!("the relative velocity of `{}` is always zero: nothing can strike", contact.name);
             let help = "check `point`, `against` and the bodies they belong to";
             out.push(Diagnostic::new(codes::CONTACT_STILL, contact.span, message).help(help));
+        } else if !any(&|v, n| (0..3).map(|k| v[k] * n[k]).sum::<f64>().abs() > 1e-12 * length(v)) {
+            let message = format!("`{}` never moves along its normal: nothing can strike", contact.name);
+            let help = "check `normal`; it points from what is struck to the body that strikes";
+            out.push(Diagnostic::new(codes::NEVER_APPROACHES, contact.span, message).help(help));
         }
     }
 }

@@ -69,6 +69,11 @@ struct Hit<'a> {
 /// Bound on the collisions within one step: more are the end of bouncing.
 const MOST_HITS: usize = 100;
 
+/// Bodies overlap where a gap is below minus this, m.
+const OVERLAP: f64 = 1e-9;
+/// Bound on the halvings of an interval in which a contact opens and closes.
+const SPLITS: usize = 60;
+
 /// Runs the command.
 ///
 /// # Errors
@@ -85,7 +90,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut state = machine.state(text.as_deref())?;
     let start = state.time;
     if let Some((gap, index)) = closest(&machine, &state)?
-        && gap < -1e-9
+        && gap < -OVERLAP
     {
         let name = &machine.mechanism.contacts[index].name;
         return Err(Stop::Fault(format!(
@@ -100,9 +105,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
         let mut hits = 0;
         while state.time < end {
-            if advance(&machine, &mut state, end, arguments.tolerance)? {
+            if let Some(contact) = advance(&machine, &mut state, end, arguments.tolerance)? {
                 hits += 1;
-                hit(&machine, &mut state, &surface, hits)?;
+                hit(&machine, &mut state, contact, &surface, hits)?;
             }
         }
         sample(&machine, &state)?;
@@ -126,17 +131,35 @@ fn closest(machine: &Machine, state: &State) -> Result<Option<(f64, usize)>, Fai
     Ok(gaps.min_by(|a, b| a.0.total_cmp(&b.0)))
 }
 
-/// The collision of the contact that is closed.
-fn hit(machine: &Machine, state: &mut State, surface: &Surface<f64>, hits: usize) -> Outcome {
-    let Some((gap, index)) = closest(machine, state)? else { return Ok(()) };
+/// A contact that is closed and whose bodies approach: it strikes now.
+fn striking(machine: &Machine, state: &State) -> Result<Option<usize>, Failure> {
+    for index in 0..machine.mechanism.contacts.len() {
+        let wanted = [ContactQuantity::Gap, ContactQuantity::Velocity]
+            .map(|what| Quantity::Contact(index as u32, what));
+        let numbers = machine.evaluate(state, &wanted)?;
+        if let (Some(&gap), Some(&normal)) = (numbers.get(wanted[0]).first(), numbers.get(wanted[1]).first())
+            && gap <= 0.0
+            && normal < 0.0
+        {
+            return Ok(Some(index));
+        }
+    }
+    Ok(None)
+}
+
+/// The collision of a contact that is closed.
+fn hit(machine: &Machine, state: &mut State, index: usize, surface: &Surface<f64>, hits: usize) -> Outcome {
+    let gap = |index: usize, state: &State| -> Result<Option<f64>, Failure> {
+        let quantity = Quantity::Contact(index as u32, ContactQuantity::Gap);
+        Ok(machine.evaluate(state, &[quantity])?.get(quantity).first().copied())
+    };
+    let Some(own) = gap(index, state)? else { return Ok(()) };
     let contact = &machine.mechanism.contacts[index];
     let (name, time) = (&contact.name, state.time);
     for (other, contact) in machine.mechanism.contacts.iter().enumerate() {
-        let quantity = Quantity::Contact(other as u32, ContactQuantity::Gap);
-        let numbers = machine.evaluate(state, &[quantity])?;
-        if let Some(&other_gap) = numbers.get(quantity).first()
-            && other != index
-            && (other_gap - gap).abs() < 1e-9
+        if other != index
+            && let Some(other_gap) = gap(other, state)?
+            && (other_gap - own).abs() < 1e-9
         {
             return Err(Stop::Fault(format!(
                 "at t = {time} the gaps of {name} and {} close together: one contact is resolved at a time",
@@ -213,8 +236,34 @@ impl Event<f64, Vec<f64>> for Motion<'_> {
     }
 }
 
-/// Follows the motion until a gap closes (true) or a time (false).
-fn advance(machine: &Machine, state: &mut State, end: f64, tolerance: f64) -> Outcome<bool> {
+/// Follows the motion until a contact strikes, which is the result, or to a time.
+fn advance(machine: &Machine, state: &mut State, end: f64, tolerance: f64) -> Outcome<Option<usize>> {
+    // A gap that is closed already does not close any more: what strikes at once must be seen here.
+    if let Some(contact) = striking(machine, state)? {
+        return Ok(Some(contact));
+    }
+    let mut until = end;
+    for _ in 0..SPLITS {
+        let (next, closed) = integrate(machine, state, until, tolerance)?;
+        let closest = closest(machine, &next)?;
+        match closest {
+            Some((_, contact)) if closed => {
+                *state = next;
+                return Ok(Some(contact));
+            }
+            // A gap opened and closed again on the way, so that both ends looked alike: look more closely.
+            Some((gap, _)) if gap < -OVERLAP => until = state.time + 0.5 * (until - state.time),
+            _ => {
+                *state = next;
+                return Ok(None);
+            }
+        }
+    }
+    Err(Stop::Fault(format!("at t = {} a contact bounces too fast to be followed", state.time)))
+}
+
+/// The state at a time, or where a gap closes before (true).
+fn integrate(machine: &Machine, state: &State, end: f64, tolerance: f64) -> Outcome<(State, bool)> {
     let motion = Motion { machine, state, failure: RefCell::new(None) };
     let y = [&state.coordinates[..], &state.speeds[..]].concat();
     let method = ExplicitRungeKutta::dop853().rtol(tolerance).atol(tolerance);
@@ -229,13 +278,12 @@ fn advance(machine: &Machine, state: &mut State, end: f64, tolerance: f64) -> Ou
         return Err(Stop::Fault("the integration gave no result".to_owned()));
     };
     let closed = matches!(solution.status, Status::Interrupted);
-    let next = motion.at(if closed { t } else { end }, y);
-    *state = next;
+    let mut state = motion.at(if closed { t } else { end }, y);
     for frame in &machine.mechanism.frames {
         let Orientation::Quaternion(parts) = frame.orientation else { continue };
         let norm = parts.map(|part| state.coordinates[part.0].powi(2)).iter().sum::<f64>().sqrt();
         parts.iter().for_each(|part| state.coordinates[part.0] /= norm);
     }
-    complete::complete(machine, state)?;
-    Ok(closed)
+    complete::complete(machine, &mut state)?;
+    Ok((state, closed))
 }

@@ -10,6 +10,11 @@ use crate::json::{Failure, Kind};
 
 /// Coordinates that need no larger correction than this (rad or m, relative to their own size above 1) are consistent.
 const CONSISTENT: f64 = 1e-10;
+/// Points that are to be one may be this far apart, relative to their distance from O above 1 m.
+const OPEN: f64 = 1e-9;
+/// Where two configurations of a linkage meet, the residual grows with the square of the error, so that coordinates are known to the
+/// root of the rounding error only. Below this ratio of its singular values the Jacobian counts as singular.
+const FOLDED: f64 = 1e-7;
 /// Bound on the steps; from a sensible guess it takes less than ten.
 const STEPS: usize = 200;
 
@@ -28,36 +33,45 @@ pub fn complete(machine: &Machine, state: &mut State) -> Result<(), Failure> {
         .map(|(index, _)| index)
         .collect();
     if dependent.is_empty() {
-        warn_of_open_loops(machine, state);
         return Ok(());
     }
     let guess = state.clone();
     let mut here = newton(machine, state, &dependent)?;
-    if here.within(CONSISTENT) {
-        return Ok(());
-    }
-    for _ in 0..STEPS {
-        let Some((trial, next)) = advance(machine, state, &here, &dependent) else { break };
-        (*state, here) = (trial, next);
-        if here.within(4.0 * f64::EPSILON) {
-            break;
+    if !here.within(CONSISTENT) {
+        for _ in 0..STEPS {
+            let Some((trial, next)) = advance(machine, state, &here, &dependent) else { break };
+            (*state, here) = (trial, next);
+            if here.within(4.0 * f64::EPSILON) {
+                break;
+            }
         }
     }
+    let coordinates = &machine.mechanism.coordinates;
+    let values = |state: &State| {
+        let of = |&index: &usize| format!("{} = {}", coordinates[index].name, state.coordinates[index]);
+        dependent.iter().map(of).collect::<Vec<_>>().join(", ")
+    };
+    let names = listed(dependent.iter().map(|&index| coordinates[index].name.as_str()));
+    if here.closed && here.pivot < FOLDED {
+        return Err(Failure::new(
+            Kind::SingularState,
+            format!(
+                "the configuration equations cannot be solved for {names}: the linkage is at a dead centre where {} (a \
+                 relative pivot is {:.1e}, below {FOLDED:e}); change the other coordinates a little",
+                values(state),
+                here.pivot,
+            ),
+        ));
+    }
     if here.within(CONSISTENT) {
         return Ok(());
     }
-    let coordinates = &machine.mechanism.coordinates;
-    let guess: Vec<String> = dependent
-        .iter()
-        .map(|&index| format!("{} = {}", coordinates[index].name, guess.coordinates[index]))
-        .collect();
     Err(Failure::new(
         Kind::InconsistentState,
         format!(
-            "the configuration equations have no solution for {} near the guess {}: their residual stays {:?}; change \
+            "the configuration equations have no solution for {names} near the guess {}: their residual stays {:?}; change \
              the other coordinates, or give a guess nearer to the configuration meant",
-            listed(dependent.iter().map(|&index| coordinates[index].name.as_str())),
-            guess.join(", "),
+            values(&guess),
             here.residual.as_slice(),
         ),
     ))
@@ -71,6 +85,10 @@ struct Here {
     step: DVector<f64>,
     /// the same relative to the size of the coordinates above 1, at most; with what no step removes at a dead centre
     size: f64,
+    /// is the residual no more than rounding?
+    closed: bool,
+    /// least singular value of the Jacobian over the largest
+    pivot: f64,
 }
 
 impl Here {
@@ -113,7 +131,10 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
     let residual = DVector::from_column_slice(residual);
     let jacobian = DMatrix::from_row_slice(count, count, jacobian);
     let svd = jacobian.clone().svd(true, true);
-    let cutoff = 1e-13 * svd.singular_values.max();
+    let largest = svd.singular_values.max();
+    let pivot = conditioned(&jacobian);
+    let values = DVector::from_iterator(count, dependent.iter().map(|&index| state.coordinates[index]));
+    let cutoff = 1e-13 * largest;
     let step = svd.solve(&-&residual, cutoff).map_err(|error| {
         Failure::new(Kind::SingularState, format!("the configuration equations: {error}"))
     })?;
@@ -121,32 +142,81 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
         .iter()
         .zip(step.iter())
         .map(|(&index, step)| step.abs() / state.coordinates[index].abs().max(1.0));
-    let left = (jacobian * &step + &residual).norm();
+    let left = (&jacobian * &step + &residual).norm();
     let left = if left > 1e-6 * residual.norm() { left } else { 0.0 };
     let size = sizes.fold(left, f64::max);
-    Ok(Here { residual, step, size })
+    let terms = jacobian.abs() * values.abs();
+    let closed = residual
+        .iter()
+        .zip(terms.iter())
+        .all(|(r, terms)| r.abs() <= 64.0 * f64::EPSILON * terms.max(largest));
+    Ok(Here { residual, step, size, closed, pivot })
 }
 
-/// A loop that is closed by velocities alone is followed from wherever it begins: says so where it begins open.
-fn warn_of_open_loops(machine: &Machine, state: &State) {
+/// The least over the largest singular value of the matrix whose columns are scaled to length 1, so that units of coordinates do not
+/// matter. Rows are not scaled: at a dead centre one of them vanishes.
+fn conditioned(matrix: &DMatrix<f64>) -> f64 {
+    let mut scaled = matrix.clone();
+    for mut column in scaled.column_iter_mut() {
+        let norm = column.norm();
+        column /= if norm > 0.0 { norm } else { 1.0 };
+    }
+    let values = scaled.singular_values();
+    values.min() / values.max()
+}
+
+/// Two points whose velocities a constraint holds equal stay apart as they are, so where they are meant to be one point they must
+/// begin as one.
+///
+/// # Errors
+///
+/// `inconsistent_state` with the distance.
+pub fn check_loops(machine: &Machine, state: &State) -> Result<(), Failure> {
     let mechanism = &machine.mechanism;
     for constraint in &mechanism.constraints {
-        let EquationSides::Vector(Vector::Velocity(PointId(a)), Vector::Velocity(PointId(b))) =
-            constraint.sides
-        else {
-            continue;
-        };
-        let wanted = [a, b].map(|point| Quantity::Point(point as u32, PointQuantity::Position));
-        let Ok(numbers) = machine.evaluate(state, &wanted) else { continue };
-        let apart: Vec<f64> =
-            numbers.get(wanted[0]).iter().zip(numbers.get(wanted[1])).map(|(a, b)| a - b).collect();
-        if apart.iter().any(|distance| distance.abs() > 1e-9) {
-            let [a, b] = [a, b].map(|point| &mechanism.points[point].name);
-            eprintln!(
-                "note: a constraint holds the velocities of {a} and {b} equal, but here {a} is off {b} by {apart:?}: if they \
-                 are one point, say `configuration {{ position({a}) = position({b}); }}` in the model, with dependent \
-                 coordinates, and the state will be completed"
-            );
+        let Some([a, b]) = joined(&constraint.sides) else { continue };
+        let wanted = [a, b].map(|point| Quantity::Point(point.0 as u32, PointQuantity::Position));
+        let numbers = machine.evaluate(state, &wanted)?;
+        let (at, other) = (numbers.get(wanted[0]), numbers.get(wanted[1]));
+        let apart: Vec<f64> = at.iter().zip(other).map(|(a, b)| a - b).collect();
+        let size = at.iter().chain(other).fold(1.0_f64, |size, x| size.max(x.abs()));
+        if apart.iter().any(|distance| distance.abs() > OPEN * size) {
+            let [a, b] = [a, b].map(|point| &mechanism.points[point.0].name);
+            return Err(Failure::new(
+                Kind::InconsistentState,
+                format!(
+                    "a constraint closes a loop by holding the velocities of {a} and {b} equal, but the loop is open: {a} is off \
+                     {b} by {apart:?}; give coordinates that close it, or say `configuration {{ position({a}) = position({b}); }}` \
+                     in the model, with dependent coordinates, and they will be found (points that are to stay apart are \
+                     constrained component by component: `dot(velocity({a}, {b}), N.x) = 0`)"
+                ),
+            ));
         }
+    }
+    Ok(())
+}
+
+/// The points whose velocities an equation holds equal and which have positions to compare.
+fn joined(sides: &EquationSides) -> Option<[PointId; 2]> {
+    let EquationSides::Vector(left, right) = sides else { return None };
+    let mut terms = Vec::new();
+    (velocities(left, 1, &mut terms) && velocities(right, -1, &mut terms)).then_some(())?;
+    match terms[..] {
+        [(a, 1), (b, -1)] | [(b, -1), (a, 1)] => Some([a, b]),
+        _ => None,
+    }
+}
+
+/// Writes a vector as a sum of velocities of points; `false` if it has other terms.
+fn velocities(vector: &Vector, sign: i32, terms: &mut Vec<(PointId, i32)>) -> bool {
+    match vector {
+        Vector::Zero => true,
+        Vector::Velocity(point) => {
+            terms.push((*point, sign));
+            true
+        }
+        Vector::Neg(inner) => velocities(inner, -sign, terms),
+        Vector::Add(parts) => parts.iter().all(|part| velocities(part, sign, terms)),
+        _ => false,
     }
 }

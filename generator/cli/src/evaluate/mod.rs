@@ -80,10 +80,16 @@ impl Machine {
             .collect();
         let arrays =
             Evaluator::new(&self.program).evaluate(&inputs, &there).map_err(|failure| match failure {
-                interpret::Failure::Singular { message, value } => Failure::new(
-                    Kind::SingularState,
-                    format!("{message} (a divisor is {value}): choose another state"),
-                ),
+                interpret::Failure::Singular { message, value, coordinates } => {
+                    let place = coordinates.iter().map(|&index| index as usize).map(|index| {
+                        format!("{} = {}, ", self.mechanism.coordinates[index].name, state.coordinates[index])
+                    });
+                    let place: String = place.collect();
+                    Failure::new(
+                        Kind::SingularState,
+                        format!("{message} ({place}a divisor is {value:e}): choose another state"),
+                    )
+                }
                 other => Failure::new(Kind::SingularState, other.to_string()),
             })?;
         for array in arrays.iter().filter(|array| array.quantity == Quantity::MassMatrix) {
@@ -121,7 +127,7 @@ impl Machine {
         }
     }
 
-    /// A state as read: quaternions checked, dependent coordinates completed.
+    /// A state as read: quaternions and loops checked, dependent coordinates completed.
     ///
     /// # Errors
     ///
@@ -133,6 +139,7 @@ impl Machine {
         };
         self.check_quaternions(&state)?;
         complete::complete(self, &mut state)?;
+        complete::check_loops(self, &state)?;
         Ok(state)
     }
 

@@ -1,4 +1,4 @@
-//! E052 to E082: frames, points, bodies, loads, equations, contacts.
+//! E052 to E082 and W006: frames, points, bodies, loads, equations, contacts.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;
@@ -162,6 +162,12 @@ pub(super) const TABLE: &[Explanation] = &[
         code: CONTACT_STILL,
         text: "The point never moves relative to what it strikes: it may be a point of the body that is struck, or fixed.",
         wrong: Some("contacts { tip { point: P of Rod, against: Rod, normal: -N.x } }"),
+        right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
+    },
+    Explanation {
+        code: NEVER_APPROACHES,
+        text: "The point moves relative to what it strikes, but never along the normal: no impact can happen. The normal may be another than was meant.",
+        wrong: Some("contacts { tip { point: P of Rod, normal: N.z } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },
     Explanation {
