@@ -39,7 +39,7 @@ pub use crate::{
     phases::{Moment, Motion, Phases},
     phi_bar::phi_bar,
     reduced::ReducedMatrix,
-    saltation::{saltation, speed_derivative},
+    saltation::{Saltation, saltation, speed_derivative},
     scalar::Scalar,
     sensitivity::Sensitivity,
     solve::solve,

@@ -20,13 +20,13 @@ const NEEDED: [ContactQuantity; 6] = [
 ];
 
 impl Emitter<'_> {
-    fn contact_output(&self, contact: usize, quantity: ContactQuantity) -> Option<&Output> {
+    pub fn contact_output(&self, contact: usize, quantity: ContactQuantity) -> Option<&Output> {
         let output = self.program.output(Quantity::Contact(contact as u32, quantity))?;
         (!output.values.is_empty()).then_some(output)
     }
 
     /// Can the collision of this contact be computed?
-    fn collides(&self, contact: usize) -> bool {
+    pub fn collides(&self, contact: usize) -> bool {
         NEEDED.iter().all(|&quantity| self.contact_output(contact, quantity).is_some())
     }
 
@@ -126,10 +126,11 @@ impl Emitter<'_> {
         let reduced = self.reduced_matrix(contact);
         let matrices = self.contact_matrices(contact);
         let collide = self.collides(contact).then(|| self.collide(contact));
-        quote! { #(#queries)* #basis #reduced #matrices #collide }
+        let derivatives = self.collides(contact).then(|| self.derivatives(contact));
+        quote! { #(#queries)* #basis #reduced #matrices #collide #derivatives }
     }
 
-    fn contact_words(&self, contact: usize) -> String {
+    pub fn contact_words(&self, contact: usize) -> String {
         self.mechanism
             .contacts
             .get(contact)
@@ -194,7 +195,7 @@ impl Emitter<'_> {
         ))
     }
 
-    fn reduced(&self, output: &Output) -> TokenStream {
+    pub fn reduced(&self, output: &Output) -> TokenStream {
         let krate = self.krate;
         let entries = output.values.iter().map(|&value| local(value));
         quote!(#krate::ReducedMatrix::new(#(#entries),*))
@@ -251,11 +252,13 @@ impl Emitter<'_> {
             self.contact_words(contact)
         ));
         // What the symbols of the reduced matrix show selects a closed form.
+        let closed = |marker: TokenStream| quote!(#krate::generated::resolve_structured::<#krate::structure::#marker, T>);
         let resolve = match self.program.structures.get(contact) {
-            Some(Structure::Planar) => {
-                quote!(#krate::generated::resolve_structured::<#krate::structure::Planar, T>)
-            }
-            _ => quote!(#krate::generated::resolve),
+            Some(Structure::Planar) => closed(quote!(Planar)),
+            Some(Structure::Balanced) => closed(quote!(Balanced)),
+            Some(Structure::Diagonal) => closed(quote!(Diagonal)),
+            Some(Structure::Isotropic) => closed(quote!(Isotropic)),
+            Some(Structure::General) | None => quote!(#krate::generated::resolve),
         };
         let mut arguments = self.arguments(&quantities);
         arguments.speeds = true;

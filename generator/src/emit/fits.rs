@@ -68,6 +68,10 @@ pub fn shape(mechanism: &Mechanism, quantity: Quantity) -> Option<(usize, usize)
                 ContactQuantity::Response => (p, 3),
                 ContactQuantity::DependentResponse => (d, 3),
                 ContactQuantity::Gap => (1, 1),
+                ContactQuantity::Tangent => {
+                    let gap = mechanism.contacts.get(index as usize)?.gap.is_some();
+                    (9 + 3 * p + usize::from(gap), 1)
+                }
                 _ => (3, 1),
             }
         }

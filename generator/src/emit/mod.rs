@@ -12,6 +12,7 @@ mod methods;
 pub mod names;
 mod record;
 mod routine;
+mod saltation;
 mod skeleton;
 mod split;
 mod validation;
@@ -63,6 +64,7 @@ fn module_in_parts(
     let records = records.into_iter().filter(|record| !record.is_empty()).map(|record| record.tokens(krate));
     let mechanism_type = emitter.mechanism_type();
     let collision = emitter.collision_type();
+    let derivative = emitter.derivative_type();
     let methods = emitter.methods();
     let contacts = emitter.contacts();
     let linearisation = emitter.linearisation_record();
@@ -78,6 +80,7 @@ fn module_in_parts(
             #(#records)*
             #mechanism_type
             #collision
+            #derivative
             #linearisation
 
             impl<T: #krate::Scalar> #name<T> {

@@ -100,7 +100,13 @@ impl Emitter<'_> {
             speeds: velocity,
             accelerations: quantities.contains(&Quantity::InverseDynamics),
             inputs: !self.inputs.is_empty() && (loads || self.kinematic_inputs),
-            tangent: quantities.contains(&Quantity::StateTangent),
+            tangent: quantities.iter().any(|quantity| {
+                matches!(
+                    quantity,
+                    Quantity::StateTangent
+                        | Quantity::Contact(_, crate::program::routine::ContactQuantity::Tangent)
+                )
+            }),
         }
     }
 
@@ -113,7 +119,7 @@ impl Emitter<'_> {
             | Q::ConfigurationResidual
             | Q::ConfigurationJacobian
             | Q::Orientation(_) => false,
-            Q::Contact(_, C::Velocity) => true,
+            Q::Contact(_, C::Velocity | C::Tangent) => true,
             Q::Contact(..) => false,
             Q::Point(_, P::Velocity) => true,
             Q::Point(..) => false,

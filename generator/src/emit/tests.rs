@@ -158,6 +158,28 @@ fn the_module_is_the_reviewed_one() {
 }
 
 /// The same with at most three operations in a function.
+/// What the symbols show of a reduced matrix selects the closed form that the collision calls.
+#[test]
+fn structure_selects_the_closed_form() {
+    let call = |structure| {
+        let derived = Derived { structures: vec![structure], ..derived() };
+        let options = Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![] };
+        module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string()
+    };
+    for (structure, marker) in [
+        (Structure::Planar, "Planar"),
+        (Structure::Balanced, "Balanced"),
+        (Structure::Diagonal, "Diagonal"),
+        (Structure::Isotropic, "Isotropic"),
+    ] {
+        assert!(
+            call(structure)
+                .contains(&format!("resolve_structured :: < :: hodograph :: structure :: {marker} , T >"))
+        );
+    }
+    assert!(!call(Structure::General).contains("resolve_structured"));
+}
+
 #[test]
 fn long_routines_come_in_parts() {
     let options = Options { krate: quote!(::hodograph), module: "pendulum_in_parts".into(), tracked: vec![] };

@@ -228,6 +228,7 @@ fn contact_heading(quantity: ContactQuantity) -> (&'static str, &'static str) {
         ContactQuantity::DependentResponse => ("change of the dependent speeds per unit impulse", "D"),
         ContactQuantity::Gap => ("gap", "d"),
         ContactQuantity::PrescribedWork => ("work of prescribed motion per unit impulse", "w"),
+        ContactQuantity::Tangent => ("derivatives of velocity, reduced matrix, response and gap", "l"),
     }
 }
 

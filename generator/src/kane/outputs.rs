@@ -71,10 +71,12 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     let contacts = writer.contact_forms();
     let acting = writer.articulate(&contacts);
     writer.dynamics(&factor, acting);
-    writer.linearisation();
+    let rates = writer.direction();
+    writer.linearisation(&rates);
     writer.energies();
     writer.configuration();
     let structures = writer.contacts(&contacts, &factor, &prescribed);
+    writer.contact_tangents(&rates);
     writer.points();
     writer.orientations();
     writer.guards();
@@ -285,10 +287,11 @@ impl Writer<'_, '_> {
         self.put(Quantity::InverseDynamics, required.len(), 1, required);
     }
 
-    /// The derivative of all rates along a direction in the independent states and inputs.
-    fn linearisation(&mut self) {
+    /// A direction in the independent states and inputs: how each input changes along it. `None` where dependent coordinates do not
+    /// follow.
+    fn direction(&mut self) -> Option<HashMap<Input, Node>> {
         let mechanism = self.k.mechanism;
-        let Some(followers) = self.dependent_coordinate_rates() else { return };
+        let followers = self.dependent_coordinate_rates()?;
         let mut rates = HashMap::new();
         let mut number = 0;
         let mut next = |writer: &mut Self| {
@@ -319,6 +322,13 @@ impl Writer<'_, '_> {
             let sum = self.graph.sum(terms);
             rates.insert(Input::Coordinate(coordinate as u32), sum);
         }
+        Some(rates)
+    }
+
+    /// The derivative of all rates along a direction.
+    fn linearisation(&mut self, rates: &Option<HashMap<Input, Node>>) {
+        let mechanism = self.k.mechanism;
+        let Some(rates) = rates else { return };
         let found = |quantity| self.outputs.iter().find(move |output| output.quantity == quantity);
         let (Some(of_coordinates), Some(of_speeds)) =
             (found(Quantity::CoordinateRates), found(Quantity::Accelerations))
@@ -329,8 +339,36 @@ impl Writer<'_, '_> {
         let mut nodes: Vec<Node> =
             independent.filter(|(_, coordinate)| !coordinate.dependent).map(|(&node, _)| node).collect();
         nodes.extend(&of_speeds.nodes);
-        let tangent = differentiate(&mut self.graph, &nodes, &rates);
+        let tangent = differentiate(&mut self.graph, &nodes, rates);
         self.put(Quantity::StateTangent, tangent.len(), 1, tangent);
+    }
+
+    /// The derivative along a direction of what a collision is made of. Where time acts by itself it would not be all.
+    fn contact_tangents(&mut self, rates: &Option<HashMap<Input, Node>>) {
+        let Some(rates) = rates else { return };
+        for number in 0..self.k.mechanism.contacts.len() as u32 {
+            let found = |quantity| {
+                let quantity = Quantity::Contact(number, quantity);
+                self.outputs
+                    .iter()
+                    .find(|output| output.quantity == quantity)
+                    .map(|output| output.nodes.clone())
+            };
+            let needed =
+                [ContactQuantity::Velocity, ContactQuantity::Reduced, ContactQuantity::Response].map(found);
+            let [Some(velocity), Some(reduced), Some(response)] = needed else { continue };
+            let gap = found(ContactQuantity::Gap).unwrap_or_default();
+            let nodes = [velocity, reduced, response, gap].concat();
+            let loops = self.outputs.iter().find(|output| output.quantity == Quantity::ConfigurationResidual);
+            let watched =
+                [nodes.clone(), loops.map(|output| output.nodes.clone()).unwrap_or_default()].concat();
+            let clock = HashMap::from([(Input::Time, self.graph.integer(1))]);
+            let by_time = differentiate(&mut self.graph, &watched, &clock);
+            if by_time.iter().all(|&node| self.graph.is_zero(node)) {
+                let tangent = differentiate(&mut self.graph, &nodes, rates);
+                self.put(Quantity::Contact(number, ContactQuantity::Tangent), tangent.len(), 1, tangent);
+            }
+        }
     }
 
     /// Dependent coordinates as they follow the independent ones: forms in the numbers of coordinates. `None` where the
@@ -478,6 +516,7 @@ impl Writer<'_, '_> {
         let zero = |i: usize| self.graph.is_zero(reduced[i]);
         let structure = match (zero(1), zero(2), zero(4)) {
             _ if forms.planar => Structure::Planar,
+            (.., true) if reduced[3] == reduced[5] => Structure::Isotropic,
             (true, true, true) => Structure::Diagonal,
             (true, true, false) => Structure::Balanced,
             _ => Structure::General,

@@ -66,6 +66,9 @@ pub enum ContactQuantity {
     Gap,
     /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
     PrescribedWork,
+    /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is one) along a direction
+    /// (inputs `Tangent`), where none of them depends on time by itself
+    Tangent,
 }
 
 /// Quantities of a point.
@@ -114,6 +117,8 @@ pub enum Structure {
     Balanced,
     /// n1 = n2 = 12 = 0
     Diagonal,
+    /// 12 = 0 and 11 = 22
+    Isotropic,
 }
 
 /// The result of deriving a mechanism.

@@ -22,7 +22,7 @@ const WHOLE: [(Quantity, &str); 13] = [
 ];
 
 /// Quantities of a contact.
-const CONTACT: [(ContactQuantity, &str); 11] = [
+const CONTACT: [(ContactQuantity, &str); 12] = [
     (ContactQuantity::Normal, "normal"),
     (ContactQuantity::First, "first"),
     (ContactQuantity::Second, "second"),
@@ -34,6 +34,7 @@ const CONTACT: [(ContactQuantity, &str); 11] = [
     (ContactQuantity::DependentResponse, "dependent_response"),
     (ContactQuantity::Gap, "gap"),
     (ContactQuantity::PrescribedWork, "prescribed_work"),
+    (ContactQuantity::Tangent, "tangent"),
 ];
 
 /// Quantities of a point.
@@ -44,11 +45,12 @@ const POINT: [(PointQuantity, &str); 3] = [
 ];
 
 /// Structures of a reduced matrix.
-const STRUCTURE: [(Structure, &str); 4] = [
+const STRUCTURE: [(Structure, &str); 5] = [
     (Structure::General, "general"),
     (Structure::Planar, "planar"),
     (Structure::Balanced, "balanced"),
     (Structure::Diagonal, "diagonal"),
+    (Structure::Isotropic, "isotropic"),
 ];
 
 fn word<K: PartialEq>(table: &[(K, &'static str)], key: &K) -> &'static str {

@@ -345,6 +345,19 @@ pub mod pendulum_in_parts {
         Collision 13 speeds impulse impulse_on_point impulse_on_struck normal tangent
         binormal approach separation reduced energy_change path impact
     }
+    /// The derivative of a collision at one configuration. Rows and columns of speeds are `u1`, in this order.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct CollisionDerivative<T: ::hodograph::nalgebra::Scalar = f64> {
+        /// speeds after by speeds before: 1 + M^-1 V^T (dI/dv) V
+        pub speeds: ::hodograph::nalgebra::SMatrix<T, 1, 1>,
+        /// speeds after by the coefficient of friction
+        pub by_friction: ::hodograph::nalgebra::SVector<T, 1>,
+        /// speeds after by the coefficient of restitution
+        pub by_restitution: ::hodograph::nalgebra::SVector<T, 1>,
+        /// impulse and velocity of separation by velocity of approach, reduced matrix, mu and e, all along the contact basis (normal,
+        /// first, second); `outcome.obstacle` names why there is no derivative, if there is none
+        pub outcome: ::hodograph::ImpactDerivative<T>,
+    }
     impl<T: ::hodograph::Scalar> Pendulum<T> {
         /// Rates q' of the generalized coordinates, per second.
         ///

@@ -4,6 +4,7 @@ mod arithmetic;
 mod checks;
 mod contact;
 mod error;
+mod saltation;
 mod serial;
 mod trigonometry;
 
@@ -13,6 +14,8 @@ pub use arithmetic::*;
 pub use checks::*;
 pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured};
 pub use error::{CollisionError, ParameterError, StateError};
+#[doc(hidden)]
+pub use saltation::{by_coordinate, reset, salted, state};
 
 #[cfg(feature = "serde")]
 #[doc(hidden)]

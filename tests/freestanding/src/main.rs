@@ -5,19 +5,42 @@
 use core::hint::black_box;
 
 use hodograph::nalgebra::{SMatrix, Vector3};
-use hodograph::{CollisionError, Hodograph, Impact, ImpactError, Law, ReducedMatrix, StateError, Surface};
+use hodograph::structure::{Balanced, Diagonal, Isotropic, Structure, solve_structured};
+use hodograph::{
+    CollisionError, Hodograph, Impact, ImpactDerivative, ImpactError, Law, ReducedMatrix, Saltation, StateError, Surface,
+};
 use no_panic::no_panic;
 
 mod memory;
 
 hodograph::mechanism!("../downstream/models/hopper.mech");
 
-use hopper::{Collision, Coordinates, Hopper, Inputs, Parameters, Speeds};
+use hopper::{Collision, CollisionDerivative, Coordinates, Hopper, Inputs, Parameters, Speeds};
 
 #[no_panic]
 #[inline(never)]
 fn solve(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -> Result<Impact<f64>, ImpactError<f64>> {
     hodograph::solve(m, v, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn derivative(
+    m: &ReducedMatrix<f64>,
+    v: &Vector3<f64>,
+    surface: &Surface<f64>,
+) -> Result<ImpactDerivative<f64>, ImpactError<f64>> {
+    hodograph::derivative(m, v, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn closed<S: Structure>(
+    m: &ReducedMatrix<f64>,
+    v: &Vector3<f64>,
+    surface: &Surface<f64>,
+) -> Result<Impact<f64>, ImpactError<f64>> {
+    solve_structured::<S, f64>(m, v, surface)
 }
 
 #[no_panic]
@@ -37,6 +60,29 @@ fn phi_bar(m: &ReducedMatrix<f64>, mu: f64, phi: f64) -> Option<f64> {
 #[inline(never)]
 fn collide(hopper: &Hopper, q: &Coordinates, u: &Speeds, surface: &Surface<f64>) -> Result<Collision, CollisionError<f64>> {
     hopper.collide_foot_ground(q, u, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn collide_derivative(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    surface: &Surface<f64>,
+) -> Result<CollisionDerivative, CollisionError<f64>> {
+    hopper.collide_foot_ground_derivative(q, u, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn saltation(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+    surface: &Surface<f64>,
+) -> Result<Saltation<f64, 4>, CollisionError<f64>> {
+    hopper.saltation_foot_ground(q, u, inputs, surface)
 }
 
 #[no_panic]
@@ -74,6 +120,8 @@ extern "C" fn _start() -> ! {
     let (q, u) = (black_box(Coordinates::default()), black_box(Speeds { u1: -2.0, u2: 0.1 }));
     if let Some(hopper) = new(black_box(Parameters::default())) {
         black_box(collide(&hopper, &q, &u, &surface).is_ok());
+        black_box(collide_derivative(&hopper, &q, &u, &surface).is_ok());
+        black_box(saltation(&hopper, &q, &u, &Inputs::default(), &surface).is_ok());
         black_box(accelerations(&hopper, &q, &u, &Inputs::default()).is_ok());
         black_box(mass_matrix(&hopper, &q).is_ok());
     }
@@ -83,6 +131,11 @@ extern "C" fn _start() -> ! {
     let m = black_box(ReducedMatrix::new(1.0, 0.1, 0.2, 1.0, 0.1, 1.0));
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Newton });
     black_box(solve(&m, &black_box(Vector3::new(-1.0, 0.5, 0.1)), &surface).is_ok());
+    let v = black_box(Vector3::new(-1.0, 0.5, 0.1));
+    black_box(derivative(&m, &v, &surface).is_ok());
+    black_box(closed::<Balanced>(&m, &v, &surface).is_ok());
+    black_box(closed::<Diagonal>(&m, &v, &surface).is_ok());
+    black_box(closed::<Isotropic>(&m, &v, &surface).is_ok());
     black_box(course(&m, &black_box(Vector3::new(-1.0, 0.5, 0.1)), &surface).is_ok());
     black_box(phi_bar(&m, surface.mu, black_box(0.3)).is_some());
     loop {}

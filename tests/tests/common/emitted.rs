@@ -49,6 +49,7 @@ pub fn routine(mechanism: &Mechanism, quantity: Quantity) -> Option<String> {
                 ContactQuantity::PartialVelocities => "partial_velocities",
                 ContactQuantity::Remainder => "remainder_velocity",
                 ContactQuantity::Reduced => "reduced_matrix",
+                ContactQuantity::Tangent => "contact_tangent",
                 _ => return None,
             };
             return Some(format!("{prefix}_{}", snake_case(&mechanism.contacts[index as usize].name)));

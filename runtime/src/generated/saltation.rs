@@ -1,0 +1,76 @@
+//! From the derivatives of a contact to the saltation matrix of its collision.
+
+use nalgebra::{SMatrix, SVector, Vector3, Vector6};
+
+use crate::{CollisionError, ImpactDerivative, ImpactError, Saltation, Scalar, saltation};
+
+/// Rates of the state: those of the independent coordinates, which have these places among all, and of the `P` speeds.
+#[inline]
+pub fn state<T: Scalar, const K: usize, const C: usize, const P: usize, const N: usize>(
+    rates: &[T; K],
+    independent: &[usize; C],
+    accelerations: &[T; P],
+) -> SVector<T, N> {
+    let coordinates = independent.iter().map(|&index| rates.get(index).copied().unwrap_or(T::zero()));
+    SVector::from_iterator(
+        coordinates.chain(accelerations.iter().copied()).chain(core::iter::repeat(T::zero())).take(N),
+    )
+}
+
+/// The derivative of the jump, without what the configuration does to the speeds.
+#[inline]
+pub fn reset<T: Scalar, const P: usize, const N: usize>(speeds: &SMatrix<T, P, P>) -> SMatrix<T, N, N> {
+    let first = N.saturating_sub(P);
+    SMatrix::from_fn(|row, column| {
+        let speed = row.checked_sub(first).and_then(|row| Some((row, column.checked_sub(first)?)));
+        match speed.and_then(|place| speeds.get(place)) {
+            Some(&entry) => entry,
+            None if row == column => T::one(),
+            None => T::zero(),
+        }
+    })
+}
+
+/// Adds how the speeds after change with a coordinate, and tells how the gap does. `change` holds the derivatives of velocity, reduced
+/// matrix and response by that coordinate, in this order, and of the gap.
+#[inline]
+pub fn by_coordinate<T: Scalar, const P: usize, const N: usize>(
+    reset: &mut SMatrix<T, N, N>,
+    column: usize,
+    outcome: &ImpactDerivative<T>,
+    response: &SMatrix<T, P, 3>,
+    change: &[T],
+) -> T {
+    let at = |index: usize| change.get(index).copied().unwrap_or(T::zero());
+    let velocity = Vector3::from_fn(|i, _| at(i));
+    let matrix = Vector6::from_fn(|i, _| at(3 + i));
+    let of_response = SMatrix::<T, P, 3>::from_fn(|i, j| at(9 + 3 * i + j));
+    let impulse = outcome.impulse_by_approach() * velocity + outcome.impulse_by_matrix() * matrix;
+    let speeds = response * impulse + of_response * outcome.impact.impulse;
+    let first = N.saturating_sub(P);
+    for (row, speed) in speeds.iter().enumerate() {
+        if let Some(entry) = reset.get_mut((first + row, column)) {
+            *entry = *speed;
+        }
+    }
+    at(9 + 3 * P)
+}
+
+/// The saltation matrix; an error where the gap opens.
+///
+/// # Errors
+///
+/// The contact does not approach: the gap of the model is not the distance along the normal.
+#[inline]
+pub fn salted<T: Scalar, const N: usize>(
+    reset: &SMatrix<T, N, N>,
+    before: &SVector<T, N>,
+    after: &SVector<T, N>,
+    gap: &SVector<T, N>,
+    outcome: &ImpactDerivative<T>,
+) -> Result<Saltation<T, N>, CollisionError<T>> {
+    match saltation(reset, before, after, gap) {
+        Some(matrix) => Ok(Saltation { matrix, obstacle: outcome.obstacle }),
+        None => Err(ImpactError::NotApproaching { normal_velocity: gap.dot(before) }.into()),
+    }
+}
