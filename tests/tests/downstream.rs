@@ -80,6 +80,16 @@ fn three_crates_with_models_build_at_once() {
     }
 }
 
+/// Comments of a model become documentation, whatever is drawn in them: none of it is taken for an example, and rustdoc has nothing
+/// to say of it.
+#[test]
+fn comments_of_a_model_are_no_examples() {
+    succeeds("parallel", &["test", "-p", "puck", "--doc"]);
+    let mut documented = command("parallel", &["doc", "-p", "puck", "--no-deps"]);
+    let output = documented.env("RUSTDOCFLAGS", "-D warnings").output().expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
 /// The command that repairs it names the file in which the user wrote the model, and the place is the user's own.
 #[test]
 fn an_inline_model_without_derivation_names_its_own_file() {

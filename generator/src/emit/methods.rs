@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::names::snake_case;
+use super::names::{prose, snake_case};
 use super::record::Record;
 use super::values::local;
 use crate::program::Output;
@@ -181,7 +181,11 @@ impl Emitter<'_> {
 
 /// A name with its documentation: `P (the end that strikes)`.
 pub fn about(name: &str, docs: &str) -> String {
-    let docs = docs.trim().trim_end_matches('.');
+    let prose = prose(docs);
+    let paragraph: Vec<&str> =
+        prose.lines().take_while(|line| !line.is_empty() && !line.starts_with("```")).collect();
+    let docs = paragraph.join(" ");
+    let docs = docs.trim_end_matches('.');
     if docs.is_empty() { format!("`{name}`") } else { format!("`{name}` ({docs})") }
 }
 

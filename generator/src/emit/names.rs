@@ -95,15 +95,42 @@ pub fn ident(name: &str) -> Ident {
 
 /// Documentation, an attribute per line.
 pub fn docs(text: &str) -> TokenStream {
-    let lines = text.lines().map(|line| {
-        if line.is_empty() { String::new() } else { format!(" {}", line.trim_start_matches(' ')) }
-    });
+    let text = prose(text);
+    let lines = text.lines().map(|line| if line.is_empty() { String::new() } else { format!(" {line}") });
     quote! { #(#[doc = #lines])* }
+}
+
+/// An author's words as rustdoc is to show them. What is indented, or fenced without a language, is no Rust: left as it is, `cargo test`
+/// would compile it as an example.
+pub fn prose(text: &str) -> String {
+    let mut fenced = false;
+    let line = |line: &str| {
+        let fence = line.trim_start().starts_with("```");
+        let opens = fence && !fenced;
+        // inside of a fence blanks are layout, outside they would make a block of code
+        let line = if fenced && !fence { line } else { line.trim_start() };
+        fenced ^= fence;
+        if opens && line.trim_end() == "```" { "```text".to_owned() } else { line.trim_end().to_owned() }
+    };
+    let mut lines: Vec<String> = text.trim().lines().map(line).collect();
+    // a fence that is never closed would swallow what follows
+    if fenced {
+        lines.push("```".to_owned());
+    }
+    lines.join("\n")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn comments_are_no_examples() {
+        assert_eq!(prose(" A cart.\n\n     __\n    |__|\n"), "A cart.\n\n__\n|__|");
+        assert_eq!(prose("```\n  a\n```\nb"), "```text\n  a\n```\nb");
+        assert_eq!(prose("```rust\nlet a = 1;\n```"), "```rust\nlet a = 1;\n```");
+        assert_eq!(prose("a\n```\nb"), "a\n```text\nb\n```");
+    }
 
     #[test]
     fn cases() {

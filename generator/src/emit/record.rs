@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::names::ident;
+use super::names::{ident, prose};
 use crate::model::mechanism::Quantity;
 
 /// A struct of named numbers.
@@ -25,7 +25,12 @@ impl Record {
         let fields = quantities
             .map(|quantity| {
                 let text = if quantity.docs.is_empty() { &quantity.name } else { &quantity.docs };
-                let docs = format!(" {}, in {}", text.trim().trim_end_matches('.'), unit(&quantity.unit));
+                let text = prose(text);
+                // the unit stands with what the quantity is, before whatever else is said of it
+                let (what, more) =
+                    text.split_once('\n').map_or((text.as_str(), ""), |(what, more)| (what, more));
+                let docs = format!(" {}, in {}", what.trim_end_matches('.'), unit(&quantity.unit));
+                let docs = if more.is_empty() { docs } else { format!("{docs}\n{more}") };
                 Field { name: ident(&quantity.name), docs, default: quantity.value.unwrap_or(0.0) }
             })
             .collect();

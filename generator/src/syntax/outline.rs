@@ -38,9 +38,12 @@ impl Parser<'_> {
             token.kind == TokenKind::Name && Section::of_word(&token.text).is_some()
         };
         if self.tree.name.is_none() && !self.tokens.iter().any(anything) {
-            // it is no model at all, and nothing more is to be said of it
-            self.diagnostics.drain(..before);
-            self.diagnostics.truncate(1);
+            // it is no model at all, and of its words nothing more is to be said
+            let words = [codes::BAD_TOKEN, codes::BAD_NUMBER];
+            let mut said = self.diagnostics.split_off(before);
+            said.truncate(1);
+            self.diagnostics.retain(|d| !words.contains(&d.code));
+            self.diagnostics.extend(said);
             return;
         }
         while self.peek().is_some() {

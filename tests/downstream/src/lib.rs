@@ -1,4 +1,4 @@
-//! A user's crate: no_std, the dependency renamed, a model in a file and one in the source.
+//! A user's crate: `no_std`, the dependency renamed, a model in a file and one in the source.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(warnings, missing_docs, clippy::all, clippy::pedantic)]

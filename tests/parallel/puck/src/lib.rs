@@ -4,8 +4,20 @@
 
 hodograph::mechanism! {
     //! A puck on a table, and the wall beside it.
+    //!
+    //!         wall |      ( o )   puck
+    //!
+    //! ```
+    //! this is no Rust
+    //! ```
     mechanism Puck;
-    parameters { m: kg = 0.2, r: m = 0.05 }
+    parameters {
+        m: kg = 0.2,
+        /// radius
+        ///
+        ///     r = d/2, measured at its widest
+        r: m = 0.05,
+    }
     coordinates { q1: m, q2: m, q3: rad }
     speeds { u1: m/s, u2: m/s, u3: rad/s }
     frames { B = N.rotate(z, q3); }
