@@ -157,7 +157,10 @@ fn files_that_are_no_text() {
     assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
     let checked = model::check(&Source::read(std::path::Path::new("/no/such/file.mech")));
     assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
-    for text in ["", "\u{feff}", "\n", "//", "/", "\0", "mechanism", "mechanism ;", "mechanism A;"] {
+    let texts = ["", "\u{feff}", "\n", "//", "/", "\0", "mechanism", "mechanism ;", "mechanism A;"];
+    for text in
+        texts.into_iter().chain(["mechanism \"A\";", "mechanism\" points- . \"", "mechanism! {", "\"\""])
+    {
         let source = Source::file("x.mech", text);
         let checked = model::check(&source);
         assert!(checked.mechanism.is_none() && !checked.diagnostics.is_empty(), "{text:?}");

@@ -42,7 +42,9 @@ impl Parser<'_> {
             let words = [codes::BAD_TOKEN, codes::BAD_NUMBER];
             let mut said = self.diagnostics.split_off(before);
             said.truncate(1);
-            self.diagnostics.retain(|d| !words.contains(&d.code));
+            if !said.is_empty() {
+                self.diagnostics.retain(|d| !words.contains(&d.code));
+            }
             self.diagnostics.extend(said);
             return;
         }
