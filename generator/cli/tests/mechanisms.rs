@@ -1,10 +1,14 @@
-//! Mechanisms that are not shipped, written from the language reference alone, against Lagrange's equations
-//! (`tests/data/mechanisms`, see `tests/data/README.md`).
+//! Mechanisms that are not shipped: those written from the language reference alone, against Lagrange's equations
+//! (`tests/data/mechanisms`, see `tests/data/README.md`), and the examples of the reference itself.
 
 mod common;
 
 use common::{difference, hodograph, number, numbers, root};
-use serde_json::Value;
+use hodograph_generator::diagnostics::explanations::within;
+use hodograph_generator::model::{check, mechanism::Quantity};
+use hodograph_generator::numeric::{self, State};
+use hodograph_generator::source::Source;
+use serde_json::{Value, json};
 
 /// Named numbers in the order of the names expected.
 fn named(found: &Value, expected: &Value) -> (Vec<f64>, Vec<f64>) {
@@ -78,4 +82,63 @@ fn they_agree_with_lagranges_equations() {
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
     assert!(compared > 300, "{compared}");
+}
+
+/// The examples of `docs/language.md`, each completed by the comment above it.
+fn examples() -> Vec<String> {
+    let page = std::fs::read_to_string(root().join("docs/language.md")).unwrap();
+    page.split("```text\n")
+        .scan(String::new(), |before, part| {
+            let (text, rest) = part.split_once("```\n").unwrap_or(("", part));
+            let context =
+                before.rsplit_once("<!-- context\n").and_then(|(_, context)| context.split_once("-->"));
+            let context =
+                context.map_or(String::new(), |(context, _)| format!("mechanism Example;\n{context}"));
+            *before = rest.to_owned();
+            Some((context, text))
+        })
+        .filter(|(_, text)| !text.is_empty())
+        .map(|(context, text)| within(&context, text))
+        .collect()
+}
+
+/// What the language reference shows derives, and computes what the numeric road does.
+#[test]
+fn examples_of_the_language_reference_agree_with_the_numeric_road() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("example.mech");
+    let mut compared = 0;
+    for text in examples() {
+        std::fs::write(&path, &text).unwrap();
+        let mechanism = check(&Source::file("example.mech", &text)).mechanism.unwrap();
+        // away from zero, where angles have poles and lengths vanish
+        let mut state = State::of(&mechanism);
+        for (i, (value, coordinate)) in state.coordinates.iter_mut().zip(&mechanism.coordinates).enumerate() {
+            if coordinate.value.is_none() && !coordinate.name.starts_with('e') {
+                *value = 0.2 + 0.1 * i as f64;
+            }
+        }
+        state.speeds.iter_mut().enumerate().for_each(|(i, value)| *value = 0.4 - 0.15 * i as f64);
+        numeric::complete(&mechanism, &mut state).unwrap();
+        let expected =
+            numeric::evaluate(&mechanism, &state).unwrap_or_else(|error| panic!("{error}\n{text}"));
+        let named = |list: &[Quantity], values: &[f64]| -> Value {
+            list.iter().zip(values).map(|(quantity, value)| (quantity.name.clone(), json!(value))).collect()
+        };
+        let given = json!({
+            "q": named(&mechanism.coordinates, &state.coordinates),
+            "u": named(&mechanism.speeds, &state.speeds),
+        });
+        let run = hodograph(&["eval", path.to_str().unwrap(), "--state", "-"], &given.to_string());
+        assert_eq!(run.code, 0, "{text}\n{}{}", run.stdout, run.stderr);
+        let answer = run.line();
+        for (found, expected) in [
+            (numbers(&answer["mass_matrix"]), expected.mass_matrix.concat()),
+            (numbers(&answer["forcing"]), expected.forcing),
+        ] {
+            assert!(difference(&found, &expected, 1e-3) < 1e-11, "{text}\n{found:?}\n{expected:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "{compared}");
 }
