@@ -38,7 +38,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: CONSTANT,
-        text: "The value of a declaration is made of numbers, `pi` and functions. What follows from other quantities belongs to `definitions`.",
+        text: "The value of a declaration is made of numbers, `pi` and functions. What follows from other quantities belongs to `definitions`. A dependent speed has no value at all: it follows from the constraints.",
         wrong: Some(
             "parameters { m: kg = 1, l: m = 0.5, a: m = l/2, g: m/s^2 = 9.81 }\npoints { G = O - a*B.y; P = O - l*B.y; }",
         ),

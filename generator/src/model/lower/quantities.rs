@@ -77,6 +77,11 @@ impl Lowering<'_> {
                 self.report(error.help("remove `dependent`"));
             }
         }
+        if dependent && let Some(value) = &source.value {
+            let message = format!("the dependent speed `{}` has no value of its own", source.name.text);
+            let error = Diagnostic::new(codes::CONSTANT, value.span, message);
+            self.report(error.help("it follows from the constraints: remove the value"));
+        }
         if is_fixed && value.is_none() {
             let message = format!("the fixed parameter `{}` has no value", source.name.text);
             let error = Diagnostic::new(codes::NEEDS_VALUE, source.name.span, message);
