@@ -162,6 +162,48 @@ fn says_where_there_is_none() {
     assert_eq!(last.obstacle, Some(Obstacle::PathChange));
 }
 
+/// The example at mu = mu_s: slip along t stays along t, and v_n would feel it turn.
+#[test]
+fn straight_hodographs_are_an_obstacle() {
+    let m: ReducedMatrix<f64> =
+        ReducedMatrix::new(0.22510385, -0.10936656, -0.12575887, 0.23598633, -0.11584858, 0.27021211);
+    let surface = |law| Surface { mu: m.ns / m.ts, e: 0.8, law };
+    for law in LAWS {
+        let d = derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.0), &surface(law)).expect("solved");
+        assert_eq!(d.obstacle, Some(Obstacle::Straight), "{law:?}");
+        // A little to the side there is one again.
+        let d = derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.01), &surface(law)).expect("solved");
+        assert_eq!(d.obstacle, None, "{law:?}");
+    }
+}
+
+/// Where restitution ends just before the bodies approach again, or just after: the outcome jumps between the two.
+#[test]
+fn grazing_is_an_obstacle() {
+    let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);
+    let v = Vector3::new(-0.22, -0.2, 1.0);
+    for law in [Law::Poisson, Law::Stronge] {
+        let at = |e: f64| solve(&m, &v, &Surface { mu: 1.95, e, law }).expect("solved");
+        let (mut once, mut twice) = (0.01, 0.5);
+        assert_eq!((at(once).compressions, at(twice).compressions), (1, 2));
+        for _ in 0..60 {
+            let e = 0.5 * (once + twice);
+            if at(e).compressions == 1 { once = e } else { twice = e }
+        }
+        let jump = (at(once).impulse - at(twice).impulse).norm();
+        assert!(jump > 1e-3 * at(once).impulse.norm(), "{law:?} {jump}");
+        for e in [once, twice] {
+            let d = derivative(&m, &v, &Surface { mu: 1.95, e, law }).expect("solved");
+            assert_eq!(d.obstacle, Some(Obstacle::Grazing), "{law:?}");
+            assert!(d.impact.sensitivity.grazing);
+        }
+        for e in [once - 5e-3, twice + 0.1] {
+            let d = derivative(&m, &v, &Surface { mu: 1.95, e, law }).expect("solved");
+            assert_eq!(d.obstacle, None, "{law:?}");
+        }
+    }
+}
+
 /// A point mass that falls on a frictionless floor: the saltation matrix is known.
 #[test]
 fn saltation_of_a_bouncing_ball() {
