@@ -104,6 +104,11 @@ impl Source {
         &self.name
     }
 
+    /// Is it the input of a macro?
+    pub fn is_inline(&self) -> bool {
+        matches!(self.content, Content::Inline { .. })
+    }
+
     /// The text of a file.
     pub fn text(&self) -> Option<&str> {
         match &self.content {

@@ -90,6 +90,9 @@ impl Diagnostic {
     /// The message as the text of a compile error. For a file: one line with the place, then the line and a caret. For an inline
     /// model, whose tokens the compiler underlines: what is wrong and what to do.
     pub fn compiler_text(&self, source: &Source) -> String {
+        if source.text().is_none() && !source.is_inline() {
+            return self.one_line(source);
+        }
         if source.text().is_some() {
             let line = Diagnostic { help: None, ..self.clone() }.one_line(source);
             let rendered = self.render(source);

@@ -82,7 +82,7 @@ pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStr
         Ok(place) => place,
         Err(message) => {
             let error = report::error(path.span, path.span, &message);
-            let skeleton = emit::skeleton(&module, Some(&stem), &[]);
+            let skeleton = (!stem.is_empty()).then(|| emit::skeleton(&module, Some(&stem), &[]));
             return quote!(#error #skeleton);
         }
     };

@@ -21,7 +21,8 @@ pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenS
     let module = emit::names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let Some(mechanism) = checked.mechanism else {
         let errors = report::of_inline(&source, &checked.diagnostics);
-        let skeleton = emit::skeleton(&module, name.as_deref(), &[]);
+        // what has no name nobody refers to
+        let skeleton = name.as_deref().map(|name| emit::skeleton(&module, Some(name), &[]));
         return quote!(#errors #skeleton);
     };
     let shown = format!("derived/{module}.derivation");

@@ -8,8 +8,10 @@ mod report;
 
 use std::path::{Path, PathBuf};
 
-use proc_macro2::{Delimiter, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use quote::quote;
+
+use crate::syntax::tree::Section;
 
 /// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is `($crate)
 /// "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime is `::hodograph`. `package` is
@@ -39,6 +41,25 @@ fn module(input: TokenStream, package: &Path) -> TokenStream {
     };
     match file::path(&trees) {
         Some(path) => file::expand(&path, &krate, package),
-        None => inline::expand(trees.into_iter().collect(), &krate, package),
+        None if is_model(&trees) => inline::expand(trees.into_iter().collect(), &krate, package),
+        None => {
+            let first = trees.first().map_or_else(Span::call_site, TokenTree::span);
+            let last = trees.last().map_or(first, TokenTree::span);
+            report::error(first, last, TAKES)
+        }
     }
+}
+
+const TAKES: &str = "`mechanism!` takes the path of a model file in quotes, as in `mechanism!(\"models/hopper.mech\")`, or a model, as in \
+                     `mechanism! { mechanism Hopper; .. }`";
+
+/// Does it look like a model, perhaps without its beginning?
+fn is_model(trees: &[TokenTree]) -> bool {
+    trees.windows(2).any(|pair| match pair {
+        [TokenTree::Ident(word), next] => {
+            let opens = matches!(next, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
+            word == "mechanism" || opens && Section::of_word(&word.to_string()).is_some()
+        }
+        _ => false,
+    })
 }
