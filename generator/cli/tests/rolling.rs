@@ -106,6 +106,59 @@ fn in_a_bowl_and_in_a_tube() {
     }
 }
 
+/// A ball that rolls on a ball that rolls on the ground, and a roller on a fixed one.
+#[test]
+fn on_each_other() {
+    for along in ["N", "Small", "F"] {
+        evaluated(&format!(
+            "mechanism Balls;
+            parameters {{ m: kg = 1, R: m = 1, r: m = 0.2, J: kg*m^2 = 0.02, JR: kg*m^2 = 2, M: kg = 5, g: m/s^2 = 9.81 }}
+            coordinates {{
+                x: m, y: m, a: rad = 0.1, b: rad = 0.2,
+                e0: 1 = 0.8, e1: 1 = 0.4, e2: 1 = -0.2, e3: 1 = 0.4, f0: 1 = 0.4, f1: 1 = 0.8, f2: 1 = 0.2, f3: 1 = -0.4,
+            }}
+            speeds {{ w1: rad/s = 1, w2: rad/s = 2, w3: rad/s = 3, s1: rad/s = 4, s2: rad/s = 5, s3: rad/s = 6 }}
+            dependent {{ vx: m/s, vy: m/s, ua: rad/s, ub: rad/s }}
+            frames {{
+                F1 = N.rotate(x, a); F = F1.rotate(y, b);
+                Big = N.quaternion(e0, e1, e2, e3); Small = N.quaternion(f0, f1, f2, f3);
+            }}
+            angular_velocities {{
+                Big = w1*N.x + w2*N.y + w3*Big.z;
+                Small = s1*{along}.x + s2*{along}.y + s3*{along}.z;
+            }}
+            points {{
+                G = O + x*N.x + y*N.y + R*N.z; K of Big = G - R*N.z;
+                H = G + (R + r)*F.z; CB of Big = G + R*F.z; CS of Small = H - r*F.z;
+            }}
+            velocities {{ G = vx*N.x + vy*N.y; }}
+            bodies {{
+                B1 {{ frame: Big, centre: G, mass: M, inertia: [JR, JR, JR] }},
+                B2 {{ frame: Small, centre: H, mass: m, inertia: [J, J, J] }},
+            }}
+            loads {{ gravity: -g*N.z; }}
+            kinematics {{ d(a)/dt = ua; d(b)/dt = ub; }}
+            constraints {{ velocity(K) = 0; velocity(CB) = velocity(CS); }}"
+        ));
+    }
+    let answer = evaluated(
+        "mechanism Roller;
+        parameters { m: kg = 1, R: m = 1, r: m = 0.2, g: m/s^2 = 9.81 }
+        coordinates { th: rad = 0.2, ph: rad }
+        speeds { w: rad/s = 1 }
+        dependent { s: rad/s }
+        frames { A = N.rotate(z, th); B = N.rotate(z, ph); }
+        points { G = O + (R + r)*A.y; C of B = G - r*A.y; }
+        bodies { Roll { frame: B, centre: G, mass: m, inertia: [m*r^2/4, m*r^2/4, m*r^2/2] } }
+        loads { gravity: -g*N.y; }
+        kinematics { d(th)/dt = w; d(ph)/dt = s; }
+        constraints { velocity(C) = 0; }",
+    );
+    // a roller falls from another: 3/2 (R + r) th'' = g sin(th)
+    let expected = 9.81 * 0.2f64.sin() / (1.5 * 1.2);
+    assert!((number(&answer["udot"]["w"]) - expected).abs() < 1e-13, "{answer}");
+}
+
 /// Where no frame has the direction along which nothing is said, the error says so, at its place and with its code.
 #[test]
 fn on_a_surface_without_frames() {

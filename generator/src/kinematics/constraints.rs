@@ -30,9 +30,13 @@ impl Kinematics<'_> {
                 code: codes::CONSTRAINT_COUNT,
                 span,
                 message: format!(
-                    "the constraints amount to {} equations, but there are {} dependent speeds",
-                    equations.len(),
-                    unknowns.len()
+                    "the constraints amount to {}, but there {}",
+                    count(equations.len(), "equation"),
+                    if unknowns.len() == 1 {
+                        "is 1 dependent speed".to_owned()
+                    } else {
+                        format!("are {} dependent speeds", unknowns.len())
+                    }
                 ),
                 help: "declare as many speeds in `dependent` as there are independent constraints".into(),
             });
@@ -99,6 +103,10 @@ impl Kinematics<'_> {
     pub fn dependence(&self, dependent: usize, independent: usize) -> Expr {
         self.dependent.get(&dependent).map_or_else(Expr::zero, |form| form.coefficient(independent))
     }
+}
+
+fn count(n: usize, word: &str) -> String {
+    format!("{n} {word}{}", if n == 1 { "" } else { "s" })
 }
 
 /// A vector equation whose components depend on each other along all axes that were tried.
