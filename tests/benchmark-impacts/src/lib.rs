@@ -1,11 +1,34 @@
 //! What is measured: collisions, methods, and the error of an answer.
 
+mod hostile;
+mod ode;
+
 use std::hint::black_box;
 
 use hodograph::methods::{Integration, MethodError, Partial, Summation, integrate, irs, sum};
 use hodograph::{Impact, Law, ReducedMatrix, Surface, solve};
 use nalgebra::Vector3;
 use serde_json::Value;
+
+/// What is compared of an answer.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome {
+    /// impulse (n, t, s)
+    pub impulse: Vector3<f64>,
+    /// velocity of separation (n, t, s)
+    pub velocity: Vector3<f64>,
+    /// work of the impulse
+    pub contact_work: f64,
+    /// work of its normal part
+    pub normal_work: f64,
+}
+
+impl From<Impact<f64>> for Outcome {
+    fn from(hit: Impact<f64>) -> Self {
+        let Impact { impulse, velocity, contact_work, normal_work, .. } = hit;
+        Self { impulse, velocity, contact_work, normal_work }
+    }
+}
 
 /// One collision and, for the random ones, its answer to 25 digits.
 pub struct Case {
@@ -15,7 +38,7 @@ pub struct Case {
     pub approach: Vector3<f64>,
     /// friction and restitution
     pub surface: Surface<f64>,
-    expect: Option<Impact<f64>>,
+    expect: Option<Outcome>,
     answer: [f64; 8],
 }
 
@@ -30,7 +53,7 @@ pub fn nine() -> Vec<Case> {
     for mu in [0.6, 1.1, 1.6] {
         for (_, law) in LAWS {
             let surface = Surface { mu, e: 0.8, law };
-            let expect = solve(&matrix, &approach, &surface).ok();
+            let expect = solve(&matrix, &approach, &surface).ok().map(Outcome::from);
             cases.push(Case { matrix, approach, surface, expect, answer: [0.0; 8] });
         }
     }
@@ -66,8 +89,13 @@ pub fn reference(family: Option<&str>) -> Vec<Case> {
 }
 
 impl Case {
+    /// A collision whose answer nobody asks for.
+    fn unanswered(matrix: ReducedMatrix<f64>, approach: Vector3<f64>, surface: Surface<f64>) -> Self {
+        Self { matrix, approach, surface, expect: None, answer: [0.0; 8] }
+    }
+
     /// The scaled error of an answer: impulse by its largest component, velocity by approach plus separation, works by impulse times velocity.
-    pub fn error(&self, hit: &Impact<f64>) -> f64 {
+    pub fn error(&self, hit: &Outcome) -> f64 {
         let answer = self.expect.map_or(self.answer, |x| {
             let (i, v) = (x.impulse, x.velocity);
             [i.x, i.y, i.z, v.x, v.y, v.z, x.contact_work, x.normal_work]
@@ -82,8 +110,8 @@ impl Case {
     }
 }
 
-/// What a method answers.
-pub type Answer = Result<Impact<f64>, MethodError>;
+/// What a method answers, if it does.
+pub type Answer = Option<Outcome>;
 
 /// A way to solve: its name in the table, that of its function, and the function, never inlined.
 pub type Method = (&'static str, &'static str, fn(&Case) -> Answer);
@@ -102,24 +130,31 @@ macro_rules! methods {
 }
 
 methods! {
-    "exact", measured_exact: |m, v, s| Ok(solve(m, v, s)?);
-    "sum, k = 1", measured_sum_1: |m, v, s| sum(m, v, s, &Summation::new(1));
-    "sum, k = 5", measured_sum_05: |m, v, s| sum(m, v, s, &Summation::new(5));
-    "sum, k = 50", measured_sum_50: |m, v, s| sum(m, v, s, &Summation::new(50));
-    "i/rs, k = 1", measured_irs_1: |m, v, s| irs(m, v, s, &Partial::Sum(Summation::new(1)));
-    "i/rs, k = 5", measured_irs_05: |m, v, s| irs(m, v, s, &Partial::Sum(Summation::new(5)));
-    "i/rs, k = 50", measured_irs_50: |m, v, s| irs(m, v, s, &Partial::Sum(Summation::new(50)));
-    "integration, 1e-6", measured_integrate_06: |m, v, s| integrate(m, v, s, &Integration::with_tolerance(1e-6));
-    "integration, 1e-10", measured_integrate_10: |m, v, s| integrate(m, v, s, &Integration::with_tolerance(1e-10));
+    "exact", measured_exact: |m, v, s| solve(m, v, s).ok().map(Outcome::from);
+    "sum, k = 1", measured_sum_1: |m, v, s| plain(sum(m, v, s, &Summation::new(1)));
+    "sum, k = 5", measured_sum_05: |m, v, s| plain(sum(m, v, s, &Summation::new(5)));
+    "sum, k = 50", measured_sum_50: |m, v, s| plain(sum(m, v, s, &Summation::new(50)));
+    "i/rs, k = 1", measured_irs_1: |m, v, s| plain(irs(m, v, s, &Partial::Sum(Summation::new(1))));
+    "i/rs, k = 5", measured_irs_05: |m, v, s| plain(irs(m, v, s, &Partial::Sum(Summation::new(5))));
+    "i/rs, k = 50", measured_irs_50: |m, v, s| plain(irs(m, v, s, &Partial::Sum(Summation::new(50))));
+    "integration, 1e-6", measured_integrate_06: |m, v, s| plain(integrate(m, v, s, &Integration::with_tolerance(1e-6)));
+    "integration, 1e-10", measured_integrate_10: |m, v, s| plain(integrate(m, v, s, &Integration::with_tolerance(1e-10)));
     "i/rs, integrated, 1e-10", measured_partial_10: |m, v, s| {
-        irs(m, v, s, &Partial::Integrate(Integration::with_tolerance(1e-10)))
+        plain(irs(m, v, s, &Partial::Integrate(Integration::with_tolerance(1e-10))))
     };
+    "`ode_solvers`, 1e-6", measured_crate_06: |m, v, s| ode::solve(m, v, s, 1e-6);
+    "`ode_solvers`, 1e-10", measured_crate_10: |m, v, s| ode::solve(m, v, s, 1e-10);
 }
 
-/// The set of collisions of a name: `nine`, `random` or `all`.
+fn plain(hit: Result<Impact<f64>, MethodError>) -> Answer {
+    hit.ok().map(Outcome::from)
+}
+
+/// The set of collisions of a name: `nine`, `random`, `all` or `hostile`.
 pub fn set(name: &str) -> Vec<Case> {
     match name {
         "nine" => nine(),
+        "hostile" => hostile::hostile(),
         "random" => reference(Some("random")),
         _ => reference(None),
     }

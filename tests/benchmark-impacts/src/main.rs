@@ -40,6 +40,44 @@ fn run() -> Result<(), String> {
         let counts = counts(&std::fs::read_to_string(&profile).map_err(|error| error.to_string())?);
         table(name, &counts);
     }
+    worst(&target)
+}
+
+/// Instructions of each collision of the set `hostile`: callgrind writes down what it has counted whenever the next one begins.
+fn worst(target: &Path) -> Result<(), String> {
+    let folder = target.join("hostile");
+    std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
+    for entry in std::fs::read_dir(&folder).map_err(|error| error.to_string())?.flatten() {
+        std::fs::remove_file(entry.path()).map_err(|error| error.to_string())?;
+    }
+    execute(
+        Command::new("valgrind")
+            .args(["--tool=callgrind", "--dump-before=*measured_exact*", "--dump-line=no"])
+            .arg(format!("--callgrind-out-file={}", folder.join("profile").display()))
+            .arg(target.join("release/measured"))
+            .args(["hostile", "measured_exact"]),
+    )?;
+    let cases = set("hostile");
+    // The first profile is what came before the first collision.
+    let mut counts: Vec<(u64, usize)> = Vec::new();
+    for number in 1..cases.len() {
+        let path = folder.join(format!("profile.{}", number + 1));
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+        let total = text.lines().rev().find_map(|line| line.strip_prefix("totals: ")?.trim().parse().ok());
+        counts.push((total.ok_or("a profile without total")?, number - 1));
+    }
+    counts.sort_unstable();
+    let at = |part: f64| counts.get((part * (counts.len() - 1) as f64) as usize).map_or(0, |count| count.0);
+    println!("\nhostile: {} collisions, exact\n", counts.len());
+    println!("| median | 90 % | 99 % | most |");
+    println!("| --- | --- | --- | --- |");
+    println!("| {} | {} | {} | {} |", at(0.5), at(0.9), at(0.99), at(1.0));
+    for (count, index) in counts.iter().rev().take(3) {
+        if let Some(case) = cases.get(*index) {
+            let m = <[f64; 6]>::from(case.matrix);
+            eprintln!("{count}: {m:?} {:?} {:?}", case.approach.as_slice(), case.surface);
+        }
+    }
     Ok(())
 }
 

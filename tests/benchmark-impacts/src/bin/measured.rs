@@ -1,9 +1,14 @@
-//! What valgrind executes: every method once over every collision of a set.
+//! What valgrind executes: every method, or the one named, once over every collision of a set.
 
 fn main() {
-    let set = std::env::args().nth(1).unwrap_or_default();
+    let mut arguments = std::env::args().skip(1);
+    let set = arguments.next().unwrap_or_default();
+    let only = arguments.next();
     let cases = hodograph_benchmark_impacts::set(&set);
-    for (_, _, method) in hodograph_benchmark_impacts::METHODS {
+    for (_, name, method) in hodograph_benchmark_impacts::METHODS {
+        if only.as_deref().is_some_and(|only| only != *name) {
+            continue;
+        }
         for case in &cases {
             let _ = std::hint::black_box(method(std::hint::black_box(case)));
         }
