@@ -158,6 +158,10 @@ fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     if let Some(right) = habits::unit(name) {
         return error.help(format!("write `{right}`"));
     }
+    let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
+    if let Some(base) = name.strip_suffix(digits).filter(|base| !digits.is_empty() && is_symbol(base)) {
+        return error.help(format!("write `{base}^{digits}`"));
+    }
     if let Some(advice) = habits::unit_advice(name) {
         return error.help(advice);
     }

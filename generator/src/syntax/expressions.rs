@@ -202,7 +202,11 @@ impl Parser<'_> {
 
     /// A bracket that closes; what else could follow an operand is `expected`.
     fn close_operand(&mut self, expected: &str) -> Result<(), Lost> {
+        let comma = self.is_sign(',');
         let closed = self.close(expected);
+        if closed.is_err() && comma {
+            self.advise("a vector of three components is `N.vec(a, b, c)`".to_owned());
+        }
         if closed.is_err() && self.at_operand() {
             self.advise("a product is written `a*b`".to_owned());
         }

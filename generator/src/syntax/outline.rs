@@ -96,7 +96,11 @@ impl Parser<'_> {
             self.unwrap_braces();
             return Ok(());
         }
-        self.semicolon()
+        let ended = self.semicolon();
+        if ended.is_err() {
+            self.advise("a name is one word of letters, digits and `_`".to_owned());
+        }
+        ended
     }
 
     /// Reads on as if the braces that begin here were not there.

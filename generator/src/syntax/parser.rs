@@ -16,7 +16,10 @@ pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
     let nesting = match balanced(&tokens) {
         Ok(nesting) => nesting,
         Err(error) => {
-            diagnostics.push(*error);
+            // a comment that is never closed takes the brackets with it
+            if diagnostics.iter().all(|d| d.code != codes::UNBALANCED) {
+                diagnostics.push(*error);
+            }
             return (Tree { incomplete: true, ..Tree::default() }, diagnostics);
         }
     };
@@ -253,7 +256,11 @@ impl<'a> Parser<'a> {
             Some(TokenKind::Bad(_)) => return Lost,
             None => error.label("the model ends here"),
             Some(TokenKind::Sign('\'')) => error.help("a time derivative is written `d(q1)/dt`"),
-            Some(TokenKind::Sign('#' | '%')) => error.help("comments begin with `//`"),
+            Some(TokenKind::Sign('#' | '%')) if what.starts_with("the name") || what.starts_with("a ") => {
+                error.help("comments begin with `//`")
+            }
+            Some(TokenKind::Sign('%')) => error.help("there is no remainder; the operators are + - * / ^"),
+            Some(TokenKind::Sign('|')) => error.help("the magnitude is `abs(x)`, of a vector `norm(v)`"),
             Some(TokenKind::Open('{')) if what == "an expression" => {
                 error.help("parts of an expression are grouped by `(` and `)`")
             }

@@ -17,6 +17,11 @@ impl Parser<'_> {
         let nesting = self.nesting();
         while self.nesting() >= nesting && !self.is_close() {
             let start = self.at;
+            if self.take_sign(separator) {
+                let message = format!("there is nothing between this `{separator}` and the one before");
+                self.report(Diagnostic::new(codes::EXPECTED, self.before(), message).help("remove it"));
+                continue;
+            }
             let result = match self.entry(section) {
                 Ok(()) if separator == ',' => self.comma(),
                 Ok(()) => self.semicolon(),
@@ -105,8 +110,14 @@ impl Parser<'_> {
             }),
             _ => false,
         };
-        if self.at_operand() && !begins {
+        let after = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
+        if after.is_some_and(|token| token.is_word("if")) {
+            error =
+                error.help("there are no conditions in a model; `min`, `max`, `abs` and `sign` make steps");
+        } else if self.at_operand() && !begins {
             error = error.help("or is an operator missing? A product is written `a*b`");
+        } else if self.is_open('[') {
+            error = error.help("there are no indices; the axes of a frame are `B.x`, `B.y` and `B.z`");
         }
         self.report(error);
         if self.is_close() || begins { Ok(()) } else { Err(Lost) }
@@ -189,6 +200,11 @@ impl Parser<'_> {
             }
             Points => {
                 let name = self.name("the name of a point")?;
+                if self.is_word("in") || self.is_word("on") {
+                    let _ = self.expected("`of`, `=` or `:`");
+                    self.advise(format!("write `{} of B` for a point of the body or frame B", name.text));
+                    return Err(Lost);
+                }
                 let of = match self.take_word("of") {
                     Some(_) => Some(self.name("the name of a body or frame after `of`")?),
                     None => None,
@@ -377,6 +393,17 @@ impl Parser<'_> {
     }
 
     fn load(&mut self) -> Result<(), Lost> {
+        let named = [0, 1, 2].map(|ahead| self.peek_at(ahead));
+        if let [Some(name), Some(colon), Some(word)] = named
+            && name.kind == TokenKind::Name
+            && colon.is_sign(':')
+            && ["force", "torque", "spring", "torsion"].contains(&word.text.as_str())
+            && self.peek_at(3).is_some_and(|next| next.kind == TokenKind::Name)
+        {
+            let error = Diagnostic::new(codes::EXPECTED, name.span, "a load has no name");
+            self.report(error.help(format!("remove `{}:`; say what it is in a `//` comment", name.text)));
+            self.at += 2;
+        }
         let start = self.here();
         let word = self.name("a load: gravity, force, torque, spring or torsion")?;
         let (mut ends, mut about) = (Vec::new(), None);

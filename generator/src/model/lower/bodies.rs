@@ -133,7 +133,9 @@ impl Lowering<'_> {
             ExprKind::Error => None,
             _ => {
                 let message = format!("`{}` needs the name of {what}", field.name.text);
-                self.report(Diagnostic::new(codes::WRONG_KIND, field.value.span, message));
+                let section = if what == "a point" { "points" } else { "frames" };
+                let help = format!("declare it under `{section}` and write its name here");
+                self.report(Diagnostic::new(codes::WRONG_KIND, field.value.span, message).help(help));
                 None
             }
         }

@@ -26,9 +26,13 @@ impl Lowering<'_> {
         let value = &source.value;
         let Some(base) = base_frame(value) else {
             if !matches!(value.kind, ExprKind::Error) {
-                let error = Diagnostic::new(codes::FRAME, value.span, "this is not an orientation")
-                    .help("write `B = N;`, `B = N.rotate(z, q1);`, or use euler, space, quaternion or spin");
-                self.report(error);
+                let error = Diagnostic::new(codes::FRAME, value.span, "this is not an orientation");
+                let chained = matches!(&value.kind, ExprKind::Method(base, ..) if matches!(base.kind, ExprKind::Method(..)));
+                self.report(error.help(if chained {
+                    "a frame is turned once: name the one in between, as in `A = N.rotate(z, q1); B = A.rotate(x, q2);`"
+                } else {
+                    "write `B = N;`, `B = N.rotate(z, q1);`, or use euler, space, quaternion or spin"
+                }));
             }
             return None;
         };

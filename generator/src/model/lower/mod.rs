@@ -336,6 +336,9 @@ impl<'a> Lowering<'a> {
         if text.contains('·') {
             return Some("write `*` for a product".to_owned());
         }
+        if !self.constant_only && ["x", "y", "z"].contains(&text) {
+            return Some(format!("an axis belongs to a frame: `N.{text}`"));
+        }
         if let Some(given) = habits::name(text) {
             return Some(format!("did you mean `{given}`?"));
         }
