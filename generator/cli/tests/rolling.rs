@@ -170,6 +170,8 @@ fn on_a_surface_without_frames() {
         .replace("0 - (R - r)*F.z", "x*N.x + y*N.y + (x^2 + y^2)/R*N.z + r*n")
         .replace("G - r*F.z", "G - r*n")
         .replace("constraints", "kinematics { d(x)/dt = vx; d(y)/dt = vy; } constraints");
+    let found = check(&Source::file("ball.mech", &text)).diagnostics;
+    assert!(found.iter().any(|mistake| mistake.code.0 == "E070"), "check says nothing: {found:?}");
     let run = eval(&text);
     assert_ne!(run.code, 0, "{}", run.stdout);
     for part in ["error[E070]", "^^^^^^^^^^^^^^^", "velocity(C) = 0", "state the others one by one"] {

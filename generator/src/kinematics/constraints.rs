@@ -4,7 +4,8 @@ use super::linear::LinearScalar;
 use super::solve::{SolveError, Solver};
 use super::{DeriveError, Kinematics};
 use crate::algebra::Expr;
-use crate::diagnostics::{Span, codes};
+use crate::diagnostics::codes;
+use crate::model::entangled;
 
 impl Kinematics<'_> {
     /// Solves the constraints for the dependent speeds, and their time derivatives for those of the dependent speeds.
@@ -22,7 +23,13 @@ impl Kinematics<'_> {
         let unknowns: Vec<usize> =
             (0..mechanism.speeds.len()).filter(|&slot| mechanism.speeds[slot].dependent).collect();
         if let Some(equation) = entangled {
-            return Err(entangled_components(equation.span));
+            let found = entangled::report(equation.span);
+            return Err(DeriveError {
+                code: found.code,
+                span: equation.span,
+                message: found.message,
+                help: found.help.unwrap_or_default(),
+            });
         }
         if equations.len() != unknowns.len() {
             let span = mechanism.constraints.first().map_or_else(Default::default, |equation| equation.span);
@@ -107,18 +114,4 @@ impl Kinematics<'_> {
 
 fn count(n: usize, word: &str) -> String {
     format!("{n} {word}{}", if n == 1 { "" } else { "s" })
-}
-
-/// A vector equation whose components depend on each other along all axes that were tried.
-fn entangled_components(span: Span) -> DeriveError {
-    DeriveError {
-        code: codes::CONSTRAINT_COUNT,
-        span,
-        message: "the components of this equation depend on each other, and along the axes of no frame is one of them \
-                  identically 0"
-            .into(),
-        help: "orient a frame along the direction in which the equation says nothing, or state the others one by one, along \
-               vectors of your own: `dot(velocity(C), v) = 0;`"
-            .into(),
-    }
 }

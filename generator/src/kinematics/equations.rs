@@ -13,6 +13,7 @@ use crate::algebra::{Expr, Intermediates, Sample};
 use crate::model::mechanism::{
     DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Quantity, Vector,
 };
+use crate::numeric;
 use crate::program::graph::Input;
 
 /// States at which it is decided whether something is identically 0.
@@ -86,7 +87,7 @@ impl Kinematics<'_> {
                     terms.map(|term| sample.value(z, &term)).collect()
                 })
                 .collect();
-            rows.map(rank)
+            rows.map(numeric::rank)
         });
         ranks.max().unwrap_or(forms.len())
     }
@@ -168,31 +169,6 @@ impl LinearVector {
 pub(super) fn vanishes(z: &Intermediates, samples: &mut [Sample], expr: &Expr) -> bool {
     let seen: Vec<bool> = samples.iter_mut().filter_map(|sample| sample.vanishes(z, expr)).collect();
     seen.len() > 1 && seen.iter().all(|&zero| zero)
-}
-
-/// The number of independent rows.
-fn rank(mut rows: Vec<Vec<f64>>) -> usize {
-    let size = |row: &[f64]| row.iter().fold(0.0_f64, |size, c| size.max(c.abs()));
-    rows.iter_mut().for_each(|row| {
-        let size = size(row);
-        row.iter_mut().for_each(|c| *c /= if size > 0.0 { size } else { 1.0 });
-    });
-    let mut rank = 0;
-    while let Some(at) = (0..rows.len()).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b]))) {
-        let row = rows.swap_remove(at);
-        let Some(column) = (0..row.len()).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())) else {
-            break;
-        };
-        if row[column].abs() < 1e-9 {
-            break;
-        }
-        for other in &mut rows {
-            let factor = other[column] / row[column];
-            other.iter_mut().zip(&row).for_each(|(entry, above)| *entry -= factor * above);
-        }
-        rank += 1;
-    }
-    rank
 }
 
 /// Arbitrary states near the initial values, the same ones every time. Parameters are moved as well: what is 0 only with their

@@ -44,7 +44,7 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
     if !out.is_empty() {
         return out;
     }
-    let mut seen = Vec::new();
+    let (mut seen, mut states_seen) = (Vec::new(), Vec::new());
     let mut turns: Option<Vec<bool>> = None;
     let mut failures = Vec::new();
     for mut state in states {
@@ -55,6 +55,7 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
                 turns = Some(turns.map_or(turning.clone(), |before: Vec<bool>| {
                     before.iter().zip(&turning).map(|(a, b)| *a && *b).collect()
                 }));
+                states_seen.push((state.clone(), evaluation.clone()));
                 seen.push(evaluation);
             }
             Err(failure) => failures.push((state, failure)),
@@ -83,6 +84,7 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
         inertia_of_speeds(m, &seen, &mut out);
         out.extend(super::members::strangers(m, &seen));
         contacts(m, &seen, &mut out);
+        out.extend(super::entangled::entangled(m, &states_seen));
     }
     out
 }

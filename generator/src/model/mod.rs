@@ -3,6 +3,7 @@
 mod checks;
 mod counts;
 pub mod dimension;
+pub mod entangled;
 pub mod habits;
 mod lower;
 pub mod mechanism;

@@ -75,29 +75,32 @@ pub fn solve(mut rows: Vec<Vec<Hyper>>, count: usize) -> Result<Solved, Undeterm
     Ok(Solved { unknowns, contradiction })
 }
 
-/// How many of the equations are independent, by the coefficients of their first `count` unknowns.
-pub fn rank(mut rows: Vec<Vec<Hyper>>, count: usize) -> usize {
-    rows.iter_mut().for_each(|row| row.truncate(count));
-    let mut independent: Vec<Vec<Hyper>> = Vec::new();
-    let mut remaining = rows;
+/// How many of the rows are independent; rows of very different sizes count alike.
+pub fn rank(mut rows: Vec<Vec<f64>>) -> usize {
+    let size = |row: &[f64]| row.iter().fold(0.0_f64, |size, c| size.max(c.abs()));
+    let noise = 1e-12 * rows.iter().map(|row| size(row)).fold(0.0_f64, f64::max);
+    rows.retain(|row| size(row) > noise);
+    for row in &mut rows {
+        let size = size(row);
+        row.iter_mut().for_each(|c| *c /= size);
+    }
+    let mut rank = 0;
     // each step takes the largest coefficient and clears its column
-    let scale = |row: &Vec<Hyper>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
-    let noise = 1e-9 * remaining.iter().map(scale).fold(0.0_f64, f64::max);
-    while let Some(best) =
-        (0..remaining.len()).max_by(|a, b| scale(&remaining[*a]).total_cmp(&scale(&remaining[*b])))
-    {
-        let row = remaining.swap_remove(best);
-        if scale(&row) <= noise {
+    while let Some(best) = (0..rows.len()).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b]))) {
+        let row = rows.swap_remove(best);
+        let Some(column) = (0..row.len()).max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs())) else {
+            break;
+        };
+        if row[column].abs() < 1e-9 {
             break;
         }
-        let column = (0..row.len()).max_by(|a, b| row[*a].re.abs().total_cmp(&row[*b].re.abs())).unwrap_or(0);
-        for other in &mut remaining {
-            let factor = Hyper::constant(other[column].re / row[column].re);
-            other.iter_mut().zip(&row).for_each(|(entry, above)| *entry = *entry - factor * *above);
+        for other in &mut rows {
+            let factor = other[column] / row[column];
+            other.iter_mut().zip(&row).for_each(|(entry, above)| *entry -= factor * above);
         }
-        independent.push(row);
+        rank += 1;
     }
-    independent.len()
+    rank
 }
 
 /// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is.

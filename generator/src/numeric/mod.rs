@@ -15,16 +15,23 @@ mod motion;
 pub use complete::complete;
 pub use dynamics::{central_inertia, evaluate};
 pub use evaluator::{Evaluator, Level};
-pub use linear::singular_column;
+pub use linear::{rank, singular_column};
 
 use crate::diagnostics::Span;
 use crate::model::mechanism::{CoordinateId, Mechanism, SpeedId};
 
 /// How many independent equations the constraints of a mechanism amount to at a state.
 pub fn constraint_rank(m: &Mechanism, state: &State) -> Result<usize, Failure> {
+    let mut rows = constraint_coefficients(m, state)?;
+    rows.iter_mut().for_each(|row| row.truncate(m.speeds.len()));
+    Ok(rank(rows))
+}
+
+/// The constraints at a state by their coefficients: speeds, then the constant; a vector equation has three rows, along N.x, N.y, N.z.
+pub fn constraint_coefficients(m: &Mechanism, state: &State) -> Result<Vec<Vec<f64>>, Failure> {
     let coordinates = state.coordinates.iter().map(|q| hyper::Hyper::constant(*q)).collect();
     let time = hyper::Hyper::constant(state.time);
-    motion::Instant { m, state, time, coordinates }.constraint_rank()
+    motion::Instant { m, state, time, coordinates }.constraint_coefficients()
 }
 
 /// A state: every number in the unit of its declaration, in the order of the file.

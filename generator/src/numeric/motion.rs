@@ -2,7 +2,7 @@
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper::*;
-use super::linear::{rank, solve};
+use super::linear::solve;
 use super::{Failure, State};
 use crate::diagnostics::Span;
 use crate::model::mechanism::*;
@@ -187,12 +187,12 @@ impl<'m> Instant<'m> {
         })
     }
 
-    /// How many independent equations the constraints amount to.
-    pub fn constraint_rank(&self) -> Result<usize, Failure> {
+    /// The constraints by their coefficients: speeds, then the constant; three rows for a vector equation, along N.x, N.y, N.z.
+    pub fn constraint_coefficients(&self) -> Result<Vec<Vec<f64>>, Failure> {
         let rates = self.solve_rates()?;
         let maps = Maps { rates, speeds: Vec::new() };
         let (rows, _) = self.constraint_rows(&maps, 0)?;
-        Ok(rank(rows, self.m.speeds.len()))
+        Ok(rows.iter().map(|row| row.iter().map(|c| c.re).collect()).collect())
     }
 }
 

@@ -1,0 +1,71 @@
+//! Vector constraints whose components depend on each other: the derivation needs axes along which those that say nothing are
+//! identically 0.
+
+use super::mechanism::{EquationSides, Mechanism};
+use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::numeric::{self, Evaluation, State};
+
+/// What is nothing beside the other entries of a matrix.
+const NOISE: f64 = 1e-9;
+
+/// Three rows, along three axes: coefficients of the speeds, and what is free of them.
+type Rows = [Vec<f64>; 3];
+
+/// The vector constraints that no frame takes apart, by what they are at some states.
+pub fn entangled(m: &Mechanism, states: &[(State, Evaluation)]) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    let at: Option<Vec<Vec<Vec<f64>>>> =
+        states.iter().map(|(state, _)| numeric::constraint_coefficients(m, state).ok()).collect();
+    let Some(at) = at else { return out };
+    let mut first = 0;
+    for equation in &m.constraints {
+        let EquationSides::Vector(..) = equation.sides else {
+            first += 1;
+            continue;
+        };
+        let along_n: Vec<Rows> = at
+            .iter()
+            .map(|rows| std::array::from_fn(|i| rows.get(first + i).cloned().unwrap_or_default()))
+            .collect();
+        first += 3;
+        let rank = along_n.iter().map(|rows| numeric::rank(rows.to_vec())).max().unwrap_or(3);
+        let fits = |frame: usize| {
+            let turned: Option<Vec<Rows>> = along_n
+                .iter()
+                .zip(states)
+                .map(|(rows, (_, at))| {
+                    at.orientations.get(frame).copied().flatten().map(|axes| turned(rows, &axes))
+                })
+                .collect();
+            turned.is_some_and(|turned| components(&turned) <= rank)
+        };
+        if rank < 3 && components(&along_n) > rank && !(0..m.frames.len()).any(fits) {
+            out.push(report(equation.span));
+        }
+    }
+    out
+}
+
+/// A vector equation whose components depend on each other along the axes of all frames.
+pub fn report(span: Span) -> Diagnostic {
+    let message = "the components of this equation depend on each other, and along the axes of no frame is one of them identically 0";
+    let help = "orient a frame along the direction in which the equation says nothing, or state the others one by one, along vectors of your own: `dot(velocity(C), v) = 0;`";
+    Diagnostic::new(codes::CONSTRAINT_COUNT, span, message).help(help)
+}
+
+fn size(rows: &Rows) -> f64 {
+    rows.iter().flatten().fold(0.0, |size, c| size.max(c.abs()))
+}
+
+/// The rows along the axes of a frame, which are the columns of `axes`.
+fn turned(rows: &Rows, axes: &[[f64; 3]; 3]) -> Rows {
+    std::array::from_fn(|axis| {
+        (0..rows[0].len()).map(|column| (0..3).map(|i| axes[i][axis] * rows[i][column]).sum()).collect()
+    })
+}
+
+/// How many of the three are not 0 at all states.
+fn components(at: &[Rows]) -> usize {
+    let there = |i: usize| at.iter().any(|rows| rows[i].iter().any(|c| c.abs() > NOISE * size(rows)));
+    (0..3).filter(|&i| there(i)).count()
+}
