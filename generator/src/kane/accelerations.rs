@@ -15,6 +15,8 @@ pub struct Accelerations {
     speeds: Vec<Expr>,
     /// acceleration of the ground: minus gravity, which then acts on every mass
     ground: Mixed,
+    /// are the accelerations of points and frames left out, which are added elsewhere?
+    apart: bool,
     angular: BTreeMap<FrameId, Triple>,
     linear: BTreeMap<PointId, Triple>,
     turning: BTreeMap<FrameId, [Triple; 3]>,
@@ -26,10 +28,16 @@ impl Accelerations {
         Accelerations {
             speeds,
             ground,
+            apart: false,
             angular: BTreeMap::new(),
             linear: BTreeMap::new(),
             turning: BTreeMap::new(),
         }
+    }
+
+    /// What speeds alone add at each relation of the graph: no speed changes, every base is at rest but for the ground.
+    pub fn apart(speeds: usize, ground: Mixed) -> Self {
+        Accelerations { apart: true, ..Self::new(vec![Expr::zero(); speeds], ground) }
     }
 
     /// Acceleration of everything at rest.
@@ -54,7 +62,7 @@ impl Accelerations {
     /// Angular acceleration of a frame in N, in its home axes.
     pub fn angular(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
         let frame = k.turning(frame);
-        if frame == FrameId::N {
+        if frame == FrameId::N || self.apart {
             return linear::zero();
         }
         if let Some(known) = self.angular.get(&frame) {
@@ -64,23 +72,43 @@ impl Accelerations {
         let base = k.turning(motion.base);
         let of_base = self.angular(k, base);
         let of_base = k.tree.convert(&mut k.z, &of_base, k.frames[base.0].home, motion.home);
-        let own = self.derivative(k, &motion.relative, motion.home);
+        let own = self.own_angular(k, frame);
         let value = linear::name(&mut k.z, linear::add(&of_base, &own));
         self.angular.insert(frame, value.clone());
         value
     }
 
+    /// What a frame's relation adds to the angular acceleration of its base, in its home axes.
+    pub fn own_angular(&self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
+        let motion = k.frames[frame.0].clone();
+        let own = self.derivative(k, &motion.relative, motion.home);
+        linear::name(&mut k.z, own)
+    }
+
     /// Acceleration of a point in N (and of the ground), in its home axes.
     pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
+        if self.apart {
+            return linear::zero();
+        }
         if let Some(known) = self.linear.get(&point) {
             return known.clone();
         }
         let motion = k.points[point.0].clone();
+        let of_base = motion.base.map_or_else(linear::zero, |base| {
+            let value = self.point(k, base);
+            k.tree.convert(&mut k.z, &value, k.points[base.0].home, motion.home)
+        });
+        let sum = linear::add(&of_base, &self.own_point(k, point));
+        let value = linear::name(&mut k.z, sum);
+        self.linear.insert(point, value.clone());
+        value
+    }
+
+    /// What a point's relation adds to the acceleration of its base (or is, if it has none), in its home axes.
+    pub fn own_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
+        let motion = k.points[point.0].clone();
         let mut sum = match motion.base {
-            Some(base) => {
-                let value = self.point(k, base);
-                k.tree.convert(&mut k.z, &value, k.points[base.0].home, motion.home)
-            }
+            Some(_) => linear::zero(),
             None => {
                 let ground = self.ground.clone();
                 k.express(&ground, motion.home)
@@ -96,9 +124,7 @@ impl Accelerations {
             let part = linear::name(&mut k.z, part);
             sum = linear::add(&sum, &k.tree.convert(&mut k.z, &part, *axes, motion.home));
         }
-        let value = linear::name(&mut k.z, sum);
-        self.linear.insert(point, value.clone());
-        value
+        linear::name(&mut k.z, sum)
     }
 
     /// Derivative in N of `w x r`, along the arm's axes.

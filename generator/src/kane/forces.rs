@@ -86,11 +86,18 @@ pub fn gravity(k: &mut Kinematics<'_>) -> Mixed {
     sum.into_iter().map(|(axes, v)| (axes, linear::name(&mut k.z, v))).collect()
 }
 
-/// Forces and torques, active and inertia together, for given derivatives of all speeds.
-pub fn wrenches(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>, derivatives: Vec<Expr>) -> Wrenches {
+/// The acceleration of the ground that acts as gravity does.
+pub fn ground(k: &mut Kinematics<'_>) -> Mixed {
     let gravity = gravity(k);
-    let ground = vectors::scale(&Expr::integer(-1), &gravity);
-    let mut accelerations = Accelerations::new(derivatives, ground);
+    vectors::scale(&Expr::integer(-1), &gravity)
+}
+
+/// Forces and torques, active and inertia together, for given accelerations.
+pub fn wrenches(
+    k: &mut Kinematics<'_>,
+    lumps: &BTreeMap<Seat, Lump>,
+    accelerations: &mut Accelerations,
+) -> Wrenches {
     let mut wrenches = Wrenches::default();
     for (&(frame, point), lump) in lumps {
         let home = k.frames[frame.0].home;
@@ -132,7 +139,8 @@ pub fn generalized_forces(
     lumps: &BTreeMap<Seat, Lump>,
     derivatives: Vec<Expr>,
 ) -> Vec<Expr> {
-    let wrenches = wrenches(k, lumps, derivatives);
+    let ground = ground(k);
+    let wrenches = wrenches(k, lumps, &mut Accelerations::new(derivatives, ground));
     pass_back(k, wrenches)
 }
 

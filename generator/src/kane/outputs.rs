@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use super::accelerations::Accelerations;
 use super::articulated::Articulated;
 use super::contacts::{ContactForms, contact_forms, point_jacobian};
 use super::forces::{self, Wrenches};
@@ -206,10 +207,16 @@ impl Writer<'_, '_> {
         (0..self.k.speeds.len()).map(of).collect()
     }
 
+    /// What speeds alone add to accelerations, relation by relation.
+    fn apart(&mut self) -> Accelerations {
+        let ground = forces::ground(self.k);
+        Accelerations::apart(self.k.speeds.len(), ground)
+    }
+
     /// Sets up articulated inertias for all forces of the mechanism and its contacts, where it permits; the forces.
     fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
-        let bias = self.bias();
-        let acting = forces::wrenches(self.k, &self.lumps, bias);
+        let mut apart = self.apart();
+        let acting = forces::wrenches(self.k, &self.lumps, &mut apart);
         let all = || contacts.iter().flat_map(|forms| forms.forces.iter().flatten()).chain([&acting]);
         let points = all().flat_map(|wrenches| wrenches.forces.keys().copied()).collect();
         let frames = all().flat_map(|wrenches| wrenches.torques.keys().copied()).collect();
@@ -234,8 +241,9 @@ impl Writer<'_, '_> {
 
     /// Accelerations of the independent speeds by articulated inertias.
     fn accelerations(&mut self, articulated: &Articulated, acting: Wrenches) -> Option<Vec<Node>> {
-        let loads = articulated.inwards(self.k, acting)?;
-        let accelerations = articulated.outwards(self.k, &loads);
+        let mut apart = self.apart();
+        let loads = articulated.inwards(self.k, acting, Some(&mut apart))?;
+        let accelerations = articulated.outwards(self.k, &loads, Some(&mut apart));
         Some(self.nodes(&accelerations))
     }
 
@@ -454,14 +462,14 @@ impl Writer<'_, '_> {
     fn responses(&mut self, articulated: &Articulated, forces: &[Wrenches; 3]) -> Option<Responses> {
         let mut loads = Vec::new();
         for wrenches in forces {
-            loads.push(articulated.inwards(self.k, wrenches.clone())?);
+            loads.push(articulated.inwards(self.k, wrenches.clone(), None)?);
         }
         let reduced: Vec<Expr> =
             UPPER.iter().map(|&(i, j)| articulated.product(self.k, &loads[i], &loads[j])).collect();
         let reduced = self.nodes(&reduced);
         let mut columns = Vec::new();
         for loads in &loads {
-            let column = articulated.outwards(self.k, loads);
+            let column = articulated.outwards(self.k, loads, None);
             columns.push(self.nodes(&column));
         }
         Some(Responses { reduced, columns })

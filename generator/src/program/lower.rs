@@ -3,7 +3,8 @@
 //! * Signs travel beside the values and end in additions and subtractions, not in multiplications by -1.
 //! * Factors and terms are ordered by stage, so that what depends on parameters alone forms a value of its own and is hoisted.
 //! * A divisor that occurs once divides; one that occurs more often is inverted once.
-//! * Sine and cosine of one angle are computed together.
+//! * Sine and cosine of one angle are computed together. What rounding takes from a sum of angles is kept beside it and
+//!   given back to them: absolute angles of long chains would lose as many digits as they have turns.
 
 use std::collections::{HashMap, HashSet};
 
@@ -85,6 +86,8 @@ struct Lowering<'a> {
     divisions: HashMap<Node, usize>,
     /// angles of which both sine and cosine are wanted
     angles: HashSet<Node>,
+    /// what rounding took from sums of angles
+    lost: HashMap<Value, Value>,
 }
 
 impl<'a> Lowering<'a> {
@@ -95,6 +98,7 @@ impl<'a> Lowering<'a> {
             lowered: vec![None; graph.values().len()],
             divisions: HashMap::new(),
             angles: HashSet::new(),
+            lost: HashMap::new(),
         }
     }
 
@@ -168,13 +172,18 @@ impl<'a> Lowering<'a> {
         matches!(self.builder.operation(value), Operation::Mul(..))
     }
 
-    fn sum(&mut self, terms: &[Node]) -> Signed {
+    /// The terms of a sum in the order in which they are added.
+    fn in_order(&self, terms: &[Node]) -> Vec<Signed> {
         let mut terms: Vec<Signed> = terms.iter().map(|&term| self.signed(term)).collect();
         // Products last within a stage: each then is the product of a fused multiply-add.
         terms.sort_by_key(|term| {
             (self.builder.stage(term.value), self.is_product(term.value), term.negative, term.value)
         });
-        let mut terms = terms.into_iter();
+        terms
+    }
+
+    fn sum(&mut self, terms: &[Node]) -> Signed {
+        let mut terms = self.in_order(terms).into_iter();
         let Some(mut sum) = terms.next() else {
             return Signed { value: self.builder.constant(0.0), negative: false };
         };
@@ -263,6 +272,72 @@ impl<'a> Lowering<'a> {
         Signed { value, negative }
     }
 
+    /// What rounding takes from a sum, exactly (Knuth's two-sum), with what it took from its terms; `None` for anything but
+    /// sums at run time. Follows [`Lowering::sum`], whose values it finds again.
+    fn lost(&mut self, node: Node) -> Option<Value> {
+        let Form::Sum(terms) = self.graph.value(node) else { return None };
+        let result = self.signed(node);
+        if self.builder.stage(result.value) <= Stage::Parameter {
+            return None;
+        }
+        if let Some(&known) = self.lost.get(&result.value) {
+            return Some(known);
+        }
+        let mut low = None;
+        for &term in terms {
+            if let Some(lost) = self.lost(term) {
+                let negative = self.signed(term).negative != result.negative;
+                low = Some(self.gather(low, lost, negative));
+            }
+        }
+        let mut terms = self.in_order(terms).into_iter();
+        let mut sum = terms.next()?;
+        for term in terms {
+            let opposite = sum.negative != term.negative;
+            let (a, b) =
+                if sum.negative && opposite { (term.value, sum.value) } else { (sum.value, term.value) };
+            let builder = &mut self.builder;
+            let total = if opposite { builder.sub(a, b) } else { builder.add(a, b) };
+            let of_b = builder.sub(total, a);
+            let of_a = builder.sub(total, of_b);
+            let from_a = builder.sub(a, of_a);
+            let error = if opposite {
+                let from_b = builder.add(b, of_b);
+                builder.sub(from_a, from_b)
+            } else {
+                let from_b = builder.sub(b, of_b);
+                builder.add(from_a, from_b)
+            };
+            sum = Signed { value: total, negative: sum.negative && !opposite };
+            low = Some(self.gather(low, error, sum.negative != result.negative));
+        }
+        if let Some(low) = low {
+            self.lost.insert(result.value, low);
+        }
+        low
+    }
+
+    fn gather(&mut self, sum: Option<Value>, part: Value, negative: bool) -> Value {
+        match (sum, negative) {
+            (None, false) => part,
+            (None, true) => self.builder.neg(part),
+            (Some(sum), false) => self.builder.add(sum, part),
+            (Some(sum), true) => self.builder.sub(sum, part),
+        }
+    }
+
+    /// Sine or cosine of a sum that lost something: of `a + e` they are `sin a + e cos a` and `cos a - e sin a`.
+    fn restored(&mut self, sine: bool, angle: Value, lost: Value) -> Value {
+        let (s, c) = (self.builder.sin_cos(true, angle), self.builder.sin_cos(false, angle));
+        if sine {
+            let part = self.builder.mul(lost, c);
+            self.builder.add(s, part)
+        } else {
+            let part = self.builder.mul(lost, s);
+            self.builder.sub(c, part)
+        }
+    }
+
     fn call(&mut self, function: Function, arguments: &[Node]) -> Signed {
         if let [a, b] = *arguments {
             let (a, b) = (self.plain(a), self.plain(b));
@@ -271,6 +346,12 @@ impl<'a> Lowering<'a> {
         let node = arguments[0];
         let argument = self.signed(node);
         let constant = self.builder.stage(argument.value) == Stage::Constant;
+        let round = matches!(function, Function::Sin | Function::Cos);
+        if let Some(lost) = Some(node).filter(|_| round).and_then(|node| self.lost(node)) {
+            let sine = function == Function::Sin;
+            let value = self.restored(sine, argument.value, lost);
+            return Signed { value, negative: sine && argument.negative };
+        }
         let (value, negative) = match function {
             Function::Sin | Function::Cos if self.angles.contains(&node) && !constant => {
                 let sine = function == Function::Sin;
@@ -286,5 +367,71 @@ impl<'a> Lowering<'a> {
             }
         };
         self.unfold(Signed { value, negative })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interpret::{Evaluator, Inputs};
+    use crate::program::graph::Input;
+    use crate::program::routine::Quantity;
+
+    /// Sine and cosine of signed sums of coordinates, in parts: `(a - b) - c`, and `-c + (a - b) - d`.
+    fn angles() -> Derived {
+        let mut graph = Graph::new();
+        let [a, b, c, d] = [0, 1, 2, 3].map(|index| graph.input(Input::Coordinate(index)));
+        let first = graph.sub(a, b);
+        let second = graph.sub(first, c);
+        let third = graph.sub(second, d);
+        let calls = |graph: &mut Graph, node| {
+            [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![node]))
+        };
+        let nodes = [second, third].map(|angle| calls(&mut graph, angle)).concat();
+        let outputs =
+            vec![crate::program::routine::Output { quantity: Quantity::Forcing, rows: 4, columns: 1, nodes }];
+        Derived { graph, outputs, guards: vec![], structures: vec![] }
+    }
+
+    #[test]
+    fn sines_of_sums_are_as_good_as_sines() {
+        let program = lower(&angles());
+        // Coordinates are integers of 53 bits in these units; their sums are longer, and doubles must round them.
+        let unit = 2f64.powi(-48);
+        let (mut bits, mut rounded) = (0x9e37_79b9_7f4a_7c15u64, 0);
+        for _ in 0..200 {
+            let integers = [-1.0, 1.0, 1.0, 1.0].map(|sign| {
+                bits ^= bits << 13;
+                bits ^= bits >> 7;
+                bits ^= bits << 17;
+                sign * ((bits >> 11) | 1) as f64
+            });
+            let coordinates = integers.map(|integer| integer * unit).to_vec();
+            let inputs = Inputs { coordinates, ..Inputs::default() };
+            let found =
+                Evaluator::new(&program).evaluate(&inputs, &[Quantity::Forcing]).unwrap().remove(0).values;
+            let [a, b, c, d] = integers.map(|integer| integer as i128);
+            for (at, exact) in [(0, a - b - c), (2, a - b - c - d)] {
+                let high = exact as f64;
+                let low = (exact - high as i128) as f64 * unit;
+                rounded += usize::from(low != 0.0);
+                let (s, c) = (high * unit).sin_cos();
+                let (sine, cosine) = (s + low * c, c - low * s);
+                let error = (found[at] - sine).abs().max((found[at + 1] - cosine).abs());
+                assert!(error <= 2.0 * f64::EPSILON, "{error} of {unit}");
+            }
+        }
+        assert!(rounded > 100, "{rounded}");
+    }
+
+    #[test]
+    fn sines_of_single_angles_stay_as_they_are() {
+        let mut graph = Graph::new();
+        let angle = graph.input(Input::Coordinate(0));
+        let nodes = vec![graph.call(Function::Sin, vec![angle]), graph.call(Function::Cos, vec![angle])];
+        let outputs =
+            vec![crate::program::routine::Output { quantity: Quantity::Forcing, rows: 2, columns: 1, nodes }];
+        let program = lower(&Derived { graph, outputs, guards: vec![], structures: vec![] });
+        assert_eq!(program.operations.len(), 4, "an input, a pair, and its two parts");
     }
 }

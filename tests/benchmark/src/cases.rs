@@ -14,6 +14,13 @@ pub struct Case {
     pub inputs: bool,
 }
 
+impl Case {
+    /// Have others computed it too, from the same URDF?
+    pub fn has_peers(&self) -> bool {
+        matches!(self.origin, Origin::Peer | Origin::Chain(20))
+    }
+}
+
 /// Where a model comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {

@@ -18,7 +18,8 @@ pub fn urdf(links: usize) -> String {
             "<link name=\"l{link}\"><inertial><origin xyz=\"0 0 {at}\"/><mass value=\"{mass}\"/>\
              <inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"/></inertial></link>\n\
              <joint name=\"j{link}\" type=\"{joint}\"><origin xyz=\"0 0 {origin}\"/><parent link=\"{parent}\"/>\
-             <child link=\"l{link}\"/><axis xyz=\"{axis}\"/></joint>"
+             <child link=\"l{link}\"/><axis xyz=\"{axis}\"/>\
+             <limit lower=\"-100\" upper=\"100\" effort=\"1000\" velocity=\"1000\"/></joint>"
         );
     }
     let _ = writeln!(

@@ -18,6 +18,8 @@ pub struct Derivation<'a> {
     pub case: &'a Case,
     /// are all parameters folded in?
     pub fixed: bool,
+    /// its model file
+    pub path: PathBuf,
     /// time of the derivation, process and all
     pub seconds: f64,
     /// its greatest resident memory in kB, where GNU time is installed
@@ -59,7 +61,17 @@ pub fn derive<'a>(
     let module = output(Command::new(tool).arg("expand").arg(&path))?;
     let states = states::states(folders, tool, case, &path)?;
     let speeds = states::speeds(tool, &path)?;
-    Ok(Derivation { case, fixed, seconds, kilobytes, program: artifact.program, module, speeds, states })
+    Ok(Derivation {
+        case,
+        fixed,
+        path,
+        seconds,
+        kilobytes,
+        program: artifact.program,
+        module,
+        speeds,
+        states,
+    })
 }
 
 /// The text of the model.

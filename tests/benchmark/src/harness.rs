@@ -94,7 +94,8 @@ pub fn build(folders: &Folders, derivation: &Derivation<'_>) -> Result<Built, Fa
     Ok(Built { program, package, seconds: start.elapsed().as_secs_f64() })
 }
 
-/// The program: `numbers` prints what the routines answer, a number repeats all of them that often.
+/// The program: `numbers` prints what the routines answer at its states, `answer` at states that it reads, a number repeats all routines
+/// that often at its states.
 fn main(derivation: &Derivation<'_>) -> String {
     let case = derivation.case;
     let (module, contact) = (module_name(derivation), case.contact);
@@ -146,6 +147,13 @@ fn line(numbers: Result<impl Numbers, StateError>) {{
     println!(\"{{}}\", words.join(\" \"));
 }}
 
+fn line_of_all({arguments}, none: &{record}) {{
+    line(measured_fd(m, q, u, a, i));
+    line(measured_id(m, q, u, a, none));
+    line(measured_cm(m, q, u, a, i));
+    line(measured_m(m, q, u, a, i));
+}}
+
 fn main() {{
     let m = black_box(Machine::default());
     let none = black_box({empty});
@@ -157,12 +165,15 @@ fn main() {{
     }
     text += "    ]);
     let argument = std::env::args().nth(1).unwrap_or_default();
+";
+    if let (true, Some(state)) = (case.inputs, derivation.states.first()) {
+        let lengths = [&state.q, &state.u, &state.a, &state.inputs].map(|list| list.len());
+        text += &answer(lengths);
+    }
+    text += "\
     for (q, u, a, i) in &states {
         if argument == \"numbers\" {
-            line(measured_fd(&m, q, u, a, i));
-            line(measured_id(&m, q, u, a, &none));
-            line(measured_cm(&m, q, u, a, i));
-            line(measured_m(&m, q, u, a, i));
+            line_of_all(&m, q, u, a, i, &none);
         }
     }
     for _ in 0..argument.parse().unwrap_or(0) {
@@ -176,6 +187,24 @@ fn main() {{
 }
 ";
     text
+}
+
+/// `answer` reads states, one per line, and prints what the routines answer.
+fn answer([q, u, a, i]: [usize; 4]) -> String {
+    format!(
+        "    if argument == \"answer\" {{
+        for line in std::io::stdin().lines() {{
+            let mut numbers = line.unwrap_or_default().split(' ').map_while(|word| word.parse().ok()).collect::<Vec<f64>>().into_iter();
+            let mut next = || numbers.next().unwrap_or(f64::NAN);
+            let q = Coordinates::from(std::array::from_fn::<f64, {q}, _>(|_| next()));
+            let u = Speeds::from(std::array::from_fn::<f64, {u}, _>(|_| next()));
+            let a = Speeds::from(std::array::from_fn::<f64, {a}, _>(|_| next()));
+            let i = Inputs::from(std::array::from_fn::<f64, {i}, _>(|_| next()));
+            line_of_all(&m, &q, &u, &a, &i, &none);
+        }}
+    }}
+"
+    )
 }
 
 fn state(state: &State, inputs: bool) -> String {

@@ -9,7 +9,10 @@ mod harness;
 mod literature;
 mod peers;
 mod plot;
+mod precise;
+mod python;
 mod robots;
+mod rounding;
 mod states;
 mod table;
 mod tools;
@@ -30,9 +33,12 @@ struct Arguments {
     tool: Option<PathBuf>,
     /// fetch public robots and compare them, instead of measuring
     robots: bool,
+    /// fetch a peer and measure its rounding anew
+    peers: bool,
 }
 
-const USAGE: &str = "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH] [--robots]";
+const USAGE: &str =
+    "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH] [--robots] [--peers]";
 
 fn main() -> ExitCode {
     match arguments().and_then(|arguments| run(&arguments)) {
@@ -45,13 +51,14 @@ fn main() -> ExitCode {
 }
 
 fn arguments() -> Result<Arguments, Failure> {
-    let mut arguments = Arguments { only: Vec::new(), tool: None, robots: false };
+    let mut arguments = Arguments { only: Vec::new(), tool: None, robots: false, peers: false };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| Failure::new(USAGE));
         match word.as_str() {
             "--only" => arguments.only = value()?.split(',').map(str::to_owned).collect(),
             "--tool" => arguments.tool = Some(PathBuf::from(value()?)),
+            "--peers" => arguments.peers = true,
             "--robots" => arguments.robots = true,
             _ => return Err(Failure::new(USAGE)),
         }
@@ -75,15 +82,25 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     harness::prepare(&folders, &derived)?;
     let mut rows = Vec::new();
-    for derivation in &derived {
+    let mut errors = Vec::new();
+    for (index, derivation) in derived.iter().enumerate() {
         eprintln!("measuring {}", derivation.package());
         let built = harness::build(&folders, derivation)?;
         states::agree(&built, derivation)?;
         let counts = count::instructions(&folders, &built)?;
+        if derivation.case.has_peers() {
+            // Each mechanism is derived with parameters at run time first.
+            let reference = &derived[index - usize::from(derivation.fixed)];
+            errors.push((derivation, rounding::measure(&folders, &built, derivation, reference)?));
+        }
         rows.push(Row { derivation, compile_seconds: built.seconds, counts, sizes: count::sizes(&built)? });
     }
     let peers = peers::read(&folders)?;
     table::print(&rows, &peers);
+    if arguments.peers {
+        rounding::of_peers(&folders, &cases)?;
+    }
+    rounding::print(&folders, &errors)?;
     whole::print(&folders, &derived)?;
     literature::print(&folders, &tool)?;
     plot::chains(&folders, &rows, &peers)

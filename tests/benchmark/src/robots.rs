@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::process::Command;
 
+use crate::python;
 use crate::tools::{Failure, Folders, output};
 
-/// The package with the robots, and the program that they are compared with.
-const PACKAGES: [&str; 2] = ["example-robot-data==6.0.0", "pin==4.1.0"];
+/// The package with the robots.
+const PACKAGE: &str = "example-robot-data==6.0.0";
 
 /// Robot descriptions inside the first package, with the link whose contact is compared.
 const ROBOTS: [&str; 4] = [
@@ -20,19 +21,15 @@ const ROBOTS: [&str; 4] = [
 pub fn compare(folders: &Folders, tool: &Path) -> Result<(), Failure> {
     let folder = folders.work.join("robots");
     std::fs::create_dir_all(&folder)?;
-    let environment = folder.join("python");
-    let python = environment.join("bin/python");
-    if !python.exists() {
-        eprintln!("fetching robots");
-        output(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
-    }
-    let pip = |arguments: &[&str]| {
-        output(Command::new(&python).args(["-m", "pip", "--quiet"]).args(arguments).current_dir(&folder))
-    };
-    pip(&["install", PACKAGES[1]])?;
+    let python = python::with_pinocchio(folders)?;
     let robots = folder.join("cmeel.prefix/share/example-robot-data/robots");
     if !robots.exists() {
-        pip(&["download", "--no-deps", "--dest", "wheel", PACKAGES[0]])?;
+        eprintln!("fetching robots");
+        output(
+            Command::new(&python)
+                .args(["-m", "pip", "--quiet", "download", "--no-deps", "--dest", "wheel", PACKAGE])
+                .current_dir(&folder),
+        )?;
         let wheels = std::fs::read_dir(folder.join("wheel"))?;
         for wheel in wheels {
             output(

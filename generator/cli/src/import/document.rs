@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use roxmltree::{Document, Node};
 
+use super::attributes::{Checker, is};
+
 /// A robot description with the places of its elements.
 pub struct Robot {
     /// the file's name, for messages
@@ -61,7 +63,7 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
             at(node)
         )]);
     }
-    let mut problems = Vec::new();
+    let mut checker = Checker::new(file);
     let mut places = HashMap::new();
     let (mut links, mut joints) = (0, 0);
     let mut ignored: BTreeMap<String, (usize, String)> = BTreeMap::new();
@@ -74,7 +76,8 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
     for node in root.children().filter(Node::is_element) {
         match node.tag_name().name() {
             "link" => {
-                let has_inertial = check_inertial(node, &at, &mut problems);
+                checker.link(node);
+                let has_inertial = node.children().any(|part| is(&part, "inertial"));
                 for part in node.children().filter(|part| part.is_element() && !is(part, "inertial")) {
                     ignore(format!("<{}> of a link", part.tag_name().name()), part);
                 }
@@ -82,6 +85,7 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
                 links += 1;
             }
             "joint" => {
+                checker.joint(node);
                 let wanted = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
                 for part in node.children().filter(Node::is_element) {
                     let name = part.tag_name().name();
@@ -101,8 +105,8 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
             _ => format!("{first}: ignored {what}, {count} times"),
         });
     }
-    if !problems.is_empty() {
-        return Err(problems);
+    if !checker.problems.is_empty() {
+        return Err(checker.problems);
     }
     let robot = urdf_rs::read_from_string(&String::from_utf8_lossy(&used))
         .map_err(|error| vec![format!("{file}: this is no valid URDF: {}", one_line(&error.to_string()))])?;
@@ -110,22 +114,6 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
         return Err(vec![format!("{file}: some links or joints could not be read")]);
     }
     Ok(Robot { file: file.to_owned(), robot, places })
-}
-
-/// An `<inertial>` needs its mass and its inertia: a missing number must not count as zero.
-fn check_inertial(link: Node, at: &dyn Fn(Node) -> String, problems: &mut Vec<String>) -> bool {
-    let Some(inertial) = link.children().find(|part| is(part, "inertial")) else { return false };
-    let name = link.attribute("name").unwrap_or_default();
-    for part in ["mass", "inertia"] {
-        if !inertial.children().any(|node| is(&node, part)) {
-            problems.push(format!("{}: <inertial> of link `{name}` has no <{part}>: add it", at(inertial)));
-        }
-    }
-    true
-}
-
-fn is(node: &Node, name: &str) -> bool {
-    node.is_element() && node.tag_name().name() == name
 }
 
 /// A message of another library on one line.

@@ -22,15 +22,22 @@ impl Lump {
         if self.mass <= 0.0 {
             return Some("its mass is 0, but its inertia is not: give a mass".to_owned());
         }
+        if !self.inertia.iter().chain(self.centre.iter()).all(|number| number.is_finite()) {
+            return Some("its inertia is too large a number".to_owned());
+        }
         let principal = self.inertia.symmetric_eigenvalues();
         let (least, total) = (principal.min(), principal.sum());
         let slack = 1e-9 * total.abs().max(self.inertia.amax());
         let moments = principal.as_slice();
         if least < -slack {
-            Some(format!("no body has the principal moments of inertia {moments:?}: none may be negative"))
+            Some(format!(
+                "no body has the principal moments of inertia {moments:?}: none may be negative; correct its <inertia>"
+            ))
         } else if 2.0 * principal.max() > total + slack {
             Some(format!(
-                "no body has the principal moments of inertia {moments:?}: the largest is above the sum of the others"
+                "no body has the principal moments of inertia {moments:?}: the largest may be at most {}, the sum of the \
+                 others; correct its <inertia>",
+                total - principal.max()
             ))
         } else {
             None
@@ -89,6 +96,7 @@ pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Gr
     let mut of_link = Vec::new();
     let mut poses: Vec<(Matrix3<f64>, Vector3<f64>)> = Vec::new();
     let mut parts: Vec<Vec<Lump>> = Vec::new();
+    let mut faulty: Vec<bool> = Vec::new();
     for (here, link) in tree.links.iter().enumerate() {
         let fixed_to = match link.joint.motion {
             Motion::Fixed => link.parent,
@@ -105,12 +113,15 @@ pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Gr
                 let ground = link.joint.motion == Motion::Fixed;
                 groups.push(Group { link: here, fixed: Vec::new(), lump: None, ground });
                 parts.push(Vec::new());
+                faulty.push(false);
                 (groups.len() - 1, (Matrix3::identity(), Vector3::zeros()))
             }
         };
         of_link.push(group);
         poses.push(pose);
+        let before = problems.len();
         let part = read_inertial(tree, here, document, notes, &mut problems);
+        faulty[group] |= problems.len() > before;
         if let Some(part) = part {
             match groups[group].ground {
                 true => notes.push(format!(
@@ -140,7 +151,7 @@ pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Gr
         }
     }
     for (index, group) in groups.iter().enumerate() {
-        if group.lump.is_some() || group.ground {
+        if group.lump.is_some() || group.ground || faulty[index] {
             continue;
         }
         let link = &tree.links[group.link];
@@ -185,10 +196,6 @@ fn read_inertial(
         problems.push(format!("{place}: link `{}`: {message}", link.name));
         None
     };
-    if !inertia.iter().chain(centre.iter()).chain(rpy.iter()).chain([&mass]).all(|number| number.is_finite())
-    {
-        return problem("its inertia is not finite".to_owned());
-    }
     if mass < 0.0 {
         return problem(format!("its mass is {mass}: give a positive one"));
     }

@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! URDF -> document  the XML, places of its elements, what is not used
+//!               and what its attributes must be
 //!      -> tree      links and joints that hang together, checked
 //!      -> lumps     what is fixed to a moving link becomes part of it
 //!      -> text      the model
 //! ```
 
+mod attributes;
 mod document;
 mod lump;
 mod names;

@@ -148,7 +148,40 @@ fn mistakes_are_named_with_their_place() {
         ),
         (two("").replace("<mass value=\"2\"/>", ""), "has no <mass>"),
         ("<link name=\"a\">".to_owned(), "this is no XML"),
-        (two("").replace("value=\"2\"", "value=\"two\""), "this is no valid URDF"),
+        (
+            two("").replace("value=\"2\"", "value=\"two\""),
+            "r.urdf:3:57: `value=\"two\"` of <mass> of link `arm`: this is no number",
+        ),
+        (
+            two("").replace("ixx=\"0.1\"", "ixx=\"nan\""),
+            "`ixx=\"nan\"` of <inertia> of link `arm`: this number is not finite",
+        ),
+        (two("").replace("izz=\"0.02\"", ""), "<inertia> of link `arm` has no attribute `izz`"),
+        (
+            two("").replace("0 0 0.5", "0 0"),
+            "`xyz=\"0 0\"` of <origin> of link `arm`: write three finite numbers",
+        ),
+        (
+            two(joint("j", "screw", "base", "arm", "")),
+            "r.urdf:4:17: `type=\"screw\"` of joint `j`: this is no type of joint; URDF has fixed",
+        ),
+        (
+            two(joint("j", "revolute", "base", "arm", "<origin rpy=\"0 0 right\"/>")),
+            "`rpy=\"0 0 right\"` of <origin> of joint `j`: write three finite numbers",
+        ),
+        (two(joint("j", "revolute", "base", "arm", "<axis/>")), "<axis> of joint `j` has no attribute `xyz`"),
+        (two(joint("j", "revolute", "base", "arm", "<dynamics damping=\"low\"/>")), "`damping=\"low\"`"),
+        (
+            two(joint("j", "revolute", "base", "arm", "<parent link=\"arm\"/>")),
+            "a second <parent> of joint `j`",
+        ),
+        (two("<joint name=\"j\" type=\"fixed\"><child link=\"arm\"/></joint>"), "joint `j` has no <parent>"),
+        (two("<joint type=\"fixed\"/>"), "this <joint> has no name"),
+        (
+            two(&(joint("j", "revolute", "base", "arm", "").to_owned()
+                + joint("j", "fixed", "arm", "base", ""))),
+            "a second joint `j`",
+        ),
         (String::new(), "there is no link"),
     ];
     for (body, message) in cases {
@@ -156,6 +189,11 @@ fn mistakes_are_named_with_their_place() {
         assert!(problems.contains(message), "`{message}` not in\n{problems}");
         assert!(problems.starts_with("r.urdf"), "{problems}");
     }
+    // One mistake, one message.
+    let negative = two("").replace("value=\"2\"", "value=\"-1\"") + joint("j", "revolute", "base", "arm", "");
+    assert_eq!(refused(&negative), "r.urdf:3:1: link `arm`: its mass is -1: give a positive one");
+    let empty = import("", "r.urdf", &Options::default()).unwrap_err().join("\n");
+    assert!(empty.starts_with("r.urdf:1:1: this is no XML"), "{empty}");
     let other = import("<sdf/>", "r.urdf", &Options::default()).unwrap_err().join("\n");
     assert!(other.contains("its root is <sdf>"), "{other}");
 }
@@ -172,4 +210,25 @@ fn names_that_clash_give_way() {
     assert!(notes.contains("`q_a` is called `q_a_n2`"), "{notes}");
     assert!(model.contains("for_n2 { frame: for_axes"), "{model}");
     has(&model, "q_a_origin = O + q_a_b_x*for_axes.x + q_a_b_y*for_axes.y;");
+}
+
+#[test]
+fn large_and_deep_files_end() {
+    let numbered = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    let links = numbered(3000, &|k| link(&format!("l{k}")).to_owned());
+    let joints = numbered(2999, &|k| {
+        joint(&format!("j{k}"), "revolute", &format!("l{k}"), &format!("l{}", k + 1), "").to_owned()
+    });
+    let (long, _) = model(&(links + joints.as_str()), &Options::default());
+    assert!(long.contains("q_j2998: rad,"));
+    let deep = "<a>".repeat(100_000) + "</a>".repeat(100_000).as_str();
+    let _ = import(&robot(&deep), "r.urdf", &Options::default());
+    let bomb = "<!DOCTYPE r [<!ENTITY a \"aaaa\"><!ENTITY b \"&a;&a;&a;\">]><robot name=\"&b;\"/>";
+    assert!(import(bomb, "r.urdf", &Options::default()).is_err());
+    let heavy = "<link name=\"base\"/>".to_owned()
+        + link("arm").replace("\"0.1\"", "\"1e308\"").replace("value=\"2\"", "value=\"1e308\"").as_str()
+        + link("tool").replace("value=\"2\"", "value=\"1e308\"").as_str()
+        + joint("j", "revolute", "base", "arm", "")
+        + joint("w", "fixed", "arm", "tool", "");
+    assert!(refused(&heavy).contains("too large a number"), "{}", refused(&heavy));
 }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::super::lumps::{Lump, Seat};
 use super::super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple};
 use super::Eliminated;
+use super::acting::Acting;
 use super::relation::{Matrix, PointRelation, arm_matrix, column, times, transposed, turn_rows};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
@@ -22,6 +23,52 @@ pub struct Form {
     momentum: BTreeMap<(PointId, usize), Triple>,
     angular: BTreeMap<(FrameId, usize), Triple>,
     matrix: BTreeMap<(usize, usize), Expr>,
+}
+
+/// What stood beside the angular acceleration of a frame when it was inserted.
+pub struct OfFrame {
+    inertia: Option<Symmetric>,
+    moments: Vec<(PointId, Matrix)>,
+    angular: Vec<(usize, Triple)>,
+}
+
+/// What stood beside the acceleration of a point when it was inserted.
+pub struct OfPoint {
+    mass: Option<Symmetric>,
+    moments: Vec<(FrameId, Matrix)>,
+    momenta: Vec<(usize, Triple)>,
+}
+
+impl OfFrame {
+    /// The forces that an angular acceleration of the frame by itself takes.
+    pub fn resist(&self, acting: &mut Acting, frame: FrameId, alpha: &Triple) {
+        let against = linear::scale(&Expr::integer(-1), alpha);
+        if let Some(inertia) = &self.inertia {
+            sum_triple(&mut acting.torque, frame, &times(&full(inertia), &against));
+        }
+        for (point, moment) in &self.moments {
+            sum_triple(&mut acting.force, *point, &times(moment, &against));
+        }
+        for (slot, h) in &self.angular {
+            sum_scalar(&mut acting.loads, *slot, &linear::dot(h, &against));
+        }
+    }
+}
+
+impl OfPoint {
+    /// The forces that an acceleration of the point by itself takes.
+    pub fn resist(&self, acting: &mut Acting, point: PointId, a: &Triple) {
+        let against = linear::scale(&Expr::integer(-1), a);
+        if let Some(mass) = &self.mass {
+            sum_triple(&mut acting.force, point, &times(&full(mass), &against));
+        }
+        for (frame, moment) in &self.moments {
+            sum_triple(&mut acting.torque, *frame, &times(&transposed(moment), &against));
+        }
+        for (slot, p) in &self.momenta {
+            sum_scalar(&mut acting.loads, *slot, &linear::dot(p, &against));
+        }
+    }
 }
 
 fn full(m: &Symmetric) -> Matrix {
@@ -68,7 +115,8 @@ impl Form {
     }
 
     /// Inserts `dalpha = dalpha_base + sum a u'`.
-    pub fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
+    pub fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> OfFrame {
+        let mut stood = OfFrame { inertia: None, moments: Vec::new(), angular: Vec::new() };
         let motion = k.frames[frame.0].clone();
         let base = k.turning(motion.base);
         let (home, base_home) = (motion.home, k.frames[base.0].home);
@@ -84,6 +132,7 @@ impl Form {
                 let turned = transposed(&turn_rows(k, &transposed(&moment), home, base_home));
                 sum_matrix(&mut self.moment, (point, base), &turned);
             }
+            stood.moments.push((point, moment));
         }
         if let Some(inertia) = self.inertia.remove(&frame) {
             let inertia = inertia.map(|c| k.z.name(c));
@@ -106,6 +155,7 @@ impl Form {
                 let turned = k.tree.convert_symmetric(&mut k.z, &inertia, home, base_home);
                 sum_symmetric(&mut self.inertia, base, &turned);
             }
+            stood.inertia = Some(inertia);
         }
         for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
             let Some(h) = self.angular.remove(&(frame, slot)) else { continue };
@@ -117,11 +167,14 @@ impl Form {
                 let turned = k.tree.convert(&mut k.z, &h, home, base_home);
                 sum_triple(&mut self.angular, (base, slot), &turned);
             }
+            stood.angular.push((slot, h));
         }
+        stood
     }
 
     /// Inserts `da = da_base + sum dalpha x r + sum b u'`; `None` if more than one frame carries the point.
-    pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
+    pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<OfPoint> {
+        let mut stood = OfPoint { mass: None, moments: Vec::new(), momenta: Vec::new() };
         let PointRelation { home, base, arm, partials } = PointRelation::of(k, point)?;
         if let Some(mass) = self.mass.remove(&point) {
             let mass = mass.map(|c| k.z.name(c));
@@ -164,6 +217,7 @@ impl Form {
                     }
                 }
             }
+            stood.mass = Some(mass);
         }
         for frame in self.moment.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
             let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
@@ -185,6 +239,7 @@ impl Form {
                 let turned = turn_rows(k, &moment, home, to);
                 sum_matrix(&mut self.moment, (base, frame), &turned);
             }
+            stood.moments.push((frame, moment));
         }
         for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
             let Some(p) = self.momentum.remove(&(point, slot)) else { continue };
@@ -199,8 +254,9 @@ impl Form {
                 let turned = k.tree.convert(&mut k.z, &p, home, to);
                 sum_triple(&mut self.momentum, (base, slot), &turned);
             }
+            stood.momenta.push((slot, p));
         }
-        Some(())
+        Some(stood)
     }
 
     /// Makes the form least over one `u'`.

@@ -1,6 +1,6 @@
 //! The mass matrix factorised and never formed, in time linear in the number of bodies, by Gauss's principle.
 //!
-//! The accelerations beyond those with `u' = 0` make `1/2 sum m |da|^2 + .. - forces . accelerations` least. That form is
+//! The accelerations make `1/2 sum m |a|^2 + .. - forces . accelerations` least. That form is
 //! passed along the graph of velocities from the leaves to the ground as the kinetic energy is for the mass matrix, but
 //! each `u'` is eliminated as soon as nothing further in mentions it: what is left of its subtree is an articulated
 //! inertia ([`Articulated::new`]). Forces passed inwards the same way leave at each `u'` the load that it bears
@@ -15,6 +15,7 @@ mod relation;
 
 use std::collections::BTreeMap;
 
+use super::accelerations::Accelerations;
 use super::forces::Wrenches;
 use super::lumps::{Lump, Seat};
 use super::order::{self, Node};
@@ -23,7 +24,7 @@ use crate::kinematics::linear::{self, Triple};
 use crate::kinematics::{Kinematics, vectors};
 use crate::model::mechanism::{FrameId, PointId};
 use acting::Acting;
-use form::Form;
+use form::{Form, OfFrame, OfPoint};
 
 /// A factorised mechanism: what is done to velocities and derivatives of speeds, from the leaves to the ground.
 pub struct Articulated {
@@ -32,8 +33,8 @@ pub struct Articulated {
 
 /// A velocity inserted, or a `u'` eliminated.
 enum Step {
-    Frame(FrameId),
-    Point(PointId),
+    Frame(FrameId, Box<OfFrame>),
+    Point(PointId, Box<OfPoint>),
     Eliminated(Box<Eliminated>),
 }
 
@@ -74,12 +75,12 @@ impl Articulated {
         for (at, node) in order.iter().enumerate() {
             match *node {
                 Node::Frame(frame) => {
-                    form.frame(k, frame);
-                    steps.push(Step::Frame(frame));
+                    let stood = form.frame(k, frame);
+                    steps.push(Step::Frame(frame, Box::new(stood)));
                 }
                 Node::Point(point) => {
-                    form.point(k, point)?;
-                    steps.push(Step::Point(point));
+                    let stood = form.point(k, point)?;
+                    steps.push(Step::Point(point, Box::new(stood)));
                 }
             }
             for slot in slots(k, node).into_iter().filter(|slot| last.get(slot) == Some(&at)) {
@@ -102,9 +103,14 @@ impl Articulated {
         self.eliminated().map(|step| (step.reciprocal.pow(-1), step.slot))
     }
 
-    /// What is left of forces when they reach each `u'`, in the order of elimination; `None` if forces meet the graph where
-    /// [`Articulated::new`] was not told of.
-    pub fn inwards(&self, k: &mut Kinematics<'_>, wrenches: Wrenches) -> Option<Vec<Expr>> {
+    /// What is left of forces when they reach each `u'`, in the order of elimination, on top of what the accelerations that each
+    /// relation has `apart` take; `None` if forces meet the graph where [`Articulated::new`] was not told of.
+    pub fn inwards(
+        &self,
+        k: &mut Kinematics<'_>,
+        wrenches: Wrenches,
+        mut apart: Option<&mut Accelerations>,
+    ) -> Option<Vec<Expr>> {
         let mut acting = Acting {
             force: wrenches.forces,
             torque: wrenches.torques,
@@ -113,8 +119,20 @@ impl Articulated {
         let mut loads = Vec::new();
         for step in &self.steps {
             match step {
-                Step::Frame(frame) => acting.frame(k, *frame),
-                Step::Point(point) => acting.point(k, *point)?,
+                Step::Frame(frame, stood) => {
+                    if let Some(apart) = &mut apart {
+                        let own = apart.own_angular(k, *frame);
+                        stood.resist(&mut acting, *frame, &own);
+                    }
+                    acting.frame(k, *frame);
+                }
+                Step::Point(point, stood) => {
+                    if let Some(apart) = &mut apart {
+                        let own = apart.own_point(k, *point);
+                        stood.resist(&mut acting, *point, &own);
+                    }
+                    acting.point(k, *point)?;
+                }
                 Step::Eliminated(step) => {
                     let load = acting.loads.remove(&step.slot).unwrap_or_else(Expr::zero);
                     let load = k.z.name(load);
@@ -136,9 +154,15 @@ impl Articulated {
         k.z.name(Expr::sum(&terms))
     }
 
-    /// `u'` of all speeds from the loads that [`Articulated::inwards`] leaves, each from those before it.
-    pub fn outwards(&self, k: &mut Kinematics<'_>, loads: &[Expr]) -> Vec<Expr> {
-        let mut outward = Outward::default();
+    /// `u'` of all speeds from the loads that [`Articulated::inwards`] leaves, each from those before it, with what each relation
+    /// has `apart`.
+    pub fn outwards(
+        &self,
+        k: &mut Kinematics<'_>,
+        loads: &[Expr],
+        apart: Option<&mut Accelerations>,
+    ) -> Vec<Expr> {
+        let mut outward = Outward { apart, ..Outward::default() };
         for (step, load) in self.eliminated().rev().zip(loads.iter().rev()) {
             let mut sum = load.clone();
             if let Some((point, p)) = &step.momentum {
@@ -172,20 +196,26 @@ fn slots(k: &Kinematics<'_>, node: &Node) -> Vec<usize> {
     }
 }
 
-/// Accelerations beyond those with `u' = 0`, as far as the `u'` are known.
+/// Accelerations, as far as the `u'` are known.
 #[derive(Default)]
-struct Outward {
+struct Outward<'a> {
     speeds: BTreeMap<usize, Expr>,
+    apart: Option<&'a mut Accelerations>,
+    frames: BTreeMap<FrameId, Triple>,
+    points: BTreeMap<PointId, Triple>,
 }
 
-impl Outward {
+impl Outward<'_> {
     fn known(&self, slot: usize) -> Expr {
         self.speeds.get(&slot).cloned().unwrap_or_else(Expr::zero)
     }
 
-    fn frame(&self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
+    fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
         if frame == FrameId::N {
             return linear::zero();
+        }
+        if let Some(known) = self.frames.get(&frame) {
+            return known.clone();
         }
         let motion = k.frames[frame.0].clone();
         let base = k.turning(motion.base);
@@ -194,16 +224,26 @@ impl Outward {
         for (&slot, a) in &motion.relative.terms {
             sum = linear::add(&sum, &linear::scale(&self.known(slot), a));
         }
-        linear::name(&mut k.z, sum)
+        if let Some(apart) = &self.apart {
+            sum = linear::add(&sum, &apart.own_angular(k, frame));
+        }
+        let value = linear::name(&mut k.z, sum);
+        self.frames.insert(frame, value.clone());
+        value
     }
 
-    fn point(&self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
-        let motion = k.points[point.0].clone();
-        let mut sum = linear::zero();
-        if let Some(base) = motion.base {
-            let value = self.point(k, base);
-            sum = k.tree.convert(&mut k.z, &value, k.points[base.0].home, motion.home);
+    fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
+        if let Some(known) = self.points.get(&point) {
+            return known.clone();
         }
+        let motion = k.points[point.0].clone();
+        let mut sum = match motion.base {
+            Some(base) => {
+                let value = self.point(k, base);
+                k.tree.convert(&mut k.z, &value, k.points[base.0].home, motion.home)
+            }
+            None => linear::zero(),
+        };
         for arm in &motion.arms {
             let home = k.frames[arm.frame.0].home;
             let dalpha = self.frame(k, arm.frame);
@@ -218,6 +258,11 @@ impl Outward {
                 sum = linear::add(&sum, &linear::scale(&self.known(slot), &turned));
             }
         }
-        linear::name(&mut k.z, sum)
+        if let Some(apart) = &mut self.apart {
+            sum = linear::add(&sum, &apart.own_point(k, point));
+        }
+        let value = linear::name(&mut k.z, sum);
+        self.points.insert(point, value.clone());
+        value
     }
 }

@@ -1,0 +1,160 @@
+//! What the attributes of a robot description must be: every fault is told at its own place.
+
+use roxmltree::{Attribute, Node};
+
+/// Types of joints that URDF knows.
+const TYPES: [&str; 6] = ["fixed", "revolute", "continuous", "prismatic", "planar", "floating"];
+
+/// The moments of an `<inertia>`.
+const MOMENTS: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
+
+/// Collects faults with their places.
+pub struct Checker<'a> {
+    file: &'a str,
+    /// one sentence each
+    pub problems: Vec<String>,
+}
+
+impl<'a> Checker<'a> {
+    /// Nothing is wrong so far.
+    pub fn new(file: &'a str) -> Self {
+        Checker { file, problems: Vec::new() }
+    }
+
+    fn problem(&mut self, node: Node, offset: usize, message: &str) {
+        let at = node.document().text_pos_at(offset);
+        self.problems.push(format!("{}:{}:{}: {message}", self.file, at.row, at.col));
+    }
+
+    fn at_start(&mut self, node: Node, message: &str) {
+        self.problem(node, node.range().start, message);
+    }
+
+    fn at_value(&mut self, node: Node, attribute: Attribute, message: &str) {
+        let shown = format!("`{}=\"{}\"` of {}", attribute.name(), attribute.value(), titled(node));
+        self.problem(node, attribute.range().start, &format!("{shown}: {message}"));
+    }
+
+    /// A `<link>`: its name and its `<inertial>`.
+    pub fn link(&mut self, link: Node) {
+        self.named(link);
+        for inertial in self.at_most_one(link, "inertial") {
+            for part in ["mass", "inertia"] {
+                // A missing number must not count as zero.
+                if !inertial.children().any(|child| is(&child, part)) {
+                    let name = link.attribute("name").unwrap_or_default();
+                    self.at_start(inertial, &format!("<inertial> of link `{name}` has no <{part}>: add it"));
+                }
+            }
+            self.pose(inertial);
+            for mass in self.at_most_one(inertial, "mass") {
+                self.number(mass, "value", true);
+            }
+            for inertia in self.at_most_one(inertial, "inertia") {
+                MOMENTS.iter().for_each(|moment| self.number(inertia, moment, true));
+            }
+        }
+    }
+
+    /// A `<joint>`: its name and type, where it is, what it connects, its axis and its damping.
+    pub fn joint(&mut self, joint: Node) {
+        self.named(joint);
+        match joint.attribute_node("type") {
+            None => self.at_start(joint, &format!("{} has no attribute `type`", titled(joint))),
+            Some(kind) if !TYPES.contains(&kind.value()) => {
+                let message = format!("this is no type of joint; URDF has {}", TYPES.join(", "));
+                self.at_value(joint, kind, &message);
+            }
+            Some(_) => {}
+        }
+        for (part, attribute) in [("parent", "link"), ("child", "link")] {
+            let found = self.at_most_one(joint, part);
+            if found.is_empty() {
+                self.at_start(joint, &format!("{} has no <{part}>: name its {part} link", titled(joint)));
+            }
+            for node in found.into_iter().filter(|node| !node.has_attribute(attribute)) {
+                self.at_start(node, &format!("<{part}> of {} has no attribute `{attribute}`", titled(joint)));
+            }
+        }
+        self.pose(joint);
+        for axis in self.at_most_one(joint, "axis") {
+            self.three(axis, "xyz", true);
+        }
+        for dynamics in self.at_most_one(joint, "dynamics") {
+            ["damping", "friction"].iter().for_each(|name| self.number(dynamics, name, false));
+        }
+        for mimic in self.at_most_one(joint, "mimic") {
+            if !mimic.has_attribute("joint") {
+                self.at_start(mimic, &format!("<mimic> of {} has no attribute `joint`", titled(joint)));
+            }
+        }
+    }
+
+    fn named(&mut self, node: Node) {
+        if node.attribute("name").is_none_or(str::is_empty) {
+            self.at_start(node, &format!("this <{}> has no name: give it one", node.tag_name().name()));
+        }
+    }
+
+    fn pose(&mut self, node: Node) {
+        for origin in self.at_most_one(node, "origin") {
+            ["xyz", "rpy"].iter().for_each(|name| self.three(origin, name, false));
+        }
+    }
+
+    /// The children of a kind, of which there should be no second one.
+    fn at_most_one<'n>(&mut self, node: Node<'n, 'n>, kind: &str) -> Vec<Node<'n, 'n>> {
+        let found: Vec<_> = node.children().filter(|child| is(child, kind)).collect();
+        if let [_, second, ..] = found[..] {
+            self.at_start(second, &format!("a second <{kind}> of {}: keep one", titled(node)));
+        }
+        found
+    }
+
+    fn number(&mut self, node: Node, name: &str, needed: bool) {
+        match node.attribute_node(name) {
+            None if needed => self.at_start(node, &format!("{} has no attribute `{name}`", titled(node))),
+            None => {}
+            Some(attribute) => match attribute.value().trim().parse::<f64>() {
+                Err(_) => self.at_value(node, attribute, "this is no number"),
+                Ok(number) if !number.is_finite() => {
+                    self.at_value(node, attribute, "this number is not finite");
+                }
+                Ok(_) => {}
+            },
+        }
+    }
+
+    fn three(&mut self, node: Node, name: &str, needed: bool) {
+        match node.attribute_node(name) {
+            None if needed => self.at_start(node, &format!("{} has no attribute `{name}`", titled(node))),
+            None => {}
+            Some(attribute) => {
+                let words = attribute.value().split_whitespace().map(str::parse::<f64>);
+                let numbers: Vec<_> = words.flatten().filter(|number| number.is_finite()).collect();
+                if numbers.len() != 3 || attribute.value().split_whitespace().count() != 3 {
+                    self.at_value(node, attribute, "write three finite numbers with spaces between them");
+                }
+            }
+        }
+    }
+}
+
+/// An element as a reader finds it: with its name, or with what it belongs to.
+fn titled(node: Node) -> String {
+    let kind = node.tag_name().name();
+    let owner = |node: &Node| matches!(node.tag_name().name(), "link" | "joint");
+    match node.ancestors().find(owner) {
+        Some(owner) => {
+            let name = owner.attribute("name").unwrap_or_default();
+            let owned = format!("{} `{name}`", owner.tag_name().name());
+            if owner == node { owned } else { format!("<{kind}> of {owned}") }
+        }
+        None => format!("<{kind}>"),
+    }
+}
+
+/// Is it an element of this kind?
+pub fn is(node: &Node, kind: &str) -> bool {
+    node.is_element() && node.tag_name().name() == kind
+}

@@ -1,0 +1,325 @@
+//! How much the rounding of doubles costs: what the measured programs answer at many random states, beside the same quantities in
+//! twice as many digits, and beside Pinocchio's error at the same states (stored, or measured anew with `--peers`).
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use hodograph_generator::interpret::{Evaluator, Inputs};
+use hodograph_generator::model::mechanism::{Mechanism, Orientation};
+use hodograph_generator::program::Program;
+use hodograph_generator::program::graph::Input;
+use hodograph_generator::program::operation::Operation;
+use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::source::Source;
+use hodograph_generator::{model, model::mechanism::Function};
+use serde_json::{Value, json};
+
+use crate::cases::{Case, Origin};
+use crate::derive::Derivation;
+use crate::harness::{Built, ROUTINES};
+use crate::precise::Precise;
+use crate::python;
+use crate::tools::{Failure, Folders, output};
+
+/// Errors of Pinocchio.
+const PEERS: &str = "tests/data/peers/rounding.json";
+
+/// How many states.
+const STATES: usize = 2000;
+
+/// A random state: numbers between -1 and 1, angles between -pi and pi, quaternions of unit length.
+struct State {
+    coordinates: Vec<f64>,
+    speeds: Vec<f64>,
+    accelerations: Vec<f64>,
+    inputs: Vec<f64>,
+}
+
+/// Errors relative to the largest entry of an answer.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Error {
+    /// the largest of all states
+    pub worst: f64,
+    /// the mean over the states
+    pub mean: f64,
+}
+
+/// Errors per routine.
+pub type Errors = BTreeMap<&'static str, Error>;
+
+/// The states of a mechanism, the same every time.
+fn states(mechanism: &Mechanism) -> Vec<State> {
+    let mut bits = 0x9e37_79b9_7f4a_7c15u64;
+    let mut next = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
+    let mut state = || {
+        let mut coordinates: Vec<f64> = mechanism
+            .coordinates
+            .iter()
+            .map(|coordinate| next() * if coordinate.unit == "rad" { std::f64::consts::PI } else { 1.0 })
+            .collect();
+        for frame in &mechanism.frames {
+            if let Orientation::Quaternion(ids) = &frame.orientation {
+                let norm = ids.iter().map(|id| coordinates[id.0].powi(2)).sum::<f64>().sqrt();
+                ids.iter().for_each(|id| coordinates[id.0] /= norm);
+            }
+        }
+        let mut list = |count: usize| (0..count).map(|_| next()).collect::<Vec<f64>>();
+        let speeds = mechanism.speeds.len();
+        State {
+            coordinates,
+            speeds: list(speeds),
+            accelerations: list(speeds),
+            inputs: list(mechanism.inputs.len()),
+        }
+    };
+    (0..STATES).map(|_| state()).collect()
+}
+
+/// Quaternions that have unit length to all digits: a double more or less is what both sides round.
+fn unit_quaternions(mechanism: &Mechanism, coordinates: &mut [Precise]) {
+    for frame in &mechanism.frames {
+        if let Orientation::Quaternion(ids) = &frame.orientation {
+            let square =
+                ids.iter().fold(Precise::from(0.0), |sum, id| sum + coordinates[id.0] * coordinates[id.0]);
+            let norm = square.sqrt();
+            ids.iter().for_each(|id| coordinates[id.0] = coordinates[id.0] / norm);
+        }
+    }
+}
+
+/// What a routine answers.
+fn quantities(routine: &str) -> Vec<Quantity> {
+    match routine {
+        "FD" => vec![Quantity::Accelerations],
+        "ID" => vec![Quantity::InverseDynamics],
+        "CM" => vec![Quantity::Contact(0, ContactQuantity::Reduced)],
+        _ => vec![Quantity::MassMatrix],
+    }
+}
+
+/// A program in [`Precise`] numbers.
+fn exact(
+    program: &Program,
+    mechanism: &Mechanism,
+    state: &State,
+    routine: &str,
+) -> Result<Vec<Precise>, Failure> {
+    let precise = |list: &[f64]| list.iter().map(|&number| Precise::from(number)).collect::<Vec<_>>();
+    let mut coordinates = precise(&state.coordinates);
+    unit_quaternions(mechanism, &mut coordinates);
+    let of =
+        |list: &[Precise], index: u32| list.get(index as usize).copied().unwrap_or(Precise::from(f64::NAN));
+    let parameters: Vec<Precise> = mechanism
+        .parameters
+        .iter()
+        .map(|parameter| Precise::from(parameter.value.unwrap_or(f64::NAN)))
+        .collect();
+    let (speeds, accelerations) = (precise(&state.speeds), precise(&state.accelerations));
+    // Inverse dynamics tells what inputs are needed on top of those that act.
+    let inputs =
+        if routine == "ID" { vec![Precise::from(0.0); state.inputs.len()] } else { precise(&state.inputs) };
+    let slice = program.slice(&quantities(routine));
+    let zero = Precise::from(0.0);
+    let mut numbers = vec![(zero, zero); program.operations.len()];
+    for &value in &slice.order {
+        let at = |value: hodograph_generator::program::operation::Value| numbers[value.index()].0;
+        use Operation::{
+            Add, Constant, Cosine, Div, Mul, MulAdd, MulSub, Neg, NegMulAdd, Recip, SinCos, Sine, Sub,
+        };
+        let number = match program.operation(value) {
+            Constant(bits) => Precise::from(bits.get()),
+            Operation::Input(Input::Parameter(index)) => of(&parameters, index),
+            Operation::Input(Input::Coordinate(index)) => of(&coordinates, index),
+            Operation::Input(Input::Speed(index)) => of(&speeds, index),
+            Operation::Input(Input::Acceleration(index)) => of(&accelerations, index),
+            Operation::Input(Input::Input(index)) => of(&inputs, index),
+            Neg(a) => -at(a),
+            Add(a, b) => at(a) + at(b),
+            Sub(a, b) => at(a) - at(b),
+            Mul(a, b) => at(a) * at(b),
+            Div(a, b) => at(a) / at(b),
+            Recip(a) => Precise::from(1.0) / at(a),
+            MulAdd(a, b, c) => at(a) * at(b) + at(c),
+            MulSub(a, b, c) => at(a) * at(b) - at(c),
+            NegMulAdd(a, b, c) => at(c) - at(a) * at(b),
+            SinCos(a) => {
+                numbers[value.index()] = at(a).sin_cos();
+                continue;
+            }
+            Sine(a) => at(a),
+            Cosine(a) => numbers[a.index()].1,
+            Operation::Call(Function::Sin, a) => at(a).sin_cos().0,
+            Operation::Call(Function::Cos, a) => at(a).sin_cos().1,
+            Operation::Call(Function::Abs, a) => {
+                if at(a).high < 0.0 {
+                    -at(a)
+                } else {
+                    at(a)
+                }
+            }
+            other => return Err(Failure::new(format!("{other:?} is not known to twice the digits"))),
+        };
+        numbers[value.index()].0 = number;
+    }
+    let values = slice.outputs.iter().flat_map(|output| &output.values);
+    Ok(values.map(|value| numbers[value.index()].0).collect())
+}
+
+/// The model of a derivation.
+fn mechanism(derivation: &Derivation<'_>) -> Result<Mechanism, Failure> {
+    let path: PathBuf = derivation.path.clone();
+    model::check(&Source::read(&path))
+        .mechanism
+        .ok_or_else(|| Failure::new(format!("{} is not accepted", path.display())))
+}
+
+/// What the compiled program answers at the states: per state, the numbers of each routine.
+fn answers(built: &Built, states: &[State]) -> Result<Vec<Vec<f64>>, Failure> {
+    let mut child =
+        Command::new(&built.program).arg("answer").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()?;
+    let mut lines = String::new();
+    for state in states {
+        let numbers = [&state.coordinates, &state.speeds, &state.accelerations, &state.inputs];
+        let words: Vec<String> = numbers.into_iter().flatten().map(|number| format!("{number:?}")).collect();
+        lines += &(words.join(" ") + "\n");
+    }
+    let Some(mut pipe) = child.stdin.take() else { return Err(Failure::new("the program takes no states")) };
+    let writer = std::thread::spawn(move || pipe.write_all(lines.as_bytes()));
+    let output = child.wait_with_output()?;
+    let _ = writer.join();
+    let text = String::from_utf8_lossy(&output.stdout);
+    let line = |line: &str| line.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    Ok(text.lines().map(line).collect())
+}
+
+/// The errors of a measured program against the program with parameters at run time, evaluated in twice the digits; the states and
+/// the exact answers are left in the folder for the peers.
+pub fn measure(
+    folders: &Folders,
+    built: &Built,
+    derivation: &Derivation<'_>,
+    reference: &Derivation<'_>,
+) -> Result<Errors, Failure> {
+    let mechanism = mechanism(reference)?;
+    let states = states(&mechanism);
+    let answers = answers(built, &states)?;
+    let mut errors = Errors::new();
+    let mut kept: Vec<Value> = states
+        .iter()
+        .map(|state| json!({"q": state.coordinates, "v": state.speeds, "a": state.accelerations, "tau": state.inputs}))
+        .collect();
+    for (place, (routine, _)) in ROUTINES.into_iter().enumerate() {
+        let mut error = Error::default();
+        for (index, state) in states.iter().enumerate() {
+            let exact = exact(&reference.program, &mechanism, state, routine)?;
+            let all = answers.get(index * ROUTINES.len() + place).map_or(&[][..], Vec::as_slice);
+            // of V and the reduced matrix the latter, which stands last
+            let found = all.get(all.len().saturating_sub(exact.len())..).unwrap_or_default();
+            let off = relative(found, &exact);
+            error.worst = error.worst.max(if off.is_nan() { f64::INFINITY } else { off });
+            error.mean += off / states.len() as f64;
+            kept[index][routine] = exact.iter().map(|number| json!([number.high, number.low])).collect();
+        }
+        errors.insert(routine, error);
+    }
+    if !derivation.fixed {
+        let folder = folders.work.join("rounding");
+        std::fs::create_dir_all(&folder)?;
+        let names = |list: &[hodograph_generator::model::mechanism::Quantity]| -> Vec<String> {
+            list.iter().map(|quantity| quantity.name.clone()).collect()
+        };
+        let all = json!({
+            "coordinates": names(&mechanism.coordinates),
+            "speeds": derivation.speeds,
+            "basis": basis(&reference.program, &mechanism, &states[0])?,
+            "states": kept,
+        });
+        std::fs::write(folder.join(format!("{}.json", derivation.case.name)), all.to_string())?;
+    }
+    Ok(errors)
+}
+
+/// The axes of the contact, by rows; they stand still.
+fn basis(program: &Program, mechanism: &Mechanism, state: &State) -> Result<Vec<Vec<f64>>, Failure> {
+    let inputs = Inputs {
+        parameters: mechanism
+            .parameters
+            .iter()
+            .map(|parameter| parameter.value.unwrap_or(f64::NAN))
+            .collect(),
+        coordinates: state.coordinates.clone(),
+        ..Inputs::default()
+    };
+    let axes = [ContactQuantity::Normal, ContactQuantity::First, ContactQuantity::Second];
+    let axes = axes.map(|axis| Quantity::Contact(0, axis));
+    let arrays = Evaluator::new(program).evaluate(&inputs, &axes);
+    let arrays = arrays.map_err(|error| Failure::new(error.to_string()))?;
+    Ok(arrays.into_iter().map(|array| array.values).collect())
+}
+
+/// Largest difference over largest entry.
+fn relative(found: &[f64], exact: &[Precise]) -> f64 {
+    if found.len() != exact.len() {
+        return f64::NAN;
+    }
+    let largest = exact.iter().fold(0.0f64, |largest, number| largest.max(number.high.abs()));
+    let off = found.iter().zip(exact).map(|(&found, &exact)| (Precise::from(found) - exact).high.abs());
+    off.fold(0.0f64, |most, off| if off > most || off.is_nan() { off } else { most }) / largest
+}
+
+/// Errors of Pinocchio at the same states.
+fn peers(folders: &Folders) -> Result<Value, Failure> {
+    let text = std::fs::read_to_string(folders.root.join(PEERS))?;
+    serde_json::from_str(&text).map_err(|error| Failure::new(error.to_string()))
+}
+
+/// Measures Pinocchio's errors at the same states and stores them.
+pub fn of_peers(folders: &Folders, cases: &[Case]) -> Result<(), Failure> {
+    let python = python::with_pinocchio(folders)?;
+    let mut command = Command::new(python);
+    command.args(["-c", include_str!("rounding.py")]).arg(folders.work.join("rounding"));
+    for case in cases.iter().filter(|case| case.has_peers()) {
+        let folder = match case.origin {
+            Origin::Peer => folders.root.join("tests/data/peers"),
+            _ => folders.work.join("models"),
+        };
+        command.arg(format!("{}:{}", case.name, folder.join(format!("{}.urdf", case.name)).display()));
+    }
+    Ok(std::fs::write(folders.root.join(PEERS), output(&mut command)?)?)
+}
+
+/// Prints the table: run-time parameters, fixed ones, Pinocchio; worst and mean each.
+pub fn print(folders: &Folders, rows: &[(&Derivation<'_>, Errors)]) -> Result<(), Failure> {
+    let peers = peers(folders)?;
+    println!(
+        "\n| mechanism | routine | run-time, worst | mean | fixed, worst | mean | Pinocchio, worst | mean |"
+    );
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    for pair in rows.chunks_exact(2) {
+        let [(derivation, slow), (_, fast)] = pair else { continue };
+        for (routine, _) in ROUTINES {
+            let theirs = &peers[derivation.case.name.as_str()][routine];
+            let theirs =
+                |key: &str| theirs[key].as_f64().map_or(String::new(), |error| format!("{error:.1e}"));
+            let (slow, fast) = (slow[routine], fast[routine]);
+            println!(
+                "| {} | {routine} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {} | {} |",
+                derivation.case.title,
+                slow.worst,
+                slow.mean,
+                fast.worst,
+                fast.mean,
+                theirs("worst"),
+                theirs("mean"),
+            );
+        }
+    }
+    Ok(())
+}
