@@ -40,3 +40,17 @@ fn dual_numbers_give_the_derivative_by_friction() {
         }
     }
 }
+
+/// Slip that stops just before compression ends: what is left of v_n is no rounding in single precision either.
+#[test]
+fn slip_that_stops_before_compression_ends_in_single_precision() {
+    let m = [0.7980910561809162, 0.0, 0.0, 1.5008655574994163, -0.3919651410907144, 0.4638920694939901];
+    let v = Vector3::new(-1.0048982696933053, -0.16438534974234997, -0.09064043543938438);
+    let surface = Surface { mu: 0.344617768447986, e: 0.592074453926204, law: hodograph::Law::Newton };
+    let exact = solve(&ReducedMatrix::from(m), &v, &surface).expect("an outcome").impulse;
+    let single = Surface { mu: surface.mu as f32, e: surface.e as f32, law: surface.law };
+    let hit =
+        solve(&ReducedMatrix::from(m.map(|x| x as f32)), &v.cast::<f32>(), &single).expect("an outcome");
+    let error = (hit.impulse.cast::<f64>() - exact).amax() / exact.amax();
+    assert!(error < 1e-6, "{error:e}");
+}

@@ -126,15 +126,18 @@ fn after_slip<T: Real>(
     sensitivity: &mut Sensitivity,
 ) -> Option<(State<T>, Vector2<T>, Path)> {
     let eps = T::default_epsilon();
-    // Where slip and normal velocity stop together, rounding must not tell them apart.
+    let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
+    // Where slip and normal velocity stop together, rounding must not tell them apart: most of all where little moves the contact afterwards,
+    // or where compression has just ended.
     let scale = T::one() + state.normal * (T::one() + contact.mu * length(&contact.b));
-    if slips && state.velocity.abs() <= constant::<T>(256.0) * eps * scale {
+    let again = ledger.compressions > 0 && state.velocity < T::zero();
+    let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
+    if slips && state.velocity.abs() <= few * eps * scale {
         state.velocity = T::zero();
         if ledger.compressions == 0 && ledger.compressed(state) {
             return Some((*state, Vector2::zeros(), Path::Sliding));
         }
     }
-    let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
     sensitivity.stopped(contact.mu, mu_c);
     let path = match (slips, sticks) {
         (true, true) => Path::SlidingThenSticking,
