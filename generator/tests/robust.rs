@@ -92,6 +92,20 @@ fn many_names() {
     refused("coordinates", text, codes::TOO_LARGE);
 }
 
+#[test]
+fn many_wrong_units() {
+    let n = 10_000;
+    let parameters: String = (0..n).map(|i| format!("a{i}: kg = 1, b{i}: s = 1, ")).collect();
+    let points: String =
+        (0..n).map(|i| format!("P{i} = O + a{i}*N.x + b{i}*N.y; Q{i} = O + (a{i} - 2*b{i})*N.z; ")).collect();
+    let text = format!("mechanism M; parameters {{ {parameters} }} points {{ {points} }}");
+    refused("wrong units", text, codes::DIMENSION);
+    let product: String = (0..n).map(|i| format!("a{i}*")).collect();
+    let sum: String = (0..n).map(|i| format!("a{i}*b{} + ", n - 1 - i)).collect();
+    let uses = format!("definitions {{ a = {product}1 + 1; b = {sum} time; c = b + time; }}");
+    refused("large products", format!("mechanism M; parameters {{ {parameters} }} {uses}"), codes::EXPONENT);
+}
+
 /// Ten thousand of everything that may be many is a model like others.
 #[test]
 fn ten_thousand_parameters() {

@@ -10,6 +10,7 @@ pub mod mechanism;
 mod members;
 mod names;
 mod order;
+mod powers;
 pub mod similar;
 mod typed;
 pub mod units;

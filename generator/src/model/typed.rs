@@ -4,6 +4,7 @@ use num_rational::BigRational;
 
 use super::dimension::Dimension;
 use super::mechanism::{Scalar, Vector};
+use super::powers::Powers;
 use crate::diagnostics::Span;
 use crate::number::Number;
 
@@ -90,6 +91,8 @@ pub struct Typed {
     pub value: Value,
     /// its dimension; `None` fits everything: the number 0, or a mistake that is reported already
     pub dimension: Option<Dimension>,
+    /// the declarations from which the dimension comes
+    pub powers: Powers,
     /// on what it depends
     pub traits: Traits,
     /// its value, if it is a constant scalar
@@ -104,17 +107,25 @@ impl Typed {
     /// Says nothing more.
     pub fn poison(span: Span) -> Self {
         let traits = Traits::default();
-        Typed { value: Value::Poison, dimension: None, traits, constant: None, exact: None, span }
+        Typed {
+            value: Value::Poison,
+            dimension: None,
+            powers: Powers::none(),
+            traits,
+            constant: None,
+            exact: None,
+            span,
+        }
     }
 
     /// A scalar that is not constant.
     pub fn scalar(value: Scalar, dimension: Option<Dimension>, traits: Traits, span: Span) -> Self {
-        Typed { value: Value::Scalar(value), dimension, traits, constant: None, exact: None, span }
+        Typed { value: Value::Scalar(value), dimension, traits, ..Typed::poison(span) }
     }
 
     /// A vector.
     pub fn vector(value: Vector, dimension: Option<Dimension>, traits: Traits, span: Span) -> Self {
-        Typed { value: Value::Vector(value), dimension, traits, constant: None, exact: None, span }
+        Typed { value: Value::Vector(value), dimension, traits, ..Typed::poison(span) }
     }
 
     /// A rational number.
@@ -125,10 +136,14 @@ impl Typed {
             constant: Some(number.to_f64()),
             value: Value::Scalar(Scalar::Number(number.clone())),
             dimension: if zero { None } else { Some(Dimension::none()) },
-            traits: Traits::default(),
             exact: moderate(number),
-            span,
+            ..Typed::poison(span)
         }
+    }
+
+    /// The same, with a dimension that comes from these declarations.
+    pub fn from(self, powers: Powers) -> Self {
+        Typed { powers, ..self }
     }
 
     /// Is it a mistake that is reported already?

@@ -12,7 +12,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: DIMENSION,
-        text: "Only quantities of one dimension can be added, compared or equated, and every place wants its own: a mass is in kg, an angle in rad. A plain number has no unit, so a length cannot be `0.5`; declare a parameter with a unit (`fixed`, if it is not to be one at run time). Radians count as 1.",
+        text: "Only quantities of one dimension can be added, compared or equated, and every place wants its own: a mass is in kg, an angle in rad. A declaration in a wrong unit that several uses contradict is told once, at the declaration; one use that others contradict is told at the use. A plain number has no unit, so a length cannot be `0.5`; declare a parameter with a unit (`fixed`, if it is not to be one at run time). Radians count as 1.",
         wrong: Some("points { G = O - l/2*B.y; P = O - 0.5*B.y; }"),
         right: Some(
             "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, fixed a: m = 0.5 }\npoints { G = O - l/2*B.y; P = O - a*B.y; }",

@@ -3,9 +3,11 @@
 use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
 use super::super::names::Symbol;
+use super::super::powers::Powers;
 use super::super::typed::{Traits, Typed, Value};
 use super::super::{habits, similar};
-use super::{Lowering, in_words};
+use super::Lowering;
+use super::dimensions::model_of;
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::syntax::tree::{Expr, ExprKind, Name};
 
@@ -72,6 +74,7 @@ impl Lowering<'_> {
                 let dimension = both(a.dimension, b.dimension);
                 let value = Scalar::Dot(Box::new(v), Box::new(w));
                 Typed::scalar(value, dimension, a.traits.times(b.traits), span)
+                    .from(a.powers.times(&b.powers))
             }
             ("cross", [a, b]) => {
                 let what = "an argument of `cross`";
@@ -80,10 +83,12 @@ impl Lowering<'_> {
                 let dimension = both(a.dimension, b.dimension);
                 let value = Vector::Cross(Box::new(v), Box::new(w));
                 Typed::vector(value, dimension, a.traits.times(b.traits), span)
+                    .from(a.powers.times(&b.powers))
             }
             ("norm", [v]) => match self.need_vector(v, "the argument of `norm`") {
                 Some(vector) => {
                     Typed::scalar(Scalar::Norm(Box::new(vector)), v.dimension, v.traits.bent(), span)
+                        .from(v.powers.clone())
                 }
                 None => Typed::poison(span),
             },
@@ -170,30 +175,29 @@ impl Lowering<'_> {
             return Typed::poison(span);
         };
         let traits = typed.iter().fold(Traits::default(), |sum, argument| sum.plus(argument.traits.bent()));
-        let first = typed[0].dimension;
-        let dimension = match function {
-            Function::Sqrt => first.and_then(|d| d.power(Exponent::new(1, 2))),
-            Function::Abs => first,
-            Function::Sign => Some(Dimension::none()),
+        let (first, powers) = (typed[0].dimension, &typed[0].powers);
+        let (dimension, powers) = match function {
+            Function::Sqrt => {
+                let half = Exponent::new(1, 2);
+                (first.and_then(|d| d.power(half)), powers.power(half))
+            }
+            Function::Abs => (first, powers.clone()),
+            Function::Sign => (Some(Dimension::none()), Powers::none()),
             Function::Atan2 | Function::Min | Function::Max => {
-                if let (Some(a), Some(b)) = (first, typed[1].dimension)
-                    && a != b
-                {
-                    let message = format!("the arguments of `{}` have the dimensions {a} and {b}", name.text);
-                    let error = Diagnostic::new(codes::DIMENSION, typed[1].span, message)
-                        .label(format!("this is {}", in_words(b)))
-                        .related(typed[0].span, format!("this is {}", in_words(a)));
-                    self.report(error);
-                }
-                if function == Function::Atan2 {
-                    Some(Dimension::none())
-                } else {
-                    first.or(typed[1].dimension)
+                let (a, b) = (&typed[0], &typed[1]);
+                let fit = self.same(a, b, |a, b| {
+                    format!("the arguments of `{}` have the dimensions {a} and {b}", name.text)
+                });
+                match function {
+                    Function::Atan2 => (Some(Dimension::none()), Powers::none()),
+                    _ if !fit => return Typed { traits, ..Typed::poison(span) },
+                    _ if first.is_some() => (first, powers.clone()),
+                    _ => (b.dimension, b.powers.clone()),
                 }
             }
             _ => {
                 self.demand(&typed[0], Dimension::none(), &what);
-                Some(Dimension::none())
+                (Some(Dimension::none()), Powers::none())
             }
         };
         let constants: Option<Vec<f64>> = typed.iter().map(|argument| argument.constant).collect();
@@ -206,7 +210,8 @@ impl Lowering<'_> {
             (_, [a]) => apply(function, *a),
             _ => f64::NAN,
         });
-        Typed { constant, ..Typed::scalar(Scalar::Call(function, scalars), dimension, traits, span) }
+        let value = Scalar::Call(function, scalars);
+        Typed { constant, powers, ..Typed::scalar(value, dimension, traits, span) }
     }
 
     fn point_argument(&mut self, argument: &Expr, of: &str) -> Option<PointId> {
@@ -403,27 +408,25 @@ impl Lowering<'_> {
             return Typed::poison(span);
         }
         let scalars: Vec<Option<Scalar>> = typed.iter().map(|c| self.need_scalar(c, "a component")).collect();
-        let mut dimension: Option<(Dimension, Span)> = None;
-        for component in &typed {
-            match (dimension, component.dimension) {
-                (Some((first, place)), Some(other)) if first != other => {
-                    let message = format!("the components differ in dimension: {first} and {other}");
-                    let error = Diagnostic::new(codes::DIMENSION, component.span, message)
-                        .label(format!("this is {}", in_words(other)))
-                        .related(place, format!("this is {}", in_words(first)));
-                    self.report(error);
-                }
-                (None, Some(other)) => dimension = Some((other, component.span)),
-                _ => {}
+        let model = model_of(typed.iter().filter(|component| !component.is_vector()));
+        let mut fit = true;
+        for component in typed.iter().filter(|component| !component.is_vector()) {
+            if let Some(model) = model {
+                fit &= self.same(model, component, |a, b| {
+                    format!("the components differ in dimension: {a} and {b}")
+                });
             }
         }
         let traits = typed.iter().fold(Traits::default(), |sum, c| sum.plus(c.traits));
         let components: Option<[Scalar; 3]> =
             scalars.into_iter().collect::<Option<Vec<_>>>().and_then(|list| list.try_into().ok());
-        let (Some(frame), Some(components)) = (frame, components) else { return Typed::poison(span) };
+        let (Some(frame), Some(components), true) = (frame, components, fit) else {
+            return Typed { traits, ..Typed::poison(span) };
+        };
         let traits = traits.times(self.frames[frame.0].orientation);
-        let dimension = dimension.map(|(dimension, _)| dimension);
-        Typed::vector(Vector::Components(frame, Box::new(components)), dimension, traits, span)
+        let dimension = model.and_then(|model| model.dimension);
+        let powers = model.map_or(Powers::none(), |model| model.powers.clone());
+        Typed::vector(Vector::Components(frame, Box::new(components)), dimension, traits, span).from(powers)
     }
 
     /// Demands a vector with a dimension that enters linearly: a velocity, say.

@@ -3,7 +3,8 @@
 use super::super::mechanism::{Equation, EquationSides, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::typed::{Typed, Value};
-use super::{Lowering, in_words, quantity};
+use super::Lowering;
+use super::dimensions::quantity;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::syntax::tree::{self, ExprKind};
 
@@ -12,10 +13,12 @@ impl Lowering<'_> {
         let tree = self.tree;
         let kinematics = self.section(&tree.kinematics, "a kinematical equation", true);
         self.out.kinematics = kinematics;
+        let motion = self.balances.incomplete;
         let constraints = self.section(&tree.constraints, "a constraint", true);
         self.out.constraints = constraints;
         let configuration = self.section(&tree.configuration, "a configuration equation", false);
         self.out.configuration = configuration;
+        self.balances.incomplete = motion;
         self.default_rates();
     }
 
@@ -111,18 +114,7 @@ impl Lowering<'_> {
                 return None;
             }
         };
-        if let (Some(l), Some(r)) = (left.dimension, right.dimension)
-            && l != r
-        {
-            let error = Diagnostic::new(
-                codes::DIMENSION,
-                right.span,
-                format!("{what} between {} and {}", quantity(l), quantity(r)),
-            )
-            .label(format!("this is {}", in_words(r)))
-            .related(left.span, format!("this is {}", in_words(l)));
-            self.report(error);
-        }
+        self.same(left, right, |l, r| format!("{what} between {} and {}", quantity(l), quantity(r)));
         Some(sides)
     }
 }

@@ -7,8 +7,10 @@ use num_traits::{Signed, ToPrimitive, Zero};
 use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
+use super::super::powers::Powers;
 use super::super::typed::{Traits, Typed, Value, moderate};
-use super::{Lowering, in_words, quantity};
+use super::Lowering;
+use super::dimensions::{in_words, model_of, quantity};
 use crate::diagnostics::{Diagnostic, Span, codes};
 use crate::number::Number;
 use crate::syntax::tree::{Expr, ExprKind, Name};
@@ -168,8 +170,8 @@ impl Lowering<'_> {
             .try_fold(BigRational::zero(), |sum, term| Some(sum + &term.exact.as_ref()?.0))
             .and_then(|sum| moderate(Number(sum)));
         let poisoned = terms.iter().any(Typed::is_poison);
-        let mut dimension: Option<(Dimension, Span)> = None;
         let mut vector: Option<(bool, Span)> = None;
+        let mut summands: Vec<&Typed> = Vec::new();
         let (mut scalars, mut vectors) = (Vec::new(), Vec::new());
         let mut wrong = poisoned;
         for term in &terms {
@@ -203,23 +205,17 @@ impl Lowering<'_> {
                 }
                 _ => vector = vector.or(Some((is_vector, term.span))),
             }
-            match (dimension, term.dimension) {
-                (Some((first, place)), Some(other)) if first != other => {
-                    let message = format!("{} cannot be added to {}", quantity(other), quantity(first));
-                    let mut error = Diagnostic::new(codes::DIMENSION, term.span, message)
-                        .label(format!("this is {}", in_words(other)))
-                        .related(place, format!("this is {}", in_words(first)));
-                    if term.constant.is_some() || first.is_none() {
-                        error = error.help("a plain number has no unit; declare a parameter with one");
-                    }
-                    self.report(error);
-                    wrong = true;
-                }
-                (None, Some(other)) => dimension = Some((other, term.span)),
-                _ => {}
+            summands.push(term);
+        }
+        let model = model_of(summands.iter().copied());
+        for term in summands {
+            if let Some(model) = model {
+                wrong |= !self
+                    .same(model, term, |a, b| format!("{} cannot be added to {}", quantity(b), quantity(a)));
             }
         }
-        let dimension = dimension.map(|(dimension, _)| dimension);
+        let dimension = model.and_then(|model| model.dimension);
+        let powers = model.map_or(Powers::none(), |model| model.powers.clone());
         if wrong {
             return Typed { traits, ..Typed::poison(span) };
         }
@@ -232,6 +228,7 @@ impl Lowering<'_> {
         Typed {
             value,
             dimension,
+            powers,
             traits,
             constant: constant.filter(|_| is_scalar),
             exact: exact.filter(|_| is_scalar),
@@ -242,6 +239,7 @@ impl Lowering<'_> {
     fn product(&mut self, factors: &[(bool, Expr)], span: Span) -> Typed {
         let mut traits = Traits::default();
         let mut dimension = Some(Dimension::none());
+        let mut powers = Powers::none();
         let mut any_dimension = false;
         let (mut constant, mut exact) = (Some(1.0), Some(BigRational::from_integer(BigInt::from(1))));
         let (mut numerator, mut denominator) = (Vec::new(), Vec::new());
@@ -276,6 +274,7 @@ impl Lowering<'_> {
                 wrong = true;
             }
             dimension = combined;
+            powers = if *divides { powers.over(&typed.powers) } else { powers.times(&typed.powers) };
             constant = constant.and_then(|c| typed.constant.map(|v| if *divides { c / v } else { c * v }));
             exact = match (exact, &typed.exact) {
                 (Some(e), Some(v)) if *divides && !v.is_zero() => moderate(Number(e / &v.0)).map(|n| n.0),
@@ -325,13 +324,14 @@ impl Lowering<'_> {
         };
         let dimension = dimension.filter(|_| !any_dimension);
         match vector {
-            Some((vector, _)) if plain => Typed::vector(vector, dimension, traits, span),
+            Some((vector, _)) if plain => Typed::vector(vector, dimension, traits, span).from(powers),
             Some((vector, _)) => {
                 Typed::vector(Vector::Scale(Box::new(scalar), Box::new(vector)), dimension, traits, span)
+                    .from(powers)
             }
             None => {
                 let exact = exact.map(Number);
-                Typed { value: Value::Scalar(scalar), dimension, traits, constant, exact, span }
+                Typed { value: Value::Scalar(scalar), dimension, powers, traits, constant, exact, span }
             }
         }
     }
@@ -363,10 +363,15 @@ impl Lowering<'_> {
             self.report(error.related(base.span, "this is 0"));
             return Typed::poison(span);
         }
+        let powers = small.map_or(Powers::none(), |exponent| base.powers.power(exponent));
         let dimension = match (base.dimension, small) {
             (None, _) if base.is_zero() => Some(Dimension::none()),
             (None, _) => None,
-            (Some(d), _) if d.is_none() => Some(d),
+            (Some(d), Some(_)) if d.is_none() => Some(d),
+            (Some(d), None) if d.is_none() => {
+                self.agreement(base.powers.clone());
+                Some(d)
+            }
             (Some(d), Some(e)) => match d.power(e) {
                 Some(d) => Some(d),
                 None => {
@@ -381,7 +386,8 @@ impl Lowering<'_> {
                 let error = Diagnostic::new(codes::EXPONENT, exponent.span, message)
                     .related(base.span, format!("this is {}", in_words(d)))
                     .help("divide the base by a quantity of its own dimension");
-                self.report(error);
+                let says = "with an exponent that is no number, this must be without dimension";
+                self.contradiction(error, base.powers.clone(), Dimension::none().over(&d), says.to_owned());
                 return Typed::poison(span);
             }
         };
@@ -395,7 +401,7 @@ impl Lowering<'_> {
         let one = small == Some(Exponent::from_integer(1));
         let traits = if one { base.traits } else { base.traits.bent().plus(exponent.traits.bent()) };
         let value = Value::Scalar(Scalar::Pow(Box::new(b), Box::new(e)));
-        Typed { value, dimension, traits, constant, exact, span }
+        Typed { value, dimension, powers, traits, constant, exact, span }
     }
 
     /// `d(E)/dt`
@@ -420,7 +426,7 @@ impl Lowering<'_> {
         let per_second = Dimension::of(0, 0, -1);
         let dimension = typed.dimension.and_then(|d| d.times(&per_second));
         let value = Scalar::Rate(Box::new(scalar));
-        Typed::scalar(value, dimension, typed.traits.derivative(span), span)
+        Typed::scalar(value, dimension, typed.traits.derivative(span), span).from(typed.powers)
     }
 
     /// Is the expression a bare coordinate?

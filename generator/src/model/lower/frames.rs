@@ -2,7 +2,9 @@
 
 use super::super::dimension::Dimension;
 use super::super::mechanism::{Axis, FrameId, Orientation, Scalar};
+use super::super::names::Symbol;
 use super::super::order::base_frame;
+use super::super::powers::Powers;
 use super::super::similar;
 use super::super::typed::Traits;
 use super::Lowering;
@@ -219,18 +221,17 @@ impl Lowering<'_> {
                         );
                         return None;
                     }
-                    if self.coordinates[coordinate.0]
-                        .unit
-                        .as_ref()
-                        .is_some_and(|u| !u.is_si() || !u.dimension.is_none())
-                    {
-                        let error = Diagnostic::new(
-                            codes::DIMENSION,
-                            argument.span,
-                            "the parts of a quaternion are plain numbers",
-                        )
-                        .help("declare the coordinate with the unit 1");
-                        self.report(error);
+                    if let Some(unit) = self.coordinates[coordinate.0].unit.clone() {
+                        let powers = Powers::of(Symbol::Coordinate(coordinate.0));
+                        if unit.is_si() && unit.dimension.is_none() {
+                            self.agreement(powers);
+                        } else {
+                            let message = "the parts of a quaternion are plain numbers";
+                            let error = Diagnostic::new(codes::DIMENSION, argument.span, message)
+                                .help("declare the coordinate with the unit 1");
+                            let off = Dimension::none().over(&unit.dimension);
+                            self.contradiction(error, powers, off, message.to_owned());
+                        }
                     }
                     coordinates.push(coordinate);
                 }

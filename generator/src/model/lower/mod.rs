@@ -3,6 +3,8 @@
 mod bodies;
 mod calls;
 mod contacts;
+mod culprits;
+mod dimensions;
 mod equations;
 mod expressions;
 mod frames;
@@ -13,15 +15,16 @@ mod rates;
 
 use std::collections::HashSet;
 
-use super::dimension::Dimension;
 use super::habits;
 use super::mechanism::*;
 use super::names::{Names, Symbol};
 use super::order::{Item, Stated, order};
+use super::powers::Powers;
 use super::typed::{Traits, Typed, Value};
 use super::units::{self, Unit};
 use crate::diagnostics::{Code, Diagnostic, Span, codes};
 use crate::syntax::tree::{ExprKind, Name, Tree};
+use dimensions::Balances;
 
 /// Lowers a tree. The mechanism is complete only if no error was reported.
 pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagnostic>) {
@@ -47,10 +50,14 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagn
             Item::Velocity(i) => lowering.velocity(i),
         }
     }
+    // what is wrong with these does not touch the motion
+    let motion = lowering.balances.incomplete;
     lowering.bodies();
     lowering.loads();
+    lowering.balances.incomplete = motion;
     lowering.equations();
     lowering.contacts();
+    lowering.gather();
     lowering.unused();
     (lowering.out, lowering.diagnostics)
 }
@@ -99,16 +106,6 @@ pub(super) struct PointFacts {
     pub velocity: Traits,
 }
 
-/// `in m/s`, or that there is no dimension.
-pub(super) fn in_words(dimension: Dimension) -> String {
-    if dimension.is_none() { "a plain number".to_owned() } else { format!("in {dimension}") }
-}
-
-/// The same with a noun.
-pub(super) fn quantity(dimension: Dimension) -> String {
-    if dimension.is_none() { "a plain number".to_owned() } else { format!("a quantity in {dimension}") }
-}
-
 /// The state of lowering.
 pub(super) struct Lowering<'a> {
     pub tree: &'a Tree,
@@ -128,6 +125,8 @@ pub(super) struct Lowering<'a> {
     pub points: Vec<PointFacts>,
     /// only numbers and functions are allowed
     pub constant_only: bool,
+    /// what is found out about dimensions
+    pub(in crate::model::lower) balances: Balances,
 }
 
 impl<'a> Lowering<'a> {
@@ -165,6 +164,7 @@ impl<'a> Lowering<'a> {
             frames: vec![FrameFacts::default(); tree.frames.len() + 1],
             points: vec![PointFacts::default(); tree.points.len() + 1],
             constant_only: false,
+            balances: Balances::default(),
         }
     }
 
@@ -270,11 +270,16 @@ impl<'a> Lowering<'a> {
                             source.name.text, unit.text
                         ));
                     }
-                    self.report(error);
+                    let says = format!("its value is in {dimension}");
+                    let powers = Powers::of(Symbol::Definition(i)).over(&typed.powers);
+                    self.contradiction(error, powers, dimension.over(&unit.dimension), says);
                     typed.dimension = Some(unit.dimension);
                 }
-                Some(_) => {}
+                Some(_) => self.agreement(Powers::of(Symbol::Definition(i)).over(&typed.powers)),
             }
+            typed.powers = Powers::of(Symbol::Definition(i));
+        } else {
+            typed.powers = typed.powers.times(&Powers::of(Symbol::Definition(i)));
         }
         let value = match &typed.value {
             Value::Scalar(scalar) => DefinitionValue::Scalar(scalar.clone()),
@@ -396,53 +401,6 @@ impl<'a> Lowering<'a> {
             error = error.related(place, "declared here");
         }
         self.report(error);
-    }
-
-    /// Demands a dimension; 0 has any.
-    pub fn demand(&mut self, typed: &Typed, wanted: Dimension, what: &str) {
-        let Some(dimension) = typed.dimension else { return };
-        if dimension == wanted || typed.is_poison() {
-            return;
-        }
-        let needed = match (wanted.is_none(), typed.is_vector()) {
-            (true, true) => "without dimension".to_owned(),
-            (true, false) => "in rad or a plain number".to_owned(),
-            (false, _) => format!("in {wanted}"),
-        };
-        let message = format!("{what} must be {needed}, but this is {}", in_words(dimension));
-        let error = Diagnostic::new(codes::DIMENSION, typed.span, message)
-            .label(format!("this is {}", in_words(dimension)));
-        self.report(match self.declaration(typed) {
-            // the use is right and the declaration wrong, or the reverse: both are shown
-            Some((name, place)) => error.related(place, format!("`{name}` is declared here")),
-            None if dimension.is_none() => error.help(format!(
-                "a number has no unit; declare a parameter with one, such as `a: {wanted} = ..`"
-            )),
-            None if wanted.is_none() && dimension == Dimension::of(0, 0, 1) => error.help(
-                "a number has no unit; declare an angular frequency, such as `w: rad/s = ..`, and write `w*time`",
-            ),
-            None => error,
-        });
-    }
-
-    /// The quantity or definition that an expression is, alone or with a sign, and its place.
-    fn declaration(&self, typed: &Typed) -> Option<(String, Span)> {
-        let Value::Scalar(mut scalar) = typed.value.clone() else { return None };
-        while let Scalar::Neg(inner) = scalar {
-            scalar = *inner;
-        }
-        let of = |quantity: &Quantity| Some((quantity.name.clone(), quantity.span));
-        match scalar {
-            Scalar::Parameter(i) => of(&self.out.parameters[i.0]),
-            Scalar::Input(i) => of(&self.out.inputs[i.0]),
-            Scalar::Coordinate(i) => of(&self.out.coordinates[i.0]),
-            Scalar::Speed(i) => of(&self.out.speeds[i.0]),
-            Scalar::Definition(i) => {
-                let definition = &self.out.definitions[i.0];
-                Some((definition.name.clone(), definition.span))
-            }
-            _ => None,
-        }
     }
 
     /// Demands a scalar.

@@ -2,6 +2,7 @@
 
 use super::super::mechanism::{Quantity, Scalar};
 use super::super::names::Symbol;
+use super::super::powers::Powers;
 use super::super::typed::{Traits, Typed, Value};
 use super::super::units::{self, Unit};
 use super::{Lowering, QuantityFacts};
@@ -152,11 +153,13 @@ impl Lowering<'_> {
                     exact: value.exact.filter(|_| unit.is_si()),
                     traits,
                     span,
+                    powers: Powers::of(symbol),
                 },
                 _ => Typed::poison(span),
             },
             None if fixed_parameter => Typed::poison(span),
-            None => Typed::scalar(in_si(scalar, &unit), Some(unit.dimension), traits, span),
+            None => Typed::scalar(in_si(scalar, &unit), Some(unit.dimension), traits, span)
+                .from(Powers::of(symbol)),
         }
     }
 }

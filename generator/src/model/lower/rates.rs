@@ -2,8 +2,10 @@
 
 use std::collections::HashMap;
 
+use super::super::dimension::Dimension;
 use super::super::mechanism::*;
 use super::super::names::Symbol;
+use super::super::powers::Powers;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 
@@ -50,7 +52,8 @@ impl Lowering<'_> {
     /// Adds `d(q..)/dt = u..` for the coordinates of whose rates no equation speaks.
     pub(super) fn default_rates(&mut self) {
         // with mistakes around, what is missing may only be hidden; a cycle would not end
-        if self.diagnostics.iter().any(Diagnostic::hides_meaning) {
+        let hides = |d: &Diagnostic| d.hides_meaning() && d.code != codes::DIMENSION;
+        if self.balances.incomplete || self.diagnostics.iter().any(hides) {
             return;
         }
         let mut walk = Walk { mechanism: &self.out, known: HashMap::new() };
@@ -95,22 +98,28 @@ impl Lowering<'_> {
             self.report(error);
         }
         for (i, speed) in defaults {
-            let second = super::Dimension::of(0, 0, 1);
+            let second = Dimension::of(0, 0, 1);
             let units = (&self.coordinates[i].unit, &self.speeds[speed].unit);
             let (coordinate, rate) = (self.out.coordinates[i].clone(), self.out.speeds[speed].clone());
-            if let (Some(q), Some(u)) = units
-                && q.dimension.over(&second) != Some(u.dimension)
-            {
-                let message = format!(
-                    "`d({})/dt = {}` is meant where nothing else is said, but their units do not fit",
-                    coordinate.name, rate.name
-                );
-                let error = Diagnostic::new(codes::DIMENSION, rate.span, message)
-                    .label(format!("this is in {}", rate.unit))
-                    .related(coordinate.span, format!("this is in {}", coordinate.unit))
-                    .help("state the kinematical equation, or correct a unit");
-                self.report(error);
-                continue;
+            if let (Some(q), Some(u)) = units {
+                let powers = Powers::of(Symbol::Speed(speed)).over(&Powers::of(Symbol::Coordinate(i)));
+                let needed = q.dimension.over(&second);
+                if needed == Some(u.dimension) {
+                    self.agreement(powers);
+                } else {
+                    let message = format!(
+                        "`d({})/dt = {}` is meant where nothing else is said, but their units do not fit",
+                        coordinate.name, rate.name
+                    );
+                    let error = Diagnostic::new(codes::DIMENSION, rate.span, message)
+                        .label(format!("this is in {}", rate.unit))
+                        .related(coordinate.span, format!("this is in {}", coordinate.unit))
+                        .help("state the kinematical equation, or correct a unit");
+                    let missing = needed.and_then(|needed| needed.over(&u.dimension));
+                    let says = format!("`d({})/dt = {}` is meant", coordinate.name, rate.name);
+                    self.contradiction(error, powers, missing, says);
+                    continue;
+                }
             }
             self.used.insert(Symbol::Coordinate(i));
             let sides = {

@@ -1,0 +1,260 @@
+//! Which declaration is wrong where dimensions contradict each other.
+//!
+//! A name that is declared in a wrong unit contradicts all of its uses. They are collected, and where another dimension of one name
+//! resolves several of them, and no use speaks for the one that is declared, the declaration is the mistake: it is reported once.
+
+use std::collections::{HashMap, HashSet};
+
+use super::super::dimension::{Dimension, Exponent};
+use super::super::names::Symbol;
+use super::super::powers::Powers;
+use super::Lowering;
+use super::dimensions::{Balances, Declared, in_words};
+use crate::diagnostics::{Diagnostic, Label, codes};
+
+/// So many declarations are looked for; nobody reads so many messages.
+const MOST_DECLARATIONS: usize = 100;
+/// So many times a contradiction is looked at, for the same reason.
+const MOST_LOOKS: usize = 200_000;
+/// So many uses of one are shown.
+const MOST_USES: usize = 5;
+/// So many uses must speak against a declaration for each that speaks for it.
+const MAJORITY: usize = 4;
+
+/// What speaks for one declaration makes another one trustworthy, and so on: so many steps are gone.
+const MOST_PASSES: usize = 8;
+
+/// A place where two dimensions must be the same and are not.
+pub(super) struct Contradiction {
+    /// which diagnostic says so
+    pub error: usize,
+    /// the names in the quotient of the two
+    pub powers: Powers,
+    /// the dimension that is missing in this quotient
+    pub missing: Dimension,
+    /// what is said of the place, seen from the declaration
+    pub says: String,
+}
+
+impl Contradiction {
+    /// The names for whose declarations nothing speaks.
+    fn doubtful<'c>(
+        &'c self,
+        evidence: &'c HashMap<Symbol, usize>,
+    ) -> impl Iterator<Item = &'c (Symbol, Exponent)> {
+        self.powers.names().iter().filter(|(symbol, _)| !evidence.contains_key(symbol))
+    }
+
+    /// The name whose declaration is wrong, if nothing speaks for it, but for all others in it.
+    fn plain(&self, evidence: &HashMap<Symbol, usize>) -> Option<(Symbol, Exponent)> {
+        let mut doubtful = self.doubtful(evidence);
+        doubtful.next().copied().filter(|_| doubtful.next().is_none())
+    }
+
+    /// Supposes that a name is declared in another dimension, by this factor.
+    fn suppose(&mut self, symbol: Symbol, change: Option<Dimension>) {
+        let change = change.and_then(|change| change.power(self.powers.of_name(symbol)));
+        self.missing = change.and_then(|change| self.missing.over(&change)).unwrap_or(self.missing);
+    }
+}
+
+/// A declaration that would resolve several contradictions if it were of another dimension.
+#[derive(Clone)]
+struct Culprit {
+    symbol: Symbol,
+    needed: Dimension,
+    /// contradictions that it would resolve, in order
+    resolved: Vec<usize>,
+    /// so many of them speak of no other name in doubt
+    certain: usize,
+    /// counts those most in which few other names are in doubt
+    weight: f64,
+}
+
+impl Culprit {
+    /// How odd such a declaration would be: of things that explain the same, the least odd one is meant.
+    fn oddity(&self) -> i32 {
+        let size: i32 = self.needed.exponents.iter().map(|e| e.numer().abs()).sum();
+        size + i32::from(matches!(self.symbol, Symbol::Definition(_)))
+    }
+}
+
+impl Lowering<'_> {
+    /// Puts the contradictions of one wrong declaration into one error, at the declaration.
+    pub(super) fn gather(&mut self) {
+        let Balances { contradictions: mut open, agreements, .. } = std::mem::take(&mut self.balances);
+        let evidence = evidence(&agreements);
+        self.show_doubtful(&open, &evidence);
+        let mut gone = vec![false; self.diagnostics.len()];
+        let mut found = Vec::new();
+        let mut settled = HashSet::new();
+        for _ in 0..MOST_DECLARATIONS.min(MOST_LOOKS / open.len().max(1)) {
+            if open.len() < 2 {
+                break;
+            }
+            let Some((culprit, others)) = self.culprit(&open, &evidence, &settled) else {
+                // what is wrong with one may be plain, and then others can be seen
+                let plain = |(i, at): (usize, &Contradiction)| {
+                    let (symbol, power) =
+                        at.plain(&evidence).filter(|(symbol, _)| !settled.contains(symbol))?;
+                    Some((i, symbol, at.missing.power(power.recip())))
+                };
+                let Some((i, symbol, change)) = open.iter().enumerate().find_map(plain) else { break };
+                open.remove(i);
+                open.iter_mut().for_each(|at| at.suppose(symbol, change));
+                settled.insert(symbol);
+                continue;
+            };
+            let Some(declared) = self.declared(culprit.symbol) else { break };
+            let mut error = self.wrong_declaration(&culprit, &declared, &others);
+            for (shown, i) in culprit.resolved.iter().enumerate() {
+                let at = &open[*i];
+                if let Some(gone) = gone.get_mut(at.error).filter(|gone| !**gone) {
+                    *gone = true;
+                    if shown < MOST_USES {
+                        error = error.related(self.diagnostics[at.error].primary.span, at.says.clone());
+                    }
+                }
+            }
+            // what is left is seen with the declaration as it should be
+            let change = culprit.needed.over(&declared.dimension);
+            open.iter_mut().for_each(|at| at.suppose(culprit.symbol, change));
+            open.retain(|at| !at.missing.is_none());
+            settled.insert(culprit.symbol);
+            found.push(error);
+        }
+        let mut at = 0;
+        self.diagnostics.retain(|_| {
+            at += 1;
+            !gone[at - 1]
+        });
+        self.diagnostics.extend(found);
+    }
+
+    /// Shows where names in contradictions are declared, if a few declarations may be wrong.
+    fn show_doubtful(&mut self, open: &[Contradiction], evidence: &HashMap<Symbol, usize>) {
+        for at in open {
+            let doubtful: Vec<Symbol> = at.doubtful(evidence).map(|(symbol, _)| *symbol).collect();
+            if doubtful.len() > 2 {
+                continue;
+            }
+            for symbol in doubtful {
+                let Some(declared) = self.declared(symbol) else { continue };
+                let (span, place) = (declared.name.span, declared.place);
+                let text = format!("`{}` is declared here", declared.name.text);
+                let error = &mut self.diagnostics[at.error];
+                let here = |label: &Label| label.span == span || label.span == place;
+                if !here(&error.primary) && !error.related.iter().any(here) {
+                    error.related.push(Label { span, text });
+                }
+            }
+        }
+    }
+
+    /// The declaration that most contradictions speak against, and others that would explain the same.
+    fn culprit(
+        &self,
+        open: &[Contradiction],
+        evidence: &HashMap<Symbol, usize>,
+        settled: &HashSet<Symbol>,
+    ) -> Option<(Culprit, Vec<Culprit>)> {
+        let mut suspects: HashMap<(Symbol, Dimension), Culprit> = HashMap::new();
+        // places where nothing else is in doubt say for certain what is needed
+        let mut certain: HashMap<Symbol, usize> = HashMap::new();
+        for (i, at) in open.iter().enumerate() {
+            let names = at.powers.names();
+            let doubtful = at.doubtful(evidence).count();
+            let plain = at.plain(evidence).map(|(symbol, _)| symbol);
+            for (symbol, power) in names.iter().filter(|(symbol, _)| !settled.contains(symbol)) {
+                let needed = self
+                    .declared(*symbol)
+                    .and_then(|declared| declared.dimension.times(&at.missing.power(power.recip())?));
+                // nobody declares roots of units
+                let Some(needed) = needed.filter(|d| d.exponents.iter().all(|e| e.is_integer())) else {
+                    continue;
+                };
+                let none =
+                    || Culprit { symbol: *symbol, needed, resolved: Vec::new(), certain: 0, weight: 0.0 };
+                let suspect = suspects.entry((*symbol, needed)).or_insert_with(none);
+                suspect.resolved.push(i);
+                suspect.weight += 1.0 / doubtful.max(1) as f64;
+                suspect.certain += usize::from(plain == Some(*symbol));
+            }
+            if let Some(symbol) = plain {
+                *certain.entry(symbol).or_default() += 1;
+            }
+        }
+        let mut suspects: Vec<Culprit> = suspects
+            .into_values()
+            .filter(|suspect| {
+                let for_it = evidence.get(&suspect.symbol).copied().unwrap_or(0);
+                let certain = certain.get(&suspect.symbol).copied().unwrap_or(0);
+                suspect.resolved.len() >= (MAJORITY * for_it).max(2)
+                    && suspect.weight > (certain - suspect.certain) as f64
+            })
+            .collect();
+        suspects.sort_by(|a, b| {
+            let order = b.weight.total_cmp(&a.weight).then(a.oddity().cmp(&b.oddity()));
+            order.then(a.symbol.cmp(&b.symbol)).then(a.needed.exponents.cmp(&b.needed.exponents))
+        });
+        let mut suspects = suspects.into_iter();
+        let first = suspects.next()?;
+        let others = suspects.filter(|other| other.resolved == first.resolved).take(2).collect();
+        Some((first, others))
+    }
+
+    fn wrong_declaration(&self, culprit: &Culprit, declared: &Declared, others: &[Culprit]) -> Diagnostic {
+        let needed = if culprit.needed.is_none() {
+            "a plain number or an angle".to_owned()
+        } else {
+            culprit.needed.to_string()
+        };
+        let name = &declared.name.text;
+        let is = match declared.unit {
+            Some("1") => "declared as a plain number".to_owned(),
+            Some(unit) => format!("declared in {unit}"),
+            None => in_words(declared.dimension),
+        };
+        let remedy = |culprit: &Culprit| {
+            let declared = self.declared(culprit.symbol)?;
+            let name = &declared.name.text;
+            let unit = match culprit.symbol {
+                Symbol::Coordinate(_) if culprit.needed.is_none() => "rad".to_owned(),
+                _ => culprit.needed.to_string(),
+            };
+            Some(match declared.unit {
+                Some(_) => format!("declare `{name}: {unit}`"),
+                None => format!("correct the value of `{name}`"),
+            })
+        };
+        let remedies: Vec<String> = std::iter::once(culprit).chain(others).filter_map(remedy).collect();
+        let message = format!("`{name}` is {is}, but its uses need {needed}");
+        let error = Diagnostic::new(codes::DIMENSION, declared.place, message);
+        let more = culprit.resolved.len().saturating_sub(MOST_USES);
+        let more = if more > 0 { format!("; {more} more uses say the same") } else { String::new() };
+        error.help(format!("{}{more}", remedies.join(", or ")))
+    }
+}
+
+/// How many uses speak for the declarations of names. A use speaks for a name if it holds no other, or others for which uses speak.
+fn evidence(agreements: &[Powers]) -> HashMap<Symbol, usize> {
+    let mut evidence: HashMap<Symbol, usize> = HashMap::new();
+    for _ in 0..MOST_PASSES {
+        let before = evidence.len();
+        let mut counts = HashMap::new();
+        for powers in agreements {
+            let names = powers.names().iter().map(|(symbol, _)| *symbol);
+            let mut unknown = names.clone().filter(|symbol| !evidence.contains_key(symbol));
+            match (unknown.next(), unknown.next()) {
+                (None, _) => names.for_each(|symbol| *counts.entry(symbol).or_default() += 1),
+                (Some(symbol), None) => *counts.entry(symbol).or_default() += 1,
+                _ => {}
+            }
+        }
+        evidence = counts;
+        if evidence.len() == before {
+            break;
+        }
+    }
+    evidence
+}

@@ -1,0 +1,81 @@
+//! Which declarations a dimension comes from: the powers in which declared names enter it.
+
+use num_traits::{CheckedAdd, CheckedMul, Zero};
+
+use super::dimension::Exponent;
+use super::names::Symbol;
+
+/// What depends on more names than this is not traced back to them.
+const MOST_NAMES: usize = 32;
+
+/// The powers in which names enter a product, in the order of names, none of them 0; `None` where there are too many.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Powers(Option<Vec<(Symbol, Exponent)>>);
+
+impl Default for Powers {
+    fn default() -> Self {
+        Powers::none()
+    }
+}
+
+impl Powers {
+    /// Of what holds no name.
+    pub fn none() -> Self {
+        Powers(Some(Vec::new()))
+    }
+
+    /// Of a name.
+    pub fn of(symbol: Symbol) -> Self {
+        Powers(Some(vec![(symbol, Exponent::from_integer(1))]))
+    }
+
+    /// Of a product.
+    pub fn times(&self, other: &Powers) -> Powers {
+        self.combine(other, Exponent::from_integer(1))
+    }
+
+    /// Of a quotient.
+    pub fn over(&self, other: &Powers) -> Powers {
+        self.combine(other, Exponent::from_integer(-1))
+    }
+
+    /// Of a power.
+    pub fn power(&self, exponent: Exponent) -> Powers {
+        Powers::none().combine(self, exponent)
+    }
+
+    fn combine(&self, other: &Powers, factor: Exponent) -> Powers {
+        let (Some(a), Some(b)) = (&self.0, &other.0) else { return Powers(None) };
+        let mut sum = a.clone();
+        for (symbol, exponent) in b {
+            let Some(exponent) = exponent.checked_mul(&factor) else { return Powers(None) };
+            match sum.binary_search_by_key(symbol, |(symbol, _)| *symbol) {
+                Ok(i) => match sum[i].1.checked_add(&exponent) {
+                    Some(total) => sum[i].1 = total,
+                    None => return Powers(None),
+                },
+                Err(i) => sum.insert(i, (*symbol, exponent)),
+            }
+        }
+        sum.retain(|(_, exponent)| !exponent.is_zero());
+        let bounded = |e: &Exponent| e.numer().abs() <= 1000 && *e.denom() <= 1000;
+        let moderate = sum.len() <= MOST_NAMES && sum.iter().all(|(_, e)| bounded(e));
+        Powers(moderate.then_some(sum))
+    }
+
+    /// Is no name in it?
+    pub fn is_empty(&self) -> bool {
+        self.0.as_ref().is_some_and(Vec::is_empty)
+    }
+
+    /// The names and their powers; nothing where there are too many.
+    pub fn names(&self) -> &[(Symbol, Exponent)] {
+        self.0.as_deref().unwrap_or_default()
+    }
+
+    /// The power of a name.
+    pub fn of_name(&self, symbol: Symbol) -> Exponent {
+        let names = self.names();
+        names.binary_search_by_key(&symbol, |(symbol, _)| *symbol).map_or(Exponent::zero(), |i| names[i].1)
+    }
+}
