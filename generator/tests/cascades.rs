@@ -153,3 +153,78 @@ fn places_of(text: &str, name: &str) -> Vec<std::ops::Range<usize>> {
     }
     places
 }
+
+/// Words, numbers and signs with their places, comments left out.
+fn tokens(text: &str) -> Vec<std::ops::Range<usize>> {
+    let mut tokens = Vec::new();
+    let mut at = 0;
+    while let Some(c) = text[at..].chars().next() {
+        let rest = &text[at..];
+        let word = |c: char| c.is_alphanumeric() || c == '_';
+        let length = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if c.is_ascii_digit() {
+            rest.find(|c| !word(c) && c != '.').unwrap_or(rest.len())
+        } else if word(c) {
+            rest.find(|c| !word(c)).unwrap_or(rest.len())
+        } else {
+            c.len_utf8()
+        };
+        if !c.is_whitespace() && !rest.starts_with("//") {
+            tokens.push(at..at + length);
+        }
+        at += length;
+    }
+    tokens
+}
+
+/// What a change makes of a word in a model; `None`: it does not apply.
+type Change = fn(&str) -> Option<String>;
+
+/// Changes one token here and there and counts the errors: `twos` are allowed to be two, none to be more.
+fn one_change(what: &str, twos: usize, change: Change) {
+    let (mut tried, mut two) = (0, Vec::new());
+    for (number, (name, text)) in models().into_iter().enumerate() {
+        for place in tokens(&text).into_iter().skip(number % STRIDE).step_by(STRIDE) {
+            let Some(by) = change(&text[place.clone()]) else { continue };
+            let mut changed = text.clone();
+            changed.replace_range(place.clone(), &by);
+            let (count, _, said) = errors(&name, &changed);
+            let line = 1 + text[..place.start].matches('\n').count();
+            assert!(count <= 2, "{what}, `{}` in line {line}:\n{said}", &text[place]);
+            tried += 1;
+            if count == 2 {
+                two.push(said);
+            }
+        }
+    }
+    assert!(tried > 500, "{what}: {tried}");
+    assert!(two.len() <= twos, "{what}: {} of {tried} with two errors:\n{}", two.len(), two.join("\n"));
+}
+
+/// One token of so many is changed: all of them take half a minute.
+const STRIDE: usize = 7;
+
+fn is_word(token: &str) -> bool {
+    token.starts_with(|c: char| c.is_alphabetic() || c == '_')
+}
+
+#[test]
+fn a_token_left_out_is_one_error() {
+    one_change("left out", 3, |_| Some(" ".to_owned()));
+}
+
+#[test]
+fn a_token_doubled_is_one_error() {
+    one_change("doubled", 1, |token| Some(format!("{token} {token}")));
+}
+
+#[test]
+fn a_word_misspelled_is_one_error() {
+    one_change("misspelled", 1, |token| is_word(token).then(|| format!("{token}zz")));
+}
+
+#[test]
+fn a_word_made_a_vector_is_one_error() {
+    one_change("a vector", 1, |token| is_word(token).then(|| format!("({token}*N.x)")));
+}

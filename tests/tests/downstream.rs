@@ -7,7 +7,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Output};
 
 fn package(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
@@ -59,25 +59,33 @@ fn a_users_crate_builds_and_collides() {
 /// standard output stays JSON.
 #[test]
 fn three_crates_with_models_build_at_once() {
-    let commands = [
-        &["build", "--workspace", "--message-format=json"][..],
-        &["check", "--workspace", "--message-format=json"],
-        &["check", "--workspace", "--tests", "--message-format=json"],
-    ];
-    let running: Vec<_> = commands
-        .iter()
-        .map(|arguments| {
-            let mut command = command("parallel", arguments);
-            command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("cargo starts")
-        })
-        .collect();
-    for (child, arguments) in running.into_iter().zip(commands) {
-        let output = child.wait_with_output().expect("cargo ends");
+    build_at_once("parallel", &[]);
+}
+
+/// The same with a model that the compiler derives.
+#[test]
+#[ignore = "builds the algebra engine for the compiler: some minutes"]
+fn three_crates_derive_at_once() {
+    build_at_once("parallel", &["--features", "robot/absent,robot/derive"]);
+}
+
+fn build_at_once(name: &str, features: &[&str]) {
+    let commands = [&["build"][..], &["check"], &["check", "--tests"]];
+    let run = |arguments: &[&str]| {
+        let mut command = command(name, arguments);
+        let output = command.args(["--workspace", "--message-format=json"]).args(features).output();
+        let output = output.expect("cargo runs");
         assert!(output.status.success(), "cargo {arguments:?}:\n{}", String::from_utf8_lossy(&output.stderr));
         for line in String::from_utf8_lossy(&output.stdout).lines() {
             assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "not JSON: {line}");
         }
-    }
+    };
+    // each is read by a thread: one that waits to be read holds the lock that the others wait for
+    std::thread::scope(|scope| {
+        for arguments in commands {
+            scope.spawn(move || run(arguments));
+        }
+    });
 }
 
 /// Comments of a model become documentation, whatever is drawn in them: none of it is taken for an example, and rustdoc has nothing

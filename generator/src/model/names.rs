@@ -1,6 +1,6 @@
 //! The names of a model: one space for all kinds.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::similar;
 use crate::diagnostics::{Diagnostic, Span, codes};
@@ -64,7 +64,12 @@ impl Names {
             names.symbols.insert(text.to_owned(), (symbol, None));
             names.order.push((text.to_owned(), symbol));
         }
-        let mut add = |name: &Name, symbol: Symbol| names.declare(name, symbol, diagnostics);
+        let doubtful: HashSet<Span> = tree.doubtful.iter().copied().collect();
+        let mut add = |name: &Name, symbol: Symbol| {
+            if !(doubtful.contains(&name.span) && names.symbols.contains_key(&name.text)) {
+                names.declare(name, symbol, diagnostics);
+            }
+        };
         let quantities = |list: &[crate::syntax::tree::Quantity]| -> Vec<Name> {
             list.iter().map(|quantity| quantity.name.clone()).collect()
         };

@@ -226,6 +226,10 @@ impl Parser<'_> {
         // pass over to behind the next braces, or to the next section
         if opens || matches!(kind, TokenKind::Open(_)) {
             self.skip_group();
+            // the entries belong to what could not be read
+            if matches!(kind, TokenKind::Open('(' | '[')) && self.is_open('{') {
+                self.skip_group();
+            }
             return;
         }
         while let Some(token) = self.peek() {

@@ -22,14 +22,25 @@ impl Parser<'_> {
                 self.report(Diagnostic::new(codes::EXPECTED, self.before(), message).help("remove it"));
                 continue;
             }
-            let result = match self.entry(section) {
-                Ok(()) if separator == ',' => self.comma(),
+            let read = self.entry(section);
+            let result = match read {
+                Ok(()) if separator == ',' => self.comma(false),
                 Ok(()) => self.semicolon(),
-                Err(lost) => Err(lost),
+                Err(_) => Err(Lost),
             };
+            if read.is_ok() && result.is_err() {
+                self.doubt_last(section);
+            }
             if result.is_err() {
                 self.skip_entry(separator, nesting);
-                self.broken(start, nesting);
+                let declares = !matches!(
+                    section,
+                    Section::Loads | Section::Kinematics | Section::Constraints | Section::Configuration
+                );
+                // whose declaration was lost is not known
+                if !self.broken(start, nesting) && declares {
+                    self.tree.incomplete = true;
+                }
             }
             if self.at == start {
                 self.at += 1;
@@ -37,12 +48,16 @@ impl Parser<'_> {
         }
     }
 
-    /// What could not be read still declares its names: the first, and whatever stands before a `:`, `=` or `{`.
-    fn broken(&mut self, start: usize, nesting: u32) {
+    /// What could not be read still declares its names: the first, and whatever stands before a `:`, `=` or `{`. Does it begin with one?
+    fn broken(&mut self, start: usize, nesting: u32) -> bool {
         let passed = start..self.at.min(self.tokens.len());
-        let mut first = true;
+        let (mut first, mut named) = (true, false);
         for i in passed {
             let token = self.tokens[i];
+            if token.kind == TokenKind::OuterDoc {
+                continue;
+            }
+            let begins = std::mem::replace(&mut first, false);
             if token.kind != TokenKind::Name || self.nesting[i] != nesting {
                 continue;
             }
@@ -50,11 +65,36 @@ impl Parser<'_> {
                 .tokens
                 .get(i + 1)
                 .is_some_and(|next| matches!(next.kind, TokenKind::Sign(':' | '=') | TokenKind::Open('{')));
-            let modifier = token.is_word("fixed") || token.is_word("dependent");
-            if declares || first && !modifier {
+            if begins && !declares && (token.is_word("fixed") || token.is_word("dependent")) {
+                first = true;
+                continue;
+            }
+            named |= begins && !token.is_word("of");
+            if begins || declares {
                 self.tree.broken.push(Name { text: token.text.clone(), span: token.span });
             }
-            first &= modifier;
+        }
+        named
+    }
+
+    /// The value that was read last goes on behind what was read of it: what it means is not known.
+    fn doubt_last(&mut self, section: Section) {
+        use Section::*;
+        let tree = &mut self.tree;
+        let value = match section {
+            Definitions => tree.definitions.last_mut().map(|entry| &mut entry.value),
+            Frames => tree.frames.last_mut().map(|entry| &mut entry.value),
+            AngularVelocities => tree.angular_velocities.last_mut().map(|entry| &mut entry.value),
+            Points => tree.points.last_mut().map(|entry| &mut entry.value),
+            Velocities => tree.velocities.last_mut().map(|entry| &mut entry.value),
+            Loads => tree.loads.last_mut().and_then(|entry| entry.value.as_mut()),
+            Kinematics => tree.kinematics.last_mut().map(|entry| &mut entry.right),
+            Constraints => tree.constraints.last_mut().map(|entry| &mut entry.right),
+            Configuration => tree.configuration.last_mut().map(|entry| &mut entry.right),
+            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => None,
+        };
+        if let Some(value) = value {
+            value.kind = ExprKind::Error;
         }
     }
 
@@ -68,12 +108,12 @@ impl Parser<'_> {
         }
     }
 
-    fn comma(&mut self) -> Result<(), Lost> {
+    fn comma(&mut self, of_fields: bool) -> Result<(), Lost> {
         self.trailing_docs();
         if self.is_close() || self.take_sign(',') {
             return Ok(());
         }
-        self.missing(',')
+        self.missing(',', of_fields)
     }
 
     pub(super) fn semicolon(&mut self) -> Result<(), Lost> {
@@ -81,11 +121,11 @@ impl Parser<'_> {
         if self.take_sign(';') {
             return Ok(());
         }
-        self.missing(';')
+        self.missing(';', false)
     }
 
     /// A separator is missing. If what follows can begin an entry, reading goes on there.
-    fn missing(&mut self, separator: char) -> Result<(), Lost> {
+    fn missing(&mut self, separator: char, of_fields: bool) -> Result<(), Lost> {
         let other = if separator == ',' { ';' } else { ',' };
         let found = self.found();
         if self.is_sign(other) {
@@ -106,7 +146,7 @@ impl Parser<'_> {
             Some(TokenKind::OuterDoc) => true,
             Some(TokenKind::Name) => self.peek_at(1).is_some_and(|next| {
                 let joins = matches!(next.kind, TokenKind::Sign('=' | ':') | TokenKind::Open('{'));
-                joins || next.is_word("of") || next.is_word("in")
+                joins || !of_fields && (next.is_word("of") || next.is_word("in"))
             }),
             _ => false,
         };
@@ -137,6 +177,14 @@ impl Parser<'_> {
         if word.kind != TokenKind::Name || name.kind != TokenKind::Name || !begins(sign.kind) || modifies {
             return;
         }
+        if word.is_word("of") {
+            let error = Diagnostic::new(codes::EXPECTED, word.span, "a name is missing before `of`");
+            self.report(error.help(format!("write `P of {} = ..` for a point P", name.text)));
+            self.tree.incomplete = true;
+            self.tree.doubtful.push(name.span);
+            self.at += 1;
+            return;
+        }
         let message = format!("`{}` cannot stand before `{}`", word.text, name.text);
         let help =
             if matches!(section, Parameters) && matches!(word.text.as_str(), "const" | "static" | "final") {
@@ -148,6 +196,8 @@ impl Parser<'_> {
                 "remove it: an entry begins with its name".to_owned()
             };
         self.report(Diagnostic::new(codes::EXPECTED, word.span, message).help(help));
+        self.tree.broken.push(Name { text: word.text.clone(), span: word.span });
+        self.tree.doubtful.push(name.span);
         self.at += 1;
     }
 
@@ -295,12 +345,32 @@ impl Parser<'_> {
             return Err(Lost);
         }
         self.at += 1;
-        let unit = self.expression()?;
+        let mut unit = self.expression()?;
+        self.operator_in_unit(&mut unit);
         let value = if self.take_sign('=') { Some(self.expression()?) } else { None };
         if value.is_some() {
             self.unit_of_value(&name, &unit)?;
         }
         Ok(Quantity { docs, modifier, name, unit, value })
+    }
+
+    /// `tau: N m = 1`: what follows is of the unit, unless it begins the next entry.
+    fn operator_in_unit(&mut self, unit: &mut Expr) {
+        let begins = |next: &super::token::Token| next.is_sign(':') || next.kind == TokenKind::Name;
+        let is_unit =
+            |token: &super::token::Token| token.kind == TokenKind::Name && units::is_symbol(&token.text);
+        let is_power = self.peek().is_some_and(|token| token.kind == TokenKind::Number)
+            && self.peek_at(1).is_some_and(|next| next.is_sign('='));
+        if !is_power && (!self.peek().is_some_and(is_unit) || self.peek_at(1).is_some_and(begins)) {
+            return;
+        }
+        let start = unit.span;
+        let Ok(rest) = self.expression() else { return };
+        let span = start.to(rest.span);
+        let error = Diagnostic::new(codes::EXPECTED, span, "an operator is missing in this unit")
+            .help("products of units are written `N*m`, quotients `m/s`, powers `m^2`");
+        self.report(error);
+        *unit = Expr { kind: ExprKind::Error, span };
     }
 
     /// `q: rad = 30 deg`: a value has no unit of its own.
@@ -336,17 +406,21 @@ impl Parser<'_> {
         while self.nesting() >= nesting && !self.is_close() {
             let start = self.at;
             let result = match self.field() {
-                Ok(field) => {
+                Ok(mut field) => {
+                    let result = self.comma(true);
+                    if result.is_err() {
+                        field.value.kind = ExprKind::Error;
+                    }
                     fields.push(field);
-                    self.comma()
+                    result
                 }
                 Err(lost) => {
-                    // a field that could not be read is not missing
+                    // a field that could not be read is not missing, whatever its name
                     self.at = start;
-                    if let Some(name) = self.take_name() {
-                        let value = Expr { kind: ExprKind::Error, span: name.span };
-                        fields.push(Field { name, value, notes: Vec::new() });
-                    }
+                    let span = self.here();
+                    let name = self.take_name().unwrap_or(Name { text: String::new(), span });
+                    let value = Expr { kind: ExprKind::Error, span: name.span };
+                    fields.push(Field { name, value, notes: Vec::new() });
                     Err(lost)
                 }
             };

@@ -128,6 +128,8 @@ pub struct Tree {
     pub contacts: Vec<Record>,
     /// names of entries that could not be read: what refers to them is no further mistake
     pub broken: Vec<Name>,
+    /// names behind a word that cannot stand there; the word may be the name that is meant
+    pub doubtful: Vec<Span>,
     /// whole parts could not be read: that something is missing is no further mistake
     pub incomplete: bool,
     /// where each section that is there is named

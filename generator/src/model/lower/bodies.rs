@@ -45,7 +45,8 @@ impl Lowering<'_> {
         let mut found: [Option<&Field>; N] = [None; N];
         // what is misspelled is not missing
         let mut meant = Vec::new();
-        for field in fields {
+        let unread = fields.iter().any(|field| field.name.text.is_empty());
+        for field in fields.iter().filter(|field| !field.name.text.is_empty()) {
             let Some(i) = known.iter().position(|name| *name == field.name.text) else {
                 let message = format!("{what} has no field `{}`", field.name.text);
                 let error = Diagnostic::new(codes::FIELD, field.name.span, message);
@@ -87,7 +88,7 @@ impl Lowering<'_> {
             .filter(|(name, field)| field.is_none() && needed.contains(name) && !meant.contains(*name))
             .map(|(name, _)| format!("`{name}`"))
             .collect();
-        if !missing.is_empty() {
+        if !missing.is_empty() && !unread {
             let code = if what.starts_with("a body") || what.starts_with("a particle") {
                 codes::BODY
             } else {

@@ -129,7 +129,17 @@ impl Lowering<'_> {
             return Typed::poison(span);
         }
         for argument in arguments {
-            self.expression(argument);
+            // the function that is meant may take it
+            let named = match &argument.kind {
+                ExprKind::Name(text) => self.names.get(text),
+                _ => None,
+            };
+            match named {
+                Some(symbol @ (Symbol::Point(_) | Symbol::Frame(_) | Symbol::Body(_))) => {
+                    self.used.insert(symbol);
+                }
+                _ => drop(self.expression(argument)),
+            }
         }
         let all = SCALAR_FUNCTIONS.iter().map(|(text, _)| *text).chain(OTHER_FUNCTIONS.iter().copied());
         let error = match self.names.get(&name.text) {
@@ -442,7 +452,9 @@ impl Lowering<'_> {
             self.demand(&typed, dimension, what);
             self.need_linear(&typed, what);
         }
-        (vector, typed.traits)
+        // that it is not linear is said here, or it makes no sense anyway
+        let traits = Traits { degree: typed.traits.degree.min(1), ..typed.traits };
+        (vector, traits)
     }
 
     /// Demands a scalar of a dimension.

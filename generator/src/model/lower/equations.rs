@@ -30,9 +30,10 @@ impl Lowering<'_> {
             }
             let left = self.expression(&equation.left);
             let right = self.expression(&equation.right);
-            let Some(sides) = self.sides(&left, &right, what) else { continue };
+            let Some((sides, fit)) = self.sides(&left, &right, what) else { continue };
             self.rate_forgotten(&left, &right, linear);
-            for side in [&left, &right] {
+            // one mistake at a time
+            for side in [&left, &right].into_iter().filter(|_| fit) {
                 if linear {
                     self.need_linear(side, what);
                 } else {
@@ -93,7 +94,8 @@ impl Lowering<'_> {
         }
     }
 
-    fn sides(&mut self, left: &Typed, right: &Typed, what: &str) -> Option<EquationSides> {
+    /// The two sides, and whether they are of one dimension.
+    fn sides(&mut self, left: &Typed, right: &Typed, what: &str) -> Option<(EquationSides, bool)> {
         if left.is_poison() || right.is_poison() {
             return None;
         }
@@ -114,7 +116,8 @@ impl Lowering<'_> {
                 return None;
             }
         };
-        self.same(left, right, |l, r| format!("{what} between {} and {}", quantity(l), quantity(r)));
-        Some(sides)
+        let fit =
+            self.same(left, right, |l, r| format!("{what} between {} and {}", quantity(l), quantity(r)));
+        Some((sides, fit))
     }
 }

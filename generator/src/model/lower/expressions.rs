@@ -170,7 +170,14 @@ impl Lowering<'_> {
             .try_fold(BigRational::zero(), |sum, term| Some(sum + &term.exact.as_ref()?.0))
             .and_then(|sum| moderate(Number(sum)));
         let poisoned = terms.iter().any(Typed::is_poison);
-        let mut vector: Option<(bool, Span)> = None;
+        // what most of them are
+        let kinds = |vector: bool| {
+            terms.iter().filter(move |t| !t.is_poison() && !t.is_zero() && t.is_vector() == vector)
+        };
+        let mut model =
+            [true, false].map(|vector| (vector, kinds(vector).count(), kinds(vector).next().map(|t| t.span)));
+        model.sort_by_key(|(_, count, place)| (std::cmp::Reverse(*count), *place));
+        let vector = model[0].2.map(|place| (model[0].0, place));
         let mut summands: Vec<&Typed> = Vec::new();
         let (mut scalars, mut vectors) = (Vec::new(), Vec::new());
         let mut wrong = poisoned;
@@ -203,7 +210,7 @@ impl Lowering<'_> {
                     wrong = true;
                     continue;
                 }
-                _ => vector = vector.or(Some((is_vector, term.span))),
+                _ => {}
             }
             summands.push(term);
         }
@@ -247,6 +254,13 @@ impl Lowering<'_> {
         let mut wrong = false;
         let mut divisor_span: Option<Span> = None;
         for (divides, factor) in factors {
+            // what is differentiated makes no sense
+            if *divides
+                && wrong
+                && matches!(&factor.kind, ExprKind::Name(text) if text == "dt" && self.names.get(text).is_none())
+            {
+                continue;
+            }
             let typed = self.expression(factor);
             let factor_traits = if *divides { typed.traits.bent() } else { typed.traits };
             let nonlinear_divisor = *divides && typed.traits.degree > 0;

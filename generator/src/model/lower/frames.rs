@@ -50,6 +50,8 @@ impl Lowering<'_> {
             // the same axes, or the same lack of them
             if self.need_axes(parent, base.span).is_some() {
                 self.frames[i].orientation = self.frames[parent.0].orientation;
+            } else if self.frames[parent.0].broken {
+                return None;
             } else {
                 self.frames[i].no_axes = true;
             }
@@ -274,7 +276,15 @@ impl Lowering<'_> {
         }
         let stated = self.stated.angular_velocities.get(source.name.text.as_str()).copied();
         let Some(stated) = stated else {
-            if let (Orientation::Quaternion(_), Some(_)) = (&self.out.frames[i].orientation, parent) {
+            // it may be stated under a name that could not be read, or that is misspelled
+            let unread = || {
+                self.tree.incomplete
+                    || self.tree.broken.iter().any(|name| name.text == source.name.text)
+                    || self.tree.angular_velocities.iter().any(|a| self.names.get(&a.frame.text).is_none())
+            };
+            if let (Orientation::Quaternion(_), Some(_)) = (&self.out.frames[i].orientation, parent)
+                && !unread()
+            {
                 let message = format!("the angular velocity of `{}` must be stated", source.name.text);
                 let error = Diagnostic::new(codes::QUATERNION, source.name.span, message).help(format!(
                     "the rates of a quaternion follow from it: add `angular_velocities {{ {0} = u1*{0}.x + u2*{0}.y + u3*{0}.z; }}`",

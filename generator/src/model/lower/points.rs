@@ -146,6 +146,10 @@ impl Lowering<'_> {
 
     /// The body of this name.
     pub(super) fn body_named(&mut self, name: &Name) -> Option<super::super::mechanism::BodyId> {
+        // that there is none at all is said already
+        if self.out.bodies.is_empty() && self.names.get(&name.text).is_none() {
+            return None;
+        }
         match self.resolve(name, |s| matches!(s, Symbol::Body(_)))? {
             Symbol::Body(b) => Some(super::super::mechanism::BodyId(b)),
             other => {

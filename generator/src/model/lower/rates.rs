@@ -88,15 +88,7 @@ impl Lowering<'_> {
                 _ => missing.push((i, speed)),
             }
         }
-        for (i, speed) in missing {
-            let (name, span) = (self.out.coordinates[i].name.clone(), self.out.coordinates[i].span);
-            let message = format!("the coordinate `{name}` has no kinematical equation");
-            let error = Diagnostic::new(codes::NO_RATE, span, message).help(match speed {
-                Some(speed) => format!("add `kinematics {{ d({name})/dt = ..; }}`, or a speed `{speed}`, to which its rate is then equal"),
-                None => format!("add `kinematics {{ d({name})/dt = ..; }}`"),
-            });
-            self.report(error);
-        }
+        self.without_rate(&missing);
         for (i, speed) in defaults {
             let second = Dimension::of(0, 0, 1);
             let units = (&self.coordinates[i].unit, &self.speeds[speed].unit);
@@ -134,6 +126,44 @@ impl Lowering<'_> {
             };
             self.out.kinematics.push(Equation { sides, span: coordinate.span });
         }
+    }
+}
+
+impl Lowering<'_> {
+    /// Coordinates of whose rates nothing is said, with the speeds to which they might be equal: mostly one statement is missing.
+    fn without_rate(&mut self, missing: &[(usize, Option<String>)]) {
+        let Some(((first, _), others)) = missing.split_first() else { return };
+        let coordinates: Vec<&Quantity> = missing.iter().map(|(i, _)| &self.out.coordinates[*i]).collect();
+        let shown = &coordinates[..coordinates.len().min(6)];
+        let names: Vec<String> = shown.iter().map(|q| format!("`{}`", q.name)).collect();
+        let message = match (&names[..], coordinates.len() - shown.len()) {
+            ([name], _) => format!("the coordinate {name} has no kinematical equation"),
+            ([names @ .., last], 0) => {
+                format!("the coordinates {} and {last} have no kinematical equations", names.join(", "))
+            }
+            (names, more) => {
+                format!("the coordinates {} and {more} more have no kinematical equations", names.join(", "))
+            }
+        };
+        let rates: Vec<String> = shown.iter().map(|q| format!("d({})/dt = ..;", q.name)).collect();
+        let kinematics = format!("add `kinematics {{ {} }}`", rates.join(" "));
+        let speeds: Option<Vec<String>> = missing.iter().map(|(_, speed)| speed.clone()).collect();
+        let help = match speeds.as_deref() {
+            Some([speed]) => format!("{kinematics}, or a speed `{speed}`, to which its rate is then equal"),
+            Some(speeds) if speeds.len() == shown.len() => {
+                format!(
+                    "{kinematics}, or speeds `{}`, to which the rates are then equal",
+                    speeds.join("`, `")
+                )
+            }
+            _ => kinematics,
+        };
+        let mut error =
+            Diagnostic::new(codes::NO_RATE, self.out.coordinates[*first].span, message).help(help);
+        for (i, _) in others.iter().take(5) {
+            error = error.related(self.out.coordinates[*i].span, "nor has this");
+        }
+        self.report(error);
     }
 }
 
