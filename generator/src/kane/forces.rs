@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::accelerations::Accelerations;
-use super::lumps::{Lump, Seat};
+use super::lumps::{Lump, Seat, gathered};
 use super::order::{self, Node};
 use crate::algebra::{Expr, Intermediates};
 use crate::kinematics::axes::{Symmetric, entry};
@@ -160,7 +160,7 @@ fn inertia_moment(
         let diagonal = if jj.is_zero() || ll.is_zero() {
             u[l][j].mul(jj).sub(&u[j][l].mul(ll))
         } else {
-            let (difference, sum) = (z.name(jj.sub(ll)), z.name(jj.add(ll)));
+            let (difference, sum) = (gathered(z, &jj.sub(ll)), gathered(z, &jj.add(ll)));
             let product = z.name(w[j].mul(&w[l]));
             product.mul(&difference).add(&alpha[i].mul(&sum))
         };

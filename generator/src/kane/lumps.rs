@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::algebra::Expr;
+use crate::algebra::{Expr, Intermediates};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{Symmetric, entry, unit};
 use crate::kinematics::linear::{self, Triple};
@@ -60,18 +60,37 @@ impl Lump {
     /// Inertia about the reference point: trace 1 - second.
     pub fn inertia(&self, k: &mut Kinematics<'_>) -> Symmetric {
         std::array::from_fn(|i| {
-            let value = if i < 3 {
-                self.second[(i + 1) % 3].add(&self.second[(i + 2) % 3])
+            if i < 3 {
+                let value = self.second[(i + 1) % 3].add(&self.second[(i + 2) % 3]);
+                gathered(&mut k.z, &value)
             } else {
-                self.second[i].neg()
-            };
-            k.z.name(value)
+                k.z.name(self.second[i].neg())
+            }
         })
     }
 }
 
+/// A sum or difference of second moments by its parameters: what the model states as moments of inertia stands there again, without
+/// the rounding errors of the way there and back.
+pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
+    const LARGEST: usize = 64;
+    let opened = z.opened(value, LARGEST);
+    let simple = z.simplify(&opened);
+    z.name(simple)
+}
+
+/// Where the mass of a body that turns on a joint is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Masses {
+    /// on the other side of the joint, as everything that lies on its axis: fewest parameters
+    Handed,
+    /// in the body itself. Articulated inertias want that: handed on, the masses of all that follows would stand in one number, from
+    /// which most is taken again where hinges give way, and what is left would have the rounding of the whole.
+    Kept,
+}
+
 /// All inertia of the mechanism.
-pub fn lumps(k: &mut Kinematics<'_>) -> BTreeMap<Seat, Lump> {
+pub fn lumps(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Seat, Lump> {
     let mut lumps: BTreeMap<Seat, Lump> = BTreeMap::new();
     for body in &k.mechanism.bodies {
         let mut lump = Lump::empty();
@@ -94,7 +113,7 @@ pub fn lumps(k: &mut Kinematics<'_>) -> BTreeMap<Seat, Lump> {
         let (reference, r) = rigid_way(k, frame, Some(body.centre));
         lumps.entry((frame, reference)).or_insert_with(Lump::empty).add_at(&lump, &r);
     }
-    regroup(k, &mut lumps);
+    regroup(k, &mut lumps, masses);
     for lump in lumps.values_mut() {
         lump.tidy(k);
     }
@@ -142,7 +161,7 @@ fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (
 }
 
 /// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
-fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>) {
+fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Masses) {
     let mut frames: Vec<FrameId> = lumps.keys().map(|seat| seat.0).filter(|&f| f != FrameId::N).collect();
     for frame in frames.clone() {
         frames.extend(k.ancestry(frame).into_iter().map(|frame| k.turning(frame)));
@@ -161,7 +180,9 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>) {
                 if base == FrameId::N { (seat.1, linear::zero()) } else { rigid_way(k, base, seat.1) };
             let Some(lump) = lumps.get_mut(&seat) else { continue };
             let mut rod = Lump::empty();
-            rod.mass = std::mem::replace(&mut lump.mass, Expr::zero());
+            if masses == Masses::Handed {
+                rod.mass = std::mem::replace(&mut lump.mass, Expr::zero());
+            }
             rod.moment[axis] = std::mem::replace(&mut lump.moment[axis], Expr::zero());
             rod.second[axis] = std::mem::replace(&mut lump.second[axis], Expr::zero());
             lump.tidy(k);

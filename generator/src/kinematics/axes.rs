@@ -160,6 +160,17 @@ impl AxesTree {
 /// A symmetric matrix: xx, yy, zz, xy, yz, zx.
 pub type Symmetric = [Expr; 6];
 
+/// Which of two numbers is much smaller than the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Smaller {
+    /// the first
+    First,
+    /// the second
+    Second,
+    /// neither
+    Neither,
+}
+
 /// Is the dyadic a multiple of the unit dyadic, the same along any axes?
 pub fn is_isotropic(m: &Symmetric) -> bool {
     m[0] == m[1] && m[1] == m[2] && m[3..].iter().all(Expr::is_zero)
@@ -180,6 +191,19 @@ impl AxesTree {
         from: AxesId,
         to: AxesId,
     ) -> Symmetric {
+        self.convert_graded(z, m, from, to, |_, _, _| Smaller::Neither)
+    }
+
+    /// As `convert_symmetric`, with an operation or three more per turn that keep the digits of small components beside large ones:
+    /// `smaller` tells which of two is.
+    pub fn convert_graded(
+        &self,
+        z: &mut Intermediates,
+        m: &Symmetric,
+        from: AxesId,
+        to: AxesId,
+        mut smaller: impl FnMut(&Intermediates, &Expr, &Expr) -> Smaller,
+    ) -> Symmetric {
         let mut m = m.clone();
         if is_isotropic(&m) {
             return m;
@@ -188,7 +212,7 @@ impl AxesTree {
         let mut at = from;
         while at != top {
             let Some((parent, turn)) = &self.axes[at].parent else { break };
-            m = up_symmetric(z, turn, &m, false);
+            m = up_symmetric(z, turn, &m, false, &mut smaller);
             at = *parent;
         }
         let mut way = Vec::new();
@@ -199,27 +223,42 @@ impl AxesTree {
             at = *parent;
         }
         for turn in way.into_iter().rev() {
-            m = up_symmetric(z, turn, &m, true);
+            m = up_symmetric(z, turn, &m, true, &mut smaller);
         }
         m
     }
 }
 
 /// A dyadic from turned axes to the parent's, or back.
-fn up_symmetric(z: &mut Intermediates, turn: &Turn, m: &Symmetric, back: bool) -> Symmetric {
+fn up_symmetric(
+    z: &mut Intermediates,
+    turn: &Turn,
+    m: &Symmetric,
+    back: bool,
+    smaller: &mut impl FnMut(&Intermediates, &Expr, &Expr) -> Smaller,
+) -> Symmetric {
     match turn {
         Turn::Simple { axis, sine, cosine, .. } => {
             let sine = if back { sine.neg() } else { sine.clone() };
             let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
             let (jj, kk, jk) = (&m[j], &m[k], &m[entry(j, k)]);
-            // With w = c (jj - kk) - 2 s jk: jj' = kk + c w, kk' = jj - c w, jk' = jk + s w.
+            // With w = c (jj - kk) - 2 s jk and v = s (jj - kk) + 2 c jk: jj' = kk + c w = jj - s v,
+            // kk' = jj - c w = kk + s v, jk' = jk + s w.
             let difference = z.name(jj.sub(kk));
-            let w = cosine.mul(&difference).sub(&sine.mul(jk).mul(&Expr::integer(2)));
-            let w = z.name(w);
+            let twice = jk.mul(&Expr::integer(2));
+            let w = z.name(cosine.mul(&difference).sub(&sine.mul(&twice)));
             let cw = z.name(cosine.mul(&w));
             let mut result = m.clone();
-            result[j] = z.name(kk.add(&cw));
-            result[k] = z.name(jj.sub(&cw));
+            let smaller = smaller(z, jj, kk);
+            // What is small starts from what is: near a multiple of a right angle the rest vanishes.
+            let sv = if smaller == Smaller::Neither {
+                Expr::zero()
+            } else {
+                let v = z.name(sine.mul(&difference).add(&cosine.mul(&twice)));
+                z.name(sine.mul(&v))
+            };
+            result[j] = z.name(if smaller == Smaller::First { jj.sub(&sv) } else { kk.add(&cw) });
+            result[k] = z.name(if smaller == Smaller::Second { kk.add(&sv) } else { jj.sub(&cw) });
             result[entry(j, k)] = z.name(jk.add(&sine.mul(&w)));
             let (ja, ka) = (&m[entry(j, *axis)], &m[entry(k, *axis)]);
             result[entry(j, *axis)] = z.name(cosine.mul(ja).sub(&sine.mul(ka)));

@@ -2,6 +2,12 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use hodograph_generator::model::mechanism::Function;
+use hodograph_generator::program::Program;
+use hodograph_generator::program::graph::Input;
+use hodograph_generator::program::operation::{Operation, Value};
+use hodograph_generator::program::routine::Quantity;
+
 /// `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Precise {
@@ -103,6 +109,56 @@ impl Precise {
             _ => (-cosine, sine),
         }
     }
+}
+
+/// The numbers of some quantities, one after the other, as a program finds them in these numbers; or the operation that is not known in
+/// them.
+pub fn evaluate(
+    program: &Program,
+    quantities: &[Quantity],
+    input: impl Fn(Input) -> Precise,
+) -> Result<Vec<Precise>, String> {
+    let slice = program.slice(quantities);
+    let zero = Precise::from(0.0);
+    let mut numbers = vec![(zero, zero); program.operations.len()];
+    for &value in &slice.order {
+        let at = |value: Value| numbers[value.index()].0;
+        use Operation::{
+            Add, Constant, Cosine, Div, Mul, MulAdd, MulSub, Neg, NegMulAdd, Recip, SinCos, Sine, Sub,
+        };
+        let number = match program.operation(value) {
+            Constant(bits) => Precise::from(bits.get()),
+            Operation::Input(from) => input(from),
+            Neg(a) => -at(a),
+            Add(a, b) => at(a) + at(b),
+            Sub(a, b) => at(a) - at(b),
+            Mul(a, b) => at(a) * at(b),
+            Div(a, b) => at(a) / at(b),
+            Recip(a) => Precise::from(1.0) / at(a),
+            MulAdd(a, b, c) => at(a) * at(b) + at(c),
+            MulSub(a, b, c) => at(a) * at(b) - at(c),
+            NegMulAdd(a, b, c) => at(c) - at(a) * at(b),
+            SinCos(a) => {
+                numbers[value.index()] = at(a).sin_cos();
+                continue;
+            }
+            Sine(a) => at(a),
+            Cosine(a) => numbers[a.index()].1,
+            Operation::Call(Function::Sin, a) => at(a).sin_cos().0,
+            Operation::Call(Function::Cos, a) => at(a).sin_cos().1,
+            Operation::Call(Function::Abs, a) => {
+                if at(a).high < 0.0 {
+                    -at(a)
+                } else {
+                    at(a)
+                }
+            }
+            other => return Err(format!("{other:?} is not known to twice the digits")),
+        };
+        numbers[value.index()].0 = number;
+    }
+    let values = slice.outputs.iter().flat_map(|output| &output.values);
+    Ok(values.map(|value| numbers[value.index()].0).collect())
 }
 
 #[cfg(test)]

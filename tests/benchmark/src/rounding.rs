@@ -7,19 +7,18 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use hodograph_generator::interpret::{Evaluator, Inputs};
+use hodograph_generator::model;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
-use hodograph_generator::program::operation::Operation;
 use hodograph_generator::program::routine::{ContactQuantity, Quantity};
 use hodograph_generator::source::Source;
-use hodograph_generator::{model, model::mechanism::Function};
 use serde_json::{Value, json};
 
 use crate::cases::{Case, Origin};
 use crate::derive::Derivation;
 use crate::harness::{Built, ROUTINES};
-use crate::precise::Precise;
+use crate::precise::{Precise, evaluate};
 use crate::python;
 use crate::tools::{Failure, Folders, output};
 
@@ -125,51 +124,15 @@ fn exact(
     // Inverse dynamics tells what inputs are needed on top of those that act.
     let inputs =
         if routine == "ID" { vec![Precise::from(0.0); state.inputs.len()] } else { precise(&state.inputs) };
-    let slice = program.slice(&quantities(routine));
-    let zero = Precise::from(0.0);
-    let mut numbers = vec![(zero, zero); program.operations.len()];
-    for &value in &slice.order {
-        let at = |value: hodograph_generator::program::operation::Value| numbers[value.index()].0;
-        use Operation::{
-            Add, Constant, Cosine, Div, Mul, MulAdd, MulSub, Neg, NegMulAdd, Recip, SinCos, Sine, Sub,
-        };
-        let number = match program.operation(value) {
-            Constant(bits) => Precise::from(bits.get()),
-            Operation::Input(Input::Parameter(index)) => of(&parameters, index),
-            Operation::Input(Input::Coordinate(index)) => of(&coordinates, index),
-            Operation::Input(Input::Speed(index)) => of(&speeds, index),
-            Operation::Input(Input::Acceleration(index)) => of(&accelerations, index),
-            Operation::Input(Input::Input(index)) => of(&inputs, index),
-            Neg(a) => -at(a),
-            Add(a, b) => at(a) + at(b),
-            Sub(a, b) => at(a) - at(b),
-            Mul(a, b) => at(a) * at(b),
-            Div(a, b) => at(a) / at(b),
-            Recip(a) => Precise::from(1.0) / at(a),
-            MulAdd(a, b, c) => at(a) * at(b) + at(c),
-            MulSub(a, b, c) => at(a) * at(b) - at(c),
-            NegMulAdd(a, b, c) => at(c) - at(a) * at(b),
-            SinCos(a) => {
-                numbers[value.index()] = at(a).sin_cos();
-                continue;
-            }
-            Sine(a) => at(a),
-            Cosine(a) => numbers[a.index()].1,
-            Operation::Call(Function::Sin, a) => at(a).sin_cos().0,
-            Operation::Call(Function::Cos, a) => at(a).sin_cos().1,
-            Operation::Call(Function::Abs, a) => {
-                if at(a).high < 0.0 {
-                    -at(a)
-                } else {
-                    at(a)
-                }
-            }
-            other => return Err(Failure::new(format!("{other:?} is not known to twice the digits"))),
-        };
-        numbers[value.index()].0 = number;
-    }
-    let values = slice.outputs.iter().flat_map(|output| &output.values);
-    Ok(values.map(|value| numbers[value.index()].0).collect())
+    let input = |from| match from {
+        Input::Parameter(index) => of(&parameters, index),
+        Input::Coordinate(index) => of(&coordinates, index),
+        Input::Speed(index) => of(&speeds, index),
+        Input::Acceleration(index) => of(&accelerations, index),
+        Input::Input(index) => of(&inputs, index),
+        _ => Precise::from(f64::NAN),
+    };
+    evaluate(program, &quantities(routine), input).map_err(Failure::new)
 }
 
 /// The model of a derivation.

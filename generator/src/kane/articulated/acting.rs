@@ -21,31 +21,44 @@ pub struct Acting {
 }
 
 impl Acting {
+    /// Leaves a torque's work on the `u'` of its frame's relation.
+    pub fn split_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
+        let Some(torque) = self.torque.get_mut(&frame) else { return };
+        *torque = linear::name(&mut k.z, torque.clone());
+        for (slot, a) in &k.frames[frame.0].relative.terms {
+            sum_scalar(&mut self.loads, *slot, &linear::dot(a, torque));
+        }
+    }
+
     /// Passes a torque to the base of its frame.
     pub fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
         let Some(torque) = self.torque.remove(&frame) else { return };
-        let motion = k.frames[frame.0].clone();
-        let base = k.turning(motion.base);
-        let torque = linear::name(&mut k.z, torque);
-        for (slot, a) in &motion.relative.terms {
-            sum_scalar(&mut self.loads, *slot, &linear::dot(a, &torque));
-        }
+        let motion = &k.frames[frame.0];
+        let (home, base) = (motion.home, k.turning(motion.base));
         if base != FrameId::N {
-            let turned = k.tree.convert(&mut k.z, &torque, motion.home, k.frames[base.0].home);
+            let torque = linear::name(&mut k.z, torque);
+            let turned = k.tree.convert(&mut k.z, &torque, home, k.frames[base.0].home);
             sum_triple(&mut self.torque, base, &turned);
         }
+    }
+
+    /// Leaves a force's work on the `u'` of its point's relation; `None` if more than one frame carries the point.
+    pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
+        let Some(force) = self.force.get_mut(&point) else { return Some(()) };
+        *force = linear::name(&mut k.z, force.clone());
+        for (slot, b) in PointRelation::of(k, point)?.partials {
+            sum_scalar(&mut self.loads, slot, &linear::dot(&b, force));
+        }
+        Some(())
     }
 
     /// Passes a force to the base of its point; `None` if more than one frame carries the point.
     pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let Some(force) = self.force.remove(&point) else { return Some(()) };
-        let PointRelation { home, base, arm, partials } = PointRelation::of(k, point)?;
+        let PointRelation { home, base, arm, .. } = PointRelation::of(k, point)?;
         let force = linear::name(&mut k.z, force);
         if let Some((frame, arm)) = &arm {
             sum_triple(&mut self.torque, *frame, &times(&transposed(arm), &force));
-        }
-        for (slot, b) in &partials {
-            sum_scalar(&mut self.loads, *slot, &linear::dot(b, &force));
         }
         if let Some((base, to)) = base {
             let turned = k.tree.convert(&mut k.z, &force, home, to);
@@ -59,12 +72,19 @@ impl Acting {
         if load.is_zero() {
             return;
         }
-        let share = k.z.name(load.mul(&step.reciprocal.neg()));
+        let minus = step.reciprocal.neg();
+        let named = k.z.name(load.clone());
+        let share = k.z.name(named.mul(&minus));
+        // What a hinge bears about its axis goes no further, but what drives it.
+        let part = |c: &Expr| {
+            let ratio = c.mul(&minus);
+            if ratio.is_number() { load.mul(&ratio) } else { share.mul(c) }
+        };
         if let Some((point, p)) = &step.momentum {
-            sum_triple(&mut self.force, *point, &linear::scale(&share, p));
+            sum_triple(&mut self.force, *point, &[part(&p[0]), part(&p[1]), part(&p[2])]);
         }
         if let Some((frame, h)) = &step.angular {
-            sum_triple(&mut self.torque, *frame, &linear::scale(&share, h));
+            sum_triple(&mut self.torque, *frame, &[part(&h[0]), part(&h[1]), part(&h[2])]);
         }
         for (other, m) in &step.others {
             sum_scalar(&mut self.loads, *other, &share.mul(m));

@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 
 use super::super::lumps::{Lump, Seat};
 use super::super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple};
-use super::Eliminated;
 use super::acting::Acting;
 use super::relation::{Matrix, PointRelation, arm_matrix, column, times, transposed, turn_rows};
+use super::{Eliminated, Node};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
-use crate::kinematics::axes::{Symmetric, entry};
+use crate::kinematics::axes::{AxesId, Smaller, Symmetric, entry, is_isotropic};
 use crate::kinematics::linear::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
@@ -24,6 +24,9 @@ pub struct Form {
     angular: BTreeMap<(FrameId, usize), Triple>,
     matrix: BTreeMap<(usize, usize), Expr>,
 }
+
+/// A component is much smaller than another that is so many times as large.
+const MUCH: f64 = 4.0;
 
 /// What stood beside the angular acceleration of a frame when it was inserted.
 pub struct OfFrame {
@@ -75,9 +78,39 @@ fn full(m: &Symmetric) -> Matrix {
     std::array::from_fn(|i| std::array::from_fn(|j| m[entry(i, j)].clone()))
 }
 
-/// `v v' k`, its upper half.
-fn square(v: &Triple, factor: &Triple) -> Symmetric {
-    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| v[i].mul(&factor[j]))
+/// `a b' f` from both scaled by f. Where one of those is a number what it is a factor of cancels exactly.
+fn scaled_product(a: &Expr, b: &Expr, scaled_a: &Expr, scaled_b: &Expr) -> Expr {
+    if scaled_b.is_number() { a.mul(scaled_b) } else { scaled_a.mul(b) }
+}
+
+/// `v v' f`, its upper half.
+fn square(v: &Triple, scaled: &Triple) -> Symmetric {
+    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]
+        .map(|(i, j)| scaled_product(&v[i], &v[j], &scaled[i], &scaled[j]))
+}
+
+/// Names what stands in a map.
+fn name_entry<K: Ord + Copy>(k: &mut Kinematics<'_>, map: &mut BTreeMap<K, Triple>, key: K) -> Triple {
+    let named = linear::name(&mut k.z, map.remove(&key).unwrap_or_else(linear::zero));
+    map.insert(key, named.clone());
+    named
+}
+
+/// The same dyadic along other axes. What hinges leave of an inertia can be small in one direction and large in another, and the small
+/// part is what matters further in: it keeps its digits.
+fn graded(k: &mut Kinematics<'_>, m: &Symmetric, from: AxesId, to: AxesId) -> Symmetric {
+    let Kinematics { tree, z, samples, .. } = k;
+    tree.convert_graded(z, m, from, to, |z, a, b| {
+        let mut size = |c: &Expr| samples.iter_mut().filter_map(|s| s.value(z, c)).map(f64::abs).sum::<f64>();
+        let (a, b) = (size(a), size(b));
+        if MUCH * a < b {
+            Smaller::First
+        } else if MUCH * b < a {
+            Smaller::Second
+        } else {
+            Smaller::Neither
+        }
+    })
 }
 
 fn name_matrix(k: &mut Kinematics<'_>, m: Matrix) -> Matrix {
@@ -114,19 +147,43 @@ impl Form {
         }
     }
 
-    /// Inserts `dalpha = dalpha_base + sum a u'`.
-    pub fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> OfFrame {
-        let mut stood = OfFrame { inertia: None, moments: Vec::new(), angular: Vec::new() };
-        let motion = k.frames[frame.0].clone();
-        let base = k.turning(motion.base);
-        let (home, base_home) = (motion.home, k.frames[base.0].home);
-        let partials: Vec<(usize, Triple)> = motion.relative.terms.into_iter().collect();
+    /// Takes the `u'` out of a frame's relation, `dalpha = carried + sum a u'`: from now on `carried` is what the frame stands for.
+    pub fn split_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
+        let partials: Vec<_> = k.frames[frame.0].relative.terms.clone().into_iter().collect();
+        for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
+            let h = name_entry(k, &mut self.angular, (frame, slot));
+            for (other, a) in &partials {
+                self.add_product(*other, slot, &linear::dot(a, &h));
+            }
+        }
+        if let Some(inertia) = self.inertia.get(&frame).cloned() {
+            let inertia = inertia.map(|c| k.z.name(c));
+            for (i, (slot, a)) in partials.iter().enumerate() {
+                let h = linear::name(&mut k.z, times(&full(&inertia), a));
+                self.add_products(&partials[..=i], &h);
+                sum_triple(&mut self.angular, (frame, *slot), &h);
+            }
+            self.inertia.insert(frame, inertia);
+        }
         for point in self.moment.keys().filter(|key| key.1 == frame).map(|key| key.0).collect::<Vec<_>>() {
             let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
             let moment = name_matrix(k, moment);
             for (slot, a) in &partials {
                 sum_triple(&mut self.momentum, (point, *slot), &times(&moment, a));
             }
+            self.moment.insert((point, frame), moment);
+        }
+    }
+
+    /// Inserts `carried = dalpha_base` for a frame that has been split.
+    pub fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> OfFrame {
+        let mut stood = OfFrame { inertia: None, moments: Vec::new(), angular: Vec::new() };
+        let motion = k.frames[frame.0].clone();
+        let base = k.turning(motion.base);
+        let (home, base_home) = (motion.home, k.frames[base.0].home);
+        for point in self.moment.keys().filter(|key| key.1 == frame).map(|key| key.0).collect::<Vec<_>>() {
+            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+            let moment = name_matrix(k, moment);
             if base != FrameId::N {
                 // columns along the base's axes
                 let turned = transposed(&turn_rows(k, &transposed(&moment), home, base_home));
@@ -136,33 +193,15 @@ impl Form {
         }
         if let Some(inertia) = self.inertia.remove(&frame) {
             let inertia = inertia.map(|c| k.z.name(c));
-            for (i, (slot, a)) in partials.iter().enumerate() {
-                let h = linear::name(&mut k.z, times(&full(&inertia), a));
-                if base != FrameId::N {
-                    let turned = k.tree.convert(&mut k.z, &h, home, base_home);
-                    sum_triple(&mut self.angular, (base, *slot), &turned);
-                }
-                for (other, b) in &partials[..=i] {
-                    let value = linear::dot(b, &h);
-                    if other == slot {
-                        sum_scalar(&mut self.matrix, (*slot, *slot), &value);
-                    } else {
-                        self.add_product(*other, *slot, &value);
-                    }
-                }
-            }
             if base != FrameId::N {
-                let turned = k.tree.convert_symmetric(&mut k.z, &inertia, home, base_home);
+                let turned = graded(k, &inertia, home, base_home);
                 sum_symmetric(&mut self.inertia, base, &turned);
             }
             stood.inertia = Some(inertia);
         }
         for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(h) = self.angular.remove(&(frame, slot)) else { continue };
-            let h = linear::name(&mut k.z, h);
-            for (other, a) in &partials {
-                self.add_product(*other, slot, &linear::dot(a, &h));
-            }
+            let h = name_entry(k, &mut self.angular, (frame, slot));
+            self.angular.remove(&(frame, slot));
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &h, home, base_home);
                 sum_triple(&mut self.angular, (base, slot), &turned);
@@ -172,20 +211,44 @@ impl Form {
         stood
     }
 
-    /// Inserts `da = da_base + sum dalpha x r + sum b u'`; `None` if more than one frame carries the point.
+    /// Takes the `u'` out of a point's relation, `da = carried + sum b u'`: from now on `carried` is what the point stands for.
+    pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
+        let partials: Vec<_> = PointRelation::of(k, point)?.partials.into_iter().collect();
+        for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
+            let p = name_entry(k, &mut self.momentum, (point, slot));
+            for (other, b) in &partials {
+                self.add_product(*other, slot, &linear::dot(b, &p));
+            }
+        }
+        if let Some(mass) = self.mass.get(&point).cloned() {
+            let mass = mass.map(|c| k.z.name(c));
+            for (i, (slot, b)) in partials.iter().enumerate() {
+                let p = linear::name(&mut k.z, times(&full(&mass), b));
+                self.add_products(&partials[..=i], &p);
+                sum_triple(&mut self.momentum, (point, *slot), &p);
+            }
+            self.mass.insert(point, mass);
+        }
+        for frame in self.moment.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
+            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+            let moment = name_matrix(k, moment);
+            for (slot, b) in &partials {
+                sum_triple(&mut self.angular, (frame, *slot), &times(&transposed(&moment), b));
+            }
+            self.moment.insert((point, frame), moment);
+        }
+        Some(())
+    }
+
+    /// Inserts `carried = da_base + sum dalpha x r` for a point that has been split; `None` if more than one frame carries it.
     pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<OfPoint> {
         let mut stood = OfPoint { mass: None, moments: Vec::new(), momenta: Vec::new() };
-        let PointRelation { home, base, arm, partials } = PointRelation::of(k, point)?;
+        let PointRelation { home, base, arm, .. } = PointRelation::of(k, point)?;
         if let Some(mass) = self.mass.remove(&point) {
             let mass = mass.map(|c| k.z.name(c));
             let rows = full(&mass);
             if let Some((base, to)) = base {
-                let turned =
-                    if mass[0] == mass[1] && mass[1] == mass[2] && mass[3..].iter().all(Expr::is_zero) {
-                        mass.clone()
-                    } else {
-                        k.tree.convert_symmetric(&mut k.z, &mass, home, to)
-                    };
+                let turned = graded(k, &mass, home, to);
                 sum_symmetric(&mut self.mass, base, &turned);
             }
             if let Some((frame, arm)) = &arm {
@@ -197,24 +260,6 @@ impl Form {
                 if let Some((base, to)) = base {
                     let turned = turn_rows(k, &product, home, to);
                     sum_matrix(&mut self.moment, (base, *frame), &turned);
-                }
-                for (slot, b) in &partials {
-                    sum_triple(&mut self.angular, (*frame, *slot), &times(&transposed(&product), b));
-                }
-            }
-            for (slot, b) in &partials {
-                let p = linear::name(&mut k.z, times(&rows, b));
-                if let Some((base, to)) = base {
-                    let turned = k.tree.convert(&mut k.z, &p, home, to);
-                    sum_triple(&mut self.momentum, (base, *slot), &turned);
-                }
-                for (other, c) in partials.range(..=slot) {
-                    let value = linear::dot(c, &p);
-                    if other == slot {
-                        sum_scalar(&mut self.matrix, (*slot, *slot), &value);
-                    } else {
-                        self.add_product(*other, *slot, &value);
-                    }
                 }
             }
             stood.mass = Some(mass);
@@ -232,9 +277,6 @@ impl Form {
                     .map(|(i, j)| product[i][j].add(&product[j][i]));
                 sum_symmetric(&mut self.inertia, frame, &own);
             }
-            for (slot, b) in &partials {
-                sum_triple(&mut self.angular, (frame, *slot), &times(&transposed(&moment), b));
-            }
             if let Some((base, to)) = base {
                 let turned = turn_rows(k, &moment, home, to);
                 sum_matrix(&mut self.moment, (base, frame), &turned);
@@ -242,13 +284,10 @@ impl Form {
             stood.moments.push((frame, moment));
         }
         for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(p) = self.momentum.remove(&(point, slot)) else { continue };
-            let p = linear::name(&mut k.z, p);
+            let p = name_entry(k, &mut self.momentum, (point, slot));
+            self.momentum.remove(&(point, slot));
             if let Some((frame, arm)) = &arm {
                 sum_triple(&mut self.angular, (*frame, slot), &times(&transposed(arm), &p));
-            }
-            for (other, b) in &partials {
-                self.add_product(*other, slot, &linear::dot(b, &p));
             }
             if let Some((base, to)) = base {
                 let turned = k.tree.convert(&mut k.z, &p, home, to);
@@ -259,12 +298,35 @@ impl Form {
         Some(stood)
     }
 
+    /// Adds `u_slot` times the products of its momentum with the partial velocities of slots up to its own, which stands last.
+    fn add_products(&mut self, partials: &[(usize, Triple)], momentum: &Triple) {
+        let Some((slot, _)) = partials.last() else { return };
+        for (other, b) in partials {
+            let value = linear::dot(b, momentum);
+            if other == slot {
+                sum_scalar(&mut self.matrix, (*slot, *slot), &value);
+            } else {
+                self.add_product(*other, *slot, &value);
+            }
+        }
+    }
+
+    /// The point about which everything that a `u'` moves is one rigid body in space, if it is: that is cheaper to carry on than what an
+    /// elimination leaves of it. In a plane it is not.
+    pub fn rigid_about(&self, slot: usize) -> Option<PointId> {
+        let in_space = |h: &Triple| h.iter().filter(|c| !c.is_zero()).count() > 1;
+        let in_space = self.angular.iter().any(|(key, h)| key.1 == slot && in_space(h));
+        let point = self.momentum.keys().find(|key| key.1 == slot)?.0;
+        (in_space && self.mass.get(&point).is_some_and(is_isotropic)).then_some(point)
+    }
+
     /// Makes the form least over one `u'`.
-    pub fn eliminate(&mut self, k: &mut Kinematics<'_>, slot: usize) -> Option<Eliminated> {
+    pub fn eliminate(&mut self, k: &mut Kinematics<'_>, slot: usize, split: Node) -> Option<Eliminated> {
         let pivot = self.matrix.remove(&(slot, slot)).filter(|pivot| !pivot.is_zero())?;
         let pivot = k.z.simplify(&pivot);
         let pivot = k.z.name(pivot);
-        let reciprocal = k.z.name(pivot.pow(-1));
+        // Without a name of its own: what the pivot is a factor of cancels.
+        let reciprocal = pivot.pow(-1);
         let momentum = taken(&mut self.momentum, slot, k)?;
         let angular = taken(&mut self.angular, slot, k)?;
         let keys: Vec<(usize, usize)> =
@@ -275,11 +337,14 @@ impl Form {
             others.push((if key.0 == slot { key.1 } else { key.0 }, k.z.name(value)));
         }
         let minus = reciprocal.neg();
+        let scale = |k: &mut Kinematics<'_>, v: &Triple| linear::name(&mut k.z, linear::scale(&minus, v));
         if let Some((point, p)) = &momentum {
-            let scaled = linear::name(&mut k.z, linear::scale(&minus, p));
+            let scaled = scale(k, p);
             sum_symmetric(&mut self.mass, *point, &square(p, &scaled));
             if let Some((frame, h)) = &angular {
-                let product: Matrix = std::array::from_fn(|i| linear::scale(&scaled[i], h));
+                let scaled_h = scale(k, h);
+                let entry = |i: usize, j: usize| scaled_product(&p[i], &h[j], &scaled[i], &scaled_h[j]);
+                let product: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
                 sum_matrix(&mut self.moment, (*point, *frame), &product);
             }
             for (other, m) in &others {
@@ -287,7 +352,7 @@ impl Form {
             }
         }
         if let Some((frame, h)) = &angular {
-            let scaled = linear::name(&mut k.z, linear::scale(&minus, h));
+            let scaled = scale(k, h);
             sum_symmetric(&mut self.inertia, *frame, &square(h, &scaled));
             for (other, m) in &others {
                 sum_triple(&mut self.angular, (*frame, *other), &linear::scale(m, &scaled));
@@ -300,7 +365,7 @@ impl Form {
                 sum_scalar(&mut self.matrix, (*r.min(s), *r.max(s)), &value);
             }
         }
-        Some(Eliminated { slot, reciprocal, momentum, angular, others })
+        Some(Eliminated { slot, reciprocal, momentum, angular, others, split })
     }
 }
 
