@@ -50,6 +50,8 @@ impl Symbol {
 /// All names of a model.
 pub struct Names {
     symbols: HashMap<String, (Symbol, Option<Span>)>,
+    /// declared twice: it is not known what they mean
+    ambiguous: HashSet<String>,
     /// in the order of declaration, so that suggestions do not depend on hashing
     order: Vec<(String, Symbol)>,
 }
@@ -57,7 +59,7 @@ pub struct Names {
 impl Names {
     /// Collects the declarations of a model; reports names that cannot be declared.
     pub fn collect(tree: &Tree, diagnostics: &mut Vec<Diagnostic>) -> Names {
-        let mut names = Names { symbols: HashMap::new(), order: Vec::new() };
+        let mut names = Names { symbols: HashMap::new(), ambiguous: HashSet::new(), order: Vec::new() };
         for (text, symbol) in
             [("N", Symbol::Frame(0)), ("O", Symbol::Point(0)), ("time", Symbol::Time), ("pi", Symbol::Pi)]
         {
@@ -116,15 +118,18 @@ impl Names {
                 self.symbols.insert(name.text.clone(), (symbol, Some(name.span)));
                 self.order.push((name.text.clone(), symbol));
             }
-            Some((first, Some(place))) => diagnostics.push(
-                Diagnostic::new(
-                    codes::DUPLICATE_NAME,
-                    name.span,
-                    format!("the name `{}` is declared twice", name.text),
-                )
-                .related(*place, format!("first declared here, as {}", first.kind()))
-                .help("all names of a model live in one space: choose another name"),
-            ),
+            Some((first, Some(place))) => {
+                self.ambiguous.insert(name.text.clone());
+                diagnostics.push(
+                    Diagnostic::new(
+                        codes::DUPLICATE_NAME,
+                        name.span,
+                        format!("the name `{}` is declared twice", name.text),
+                    )
+                    .related(*place, format!("first declared here, as {}", first.kind()))
+                    .help("all names of a model live in one space: choose another name"),
+                );
+            }
             Some((first, None)) => diagnostics.push(
                 Diagnostic::new(
                     codes::RESERVED_NAME,
@@ -134,6 +139,11 @@ impl Names {
                 .help("choose another name"),
             ),
         }
+    }
+
+    /// Is it declared twice?
+    pub fn is_ambiguous(&self, name: &str) -> bool {
+        self.ambiguous.contains(name)
     }
 
     /// Routines of the generated code are named after these, in snake case.

@@ -136,6 +136,22 @@ impl Parser<'_> {
             )
             .help("declarations are separated by commas, statements end with semicolons");
             self.report(error);
+            // `N,x` for `N.x`: what follows is no entry
+            let goes_on = |next: &&super::token::Token| match next.kind {
+                TokenKind::Sign(sign) => !matches!(sign, ':' | '='),
+                kind => matches!(kind, TokenKind::Open('(') | TokenKind::Close(_)),
+            };
+            let operand = self.peek_at(1).is_some_and(|token| token.kind == TokenKind::Name);
+            if operand && self.peek_at(2).as_ref().is_some_and(goes_on) {
+                let before = self.at.checked_sub(1).and_then(|i| self.tokens.get(i));
+                if let (Some(frame), Some(axis)) = (before, self.peek_at(1))
+                    && frame.kind == TokenKind::Name
+                    && ["x", "y", "z"].contains(&axis.text.as_str())
+                {
+                    self.advise(format!("did you mean `{}.{}`?", frame.text, axis.text));
+                }
+                return Err(Lost);
+            }
             self.at += 1;
             return Ok(());
         }

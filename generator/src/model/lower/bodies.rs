@@ -45,8 +45,12 @@ impl Lowering<'_> {
         let mut found: [Option<&Field>; N] = [None; N];
         // what is misspelled is not missing
         let mut meant = Vec::new();
-        let unread = fields.iter().any(|field| field.name.text.is_empty());
-        for field in fields.iter().filter(|field| !field.name.text.is_empty()) {
+        // what could not be read is said already, and may be what is missing
+        let unread = |field: &&Field| {
+            matches!(field.value.kind, ExprKind::Error) && !known.contains(&field.name.text.as_str())
+        };
+        let complete = !fields.iter().any(|field| unread(&field));
+        for field in fields.iter().filter(|field| !unread(field)) {
             let Some(i) = known.iter().position(|name| *name == field.name.text) else {
                 let message = format!("{what} has no field `{}`", field.name.text);
                 let error = Diagnostic::new(codes::FIELD, field.name.span, message);
@@ -88,7 +92,7 @@ impl Lowering<'_> {
             .filter(|(name, field)| field.is_none() && needed.contains(name) && !meant.contains(*name))
             .map(|(name, _)| format!("`{name}`"))
             .collect();
-        if !missing.is_empty() && !unread {
+        if !missing.is_empty() && complete {
             let code = if what.starts_with("a body") || what.starts_with("a particle") {
                 codes::BODY
             } else {

@@ -213,6 +213,7 @@ impl Lowering<'_> {
         let is = match declared.unit {
             Some("1") => "declared as a plain number".to_owned(),
             Some(unit) => format!("declared in {unit}"),
+            None if declared.stated => format!("declared in {}", declared.dimension),
             None => in_words(declared.dimension),
         };
         let remedy = |culprit: &Culprit| {
@@ -222,9 +223,10 @@ impl Lowering<'_> {
                 Symbol::Coordinate(_) if culprit.needed.is_none() => "rad".to_owned(),
                 _ => culprit.needed.to_string(),
             };
-            Some(match declared.unit {
-                Some(_) => format!("declare `{name}: {unit}`"),
-                None => format!("correct the value of `{name}`"),
+            Some(if declared.stated {
+                format!("declare `{name}: {unit}`")
+            } else {
+                format!("correct the value of `{name}`")
             })
         };
         let remedies: Vec<String> = std::iter::once(culprit).chain(others).filter_map(remedy).collect();

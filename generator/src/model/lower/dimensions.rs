@@ -153,7 +153,8 @@ impl Lowering<'_> {
         ) -> Option<Declared<'d>> {
             let (source, unit) = (source?, facts?.unit.as_ref()?);
             let (name, place) = (&source.name, source.unit.span);
-            Some(Declared { name, place, unit: Some(&unit.text), dimension: unit.dimension })
+            let dimension = unit.dimension;
+            Some(Declared { name, place, stated: true, unit: Some(&unit.text), dimension })
         }
         match symbol {
             Symbol::Parameter(i) => quantity(tree.parameters.get(i), self.parameters.get(i)),
@@ -166,7 +167,8 @@ impl Lowering<'_> {
                 let source = tree.definitions.get(i)?;
                 let place = source.unit.as_ref().map_or(source.value.span, |unit| unit.span);
                 let dimension = self.definitions.get(i)?.typed.as_ref()?.dimension?;
-                Some(Declared { name: &source.name, place, unit: None, dimension })
+                let (name, stated) = (&source.name, source.unit.is_some());
+                Some(Declared { name, place, stated, unit: None, dimension })
             }
             _ => None,
         }
@@ -178,6 +180,9 @@ pub(super) struct Declared<'t> {
     pub name: &'t Name,
     /// its unit, or the value of a definition without
     pub place: Span,
+    /// is it stated?
+    pub stated: bool,
+    /// as written, of a quantity
     pub unit: Option<&'t str>,
     pub dimension: Dimension,
 }

@@ -180,7 +180,7 @@ impl Lowering<'_> {
         let vector = model[0].2.map(|place| (model[0].0, place));
         let mut summands: Vec<&Typed> = Vec::new();
         let (mut scalars, mut vectors) = (Vec::new(), Vec::new());
-        let mut wrong = poisoned;
+        let (mut wrong, mut fit) = (poisoned, true);
         for term in &terms {
             let is_vector = match &term.value {
                 Value::Poison => continue,
@@ -207,7 +207,7 @@ impl Lowering<'_> {
                         .related(place, format!("this is {}", kind(first)))
                         .help("multiply the scalar by an axis such as `N.x`, or take a component with `dot`");
                     self.report(error);
-                    wrong = true;
+                    (wrong, fit) = (true, false);
                     continue;
                 }
                 _ => {}
@@ -216,7 +216,8 @@ impl Lowering<'_> {
         }
         let model = model_of(summands.iter().copied());
         for term in summands {
-            if let Some(model) = model {
+            // one mistake at a time: a sum of scalars and vectors has no dimension
+            if let Some(model) = model.filter(|_| fit) {
                 wrong |= !self
                     .same(model, term, |a, b| format!("{} cannot be added to {}", quantity(b), quantity(a)));
             }

@@ -296,7 +296,8 @@ impl<'a> Lowering<'a> {
             Some(Symbol::Broken) => return None,
             Some(symbol) => {
                 self.used.insert(symbol);
-                return Some(symbol);
+                // of two declarations the other may be meant
+                return Some(symbol).filter(|symbol| fits(*symbol) || !self.names.is_ambiguous(&name.text));
             }
             // said once, and not at all where the declaration may be in a part that could not be read
             None if self.tree.incomplete || !self.unknown.insert(name.text.clone()) => return None,

@@ -53,7 +53,8 @@ impl Lowering<'_> {
         kind: Symbol,
         dependent: bool,
     ) -> (Quantity, QuantityFacts) {
-        let unit = self.unit(&source.unit);
+        // which of two units is meant is not known
+        let unit = self.unit(&source.unit).filter(|_| !self.names.is_ambiguous(&source.name.text));
         let value = source.value.as_ref().map(|value| self.constant(value));
         let (mut is_fixed, mut is_dependent) = (false, dependent);
         match (source.modifier, kind) {
