@@ -1,5 +1,8 @@
 //! Parameters, inputs, coordinates and speeds.
 
+use std::collections::{HashMap, HashSet};
+
+use super::super::dimension::Dimension;
 use super::super::mechanism::{Quantity, Scalar};
 use super::super::names::Symbol;
 use super::super::powers::Powers;
@@ -45,6 +48,34 @@ impl Lowering<'_> {
                 self.speeds.push(facts);
             }
         }
+        self.forget_ambiguous();
+    }
+
+    /// Where two quantities of one name have different dimensions, it is not known which is meant.
+    fn forget_ambiguous(&mut self) {
+        let mut lists = [
+            (&self.out.parameters, &mut self.parameters),
+            (&self.out.inputs, &mut self.inputs),
+            (&self.out.coordinates, &mut self.coordinates),
+            (&self.out.speeds, &mut self.speeds),
+        ];
+        let mut seen: HashMap<&str, Option<Dimension>> = HashMap::new();
+        let mut different: HashSet<&str> = HashSet::new();
+        for (quantities, facts) in &lists {
+            for (quantity, facts) in quantities.iter().zip(facts.iter()) {
+                let dimension = facts.unit.as_ref().map(|unit| unit.dimension);
+                if *seen.entry(&quantity.name).or_insert(dimension) != dimension {
+                    different.insert(&quantity.name);
+                }
+            }
+        }
+        for (quantities, facts) in &mut lists {
+            for (quantity, facts) in quantities.iter().zip(facts.iter_mut()) {
+                if different.contains(quantity.name.as_str()) {
+                    facts.unit = None;
+                }
+            }
+        }
     }
 
     fn quantity(
@@ -53,8 +84,7 @@ impl Lowering<'_> {
         kind: Symbol,
         dependent: bool,
     ) -> (Quantity, QuantityFacts) {
-        // which of two units is meant is not known
-        let unit = self.unit(&source.unit).filter(|_| !self.names.is_ambiguous(&source.name.text));
+        let unit = self.unit(&source.unit);
         let value = source.value.as_ref().map(|value| self.constant(value));
         let (mut is_fixed, mut is_dependent) = (false, dependent);
         match (source.modifier, kind) {
