@@ -141,6 +141,17 @@ impl Names {
         }
     }
 
+    /// The names declared twice.
+    pub fn ambiguous(&self) -> impl Iterator<Item = &str> {
+        self.ambiguous.iter().map(String::as_str)
+    }
+
+    /// Is no name nearer to `name` than this?
+    pub fn is_near(&self, name: &str, this: &str) -> bool {
+        let candidates = std::iter::once(this).chain(self.order.iter().map(|(text, _)| text.as_str()));
+        similar::nearest(name, candidates) == Some(this)
+    }
+
     /// Is it declared twice?
     pub fn is_ambiguous(&self, name: &str) -> bool {
         self.ambiguous.contains(name)

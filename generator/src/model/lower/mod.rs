@@ -22,7 +22,7 @@ use super::order::{Item, Stated, order};
 use super::powers::Powers;
 use super::typed::{Traits, Typed, Value};
 use super::units::{self, Unit};
-use crate::diagnostics::{Code, Diagnostic, Span, codes};
+use crate::diagnostics::{Code, Diagnostic, Label, Span, codes};
 use crate::syntax::tree::{ExprKind, Name, Tree};
 use dimensions::Balances;
 
@@ -58,6 +58,7 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagn
     lowering.equations();
     lowering.contacts();
     lowering.gather();
+    lowering.copied();
     lowering.unused();
     (lowering.out, lowering.diagnostics)
 }
@@ -104,6 +105,10 @@ pub(super) struct PointFacts {
     pub position: Traits,
     /// on what its velocity depends
     pub velocity: Traits,
+}
+
+fn unknown_name(name: &str) -> String {
+    format!("unknown name `{name}`")
 }
 
 /// The state of lowering.
@@ -245,6 +250,29 @@ impl<'a> Lowering<'a> {
         }
     }
 
+    /// `l1: m = 1, l1: m = 2` where `l2` is used: a declaration was copied, and its name not changed. That is one mistake.
+    fn copied(&mut self) {
+        let mut names = self.names.ambiguous();
+        let (Some(twice), None) = (names.next(), names.next()) else { return };
+        if self.unknown.len() > MAX_SUGGESTIONS {
+            return;
+        }
+        let mut unknown = self.unknown.iter().filter(|unknown| self.names.is_near(unknown, twice));
+        let (Some(unknown), None) = (unknown.next(), unknown.next()) else { return };
+        let message = unknown_name(unknown);
+        let at = |code: Code| self.diagnostics.iter().position(|error| error.code == code);
+        let used = self.diagnostics.iter().position(|error| error.message == message);
+        if let (Some(declared), Some(used)) = (at(codes::DUPLICATE_NAME), used) {
+            let help = format!("is `{unknown}` meant, which is used, but not declared?");
+            let use_of_it =
+                Label { span: self.diagnostics[used].primary.span, text: format!("`{unknown}` stands here") };
+            let error = &mut self.diagnostics[declared];
+            error.help = Some(help);
+            error.related.push(use_of_it);
+            self.diagnostics.remove(used);
+        }
+    }
+
     /// Items of a cycle: nothing more is said of them.
     fn give_up(&mut self, _item: Item) {}
 
@@ -303,7 +331,7 @@ impl<'a> Lowering<'a> {
             None if self.tree.incomplete || !self.unknown.insert(name.text.clone()) => return None,
             None => {}
         }
-        let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, format!("unknown name `{}`", name.text));
+        let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, unknown_name(&name.text));
         if let Some(advice) = self.meant_by(&name.text) {
             self.report(error.help(advice));
             return None;
