@@ -71,9 +71,9 @@ impl Lump {
 }
 
 /// A sum or difference of second moments by its parameters: what the model states as moments of inertia stands there again, without
-/// the rounding errors of the way there and back.
+/// the rounding errors of the way there and back. Larger sums stay in parts, which round less than one long sum.
 pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
-    const LARGEST: usize = 64;
+    const LARGEST: usize = 40;
     let opened = z.opened(value, LARGEST);
     let simple = z.simplify(&opened);
     z.name(simple)

@@ -1,4 +1,4 @@
-//! Sine and cosine of a double together, to about one unit in the last place, in forty operations and without a branch.
+//! Sine and cosine of a double together, to less than one unit in the last place, in forty operations and without a branch.
 //!
 //! The angle is reduced by multiples of pi/2 in three parts, sine and cosine of the rest are polynomials (Chebyshev
 //! interpolation on [0, pi/4], error below 2^-55), and the quadrant says which is which. Angles beyond 2^19 go another way.
@@ -10,10 +10,13 @@ use super::arithmetic::{FUSED, mul_add};
 const LARGEST: f64 = 524288.0;
 /// 1.5 * 2^52: adding it rounds to an integer, whose last bits are then those of the sum.
 const ROUNDER: f64 = 6755399441055744.0;
-/// pi/2 in three parts, for products that are not rounded.
-const HALF_PI: [f64; 3] = [core::f64::consts::FRAC_PI_2, 6.123233995736766e-17, -1.4973849048591698e-33];
+/// pi/2 in three parts, for products that are not rounded: the second has 33 bits, so that what the difference loses is a double.
+const HALF_PI: [f64; 3] = [core::f64::consts::FRAC_PI_2, 6.12323399538461e-17, 3.5215598651832e-27];
 /// pi/2 in three parts, of which the first two have 33 bits: their products with a multiple are exact.
 const HALF_PI_SHORT: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
+
+/// Sines of right angles; the cosine of one is the sine of the next.
+const QUARTERS: [f64; 5] = [0.0, 1.0, 0.0, -1.0, 0.0];
 
 /// (sin r / r - 1) / r^2 in powers of r^2.
 const SINE: [f64; 6] = [
@@ -43,22 +46,25 @@ pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
     }
     let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUNDER);
     let turns = shifted - ROUNDER;
-    let quadrant = shifted.to_bits();
-    let r = if FUSED {
-        mul_add(-turns, HALF_PI[2], mul_add(-turns, HALF_PI[1], mul_add(-turns, HALF_PI[0], x)))
+    let quadrant = shifted.to_bits() as usize & 3;
+    // r, and what rounding takes from it
+    let (r, low) = if FUSED {
+        let first = mul_add(-turns, HALF_PI[0], x);
+        let r = mul_add(-turns, HALF_PI[1], first);
+        (r, mul_add(-turns, HALF_PI[2], mul_add(-turns, HALF_PI[1], first - r)))
     } else {
-        x - turns * HALF_PI_SHORT[0] - turns * HALF_PI_SHORT[1] - turns * HALF_PI_SHORT[2]
+        let (second, third) = (turns * HALF_PI_SHORT[1], turns * HALF_PI_SHORT[2]);
+        let first = x - turns * HALF_PI_SHORT[0];
+        let less = first - second;
+        let r = less - third;
+        (r, (less - r - third) + (first - less - second))
     };
     let z = r * r;
-    let sine = mul_add(r * z, polynomial(SINE, z), r);
-    let cosine = mul_add(z, mul_add(z, polynomial(COSINE, z), -0.5), 1.0);
-    // In odd quadrants the two change places.
-    let (sine, cosine) = (sine.to_bits(), cosine.to_bits());
-    let change = (sine ^ cosine) & 0u64.wrapping_sub(quadrant & 1);
-    let sign = |odd: u64| (odd & 2) << 62;
-    let sine = sine ^ change ^ sign(quadrant);
-    let cosine = cosine ^ change ^ sign(quadrant.wrapping_add(1));
-    (f64::from_bits(sine), f64::from_bits(cosine))
+    let sine = r + mul_add(r * z, polynomial(SINE, z), low);
+    let cosine = 1.0 + mul_add(z, mul_add(z, polynomial(COSINE, z), -0.5), -(r * low));
+    // Of each product below one factor is 0, 1 or -1: nothing is rounded.
+    let (s, c) = (QUARTERS[quadrant], QUARTERS[quadrant + 1]);
+    (mul_add(sine, c, cosine * s), mul_add(cosine, c, -(sine * s)))
 }
 
 #[inline(always)]

@@ -26,7 +26,7 @@ pub struct Form {
 }
 
 /// A component is much smaller than another that is so many times as large.
-const MUCH: f64 = 4.0;
+const MUCH: f64 = 10.0;
 
 /// What stood beside the angular acceleration of a frame when it was inserted.
 pub struct OfFrame {

@@ -183,18 +183,34 @@ impl Articulated {
                 let da = if carried { outward.carried_point(k, *point) } else { outward.point(k, *point) };
                 sum = sum.sub(&linear::dot(p, &da));
             }
+            // What is about the hinge's axis is divided by the pivot that it is multiplied by: it stays aside.
+            let mut aside: Vec<(FrameId, usize, Expr)> = Vec::new();
             if let Some((frame, h)) = &step.angular {
                 let carried = step.split == Node::Frame(*frame);
                 let dalpha =
                     if carried { outward.carried_frame(k, *frame) } else { outward.frame(k, *frame) };
-                sum = sum.sub(&linear::dot(h, &dalpha));
+                for (axis, (h, dalpha)) in h.iter().zip(&dalpha).enumerate() {
+                    let ratio = h.mul(&step.reciprocal);
+                    if ratio.is_number() && !ratio.is_zero() {
+                        aside.push((*frame, axis, ratio.mul(dalpha)));
+                    } else {
+                        sum = sum.sub(&h.mul(dalpha));
+                    }
+                }
             }
             for (other, m) in &step.others {
                 sum = sum.sub(&m.mul(&outward.known(*other)));
             }
             let sum = k.z.name(sum);
             let value = k.z.name(sum.mul(&step.reciprocal));
-            outward.speeds.insert(step.slot, value);
+            let rest = aside.iter().fold(value.clone(), |rest, (.., part)| rest.sub(part));
+            let rest = k.z.name(rest);
+            outward.speeds.insert(step.slot, rest);
+            if let [(frame, axis, _)] = aside[..]
+                && step.split == Node::Frame(frame)
+            {
+                outward.totals.insert((frame, axis), (step.slot, value));
+            }
         }
         (0..k.speeds.len()).map(|slot| outward.known(slot)).collect()
     }
@@ -231,6 +247,8 @@ struct Outward<'a> {
     apart: Option<&'a mut Accelerations>,
     frames: BTreeMap<FrameId, Triple>,
     points: BTreeMap<PointId, Triple>,
+    /// components of angular accelerations that the load of a hinge determines by itself, with the hinge's slot
+    totals: BTreeMap<(FrameId, usize), (usize, Expr)>,
     carried_frames: BTreeMap<FrameId, Triple>,
     carried_points: BTreeMap<PointId, Triple>,
 }
@@ -267,6 +285,17 @@ impl Outward<'_> {
         let mut sum = self.carried_frame(k, frame);
         for (&slot, a) in &k.frames[frame.0].relative.terms {
             sum = linear::add(&sum, &linear::scale(&self.known(slot), a));
+        }
+        let terms = &k.frames[frame.0].relative.terms;
+        for (axis, component) in sum.iter_mut().enumerate() {
+            // A hinge about this axis alone: what it adds makes the whole, which is known.
+            if let Some((slot, total)) = self.totals.get(&(frame, axis))
+                && terms.len() == 1
+                && let Some(a) = terms.get(slot)
+                && (a[axis].is_one() || a[axis].neg().is_one())
+            {
+                *component = a[axis].mul(total);
+            }
         }
         let value = linear::name(&mut k.z, sum);
         self.frames.insert(frame, value.clone());
