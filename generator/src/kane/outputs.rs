@@ -1,10 +1,12 @@
 //! Everything a derivation delivers, exported from algebra to nodes of a value graph.
 
+mod contact;
+
 use std::collections::{BTreeMap, HashMap};
 
 use super::accelerations::Accelerations;
 use super::articulated::Articulated;
-use super::contacts::{ContactForms, contact_forms, point_jacobian};
+use super::contacts::{ContactForms, point_jacobian};
 use super::forces::{self, Wrenches};
 use super::lumps::{self, Lump, Masses, Seat};
 use super::{bounds, energy, inertia};
@@ -13,11 +15,11 @@ use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesTree, unit};
 use crate::kinematics::linear::LinearScalar;
 use crate::kinematics::solve::Solver;
-use crate::model::mechanism::{Contact, FrameId, Place, PointId};
+use crate::model::mechanism::{FrameId, Place, PointId};
 use crate::program::differentiate::differentiate;
 use crate::program::graph::{Graph, Input, Node};
 use crate::program::linear::{Factor, factorise};
-use crate::program::routine::{ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity, Structure};
+use crate::program::routine::{Derived, Guard, Output, PointQuantity, Quantity};
 
 /// The graph under construction.
 struct Writer<'k, 'm> {
@@ -33,17 +35,6 @@ struct Writer<'k, 'm> {
     largest: Vec<Node>,
     /// the mass matrix in another guise, where the mechanism permits
     articulated: Option<Articulated>,
-}
-
-/// Where the entries of a reduced matrix stand.
-const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
-
-/// What a mechanism answers to unit impulses at a contact.
-struct Responses {
-    /// V M^-1 V', its upper half
-    reduced: Vec<Node>,
-    /// M^-1 V'
-    columns: Vec<Vec<Node>>,
 }
 
 /// Derives and writes all quantities.
@@ -351,34 +342,6 @@ impl Writer<'_, '_> {
         self.put(Quantity::StateTangent, tangent.len(), 1, tangent);
     }
 
-    /// The derivative along a direction of what a collision is made of. Where time acts by itself it would not be all.
-    fn contact_tangents(&mut self, rates: &Option<HashMap<Input, Node>>) {
-        let Some(rates) = rates else { return };
-        for number in 0..self.k.mechanism.contacts.len() as u32 {
-            let found = |quantity| {
-                let quantity = Quantity::Contact(number, quantity);
-                self.outputs
-                    .iter()
-                    .find(|output| output.quantity == quantity)
-                    .map(|output| output.nodes.clone())
-            };
-            let needed =
-                [ContactQuantity::Velocity, ContactQuantity::Reduced, ContactQuantity::Response].map(found);
-            let [Some(velocity), Some(reduced), Some(response)] = needed else { continue };
-            let gap = found(ContactQuantity::Gap).unwrap_or_default();
-            let nodes = [velocity, reduced, response, gap].concat();
-            let loops = self.outputs.iter().find(|output| output.quantity == Quantity::ConfigurationResidual);
-            let watched =
-                [nodes.clone(), loops.map(|output| output.nodes.clone()).unwrap_or_default()].concat();
-            let clock = HashMap::from([(Input::Time, self.graph.integer(1))]);
-            let by_time = differentiate(&mut self.graph, &watched, &clock);
-            if by_time.iter().all(|&node| self.graph.is_zero(node)) {
-                let tangent = differentiate(&mut self.graph, &nodes, rates);
-                self.put(Quantity::Contact(number, ContactQuantity::Tangent), tangent.len(), 1, tangent);
-            }
-        }
-    }
-
     /// Dependent coordinates as they follow the independent ones: forms in the numbers of coordinates. `None` where the
     /// configuration equations cannot be solved for them.
     fn dependent_coordinate_rates(&mut self) -> Option<BTreeMap<usize, LinearScalar>> {
@@ -442,143 +405,6 @@ impl Writer<'_, '_> {
         self.put(Quantity::ConfigurationResidual, rows, 1, nodes);
         let nodes = self.nodes(&jacobian);
         self.put(Quantity::ConfigurationJacobian, rows, dependent.len(), nodes);
-    }
-
-    fn contact_forms(&mut self) -> Vec<ContactForms> {
-        let mechanism = self.k.mechanism;
-        let forms = |contact: &Contact| {
-            let place = format!("contact `{}`", contact.name);
-            self.k.within(place, |k| contact_forms(k, contact))
-        };
-        mechanism.contacts.iter().map(forms).collect()
-    }
-
-    fn contacts(&mut self, forms: &[ContactForms], factor: &Factor, prescribed: &[Node]) -> Vec<Structure> {
-        let numbered = forms.iter().enumerate();
-        numbered.map(|(number, forms)| self.contact(number as u32, forms, factor, prescribed)).collect()
-    }
-
-    /// V M^-1 V' and the columns of M^-1 V' by articulated inertias.
-    fn responses(&mut self, articulated: &Articulated, forces: &[Wrenches; 3]) -> Option<Responses> {
-        let mut loads = Vec::new();
-        for wrenches in forces {
-            loads.push(articulated.inwards(self.k, wrenches.clone(), None)?);
-        }
-        let reduced: Vec<Expr> =
-            UPPER.iter().map(|&(i, j)| articulated.product(self.k, &loads[i], &loads[j])).collect();
-        let reduced = self.nodes(&reduced);
-        let mut columns = Vec::new();
-        for loads in &loads {
-            let column = articulated.outwards(self.k, loads, None);
-            columns.push(self.nodes(&column));
-        }
-        Some(Responses { reduced, columns })
-    }
-
-    fn contact(
-        &mut self,
-        number: u32,
-        forms: &ContactForms,
-        factor: &Factor,
-        prescribed: &[Node],
-    ) -> Structure {
-        let of = |quantity| Quantity::Contact(number, quantity);
-        for (quantity, axis) in [ContactQuantity::Normal, ContactQuantity::First, ContactQuantity::Second]
-            .into_iter()
-            .zip(&forms.basis)
-        {
-            let nodes = self.nodes(axis);
-            self.put(of(quantity), 3, 1, nodes);
-        }
-        let p = self.independent.len();
-        let partials: Vec<Vec<Node>> = forms
-            .partials
-            .iter()
-            .map(|row| {
-                let row: Vec<Expr> = self
-                    .independent
-                    .iter()
-                    .map(|slot| row.get(slot).cloned().unwrap_or_else(Expr::zero))
-                    .collect();
-                self.nodes(&row)
-            })
-            .collect();
-        let remainder = self.nodes(&forms.remainder);
-        let mut velocity = Vec::new();
-        for (row, &rest) in partials.iter().zip(&remainder) {
-            let mut terms = vec![rest];
-            for (i, &partial) in row.iter().enumerate() {
-                let speed = self.graph.input(Input::Speed(i as u32));
-                terms.push(self.graph.product([partial, speed]));
-            }
-            velocity.push(self.graph.sum(terms));
-        }
-        self.put(of(ContactQuantity::Velocity), 3, 1, velocity);
-        self.put(of(ContactQuantity::PartialVelocities), 3, p, partials.concat());
-        self.put(of(ContactQuantity::Remainder), 3, 1, remainder.clone());
-
-        let halves: Vec<Vec<Node>> =
-            partials.iter().map(|row| factor.half_solve(&mut self.graph, row)).collect();
-        let mut reduced: Vec<Node> =
-            UPPER.iter().map(|&(i, j)| factor.product(&mut self.graph, &halves[i], &halves[j])).collect();
-        let zero = |i: usize| self.graph.is_zero(reduced[i]);
-        let structure = match (zero(1), zero(2), zero(4)) {
-            _ if forms.planar => Structure::Planar,
-            (.., true) if reduced[3] == reduced[5] => Structure::Isotropic,
-            (true, true, true) => Structure::Diagonal,
-            (true, true, false) => Structure::Balanced,
-            _ => Structure::General,
-        };
-        let mut columns: Vec<Vec<Node>> =
-            halves.iter().map(|half| factor.finish(&mut self.graph, half)).collect();
-        if let Some(articulated) = self.articulated.take() {
-            let shared = partials.concat();
-            let cost = |graph: &Graph, reduced: &[Node]| graph.cost(&[&shared, reduced].concat());
-            // The count is rough: only what is clearly less is less.
-            if let Some(forces) = &forms.forces
-                && let Some(other) = self.responses(&articulated, forces)
-                && 10 * cost(&self.graph, &other.reduced) < 9 * cost(&self.graph, &reduced)
-            {
-                // What is 0 whatever the state is 0 to the last bit.
-                let kept = reduced.iter().zip(&other.reduced);
-                reduced = kept
-                    .map(|(&by_factor, &other)| if self.graph.is_zero(by_factor) { by_factor } else { other })
-                    .collect();
-                columns = other.columns;
-                self.guard_articulated(&articulated);
-            }
-            self.articulated = Some(articulated);
-        }
-        self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
-        let response: Vec<Node> = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
-        self.put(of(ContactQuantity::Response), p, 3, response);
-        let mut dependent = Vec::new();
-        for &d in &self.dependent.clone() {
-            for column in &columns {
-                let mut terms = Vec::new();
-                for (i, &r) in self.independent.clone().iter().enumerate() {
-                    let by = self.k.dependence(d, r);
-                    let by = self.node(&by);
-                    terms.push(self.graph.product([by, column[i]]));
-                }
-                dependent.push(self.graph.sum(terms));
-            }
-        }
-        self.put(of(ContactQuantity::DependentResponse), self.dependent.len(), 3, dependent);
-        if let Some(gap) = &forms.gap {
-            let nodes = self.nodes([gap]);
-            self.put(of(ContactQuantity::Gap), 1, 1, nodes);
-        }
-        let work: Vec<Node> = columns
-            .iter()
-            .map(|column| {
-                let terms: Vec<Node> =
-                    column.iter().zip(prescribed).map(|(&c, &m)| self.graph.product([c, m])).collect();
-                self.graph.sum(terms)
-            })
-            .collect();
-        self.put(of(ContactQuantity::PrescribedWork), 3, 1, work);
-        structure
     }
 
     fn points(&mut self) {
