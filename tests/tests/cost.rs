@@ -3,6 +3,7 @@
 mod common;
 
 use common::Model;
+use hodograph_generator::model::mechanism::Function;
 use hodograph_generator::program::operation::{Operation, Stage};
 use hodograph_generator::program::routine::Quantity;
 
@@ -29,4 +30,18 @@ fn inverse_dynamics_of_the_stanford_arm() {
     }
     assert!(products < 646 && sums < 394, "{products} multiplications, {sums} additions");
     assert!(products < 200 && sums < 150, "more than before: {products} multiplications, {sums} additions");
+}
+
+/// The mass matrix of two links depends on the angle between them, and takes no other sine or cosine.
+#[test]
+fn mass_matrix_of_the_double_pendulum() {
+    let model = Model::load("../tests/models/dpend");
+    let operations = model.program.slice(&[Quantity::MassMatrix]).order;
+    let round = |value: &&_| {
+        matches!(
+            model.program.operation(**value),
+            Operation::SinCos(_) | Operation::Call(Function::Sin | Function::Cos, _)
+        )
+    };
+    assert_eq!(operations.iter().filter(round).count(), 1);
 }

@@ -167,7 +167,11 @@ impl Kinematics<'_> {
             Orientation::Aligned => parent_axes,
             Orientation::Simple { axis, negative, angle } => {
                 let angle = self.scalar(angle);
-                let (from, angle) = self.flatten(parent_axes, *axis, *negative, angle);
+                let (from, angle) = if self.goes_on(id, *axis) {
+                    self.flatten(parent_axes, *axis, *negative, angle)
+                } else {
+                    (parent_axes, angle)
+                };
                 let turn = axes::simple(&mut self.z, *axis, *negative, &angle);
                 self.turned(from, turn, id)
             }
@@ -196,6 +200,19 @@ impl Kinematics<'_> {
         };
         self.frame_axes[id.0] = Some(axes);
         Ok(())
+    }
+
+    /// Is a frame one of three or more in a row that turn about the same axis? Two have nothing to save by absolute angles, and a mass
+    /// matrix that needs the angle between them alone.
+    fn goes_on(&self, id: FrameId, axis: Axis) -> bool {
+        let frames = &self.mechanism.frames;
+        let turns = |frame: FrameId| match &frames[frame.0].orientation {
+            Orientation::Simple { axis: about, .. } => *about == axis,
+            _ => false,
+        };
+        let parent = frames[id.0].parent.filter(|&parent| turns(parent));
+        let before = parent.and_then(|parent| frames[parent.0].parent).is_some_and(turns);
+        before || (0..frames.len()).any(|child| frames[child].parent == Some(id) && turns(FrameId(child)))
     }
 
     /// Rotations about one axis that keeps its direction in N add up: in a planar chain the axes of every link are turned
