@@ -94,7 +94,7 @@ impl<T: Scalar> ImpactDerivative<T> {
 /// Solves a collision and differentiates its outcome.
 ///
 /// The same exact solver runs on numbers that carry their derivatives: no step size, no truncation. Needs no allocator and cannot
-/// panic; the stack holds about 139 kB (`f64` on x86-64), fifteen times what [`solve`] needs.
+/// panic; the stack holds about 50 kB (`f64` on x86-64), thirteen times what [`solve`] needs.
 ///
 /// # Errors
 /// What [`solve`] refuses.

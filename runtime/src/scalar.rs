@@ -128,6 +128,12 @@ pub(crate) fn larger<T: Real>(a: T, b: T) -> T {
     if b > a { b } else { a }
 }
 
+/// The smaller of two numbers, likewise.
+#[inline(always)]
+pub(crate) fn smaller<T: Real>(a: T, b: T) -> T {
+    if b < a { b } else { a }
+}
+
 /// The length of a vector in the contact plane.
 #[inline(always)]
 pub(crate) fn length<T: Real>(v: &Vector2<T>) -> T {

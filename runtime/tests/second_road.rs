@@ -323,3 +323,35 @@ fn laws_agree_where_f_is_constant() {
     }
     assert!(count > 50, "{count}");
 }
+
+/// Restitution of a thousandth and less, where the work that is wanted is a millionth of what compression took; and a stable zero of h where g / h' = -1/2, at
+/// which series for the work would resonate.
+#[test]
+fn collisions_that_lost_digits_once() {
+    let mut tally = Tally::default();
+    let m = ReducedMatrix::new(
+        6.320921195653428,
+        2.5328566067972464,
+        0.838232534715314,
+        1.2610248181563857,
+        0.47241379181922727,
+        0.5250947186427404,
+    );
+    let v = Vector3::new(-0.9307841194549816, 0.6491686241616046, -0.6835463394614181);
+    for e in [0.1, 4e-3, 1e-3, 1e-6, 1e-9] {
+        tally.compare(&m, &v, &Surface { mu: 1.4407336483370867, e, law: Law::Stronge });
+    }
+    let m = ReducedMatrix::new(
+        1.4584123818089165,
+        -1.503084379336051,
+        0.43306262315225935,
+        2.432902315178539,
+        0.3932938200433357,
+        6.2531340152953465,
+    );
+    let v = Vector3::new(-0.16359940243773338, -0.6564404866952637, -0.19213713571246405);
+    for law in LAWS {
+        tally.compare(&m, &v, &Surface { mu: 0.1798125789704914, e: 0.651515459701502, law });
+    }
+    tally.report("once lost", 8);
+}

@@ -2,8 +2,11 @@
 
 use nalgebra::Vector2;
 
-use super::turns::Turns;
+use super::{terminal::Contact, turns::Turns};
 use crate::{Law, scalar::Real as Scalar, scalar::constant, scalar::larger};
+
+/// Slip over |v_n1| (times mu if that is above one) beyond which the work would lose digits in the balance of energy.
+const FAST: f64 = 32.0;
 
 /// The quantities that grow along a collision, in units where m_nn = 1 and v_n1 = -1.
 #[derive(Clone, Copy)]
@@ -33,6 +36,11 @@ pub(crate) struct Ledger<T: Scalar> {
     /// v_n, I_n or the normal work at which restitution ends, whichever the law speaks of.
     pub target: T,
     least_work: T,
+    /// Work at the end of the latest compression, and what the law wants from there: small numbers that would lose their digits in the whole.
+    ended: T,
+    pub wanted: T,
+    /// What rounding took from the work since then.
+    lost: T,
     pub compressions: u32,
     /// Where the first and the latest compression ended, if that was looked at.
     pub first: Option<State<T>>,
@@ -53,6 +61,9 @@ impl<T: Scalar> Ledger<T> {
             e,
             target: e,
             least_work: T::zero(),
+            ended: T::zero(),
+            wanted: T::zero(),
+            lost: T::zero(),
             compressions: 0,
             first: None,
             latest: None,
@@ -91,9 +102,36 @@ impl<T: Scalar> Ledger<T> {
         match self.law {
             Law::Newton => {}
             Law::Poisson => self.target = (T::one() + self.e) * normal,
-            Law::Stronge => self.target = (T::one() - self.e * self.e) * self.least_work,
+            Law::Stronge => {
+                let square = self.e * self.e;
+                self.target = (T::one() - square) * self.least_work;
+                self.wanted = (self.least_work - work) - square * self.least_work;
+                (self.ended, self.lost) = (work, T::zero());
+            }
         }
         self.e <= T::zero()
+    }
+
+    /// The work since the end of the latest compression is known better than as a part of the whole: it is `since` at `at`.
+    #[inline]
+    pub fn since(&mut self, at: &State<T>, since: T) {
+        if self.law == Law::Stronge && self.compressions > 0 {
+            self.lost = since - (at.work - self.ended);
+        }
+    }
+
+    /// Whether the law waits for so little work that the balance of energy would lose it.
+    #[inline]
+    pub fn delicate(&self) -> bool {
+        self.law == Law::Stronge
+            && self.compressions > 0
+            && self.wanted < -constant::<T>(0.05) * self.least_work
+    }
+
+    /// The work that the law still wants (Stronge).
+    #[inline]
+    fn missing(&self, work: T) -> T {
+        larger(self.wanted - ((work - self.ended) + self.lost), T::zero())
     }
 
     /// v_n falls through zero here: Poisson's or Stronge's law ends the collision before, or only after another compression.
@@ -110,6 +148,12 @@ impl<T: Scalar> Ledger<T> {
     #[inline]
     pub fn law(&self) -> Law {
         self.law
+    }
+
+    /// Whether slip is so fast that the work must not be found from the balance of energy.
+    #[inline]
+    pub fn fast(&self, contact: &Contact<T>, slip: T) -> bool {
+        slip * larger(T::one(), contact.mu) > constant(FAST)
     }
 
     /// The quantity that the law watches.
@@ -140,27 +184,6 @@ impl<T: Scalar> Ledger<T> {
             return false;
         }
         to.velocity >= zero && self.watched(to) < self.target
-    }
-
-    /// A rough lower estimate of the impulse to the next event, from the present rate of v_n.
-    #[inline]
-    pub fn remaining(&self, from: &State<T>, rate: T) -> T {
-        let v = from.velocity;
-        if let Some(stop) = self.stop {
-            return stop - from.normal;
-        }
-        if v < T::zero() {
-            return -v / rate.abs();
-        }
-        match self.law {
-            Law::Newton => (self.target - v) / rate.abs(),
-            Law::Poisson => self.target - from.normal,
-            Law::Stronge => {
-                let missing = self.target - from.work;
-                let square = v * v + (missing + missing) * rate.abs();
-                (missing + missing) / (v + larger(square, T::zero()).sqrt())
-            }
-        }
     }
 
     /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`), against friction with
@@ -204,7 +227,7 @@ impl<T: Scalar> Ledger<T> {
                 (more, velocity + rate * more)
             }
             Law::Stronge => {
-                let missing = larger(self.target - work, T::zero());
+                let missing = self.missing(work);
                 let square = velocity * velocity + (missing + missing) * rate;
                 if square < T::zero() || (square <= T::zero() && missing > T::zero()) {
                     return Line::on(length);

@@ -1,15 +1,20 @@
 //! The exact solver: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
 
-mod arc;
 mod bend;
-mod chart;
+mod fixed;
+mod flow;
+mod lanes;
 mod ledger;
-mod regular;
-mod root;
-mod series;
+mod nodes;
+mod panel;
+mod search;
+mod short;
 mod sliding;
+mod sought;
+mod tail;
 mod terminal;
 mod turns;
+mod zero;
 
 use nalgebra::{Vector2, Vector3};
 
@@ -92,9 +97,15 @@ pub(crate) fn collide<T: Real>(
     let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
     let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
     let normal_work = end.work * scale * speed;
-    for value in [impulse.x, impulse.y, impulse.z, separation.x, separation.y, separation.z, normal_work] {
-        if !value.is_finite() {
-            return Err(ImpactError::NotFinite { value });
+    // One look at all of them suffices where nothing is wrong.
+    if !(impulse.x + impulse.y + impulse.z + separation.x + separation.y + separation.z + normal_work)
+        .is_finite()
+    {
+        for value in [impulse.x, impulse.y, impulse.z, separation.x, separation.y, separation.z, normal_work]
+        {
+            if !value.is_finite() {
+                return Err(ImpactError::NotFinite { value });
+            }
         }
     }
     Ok(Impact {
@@ -178,6 +189,41 @@ pub(crate) fn contact<T: Real>(matrix: &ReducedMatrix<T>, mu: T) -> Contact<T> {
 /// Names what is wrong with the input.
 #[inline]
 pub(crate) fn check<T: Real>(
+    m: &ReducedMatrix<T>,
+    v: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<(), ImpactError<T>> {
+    if plainly_right(m, v, surface) { Ok(()) } else { check_closely(m, v, surface) }
+}
+
+/// Whether the input is right, and far enough from every edge to see it without care.
+#[inline]
+fn plainly_right<T: Real>(m: &ReducedMatrix<T>, v: &Vector3<T>, surface: &Surface<T>) -> bool {
+    let zero = T::zero();
+    let (a, b, c) = (m.nn * m.tt, m.nn * m.ss, m.tt * m.ss);
+    // Below this a product may have lost what it is compared with.
+    let least = T::default_epsilon() * T::default_epsilon() * T::default_epsilon() * T::default_epsilon();
+    let minor = c - m.ts * m.ts;
+    let det = m.nn * minor - m.nt * (m.nt * m.ss - m.ns * m.ts) + m.ns * (m.nt * m.ts - m.tt * m.ns);
+    m.nn > zero
+        && a > least
+        && b > least
+        && c > least
+        && a >= m.nt * m.nt
+        && b >= m.ns * m.ns
+        && minor >= zero
+        && det >= zero
+        && v.x < zero
+        && surface.mu >= zero
+        && surface.e >= zero
+        && surface.e <= T::one()
+        && (det + v.x + v.y + v.z + surface.mu).is_finite()
+}
+
+/// Names what is wrong, if anything is.
+#[cold]
+#[inline(never)]
+fn check_closely<T: Real>(
     m: &ReducedMatrix<T>,
     v: &Vector3<T>,
     surface: &Surface<T>,

@@ -1,21 +1,20 @@
-//! The sliding arc (34), piece by piece, until the law ends the collision or slip stops.
+//! The sliding arc (34), stretch by stretch, until the law ends the collision or slip stops.
 
 use nalgebra::Vector2;
 
 use super::{
-    arc::{Start, follow},
     bend::bend,
-    chart::Chart,
+    flow::{Flow, Place},
     ledger::{Ledger, Line, State},
-    regular::Regular,
-    root::{Ahead, Root},
-    series::{MOST, table},
+    panel::Panel,
+    search::Search,
     terminal::Contact,
 };
 use crate::{scalar::Real as Scalar, scalar::constant, scalar::length};
 
-/// Pieces after which the arc is given up. Each one changes the distance to a root of h by a fixed factor at least.
-const PIECES: u32 = 512;
+/// Stretches after which the arc is given up. Each is as long, in the logarithm of the distance to the directions where slip stays, as the zeros of q
+/// are away from it, so that a few dozen lead past anything.
+const STRETCHES: u32 = 512;
 
 /// What became of the sliding arc.
 pub(crate) enum Slide<T: Scalar> {
@@ -38,69 +37,41 @@ pub(crate) fn slide<T: Scalar>(
     let eps = T::default_epsilon();
     // Rounding leaves h this uncertain.
     let noise = eps * (length(&c.b) + c.mu * (c.tt + c.ss));
-    let mut at = Start { state: State::approach(), direction: from / speed, slip: speed };
-    let mut table = table(speed);
-    let mut ahead = None;
-    for _ in 0..PIECES {
-        let chart = Chart::about(c, &at.direction);
-        let [h0, h1, ..] = chart.h;
-        let [g, ..] = chart.k;
-        let settled = h1 < T::zero() && h0.abs() <= noise * constant(8.0);
-        let over = g < T::zero() && at.slip <= eps * speed * constant(4.0);
-        if settled || over || h0.abs() <= noise * constant(4.0) {
-            return straight(c, at.direction, at.slip, at.state, ledger);
+    let direction = from / speed;
+    let rate = c.slip_rate(&direction);
+    let h = rate.y * direction.x - rate.x * direction.y;
+    if h.abs() <= noise * constant(4.0) {
+        return straight(c, direction, speed, State::approach(), ledger);
+    }
+    let (flow, w) = Flow::through(c, &direction);
+    let mut at = Place { state: State::approach(), since: T::zero(), w, sigma: speed / flow.e(w) };
+    let stops = flow.last_rate() < T::zero();
+    let mut panel = Panel::new(speed);
+    for _ in 0..STRETCHES {
+        let rates = flow.rates(&at);
+        let slip = at.sigma * rates.e;
+        let over = slip <= eps * speed * constant(4.0) && rates.growth + rates.shape < T::zero();
+        let settled = at.w > flow.outer && flow.turns_less(&at, &rates, noise * constant(8.0));
+        if over || settled {
+            ledger.since(&at.state, at.since);
+            return straight(c, flow.slip(&at) / slip, slip, at.state, ledger);
         }
-        let [f0, ..] = chart.f;
-        // An end close by is better sought from here than from the root: a rough look at how far slip will turn and change.
-        let away = ledger.remaining(&at.state, f0);
-        let near = away * (g.abs() + h1.abs() * constant(0.5)) < at.slip * constant(0.4);
-        if ahead.is_none() && !near {
-            ahead = Ahead::of(c, &chart, &at.direction);
-        }
-        let rest = match &ahead {
-            Some(ahead) if !near => Root::new(&mut table, c, ahead, at),
-            _ => None,
-        };
-        if let Some(mut rest) = rest {
-            let stops = rest.alpha > T::zero();
-            let stop = rest.stop();
-            if stops && ledger.passes(&at.state, &stop) {
+        let fast = ledger.fast(c, slip);
+        let course = flow.fold(&at, &rates);
+        if stops && course.1.is_none() && !fast && flow.settles(&at, slip / speed) {
+            let (stop, since) = flow.stop(&at);
+            if ledger.passes(&at.state, &stop) {
+                ledger.since(&stop, since);
                 return Slide::Stopped(stop);
             }
-            let far = if stops {
-                (stop.normal - at.state.normal) * constant(0.1)
-            } else {
-                rest.first_rate() * constant(0.25)
-            };
-            let mut log = [at.slip; MOST];
-            if away > far && rest.prepare(&mut log) {
-                match follow(c, &rest, &at, rest.first_rate(), f0, ledger) {
-                    Ok(point) => return Slide::Ended(point.state, point.slip),
-                    Err(_) if stops => return Slide::Stopped(stop),
-                    Err(point) => {
-                        ledger.turns.moved(point.state.velocity);
-                        let slip = length(&point.slip);
-                        if slip <= eps * speed {
-                            return Slide::Stopped(point.state);
-                        }
-                        at = Start { state: point.state, direction: point.slip / slip, slip };
-                        continue;
-                    }
-                }
-            }
         }
-        let step = Regular::new(&mut table, c, &chart, at, away);
-        match follow(c, &step, &at, step.first_rate(), f0, ledger) {
-            Ok(point) => return Slide::Ended(point.state, point.slip),
-            Err(point) => {
-                ledger.turns.moved(point.state.velocity);
-                let slip = length(&point.slip);
-                if slip <= eps * speed {
-                    return Slide::Stopped(point.state);
-                }
-                at = Start { state: point.state, direction: point.slip / slip, slip };
-            }
+        let reach = flow.reach(&at, &rates);
+        let mut search =
+            Search { flow: &flow, from: at, rates: &rates, course, fast, panel: &mut panel, reach };
+        if search.follow(ledger, &mut at) {
+            return Slide::Ended(at.state, flow.slip(&at));
         }
+        ledger.turns.moved(at.state.velocity);
     }
     Slide::Endless(at.state)
 }

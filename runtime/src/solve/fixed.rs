@@ -1,0 +1,135 @@
+//! The directions in which slip stays as it is: the zeros of h.
+//!
+//! In the principal axes of T, mirrored so that b = (p, q) is positive, h = q cos - p sin + delta sin cos, where delta is mu times the difference of the
+//! principal values. One stable zero lies in the first quadrant and one unstable zero in the third; the fourth may hold one of each; the
+//! second none. In all of them the slip is along b - mu T d, so that d = (p / (eta + delta), q / eta) with a number eta: a secular equation.
+
+use nalgebra::Vector2;
+
+use crate::scalar::{Real, constant, larger, length};
+
+/// Steps of a search; a handful suffices unless zeros are about to merge.
+const STEPS: u32 = 32;
+
+/// The relative change of eta after which another step would change nothing in half the digits.
+const ROUGH: f64 = 1e-4;
+
+/// The zeros of h on either side of the direction `d`: the one that slip comes from, the one that it turns to.
+///
+/// `turn` is h at d, not zero. `b` and `nu` are m_nt, m_ns and mu times the deviator of T ((m_tt - m_ss) / 2, m_ts). Good to half the digits, and not of length one.
+#[inline]
+pub(super) fn neighbours<T: Real>(
+    b: &Vector2<T>,
+    nu: &Vector2<T>,
+    d: &Vector2<T>,
+    turn: T,
+) -> [Vector2<T>; 2] {
+    let zero = T::zero();
+    let half = length(nu);
+    let delta = half + half;
+    // The principal axis of the larger value: half the angle of nu.
+    let axis = if half > zero {
+        let axis =
+            if nu.x >= zero { Vector2::new(half + nu.x, nu.y) } else { Vector2::new(nu.y, half - nu.x) };
+        axis / length(&axis)
+    } else {
+        Vector2::new(T::one(), zero)
+    };
+    let seen = |v: &Vector2<T>| Vector2::new(axis.x * v.x + axis.y * v.y, axis.x * v.y - axis.y * v.x);
+    let (pull, slip) = (seen(b), seen(d));
+    let sign = |x: T| if x < zero { -T::one() } else { T::one() };
+    let (sx, sy) = (sign(pull.x), sign(pull.y));
+    let slip = Vector2::new(slip.x * sx, slip.y * sy);
+    let forward = turn * sx * sy > zero;
+    // A component that vanishes leaves zeros on an axis; a little of it keeps them apart from the next quadrant.
+    let eps = T::default_epsilon();
+    let none = eps * eps * (pull.x.abs() + pull.y.abs() + delta);
+    let (p, q) = (larger(pull.x.abs(), none), larger(pull.y.abs(), none));
+    let first = || {
+        let (x, y) = alone(p, q, delta);
+        Vector2::new(x, y)
+    };
+    let third = || {
+        let (y, x) = alone(q, p, delta);
+        Vector2::new(-x, -y)
+    };
+    // In the fourth quadrant the stable zero comes first.
+    let fourth_stable = || {
+        let (y, x) = paired(q, p, delta);
+        Vector2::new(x, -y)
+    };
+    let fourth_unstable = || {
+        let (x, y) = paired(p, q, delta);
+        Vector2::new(x, -y)
+    };
+    // h' tells the two ends of the fourth quadrant apart: there it changes sign once, between the zeros.
+    let slope = delta * (slip.x * slip.x - slip.y * slip.y) - pull.x.abs() * slip.x - pull.y.abs() * slip.y;
+    let found = if forward && crowded(p, q, delta) {
+        if slip.y >= zero || (slip.x > zero && slope > zero) {
+            [fourth_unstable(), first()]
+        } else {
+            [third(), fourth_stable()]
+        }
+    } else if !forward && slip.x >= zero && slip.y < zero {
+        [fourth_unstable(), fourth_stable()]
+    } else {
+        [third(), first()]
+    };
+    found.map(|v| {
+        let (x, y) = (v.x * sx, v.y * sy);
+        Vector2::new(axis.x * x - axis.y * y, axis.x * y + axis.y * x)
+    })
+}
+
+/// Whether the fourth quadrant holds zeros: b lies within the astroid p^(2/3) + q^(2/3) = delta^(2/3).
+#[inline]
+fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
+    let inside = delta * delta - p * p - q * q;
+    let product = p * q * delta;
+    inside > T::zero() && inside * inside * inside > constant::<T>(27.0) * product * product
+}
+
+/// The direction (p / (eta + delta), q / eta) of about length one with eta > 0: Newton's method on 1 / length, which rises to the root.
+#[inline]
+fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
+    let one = T::one();
+    // The root is convex in delta, so that its tangent at zero lies below.
+    let (pp, square) = (p * p, p * p + q * q);
+    let mut eta = larger(q, square.sqrt() - delta * pp / square);
+    let (mut x, mut y) = (one, one);
+    for _ in 0..STEPS {
+        let (a, b) = (one / (eta + delta), one / eta);
+        (x, y) = (p * a, q * b);
+        let (xx, yy) = (x * x, y * y);
+        let square = xx + yy;
+        let step = (square.sqrt() - one) * square / (xx * a + yy * b);
+        if step <= constant::<T>(ROUGH) * eta {
+            return (x - x * a * step, y - y * b * step);
+        }
+        eta += step;
+    }
+    (x, y)
+}
+
+/// The direction (p / eta, q / (delta - eta)) of about length one with the smaller eta in (0, delta).
+#[inline]
+fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
+    let one = T::one();
+    let mut eta = p;
+    let (mut x, mut y) = (one, one);
+    for _ in 0..STEPS {
+        let (a, b) = (one / eta, one / (delta - eta));
+        (x, y) = (p * a, q * b);
+        let (xx, yy) = (x * x, y * y);
+        let slope = xx * a - yy * b;
+        if slope <= T::zero() {
+            break;
+        }
+        let step = (xx + yy - one) * constant(0.5) / slope;
+        if step <= constant::<T>(ROUGH) * eta {
+            return (x - x * a * step, y + y * b * step);
+        }
+        eta += step;
+    }
+    (x, y)
+}

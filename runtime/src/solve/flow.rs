@@ -1,0 +1,414 @@
+//! The sliding arc between two neighbouring directions in which slip would stay: from the unstable one, a^2, to the stable one, b^2.
+//!
+//! With complex numbers for vectors of the contact plane, slip is sigma (a + b w)^2 with w from 0 to infinity, and along lambda = ln w
+//! (34) becomes d ln sigma = k / q, dI_n = sigma e^2 / q and dv_n = sigma e F / q, with quadratics e, q, k and F in w. The impulses are sums of three
+//! integrals, of sigma e / q times 1, w and w^2.
+
+use nalgebra::Vector2;
+
+use super::{
+    fixed::neighbours,
+    ledger::State,
+    terminal::Contact,
+    zero::{Near, Zero, halved, over, times},
+};
+use crate::scalar::{Real, constant, fma, larger, smaller};
+
+/// The three integrals along a stretch of the arc.
+pub(super) type Integrals<T> = [T; 3];
+
+/// The coefficients of an arc.
+pub(super) struct Flow<T: Real> {
+    pub mu: T,
+    /// a^2, 2 a b and b^2: slip over sigma is this quadratic in w.
+    pub slip: [Vector2<T>; 3],
+    /// The same times -mu: the tangential impulse for each of the three integrals.
+    rub: [Vector2<T>; 3],
+    /// e = 1 + middle w + w^2.
+    pub middle: T,
+    pub q: [T; 3],
+    pub k: [T; 3],
+    /// k + q: d ln(sigma w) = central / q.
+    pub central: [T; 3],
+    /// F = f e (31).
+    pub f: [T; 3],
+    /// The terms of which f is made.
+    size: T,
+    /// |h| = bend w q / e^2.
+    bend: T,
+    /// The larger of the moduli of the zeros of q.
+    pub outer: T,
+    /// The angle between a zero of q and the positive axis, and how far the logarithms of real zeros lie from their mean.
+    angle: T,
+    spread: T,
+    /// The inverse of the zeros' mean modulus.
+    scale: T,
+    /// Whether f may change sign.
+    folds: bool,
+}
+
+/// A point of the arc.
+#[derive(Clone, Copy)]
+pub(super) struct Place<T: Real> {
+    pub state: State<T>,
+    /// Normal work since the latest compression ended: a small number that keeps its digits.
+    pub since: T,
+    pub w: T,
+    pub sigma: T,
+}
+
+/// Rates by lambda.
+pub(super) struct Rates<T> {
+    pub e: T,
+    /// 1 / q.
+    pub inverse: T,
+    /// dI_n, and f = dv_n / dI_n.
+    pub impulse: T,
+    pub slope: T,
+    /// Of ln sigma, and of ln(sigma e / q).
+    pub growth: T,
+    pub weight: T,
+    /// Of the growth.
+    pub change: T,
+    /// Of ln e and ln F.
+    pub shape: T,
+    pub turn: T,
+}
+
+/// How the rates change: of ln sigma (the second derivative of the growth), ln(sigma e / q), ln e and ln F.
+pub(super) struct Bends<T> {
+    pub growth: T,
+    pub weight: T,
+    pub shape: T,
+    pub turn: T,
+}
+
+impl<T: Real> Flow<T> {
+    /// The arc through the direction `d`, where h is not zero, and its parameter there.
+    #[inline]
+    pub fn through(c: &Contact<T>, d: &Vector2<T>) -> (Self, T) {
+        let (zero, one, two) = (T::zero(), T::one(), constant::<T>(2.0));
+        let (half, four, six) = (constant::<T>(0.5), constant::<T>(4.0), constant::<T>(6.0));
+        // b, mu times the mean and the deviator of T, as seen from d.
+        let b = over(&c.b, d);
+        let mean = c.mu * (c.tt + c.ss) * half;
+        let nu = over(&over(&Vector2::new(c.mu * (c.tt - c.ss) * half, c.mu * c.ts), d), d);
+        let ahead = Vector2::new(one, zero);
+        let h = b.y - nu.y;
+        let rough =
+            neighbours(&b.map(T::plain), &nu.map(T::plain), &ahead, h.plain()).map(|v| v.map(T::plain));
+        let noise = T::default_epsilon() * (mean + b.x.abs() + b.y.abs());
+        let near =
+            Near { h: [h, four * nu.x - two * b.x, six * nu.y, -four * nu.x - two * b.x, -b.y - nu.y] };
+        // Half the angle to a zero of h, its direction, and h' and g there.
+        let exact = |rough: Vector2<T>, side: T, sign: T| {
+            let rough = rough / (rough.x * rough.x + rough.y * rough.y).sqrt();
+            let Zero { mut direction, mut slope, mut pull } = Zero::close(&b, &nu, rough, sign);
+            let half = if direction.x > zero && direction.y.abs() <= constant(0.125) {
+                let (half, exact) = near.beside(&direction, side, sign);
+                let (along, double) = (over(&b, &exact), over(&over(&nu, &exact), &exact));
+                (slope, pull) = ((double.x + double.x - along.x) * sign, along.x - double.x);
+                direction = exact;
+                half
+            } else {
+                halved(&direction, side)
+            };
+            (half, direction, larger(slope, noise), pull - mean)
+        };
+        let [u, s] = rough;
+        // Half the angles from here: behind in the first, ahead in the second.
+        let forward = if h > zero { one } else { -one };
+        let (a, u, q0, g_u) = exact(u, -forward, one);
+        let (z, s, q2, g_s) = exact(s, forward, -one);
+        let start = -a.y / z.y;
+        let cos = a.x * z.x + a.y * z.y;
+        let sin = a.y * z.x - a.x * z.y;
+        let product = times(&a, &z);
+        let m12 = {
+            let inner = over(&over(&nu, &product), &product);
+            inner.y
+        };
+        let q1 = six * m12 * sin;
+        let cross = over(&b, &product).x;
+        let mean_root = (q0 * q2).sqrt().plain();
+        let lean = -(q1 * half).plain() / mean_root;
+        let modulus = (q0 / q2).sqrt().plain();
+        let factor = if lean < -one { (lean * lean - one).sqrt() - lean } else { one };
+        let f = [one - c.mu * over(&b, &u).x, two * (cos - c.mu * cross), one - c.mu * over(&b, &s).x];
+        let k = [g_u, cos * (g_u + g_s) - q1, g_s - q2 - q2];
+        let slip = [times(&u, d), times(&product, d) * two, times(&s, d)];
+        let flow = Self {
+            mu: c.mu,
+            slip,
+            rub: slip.map(|x| x * -c.mu),
+            middle: cos + cos,
+            q: [q0, q1, q2],
+            k,
+            central: [k[0] + q0, k[1] + q1, k[2] + q2],
+            f,
+            size: c.size(),
+            bend: (sin + sin).abs(),
+            outer: (modulus * factor).plain(),
+            angle: angle(lean).plain(),
+            spread: if factor > one { rough_ln(factor).plain() } else { zero },
+            scale: (one / modulus).plain(),
+            folds: folds(&f),
+        };
+        (flow, start)
+    }
+
+    /// e.
+    #[inline(always)]
+    pub fn e(&self, w: T) -> T {
+        fma(w + self.middle, w, T::one())
+    }
+
+    /// Whether |h| is at most this.
+    #[inline(always)]
+    pub fn turns_less(&self, place: &Place<T>, rates: &Rates<T>, than: T) -> bool {
+        self.bend * place.w <= than * rates.inverse * rates.e * rates.e
+    }
+
+    /// q / e, without derivatives.
+    #[inline(always)]
+    pub fn lag(&self, w: T) -> T {
+        let [q0, q1, q2] = self.q;
+        (fma(fma(q2, w, q1), w, q0) / self.e(w)).plain()
+    }
+
+    /// Tangential velocity.
+    #[inline(always)]
+    pub fn slip(&self, place: &Place<T>) -> Vector2<T> {
+        let [a, ab, b] = &self.slip;
+        let w = place.w;
+        Vector2::new(fma(fma(b.x, w, ab.x), w, a.x), fma(fma(b.y, w, ab.y), w, a.y)) * place.sigma
+    }
+
+    /// g at the stable end: the rate of slip there.
+    #[inline(always)]
+    pub fn last_rate(&self) -> T {
+        self.k[2] + self.q[2] + self.q[2]
+    }
+
+    /// All rates at a point.
+    #[inline]
+    pub fn rates(&self, place: &Place<T>) -> Rates<T> {
+        let w = place.w;
+        let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
+        let steep = |p1: T, p2: T| fma(p2 + p2, w, p1) * w;
+        let e = self.e(w);
+        let inverse = T::one() / poly(self.q);
+        let fall = poly(self.f);
+        let growth = poly(self.k) * inverse;
+        let shape = steep(self.middle, T::one()) / e;
+        let pole = steep(self.q[1], self.q[2]) * inverse;
+        Rates {
+            e,
+            inverse,
+            impulse: place.sigma * e * e * inverse,
+            slope: fall / e,
+            growth,
+            weight: growth + shape - pole,
+            change: steep(self.k[1], self.k[2]) * inverse - growth * pole,
+            shape,
+            turn: steep(self.f[1], self.f[2]) / fall,
+        }
+    }
+
+    /// How the rates change at a point.
+    #[inline]
+    pub fn bends(&self, place: &Place<T>, rates: &Rates<T>) -> Bends<T> {
+        let w = place.w;
+        let first = |p1: T, p2: T| fma(p2 + p2, w, p1) * w;
+        let second = |p1: T, p2: T| fma(p2 * constant(4.0), w, p1) * w;
+        let ([_, q1, q2], [_, k1, k2], [_, f1, f2]) = (self.q, self.k, self.f);
+        let inverse = rates.inverse;
+        let (pole, rising) = (first(q1, q2) * inverse, second(q1, q2) * inverse);
+        let shape = second(self.middle, T::one()) / rates.e - rates.shape * rates.shape;
+        Bends {
+            growth: second(k1, k2) * inverse - (rates.change + rates.change) * pole - rates.growth * rising,
+            weight: rates.change + shape - (rising - pole * pole),
+            shape,
+            turn: second(f1, f2) / (rates.slope * rates.e) - rates.turn * rates.turn,
+        }
+    }
+
+    /// How far in lambda a point lies beyond the zeros of q, at least; negative before them.
+    #[inline(always)]
+    pub fn beyond(&self, place: &Place<T>) -> T {
+        rough_ln(place.w.plain() * self.scale)
+    }
+
+    /// How far in lambda one quadrature may reach from here.
+    ///
+    /// With all zeros of q outside an ellipse whose foci are the ends, and a constant rate of growth, the error is about
+    /// e^(c (rho + 1 / rho - 2) / 2) rho^(-2 n), where rho is the sum of the semi-axes and c half of the rate times the length.
+    #[inline]
+    pub fn reach(&self, place: &Place<T>, rates: &Rates<T>) -> T {
+        // rho + 1 / rho with an error of 1e-15 but for growth.
+        const SUM: f64 = 3.28;
+        // Here the map of the nodes comes as near to its own poles.
+        const MOST: f64 = 9.0;
+        let to = |d: T| {
+            let away = (d * d + self.angle * self.angle).sqrt();
+            (constant::<T>(2.0 * SUM) * away + constant::<T>(4.0) * d) * constant(1.0 / (SUM * SUM - 4.0))
+        };
+        let before = self.beyond(place);
+        let mut poles = to(before - self.spread);
+        if self.spread > T::zero() {
+            poles = smaller(poles, to(before + self.spread));
+        }
+        let poles = smaller(poles, constant(0.5 * MOST));
+        let one = T::one();
+        let mut rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).plain();
+        if place.sigma * rates.e > constant(0.06) {
+            // The work goes with slip times the impulse.
+            rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().plain());
+        }
+        // Growth that changes shows zeros of q with large powers; there the distance must be greater.
+        let bent = (rates.change.abs().plain() * constant(0.06)).sqrt();
+        let limited = |rate: T| {
+            // How much growth shortens it: a fit.
+            let c = poles * rate;
+            let fit = fma(fma(c, constant(3e-5), constant(1.2e-3)), c, constant(0.01));
+            let steep = smaller(poles, constant::<T>(7.0) / rate);
+            larger(poles / fma(fit, c, fma(bent, poles, one)), steep / fma(bent, steep, one))
+        };
+        let both = limited(rate);
+        let both = both + both;
+        if self.central[2].abs().plain() <= (rate + rate) * self.q[2].plain() {
+            return both.plain();
+        }
+        let both = both * constant(0.5);
+        // About the growth at the far end, where it may be steeper.
+        let part = both * constant(0.125);
+        let w = (one + part) / (one - part);
+        let w = w * w;
+        let w = w * w;
+        let w = place.w * w * w;
+        let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
+        let far = (poly(self.central) / poly(self.q)).abs().plain();
+        let both = if far > rate + rate { smaller(both, limited(far)) } else { both };
+        (both + both).plain()
+    }
+
+    /// Whether v_n rises from here, and the length in lambda after which f changes sign, if it does.
+    #[inline]
+    pub fn fold(&self, place: &Place<T>, rates: &Rates<T>) -> (bool, Option<T>) {
+        if !self.folds {
+            return (rates.slope > T::zero(), None);
+        }
+        let [_, f1, f2] = self.f;
+        let zero = T::zero();
+        // F(w (1 + x)) = c + b x + a x^2
+        let w = place.w;
+        let mut c = (rates.slope * rates.e).plain();
+        let tiny = constant::<T>(64.0) * T::default_epsilon();
+        let a = (f2 * w * w).plain();
+        let b = (f1 * w).plain() + a + a;
+        let mut rising = c > zero;
+        // A zero at the beginning is behind, as well as f can be known.
+        if c.abs() <= tiny * self.size * rates.e {
+            c = zero;
+            rising = b > zero;
+        }
+        let mut best = None;
+        for x in super::quadratic(a, b, c) {
+            let x = x.plain();
+            if x > tiny && best.is_none_or(|y| x < y) {
+                best = Some(x);
+            }
+        }
+        (rising, best.map(|x| (T::one() + x).ln().plain()))
+    }
+
+    /// Adds integrals to a state, but for the work.
+    #[inline(always)]
+    pub fn add(&self, [m0, m1, m2]: Integrals<T>, state: &mut State<T>) {
+        let [f0, f1, f2] = self.f;
+        let [a, ab, b] = &self.rub;
+        state.normal += fma(self.middle, m1, m0 + m2);
+        state.tangential.x = fma(a.x, m0, fma(ab.x, m1, fma(b.x, m2, state.tangential.x)));
+        state.tangential.y = fma(a.y, m0, fma(ab.y, m1, fma(b.y, m2, state.tangential.y)));
+        state.velocity += fma(f0, m0, fma(f1, m1, f2 * m2));
+    }
+}
+
+impl<T: Real> Place<T> {
+    /// Goes a tiny step of lambda further: the error is of third order.
+    #[inline]
+    pub fn touch(&mut self, flow: &Flow<T>, rates: &Rates<T>, step: T) {
+        let (one, half) = (T::one(), constant::<T>(0.5));
+        let first = self.sigma * rates.e * rates.inverse * step;
+        let bent = |extra: T| one + (rates.weight + extra) * step * half;
+        let second = first * self.w;
+        let from = self.state;
+        flow.add(
+            [first * bent(T::zero()), second * bent(one), second * self.w * bent(one + one)],
+            &mut self.state,
+        );
+        let done = (from.velocity + self.state.velocity) * half * (self.state.normal - from.normal);
+        self.state.work += done;
+        self.since += done;
+        self.sigma *=
+            one + step * (rates.growth + step * half * (rates.growth * rates.growth + rates.change));
+        self.w *= one + step * (one + step * half);
+    }
+
+    /// Goes a small step of lambda further: the error is of fourth order.
+    #[inline(never)]
+    pub fn nudge(&mut self, flow: &Flow<T>, rates: &Rates<T>, bends: &Bends<T>, step: T) {
+        let (one, half, third) = (T::one(), constant::<T>(0.5), constant::<T>(1.0 / 3.0));
+        let w = self.w;
+        let first = self.sigma * rates.e * rates.inverse * step;
+        let bent = |extra: T| {
+            let rate = rates.weight + extra;
+            one + step * half * (rate + step * third * (rate * rate + bends.weight))
+        };
+        let second = first * w;
+        let from = self.state;
+        flow.add(
+            [first * bent(T::zero()), second * bent(one), second * w * bent(one + one)],
+            &mut self.state,
+        );
+        // The trapezoid, and the bend of v_n over I_n.
+        let pushed = self.state.normal - from.normal;
+        let bow = rates.slope * (rates.turn - rates.shape) * step * pushed * constant(1.0 / 6.0);
+        let done = (from.velocity + self.state.velocity - bow) * half * pushed;
+        self.state.work += done;
+        self.since += done;
+        let (g, change) = (rates.growth, rates.change);
+        let cubed = g * (g * g + constant::<T>(3.0) * change) + bends.growth;
+        self.sigma *= one + step * (g + step * half * (g * g + change + step * third * cubed));
+        self.w *= one + step * (one + step * half * (one + step * third));
+    }
+}
+
+/// Whether a quadratic has zeros at positive w.
+#[inline]
+fn folds<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
+    let zero = T::zero();
+    let apart = (*f0 <= zero) != (*f2 <= zero);
+    let up = *f0 > zero && *f2 > zero;
+    let between = if up { *f1 < zero } else { *f1 > zero };
+    apart || *f0 == zero || *f2 == zero || (between && *f1 * *f1 >= constant::<T>(3.9) * *f0 * *f2)
+}
+
+/// ln x, to a per cent between 1/8 and 8 and too near to zero beyond.
+#[inline]
+pub(super) fn rough_ln<T: Real>(x: T) -> T {
+    // 2 atanh((x - 1) / (x + 1))
+    let u = (x - T::one()) / (x + T::one());
+    let z = u * u;
+    (u + u) * (constant::<T>(15.0) - constant::<T>(4.0) * z) / (constant::<T>(15.0) - constant::<T>(9.0) * z)
+}
+
+/// The angle with this cosine, to a few per cent; pi below -1.
+#[inline]
+fn angle<T: Real>(cos: T) -> T {
+    let one = T::one();
+    let x = cos.abs();
+    let x = if x < one { x } else { one };
+    let acute = (one - x).sqrt() * (constant::<T>(core::f64::consts::FRAC_PI_2) - constant::<T>(0.1565) * x);
+    if cos >= T::zero() { acute } else { constant::<T>(core::f64::consts::PI) - acute }
+}

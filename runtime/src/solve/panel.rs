@@ -1,0 +1,274 @@
+//! One stretch of the sliding arc by collocation: from a point to any point within reach, at once.
+//!
+//! Sixteen Gauss nodes in a parameter t that w follows like ((1 + s t) / (1 - s t))^8, which is nearly exp but rational. The logarithm of sigma w is
+//! integrated by collocation; at the end of the stretch (and only there) the error of all integrals falls with twice the number of nodes.
+//!
+//! The loops are plain ones over short arrays, so that the compiler turns each into a few instructions on vectors.
+
+use super::{
+    flow::{Flow, Place},
+    lanes::exp,
+    nodes::{END, EVEN, HALF, NODES, ODD, WEIGHTS},
+};
+use crate::scalar::{Real, constant, fma};
+
+/// The coefficients of a quadratic that is divided by w, where w counts in units of `middle`.
+#[inline(always)]
+fn about<T: Real>([p0, p1, p2]: [T; 3], middle: T, inverse: T) -> [T; 3] {
+    [p0 * inverse, p1, p2 * middle]
+}
+
+/// A quantity at the positive nodes, and at the negative ones.
+#[derive(Clone, Copy)]
+struct Nodes<T> {
+    ahead: [T; HALF],
+    behind: [T; HALF],
+}
+
+/// What is known at the nodes, where w counts from the middle of the stretch: quadratics are divided by w there.
+pub(super) struct Panel<T> {
+    w: Nodes<T>,
+    /// dlambda/dt over q.
+    inverse: Nodes<T>,
+    e: Nodes<T>,
+    /// d ln(sigma w) / dt and ln(sigma w), and then the terms of the four sums.
+    rate: Nodes<T>,
+    log: Nodes<T>,
+    /// sigma w, then sigma e / q, where sigma w = 1 in the middle.
+    grown: Nodes<T>,
+    /// w and sigma w in the middle, and the sum of the work of friction.
+    middle: T,
+    central: T,
+    rubbed: T,
+}
+
+impl<T: Real> Panel<T> {
+    /// An empty one. It is filled with a number from the problem, because one stretch overwrites what the last one left.
+    #[inline]
+    pub fn new(any: T) -> Self {
+        let nodes = Nodes { ahead: [any; HALF], behind: [any; HALF] };
+        Self {
+            w: nodes,
+            inverse: nodes,
+            e: nodes,
+            rate: nodes,
+            log: nodes,
+            grown: nodes,
+            middle: any,
+            central: any,
+            rubbed: any,
+        }
+    }
+}
+
+impl<T: Real> Flow<T> {
+    /// Fills a panel about w = `middle`. `s` is the parameter of the map.
+    #[inline(never)]
+    fn survey(&self, [middle, unit]: [T; 2], s: T, panel: &mut Panel<T>) {
+        let one = T::one();
+        let Panel { w, inverse, .. } = panel;
+        let scale = s * constant(16.0);
+        let inverses = inverse.ahead.iter_mut().zip(&mut inverse.behind);
+        for (((node, w), v), (inverse, other)) in
+            NODES.iter().zip(&mut w.ahead).zip(&mut w.behind).zip(inverses)
+        {
+            let t = s * constant(*node);
+            let (up, down) = (one + t, one - t);
+            let part = one / (up * down);
+            *inverse = scale * part;
+            *other = scale * part;
+            let (up, down) = (up * up * part, down * down * part);
+            let (up, down) = (up * up, down * down);
+            let (up, down) = (up * up, down * down);
+            *w = up * up;
+            *v = down * down;
+        }
+        let Panel { w, inverse, e, rate, .. } = panel;
+        let [q0, q1, q2] = about(self.q, middle, unit);
+        let [k0, k1, k2] = about(self.central, middle, unit);
+        let [e0, e1, e2] = [unit, self.middle, middle];
+        let halves = [
+            (&w.ahead, &mut inverse.ahead, &mut e.ahead, &mut rate.ahead),
+            (&w.behind, &mut inverse.behind, &mut e.behind, &mut rate.behind),
+        ];
+        for (w, inverse, e, rate) in halves {
+            for (((w, inverse), e), rate) in w.iter().zip(inverse).zip(e).zip(rate) {
+                let w = *w;
+                let over = *inverse / fma(fma(q2, w, q1), w, q0);
+                *inverse = over;
+                *e = fma(fma(e2, w, e1), w, e0);
+                *rate = fma(fma(k2, w, k1), w, k0) * over;
+            }
+        }
+    }
+
+    /// The point that lies `length` further in lambda, but for the work.
+    #[inline(never)]
+    pub fn step(&self, from: &Place<T>, length: T, panel: &mut Panel<T>, to: &mut Place<T>) {
+        let one = T::one();
+        // s = tanh(length / 32)
+        let y = length * constant(1.0 / 32.0);
+        let z = y * y;
+        let s = y * (constant::<T>(945.0) + z * (constant::<T>(105.0) + z))
+            / (constant::<T>(945.0) + z * (constant::<T>(420.0) + z * constant(15.0)));
+        let ratio = (one + s) / (one - s);
+        let ratio = ratio * ratio;
+        let ratio = ratio * ratio;
+        let ratio = ratio * ratio;
+        let middle = from.w * ratio;
+        let last = middle * ratio;
+        let unit = one / middle;
+        self.survey([middle, unit], s, panel);
+        let [begin, end] = integrals(&panel.rate, &mut panel.log);
+        // Small numbers by their inverses, to keep their digits.
+        let [before, after, ..] = exp([begin.abs(), end.abs(), end, end]);
+        let before = if begin > T::zero() { one / before } else { before };
+        let after = if end < T::zero() { one / after } else { after };
+        Self::total(panel);
+        let Panel { rate, log, .. } = &*panel;
+        let [first, second, third, rubbed] =
+            [sum(rate.ahead), sum(rate.behind), sum(log.ahead), sum(log.behind)];
+        // sigma w in the middle.
+        let central = from.sigma * from.w * before;
+        (panel.middle, panel.central, panel.rubbed) = (middle, central, rubbed);
+        to.state = from.state;
+        self.add([first * (central * unit), second * central, third * (central * middle)], &mut to.state);
+        to.w = last;
+        to.sigma = central * after / last;
+    }
+
+    /// The work of the normal impulse on the stretch that was stepped over last, from the balance of energy and the work of friction.
+    #[inline]
+    pub fn balance(&self, from: &Place<T>, to: &Place<T>, panel: &Panel<T>) -> T {
+        let slips = self.slip(from) + self.slip(to);
+        fma(
+            constant::<T>(0.5),
+            (from.state.velocity + to.state.velocity) * (to.state.normal - from.state.normal)
+                + slips.dot(&(to.state.tangential - from.state.tangential)),
+            self.mu * panel.central * panel.central * panel.rubbed,
+        )
+    }
+
+    /// The same work by integrating v_n over I_n: exact where it is small beside the energies.
+    #[inline(never)]
+    pub fn direct(&self, from: &Place<T>, to: &Place<T>, panel: &mut Panel<T>) -> T {
+        let [f0, f1, f2] = about(self.f, panel.middle, T::one() / panel.middle);
+        let Panel { w, e, grown, rate, log, central, .. } = panel;
+        let halves =
+            [(&w.ahead, &grown.ahead, &mut rate.ahead), (&w.behind, &grown.behind, &mut rate.behind)];
+        for (w, grown, rate) in halves {
+            for ((w, grown), rate) in w.iter().zip(grown).zip(rate) {
+                *rate = *grown * fma(fma(f2, *w, f1), *w, f0);
+            }
+        }
+        let [begin, _] = integrals(rate, log);
+        let halves = [
+            (&log.ahead, &grown.ahead, &e.ahead, &mut rate.ahead),
+            (&log.behind, &grown.behind, &e.behind, &mut rate.behind),
+        ];
+        for (velocity, grown, e, terms) in halves {
+            for ((((velocity, grown), e), weight), term) in
+                velocity.iter().zip(grown).zip(e).zip(&WEIGHTS).zip(terms)
+            {
+                *term = (*velocity - begin) * *grown * *e * constant(*weight);
+            }
+        }
+        let pushed = sum(rate.ahead) + sum(rate.behind);
+        fma(from.state.velocity, to.state.normal - from.state.normal, *central * *central * pushed)
+    }
+
+    /// The terms of the sums of sigma e / q over pairs of nodes, times 1, w and w^2, and of sigma^2 e^3 / q, where sigma w = 1 in the middle.
+    ///
+    /// `grown` is sigma w in and sigma e / q out, without weights. 1 / w is w at the other node of a pair.
+    #[inline(never)]
+    fn total(panel: &mut Panel<T>) {
+        let Panel { w, inverse, e, log, grown, rate, .. } = panel;
+        for (log, grown) in [(&log.ahead, &mut grown.ahead), (&log.behind, &mut grown.behind)] {
+            for (log, grown) in log.as_chunks::<4>().0.iter().zip(grown.as_chunks_mut::<4>().0) {
+                *grown = exp(*log);
+            }
+        }
+        let (Nodes { ahead: s0, behind: s1 }, Nodes { ahead: s2, behind: s3 }) = (rate, log);
+        let known = w
+            .ahead
+            .iter()
+            .zip(&w.behind)
+            .zip(&inverse.ahead)
+            .zip(&e.ahead)
+            .zip(&mut grown.ahead)
+            .zip(&WEIGHTS);
+        let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
+        for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
+            let [value, first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
+            *grown = value;
+            *s0 = first;
+            *s1 = second;
+            *s2 = third;
+            *s3 = rubbed;
+        }
+        let known = w
+            .behind
+            .iter()
+            .zip(&w.ahead)
+            .zip(&inverse.behind)
+            .zip(&e.behind)
+            .zip(&mut grown.behind)
+            .zip(&WEIGHTS);
+        let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
+        for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
+            let [value, first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
+            *grown = value;
+            *s0 += first;
+            *s1 += second;
+            *s2 += third;
+            *s3 += rubbed;
+        }
+    }
+}
+
+/// sigma e / q at a node, and what it adds to the four sums.
+#[inline(always)]
+fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) -> [T; 5] {
+    let slip = grown * e;
+    let value = slip * inverse;
+    let second = value * constant(weight);
+    let first = second * opposite;
+    [value * opposite, first, second, second * w, first * (slip * opposite * e)]
+}
+
+/// The sum over the pairs.
+#[inline(always)]
+fn sum<T: Real>([a, b, c, d, e, f, g, h]: [T; HALF]) -> T {
+    ((a + e) + (b + f)) + ((c + g) + (d + h))
+}
+
+/// The integrals of a function from the middle to each node, and to either end.
+#[inline(never)]
+fn integrals<T: Real>(rate: &Nodes<T>, log: &mut Nodes<T>) -> [T; 2] {
+    let zero = T::zero();
+    let (mut even, mut odd) = ([zero; HALF], [zero; HALF]);
+    for (((even, odd), ahead), behind) in even.iter_mut().zip(&mut odd).zip(&rate.ahead).zip(&rate.behind) {
+        *even = *ahead + *behind;
+        *odd = *ahead - *behind;
+    }
+    let (mut rise, mut bend) = ([zero; HALF], [zero; HALF]);
+    for (((even, odd), rows), columns) in even.iter().zip(&odd).zip(&EVEN).zip(&ODD) {
+        for (((rise, bend), row), column) in rise.iter_mut().zip(&mut bend).zip(rows).zip(columns) {
+            *rise = fma(*even, constant(*row), *rise);
+            *bend = fma(*odd, constant(*column), *bend);
+        }
+    }
+    let (mut halves, mut sides) = ([zero; HALF], [zero; HALF]);
+    for (((even, weight), end), (odd, (half, side))) in
+        even.iter().zip(&WEIGHTS).zip(&END).zip(odd.iter().zip(halves.iter_mut().zip(&mut sides)))
+    {
+        *half = *even * constant(*weight);
+        *side = *odd * constant(*end);
+    }
+    let (half, side) = (sum(halves) * constant(0.5), sum(sides));
+    for (((ahead, behind), rise), bend) in log.ahead.iter_mut().zip(&mut log.behind).zip(&rise).zip(&bend) {
+        *ahead = *bend + *rise;
+        *behind = *bend - *rise;
+    }
+    [side - half, side + half]
+}

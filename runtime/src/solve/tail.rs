@@ -1,0 +1,159 @@
+//! The rest of the arc until slip stops, by series in u = 1 / w.
+//!
+//! About the stable direction slip is tau (b + a u)^2 with tau = sigma w^2, and the integrals that remain are tau R(u) (tau^2 R for the work of
+//! friction) with Q u R' - K R = w, where Q, K and w are polynomials: one recurrence with two taps, shared by four lanes. The rows are worked
+//! on in memory, which lets the compiler keep the four lanes in one register.
+
+use core::cell::Cell;
+
+use super::{
+    flow::{Flow, Place},
+    ledger::State,
+};
+use crate::scalar::{Real, constant, fma};
+
+/// One coefficient of the four lanes: the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and the work of friction.
+type Row<T> = [T; 4];
+
+/// Terms between two looks at whether they still count.
+const BLOCK: usize = 8;
+
+/// Most blocks. With u at less than half of the distance to the zeros of q four are enough.
+const BLOCKS: u32 = 12;
+
+/// Minus the multipliers of the terms before and that of the term itself, as base + n slope.
+struct Taps<T> {
+    base: [Row<T>; 3],
+    slope: [Row<T>; 3],
+}
+
+impl<T: Real> Flow<T> {
+    /// Whether the series converges quickly from here, for so much of all slip.
+    #[inline]
+    pub fn settles(&self, place: &Place<T>, share: T) -> bool {
+        let ratio = place.w / self.outer;
+        if ratio <= constant(1.3) {
+            return false;
+        }
+        let [q0, q1, q2] = self.q;
+        let [k0, k1, _] = self.k;
+        // The terms must fall from the beginning, too: steep powers of the distance to the zeros of q make them rise first.
+        let u = T::one() / place.w;
+        let rise = ((k1 + q1 + q1).abs() + (k0 + q0 + q0).abs() * u) * u;
+        // After 64 terms nothing may be left.
+        let power = ratio * ratio;
+        let power = power * power;
+        let power = power * power;
+        let power = power * power;
+        let power = power * power;
+        power * power * T::default_epsilon() >= share && rise <= constant::<T>(2.0) * (q2 - self.last_rate())
+    }
+
+    /// The state where slip stops (g < 0 at the stable end), and the normal work since compression ended.
+    #[inline(never)]
+    pub fn stop(&self, place: &Place<T>) -> (State<T>, T) {
+        let (zero, one, three) = (T::zero(), T::one(), constant::<T>(3.0));
+        let u = one / place.w;
+        let (uu, middle) = (u * u, self.middle * u);
+        let [q0, q1, q2] = self.q;
+        let [k0, k1, _] = self.k;
+        // ln tau grows by K / Q; powers of u are put into the coefficients.
+        let far = [self.last_rate(), (k1 + q1 + q1) * u, (k0 + q0 + q0) * uu];
+        let [k0, k1, k2] = far.map(|k| [k, k, k, k + k]);
+        let (q0, q1, q2) = (q2, q1 * u, q0 * uu);
+        let mut taps = Taps {
+            base: [k0.map(|k| -k), k1.map(|k| k + q1), k2.map(|k| k + q2 + q2)],
+            slope: [[q0; 4], [-q1; 4], [-q2; 4]],
+        };
+        // The sources: e times 1, u and u^2, and e^3.
+        let (e1, e2) = (middle, uu);
+        let square = e1 * e1;
+        let s2 = three * (square + e2);
+        let mut sources = [
+            [one, zero, zero, one],
+            [e1, u, zero, three * e1],
+            [e2, u * e1, uu, s2],
+            [zero, u * e2, uu * e1, e1 * fma(constant::<T>(6.0), e2, square)],
+            [zero, zero, uu * e2, e2 * s2],
+            [zero, zero, zero, e2 * e2 * (three * e1)],
+            [zero, zero, zero, e2 * e2 * e2],
+            [zero; 4],
+        ];
+        let mut rows = [[zero; 4]; BLOCK + 2];
+        let mut total = [zero; 4];
+        let eps = T::default_epsilon();
+        let tau = place.sigma * place.w * place.w;
+        let before = place.state.normal / tau;
+        let worked = place.state.work.abs() / (tau * tau * self.mu);
+        for _ in 0..BLOCKS {
+            block(&mut rows, &mut sources, &mut taps, &mut total);
+            let [[a, b, c, d], [a1, b1, c1, d1], ..] = rows;
+            let [sum, .., rubbed] = total;
+            // Measured against all that has been since the beginning.
+            let left = (a.abs() + b.abs() + c.abs()) + (a1.abs() + b1.abs() + c1.abs());
+            if left <= eps * (sum + before) && d.abs() + d1.abs() <= eps * (rubbed + worked) {
+                break;
+            }
+        }
+        let [third, second, first, rubbed] = total;
+        let from = &place.state;
+        let mut state = *from;
+        self.add([first * tau, second * tau, third * tau], &mut state);
+        let done = fma(
+            constant::<T>(0.5),
+            (from.velocity + state.velocity) * (state.normal - from.normal)
+                + self.slip(place).dot(&(state.tangential - from.tangential)),
+            self.mu * tau * tau * rubbed,
+        );
+        state.work += done;
+        (state, place.since + done)
+    }
+}
+
+/// Eight terms from the two before, which come first in `rows`; those of the next block, and its sources and taps, are left behind.
+#[inline(never)]
+fn block<T: Real>(
+    rows: &mut [Row<T>; BLOCK + 2],
+    sources: &mut [Row<T>; BLOCK],
+    taps: &mut Taps<T>,
+    total: &mut Row<T>,
+) {
+    let [p, q, r] = taps.base;
+    let [dp, dq, dr] = taps.slope;
+    let cells = Cell::from_mut(rows.as_mut_slice()).as_slice_of_cells();
+    for ((window, source), n) in cells.windows(3).zip(sources.iter()).zip(NUMBERS) {
+        let [before, last, out] = window else { return };
+        let n = [constant::<T>(n); 4];
+        let sum = mul_add(mul_add(n, dq, q), last.get(), *source);
+        let [a, b, c, d] = mul_add(mul_add(n, dr, r), before.get(), sum);
+        let [p, q, r, s] = mul_add(n, dp, p);
+        out.set([a / p, b / q, c / r, d / s]);
+    }
+    let [_, _, terms @ ..] = rows;
+    for term in terms.iter() {
+        let ([t0, t1, t2, t3], [x0, x1, x2, x3]) = (&mut *total, term);
+        *t0 += *x0;
+        *t1 += *x1;
+        *t2 += *x2;
+        *t3 += *x3;
+    }
+    let [.., a, b] = *terms;
+    let [first, second, ..] = rows;
+    (*first, *second) = (a, b);
+    for source in sources {
+        *source = [T::zero(); 4];
+    }
+    let length = [constant::<T>(BLOCK as f64); 4];
+    let [p, q, r] = &mut taps.base;
+    *p = mul_add(length, dp, *p);
+    *q = mul_add(length, dq, *q);
+    *r = mul_add(length, dr, *r);
+}
+
+/// The numbers of the terms of a block.
+const NUMBERS: [f64; BLOCK] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+
+#[inline(always)]
+fn mul_add<T: Real>([a0, a1, a2, a3]: Row<T>, [b0, b1, b2, b3]: Row<T>, [c0, c1, c2, c3]: Row<T>) -> Row<T> {
+    [fma(a0, b0, c0), fma(a1, b1, c1), fma(a2, b2, c2), fma(a3, b3, c3)]
+}
