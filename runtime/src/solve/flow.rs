@@ -3,6 +3,9 @@
 //! With complex numbers for vectors of the contact plane, slip is sigma (a + b w)^2 with w from 0 to infinity, and along lambda = ln w
 //! (34) becomes d ln sigma = k / q, dI_n = sigma e^2 / q and dv_n = sigma e F / q, with quadratics e, q, k and F in w. The impulses are sums of three
 //! integrals, of sigma e / q times 1, w and w^2.
+//!
+//! With C + i S = a b* (b* the conjugate), h = -2 S w q / e^2 where q = (h'(a^2), 6 m S, -h'(b^2)), the coefficients of 1, w and w^2, and m is mu times
+//! the off-diagonal entry of T in axes along a b. At w = 0 and without end (34) must hold as well: k = (g(a^2), C (g(a^2) + g(b^2)) - q_1, g(b^2) - 2 q_2).
 
 use nalgebra::Vector2;
 
@@ -26,7 +29,9 @@ pub(super) struct Flow<T: Real> {
     rub: [Vector2<T>; 3],
     /// e = 1 + middle w + w^2.
     pub middle: T,
+    /// dI_n = sigma e^2 / q.
     pub q: [T; 3],
+    /// d ln sigma = k / q.
     pub k: [T; 3],
     /// k + q: d ln(sigma w) = central / q.
     pub central: [T; 3],
@@ -124,11 +129,7 @@ impl<T: Real> Flow<T> {
         let cos = a.x * z.x + a.y * z.y;
         let sin = a.y * z.x - a.x * z.y;
         let product = times(&a, &z);
-        let m12 = {
-            let inner = over(&over(&nu, &product), &product);
-            inner.y
-        };
-        let q1 = six * m12 * sin;
+        let q1 = six * over(&over(&nu, &product), &product).y * sin;
         let cross = over(&b, &product).x;
         let mean_root = (q0 * q2).sqrt().plain();
         let lean = -(q1 * half).plain() / mean_root;
