@@ -189,40 +189,38 @@ impl<T: Real> Flow<T> {
             }
         }
         let (Nodes { ahead: s0, behind: s1 }, Nodes { ahead: s2, behind: s3 }) = (rate, log);
-        let known = w
-            .ahead
-            .iter()
-            .zip(&w.behind)
-            .zip(&inverse.ahead)
-            .zip(&e.ahead)
-            .zip(&mut grown.ahead)
-            .zip(&WEIGHTS);
-        let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
-        for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
-            let [value, first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
-            *grown = value;
-            *s0 = first;
-            *s1 = second;
-            *s2 = third;
-            *s3 = rubbed;
-        }
-        let known = w
-            .behind
-            .iter()
-            .zip(&w.ahead)
-            .zip(&inverse.behind)
-            .zip(&e.behind)
-            .zip(&mut grown.behind)
-            .zip(&WEIGHTS);
-        let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
-        for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
-            let [value, first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
-            *grown = value;
-            *s0 += first;
-            *s1 += second;
-            *s2 += third;
-            *s3 += rubbed;
-        }
+        let mut sums = [s0, s1, s2, s3];
+        gather([&w.ahead, &w.behind, &inverse.ahead, &e.ahead], &mut grown.ahead, &mut sums, |sum, term| {
+            *sum = term
+        });
+        gather(
+            [&w.behind, &w.ahead, &inverse.behind, &e.behind],
+            &mut grown.behind,
+            &mut sums,
+            |sum, term| {
+                *sum += term;
+            },
+        );
+    }
+}
+
+/// Takes what one half of the nodes adds to the four sums: w there and at the opposite nodes, dlambda/dt over q, and e.
+#[inline(always)]
+fn gather<T: Real>(
+    [w, opposite, inverse, e]: [&[T; HALF]; 4],
+    grown: &mut [T; HALF],
+    [s0, s1, s2, s3]: &mut [&mut [T; HALF]; 4],
+    take: impl Fn(&mut T, T),
+) {
+    let known = w.iter().zip(opposite).zip(inverse).zip(e).zip(grown).zip(&WEIGHTS);
+    let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
+    for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
+        let [value, first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
+        *grown = value;
+        take(s0, first);
+        take(s1, second);
+        take(s2, third);
+        take(s3, rubbed);
     }
 }
 
