@@ -5,11 +5,12 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::program::arithmetic::{call, call2, mul_add, sin_cos};
+use crate::program::arithmetic::Arithmetic;
 use crate::program::graph::Input;
-use crate::program::operation::{Operation, Value};
+use crate::program::operation::{Operation, Stage, Value};
 use crate::program::routine::Quantity;
 use crate::program::slice::Slice;
+use crate::program::twice::Twice;
 use crate::program::{Guard, Program, VANISHING};
 
 /// The numbers from outside, each in the unit that the model declares, in file order.
@@ -109,12 +110,42 @@ impl std::error::Error for Failure {}
 #[derive(Clone, Debug)]
 pub struct Evaluator<'a> {
     program: &'a Program,
+    stages: Vec<Stage>,
+}
+
+/// The result of an operation on earlier values; of a sine-cosine pair both, else the second is 0.
+pub(crate) fn operate<N: Arithmetic>(
+    operation: Operation,
+    inputs: &Inputs,
+    numbers: impl Fn(Value) -> (N, N),
+) -> (N, N) {
+    use Operation::*;
+    let of = |value: Value| numbers(value).0;
+    let number = match operation {
+        Constant(bits) => N::exactly(bits.get()),
+        Input(input) => N::exactly(inputs.get(input)),
+        Neg(a) => -of(a),
+        Add(a, b) => of(a) + of(b),
+        Sub(a, b) => of(a) - of(b),
+        Mul(a, b) => of(a) * of(b),
+        Div(a, b) => of(a) / of(b),
+        Recip(a) => N::exactly(1.0) / of(a),
+        MulAdd(a, b, c) => of(a).mul_add(of(b), of(c)),
+        MulSub(a, b, c) => of(a).mul_add(of(b), -of(c)),
+        NegMulAdd(a, b, c) => (-of(a)).mul_add(of(b), of(c)),
+        SinCos(a) => return of(a).sin_cos(),
+        Sine(a) => of(a),
+        Cosine(a) => numbers(a).1,
+        Call(function, a) => of(a).call(function),
+        Call2(function, a, b) => of(a).call2(function, of(b)),
+    };
+    (number, N::exactly(0.0))
 }
 
 impl<'a> Evaluator<'a> {
     /// An evaluator of a program.
     pub fn new(program: &'a Program) -> Self {
-        Evaluator { program }
+        Evaluator { program, stages: program.stages() }
     }
 
     /// The quantities asked for, in that order.
@@ -143,35 +174,21 @@ impl<'a> Evaluator<'a> {
         Ok(arrays)
     }
 
-    /// Every value of the slice; of a sine-cosine pair both, else the second is 0.
+    /// Every value of the slice; of a sine-cosine pair both, else the second is 0. What depends on parameters alone is computed in
+    /// twice the digits and rounded for the rest.
     fn numbers(&self, inputs: &Inputs, slice: &Slice<'_>) -> Vec<(f64, f64)> {
-        let mut numbers = vec![(0.0, 0.0); self.program.operations.len()];
+        let (none, nothing) = ((0.0, 0.0), Twice::new(0.0));
+        let mut numbers = vec![none; self.program.operations.len()];
+        let mut early = vec![(nothing, nothing); self.program.operations.len()];
         for &value in &slice.order {
-            use Operation::*;
-            let operation = self.program.operation(value);
-            let of = |value: Value| numbers[value.index()].0;
-            let number = match operation {
-                Constant(bits) => bits.get(),
-                Input(input) => inputs.get(input),
-                Neg(a) => -of(a),
-                Add(a, b) => of(a) + of(b),
-                Sub(a, b) => of(a) - of(b),
-                Mul(a, b) => of(a) * of(b),
-                Div(a, b) => of(a) / of(b),
-                Recip(a) => 1.0 / of(a),
-                MulAdd(a, b, c) => mul_add(of(a), of(b), of(c)),
-                MulSub(a, b, c) => mul_add(of(a), of(b), -of(c)),
-                NegMulAdd(a, b, c) => mul_add(-of(a), of(b), of(c)),
-                SinCos(a) => {
-                    numbers[value.index()] = sin_cos(of(a));
-                    continue;
-                }
-                Sine(a) => of(a),
-                Cosine(a) => numbers[a.index()].1,
-                Call(function, a) => call(function, of(a)),
-                Call2(function, a, b) => call2(function, of(a), of(b)),
-            };
-            numbers[value.index()].0 = number;
+            let (operation, index) = (self.program.operation(value), value.index());
+            if self.stages[index] <= Stage::Parameter {
+                let (first, second) = operate(operation, inputs, |value| early[value.index()]);
+                early[index] = (first, second);
+                numbers[index] = (first.rounded(), second.rounded());
+            } else {
+                numbers[index] = operate(operation, inputs, |value| numbers[value.index()]);
+            }
         }
         numbers
     }

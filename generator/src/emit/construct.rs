@@ -107,12 +107,13 @@ impl Emitter<'_> {
     }
 
     fn hoist(&self) -> TokenStream {
+        let krate = self.krate;
         let statements = self.at_construction(&self.hoisted);
         let values = self.hoisted.iter().map(|&value| local(value));
-        quote! { #statements [#(#values),*] }
+        quote! { #statements [#(#krate::generated::construction::rounded(#values)),*] }
     }
 
-    /// Statements that compute values which depend on parameters alone.
+    /// Statements that compute values which depend on parameters alone, in twice the digits: what all results share has but one rounding.
     fn at_construction(&self, values: &[Value]) -> TokenStream {
         let mut needed = BTreeSet::new();
         let mut stack = values.to_vec();
@@ -141,11 +142,15 @@ impl Emitter<'_> {
         let values: Vec<Value> =
             guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten().collect();
         let statements = self.at_construction(&values);
+        let checked = values.iter().collect::<BTreeSet<_>>().into_iter().map(|&value| local(value));
+        let rounded =
+            checked.map(|name| quote!(let #name = #krate::generated::construction::rounded(#name);));
         let guards = guards.iter().map(|guard| self.guard(guard));
         quote! {
             #(#finite)*
             #bodies
             #statements
+            #(#rounded)*
             #(#guards)*
             ::core::result::Result::Ok(())
         }

@@ -19,7 +19,7 @@ pub fn local(value: Value) -> Ident {
 pub enum Place {
     /// in a method: fields of `self`
     Method,
-    /// at construction: local variables
+    /// at construction: local variables, in twice the digits
     Construction,
 }
 
@@ -27,7 +27,6 @@ impl Emitter<'_> {
     /// The statement that computes a value; `None` where the value needs none.
     pub fn statement(&self, value: Value, place: Place) -> Option<TokenStream> {
         let name = local(value);
-        let krate = self.krate;
         let operation = self.program.operation(value);
         if place == Place::Method && self.stage(value) == Stage::Parameter {
             let source = match operation {
@@ -41,7 +40,8 @@ impl Emitter<'_> {
         }
         if let Operation::SinCos(angle) = operation {
             let (angle, cosine) = (local(angle), format_ident!("{}c", name));
-            return Some(quote! { let (#name, #cosine) = #krate::generated::sin_cos(#angle); });
+            let from = self.support(place);
+            return Some(quote! { let (#name, #cosine) = #from::sin_cos(#angle); });
         }
         let expression = self.expression(operation, place);
         Some(quote! { let #name = #expression; })
@@ -50,20 +50,17 @@ impl Emitter<'_> {
     fn expression(&self, operation: Operation, place: Place) -> TokenStream {
         let krate = self.krate;
         match operation {
-            Operation::Constant(bits) => number(krate, bits.get()),
-            Operation::Input(input) => self.input(input, place),
+            Operation::Constant(bits) => self.exactly(number(krate, bits.get()), place),
+            Operation::Input(input) => self.exactly(self.input(input, place), place),
             Operation::Neg(a) => unary(quote!(-), a),
             Operation::Add(a, b) => binary(a, quote!(+), b),
             Operation::Sub(a, b) => binary(a, quote!(-), b),
             Operation::Mul(a, b) => binary(a, quote!(*), b),
             Operation::Div(a, b) => binary(a, quote!(/), b),
-            Operation::Recip(a) => {
-                let a = local(a);
-                quote!(#krate::generated::recip(#a))
-            }
-            Operation::MulAdd(a, b, c) => self.call(quote!(mul_add), &[a, b, c]),
-            Operation::MulSub(a, b, c) => self.call(quote!(mul_sub), &[a, b, c]),
-            Operation::NegMulAdd(a, b, c) => self.call(quote!(neg_mul_add), &[a, b, c]),
+            Operation::Recip(a) => self.call(quote!(recip), &[a], place),
+            Operation::MulAdd(a, b, c) => self.call(quote!(mul_add), &[a, b, c], place),
+            Operation::MulSub(a, b, c) => self.call(quote!(mul_sub), &[a, b, c], place),
+            Operation::NegMulAdd(a, b, c) => self.call(quote!(neg_mul_add), &[a, b, c], place),
             Operation::Sine(pair) | Operation::SinCos(pair) => {
                 let pair = local(pair);
                 quote!(#pair)
@@ -72,15 +69,33 @@ impl Emitter<'_> {
                 let cosine = format_ident!("{}c", local(pair));
                 quote!(#cosine)
             }
-            Operation::Call(function, a) => self.call(self::function(function), &[a]),
-            Operation::Call2(function, a, b) => self.call(self::function(function), &[a, b]),
+            Operation::Call(function, a) => self.call(self::function(function), &[a], place),
+            Operation::Call2(function, a, b) => self.call(self::function(function), &[a, b], place),
         }
     }
 
-    fn call(&self, function: TokenStream, arguments: &[Value]) -> TokenStream {
-        let krate = self.krate;
+    fn call(&self, function: TokenStream, arguments: &[Value], place: Place) -> TokenStream {
+        let from = self.support(place);
         let arguments = arguments.iter().map(|&argument| local(argument));
-        quote!(#krate::generated::#function(#(#arguments),*))
+        quote!(#from::#function(#(#arguments),*))
+    }
+
+    /// Where the runtime has its support functions: at construction they are of twice the digits.
+    fn support(&self, place: Place) -> TokenStream {
+        let krate = self.krate;
+        match place {
+            Place::Method => quote!(#krate::generated),
+            Place::Construction => quote!(#krate::generated::construction),
+        }
+    }
+
+    /// A number from outside in the digits of its place.
+    fn exactly(&self, number: TokenStream, place: Place) -> TokenStream {
+        let from = self.support(place);
+        match place {
+            Place::Method => number,
+            Place::Construction => quote!(#from::exactly(#number)),
+        }
     }
 
     /// Where a number from outside comes in.

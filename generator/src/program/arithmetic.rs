@@ -1,11 +1,82 @@
 //! What the operations mean in doubles. Generated code means the same (`hodograph::generated`).
 
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
 use super::trigonometry;
 use crate::model::mechanism::Function;
 
 /// Are a * b + c and its kin one operation, with one rounding, on this build's target?
 pub const FUSED: bool =
     cfg!(any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon")));
+
+/// What the file on twice the digits asks of a number; the runtime has more of them than doubles.
+pub trait Scalar:
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// 0
+    fn zero() -> Self;
+    /// Is it neither infinite nor not a number?
+    fn is_finite(&self) -> bool;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// `self * a + b` with one rounding.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn zero() -> Self {
+        0.0
+    }
+    fn is_finite(&self) -> bool {
+        f64::is_finite(*self)
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        f64::mul_add(self, a, b)
+    }
+}
+
+/// What the operations of a program mean in a kind of numbers.
+pub trait Arithmetic:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
+{
+    /// A number of the program or from outside.
+    fn exactly(number: f64) -> Self;
+    /// `self * b + c`
+    fn mul_add(self, b: Self, c: Self) -> Self;
+    /// Sine and cosine.
+    fn sin_cos(self) -> (Self, Self);
+    /// A function of one value.
+    fn call(self, function: Function) -> Self;
+    /// A function of two values.
+    fn call2(self, function: Function, b: Self) -> Self;
+}
+
+impl Arithmetic for f64 {
+    fn exactly(number: f64) -> Self {
+        number
+    }
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        mul_add(self, b, c)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        sin_cos(self)
+    }
+    fn call(self, function: Function) -> Self {
+        call(function, self)
+    }
+    fn call2(self, function: Function, b: Self) -> Self {
+        call2(function, self, b)
+    }
+}
 
 /// a * b + c, with one rounding where this build's target has the instruction.
 #[inline(always)]
@@ -89,9 +160,11 @@ mod tests {
     }
 
     #[test]
-    fn the_runtime_has_the_same_file() {
-        let ours = include_str!("trigonometry.rs");
-        let theirs = concat!(env!("CARGO_MANIFEST_DIR"), "/../runtime/src/generated/trigonometry.rs");
-        assert_eq!(std::fs::read_to_string(theirs).unwrap(), ours);
+    fn the_runtime_has_the_same_files() {
+        let files = [("trigonometry", include_str!("trigonometry.rs")), ("twice", include_str!("twice.rs"))];
+        for (name, ours) in files {
+            let theirs = format!("{}/../runtime/src/generated/{name}.rs", env!("CARGO_MANIFEST_DIR"));
+            assert_eq!(std::fs::read_to_string(theirs).unwrap(), ours, "{name}");
+        }
     }
 }

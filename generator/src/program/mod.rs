@@ -6,6 +6,7 @@
 
 pub mod arithmetic;
 mod build;
+mod construction;
 pub mod cost;
 pub mod differentiate;
 pub mod graph;
@@ -16,8 +17,10 @@ pub mod passes;
 pub mod routine;
 pub mod slice;
 mod trigonometry;
+pub mod twice;
 mod words;
 
+use arithmetic::Scalar;
 use operation::{Operation, Stage, Value};
 use routine::{Derived, Quantity, Structure};
 

@@ -2,11 +2,14 @@
 
 mod arithmetic;
 mod checks;
+#[doc(hidden)]
+pub mod construction;
 mod contact;
 mod error;
 mod saltation;
 mod serial;
 mod trigonometry;
+mod twice;
 
 #[doc(hidden)]
 pub use arithmetic::*;
@@ -16,6 +19,8 @@ pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured};
 pub use error::{CollisionError, ParameterError, StateError};
 #[doc(hidden)]
 pub use saltation::{by_coordinate, reset, salted, state};
+
+use crate::Scalar;
 
 #[cfg(feature = "serde")]
 #[doc(hidden)]
@@ -29,4 +34,4 @@ pub use crate::{__serialize_outcome as serialize_outcome, __serialize_record as 
 
 /// Generated code names this constant: where it is missing, the module was made by a generator that this runtime does not fit.
 #[doc(hidden)]
-pub const GENERATED_CODE_FORMAT_1: () = ();
+pub const GENERATED_CODE_FORMAT_2: () = ();

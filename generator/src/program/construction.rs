@@ -1,0 +1,58 @@
+//! What the operations mean at construction, where they depend on parameters alone: in twice the digits, rounded once at the end. Generated
+//! code means the same (`hodograph::generated::construction`).
+
+use super::arithmetic::{self, Arithmetic};
+use super::twice::Twice;
+use crate::model::mechanism::Function;
+
+impl Arithmetic for Twice<f64> {
+    fn exactly(number: f64) -> Self {
+        Twice::new(number)
+    }
+
+    fn mul_add(self, b: Self, c: Self) -> Self {
+        self * b + c
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let (sine, cosine) = arithmetic::sin_cos(self.rounded());
+        (self.function(sine, cosine), self.function(cosine, -sine))
+    }
+
+    fn call(self, function: Function) -> Self {
+        match function {
+            Function::Sin => self.sin_cos().0,
+            Function::Cos => self.sin_cos().1,
+            Function::Sqrt => self.sqrt(),
+            Function::Abs => {
+                if self.rounded() < 0.0 {
+                    -self
+                } else {
+                    self
+                }
+            }
+            // of the nearest double
+            _ => Twice::new(arithmetic::call(function, self.rounded())),
+        }
+    }
+
+    fn call2(self, function: Function, b: Self) -> Self {
+        match function {
+            Function::Min => {
+                if self.is_less(b) {
+                    self
+                } else {
+                    b
+                }
+            }
+            Function::Max => {
+                if b.is_less(self) {
+                    self
+                } else {
+                    b
+                }
+            }
+            _ => Twice::new(arithmetic::call2(function, self.rounded(), b.rounded())),
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Operations at construction, by the names that [`super::arithmetic`] has for those of routines: in twice the digits.
+
+use super::arithmetic as usual;
+use super::twice::Twice;
+use crate::Scalar;
+
+/// A number of the program, or a parameter.
+#[inline]
+pub fn exactly<T: Scalar>(number: T) -> Twice<T> {
+    Twice::new(number)
+}
+
+/// The number that routines work with.
+#[inline]
+pub fn rounded<T: Scalar>(a: Twice<T>) -> T {
+    a.rounded()
+}
+
+/// a * b + c
+pub fn mul_add<T: Scalar>(a: Twice<T>, b: Twice<T>, c: Twice<T>) -> Twice<T> {
+    a * b + c
+}
+
+/// a * b - c
+pub fn mul_sub<T: Scalar>(a: Twice<T>, b: Twice<T>, c: Twice<T>) -> Twice<T> {
+    a * b - c
+}
+
+/// c - a * b
+pub fn neg_mul_add<T: Scalar>(a: Twice<T>, b: Twice<T>, c: Twice<T>) -> Twice<T> {
+    c - a * b
+}
+
+/// 1 / a
+pub fn recip<T: Scalar>(a: Twice<T>) -> Twice<T> {
+    Twice::new(T::one()) / a
+}
+
+/// Sine and cosine.
+pub fn sin_cos<T: Scalar>(a: Twice<T>) -> (Twice<T>, Twice<T>) {
+    let (sine, cosine) = usual::sin_cos(a.rounded());
+    (a.function(sine, cosine), a.function(cosine, -sine))
+}
+
+/// Sine.
+pub fn sin<T: Scalar>(a: Twice<T>) -> Twice<T> {
+    sin_cos(a).0
+}
+
+/// Cosine.
+pub fn cos<T: Scalar>(a: Twice<T>) -> Twice<T> {
+    sin_cos(a).1
+}
+
+/// Square root.
+pub fn sqrt<T: Scalar>(a: Twice<T>) -> Twice<T> {
+    a.sqrt()
+}
+
+/// Magnitude.
+pub fn abs<T: Scalar>(a: Twice<T>) -> Twice<T> {
+    if a.rounded() < T::zero() { -a } else { a }
+}
+
+/// The lesser.
+pub fn min<T: Scalar>(a: Twice<T>, b: Twice<T>) -> Twice<T> {
+    if a.is_less(b) { a } else { b }
+}
+
+/// The greater.
+pub fn max<T: Scalar>(a: Twice<T>, b: Twice<T>) -> Twice<T> {
+    if b.is_less(a) { a } else { b }
+}
+
+macro_rules! of_the_nearest {
+    ($($(#[$doc:meta])* $name:ident($($argument:ident),*)),* $(,)?) => {$(
+        $(#[$doc])*
+        pub fn $name<T: Scalar>($($argument: Twice<T>),*) -> Twice<T> {
+            Twice::new(usual::$name($($argument.rounded()),*))
+        }
+    )*};
+}
+
+of_the_nearest! {
+    /// Tangent of the nearest number.
+    tan(a),
+    /// Arc sine of the nearest number.
+    asin(a),
+    /// Arc cosine of the nearest number.
+    acos(a),
+    /// Arc tangent of the nearest number.
+    atan(a),
+    /// Angle of the nearest (b, a).
+    atan2(a, b),
+    /// Exponential of the nearest number.
+    exp(a),
+    /// Natural logarithm of the nearest number.
+    log(a),
+    /// 1 if the nearest number is not negative, else -1.
+    sign(a),
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of<T: Scalar>(number: T) -> Twice<T> {
+        exactly(number)
+    }
+
+    #[test]
+    fn what_one_number_cannot_hold_is_kept() {
+        let (large, one) = (of(1e17), of(1.0));
+        assert_eq!(rounded(large + one - large), 1.0);
+        let (above, below) = (of(1.0 + f64::EPSILON), of(1.0 - f64::EPSILON));
+        assert_eq!(rounded(mul_sub(above, below, one)), -f64::EPSILON * f64::EPSILON);
+        let third = one / of(3.0);
+        assert!(rounded(third * of(3.0) - one).abs() < 1e-31);
+        let root = sqrt(of(2.0f64));
+        assert!(rounded(root * root - of(2.0)).abs() < 1e-31);
+        assert!(rounded(neg_mul_add(root, root, of(2.0))).abs() < 1e-31);
+        let (large, one) = (of(1e9f32), of(1.0f32));
+        assert_eq!(rounded(large + one - large), 1.0);
+        assert!(rounded(recip(of(3.0f32)) * of(3.0) - one).abs() < 1e-13);
+    }
+
+    #[test]
+    fn sines_know_what_their_angle_lost() {
+        let angle = of(1.0) + of(1e-17);
+        let (sine, cosine) = sin_cos(angle);
+        assert!((rounded(sine - of(1f64.sin())) - 1e-17 * 1f64.cos()).abs() < 2e-16);
+        assert!(rounded(sine * sine + cosine * cosine - of(1.0)).abs() < 4e-16);
+        assert_eq!(rounded(sin(angle)), rounded(sine));
+        assert_eq!(rounded(cos(angle)), rounded(cosine));
+    }
+
+    #[test]
+    fn what_is_not_finite_stays_so() {
+        let (zero, one) = (of(0.0), of(1.0));
+        assert_eq!(rounded(one / zero), f64::INFINITY);
+        assert_eq!(rounded(-one / zero + one), f64::NEG_INFINITY);
+        assert!(rounded(zero / zero).is_nan() && rounded(sqrt(-one)).is_nan());
+        assert_eq!(rounded(of(1e200) * of(1e200)), f64::INFINITY);
+        assert_eq!((rounded(sqrt(zero)), rounded(zero * one)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn order_and_magnitude_see_both_halves() {
+        let (one, more) = (of(1.0), of(1.0) + of(1e-20));
+        assert!(one.is_less(more) && !more.is_less(one));
+        assert_eq!(rounded(min(more, one) - one), 0.0);
+        assert_eq!(rounded(max(one, more) - one), 1e-20);
+        assert_eq!(rounded(abs(-more) - one), 1e-20);
+        assert_eq!(rounded(sign(-one)), -1.0);
+    }
+
+    #[test]
+    fn derivatives_go_through() {
+        use num_dual::{Dual64, DualNum};
+        let x = exactly(Dual64::new(0.7, 1.0));
+        let one = exactly(Dual64::from(1.0));
+        let value = rounded(sqrt(recip(x * x + one)) - x);
+        let expected = (Dual64::new(0.7, 1.0).powi(2) + 1.0).recip().sqrt() - Dual64::new(0.7, 1.0);
+        assert!((value.re - expected.re).abs() < 1e-15 && (value.eps - expected.eps).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,108 @@
+//! Numbers of twice the digits, the unevaluated sum of two (Dekker 1971): what depends on parameters alone is computed in them, once,
+//! and rounded at the end. Their sums, products and quotients are right to two units in the last of all places; what a number
+//! loses is asked of the operations, and no bits are taken apart, so that derivatives go through.
+//!
+//! The interpreter and the runtime hold the same file, so that their bits agree; a test compares the two.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::Scalar;
+
+/// `high + low`, where `low` is at most half a unit in the last place of `high`, and zero where `high` is not finite.
+#[derive(Clone, Copy, Debug)]
+pub struct Twice<T> {
+    high: T,
+    low: T,
+}
+
+/// What rounding took from `high = a + b` (Knuth 1969).
+fn lost<T: Scalar>(a: T, b: T, high: T) -> T {
+    let of_b = high - a;
+    let of_a = high - of_b;
+    (a - of_a) + (b - of_b)
+}
+
+impl<T: Scalar> Twice<T> {
+    /// A number as it is.
+    pub fn new(high: T) -> Self {
+        Twice { high, low: T::zero() }
+    }
+
+    /// `high + low`, where `low` is small.
+    fn of(high: T, low: T) -> Self {
+        if !low.is_finite() {
+            return Twice::new(high);
+        }
+        let sum = high + low;
+        Twice { high: sum, low: low - (sum - high) }
+    }
+
+    /// The nearest number of the usual digits.
+    pub fn rounded(self) -> T {
+        self.high
+    }
+
+    /// A function of this number, from its value and slope at [`Twice::rounded`].
+    pub fn function(self, value: T, slope: T) -> Self {
+        Twice::of(value, slope * self.low)
+    }
+
+    /// Is it less than another?
+    pub fn is_less(self, other: Self) -> bool {
+        self.high < other.high || (self.high == other.high && self.low < other.low)
+    }
+
+    /// Its square root.
+    pub fn sqrt(self) -> Self {
+        let near = self.high.sqrt();
+        let rest = (-near).mul_add(near, self.high) + self.low;
+        // zero has no slope: what comes of it is not finite and left out
+        Twice::of(near, rest / (near + near))
+    }
+}
+
+impl<T: Scalar> Add for Twice<T> {
+    type Output = Self;
+    // a call: constructors are long, and run once
+    #[inline(never)]
+    fn add(self, other: Self) -> Self {
+        let (high, low) = (self.high + other.high, self.low + other.low);
+        let first = Twice::of(high, lost(self.high, other.high, high) + low);
+        Twice::of(first.high, first.low + lost(self.low, other.low, low))
+    }
+}
+
+impl<T: Scalar> Neg for Twice<T> {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Twice { high: -self.high, low: -self.low }
+    }
+}
+
+impl<T: Scalar> Sub for Twice<T> {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl<T: Scalar> Mul for Twice<T> {
+    type Output = Self;
+    #[inline(never)]
+    fn mul(self, other: Self) -> Self {
+        let high = self.high * other.high;
+        // with one rounding on every target, if need be in many operations: this is done once
+        let lost = self.high.mul_add(other.high, -high);
+        Twice::of(high, lost + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl<T: Scalar> Div for Twice<T> {
+    type Output = Self;
+    #[inline(never)]
+    fn div(self, other: Self) -> Self {
+        let near = self.high / other.high;
+        let rest = (-near).mul_add(other.high, self.high) + (self.low - near * other.low);
+        Twice::of(near, rest / other.high)
+    }
+}
