@@ -17,7 +17,13 @@ fn program() -> Program {
         Output { quantity: Quantity::DependentSpeeds, rows: 0, columns: 1, nodes: vec![] },
     ];
     let guards = vec![Guard { value: cosine, scale: Some(m), message: "the arm\nis  stretched".into() }];
-    Program::new(&Derived { graph, outputs, guards, structures: vec![Structure::Planar, Structure::General] })
+    Program::new(&Derived {
+        graph,
+        outputs,
+        guards,
+        structures: vec![Structure::Planar, Structure::General],
+        samples: vec![],
+    })
 }
 
 #[test]

@@ -35,7 +35,7 @@ fn pendulum() -> (Mechanism, Program) {
         one(Quantity::Forcing, force),
         one(Quantity::KineticEnergy, energy),
     ];
-    let derived = Derived { graph, outputs, guards: Vec::new(), structures: Vec::new() };
+    let derived = Derived { graph, outputs, guards: Vec::new(), structures: Vec::new(), samples: Vec::new() };
     (mechanism, Program::new(&derived))
 }
 

@@ -11,6 +11,7 @@ pub mod inertia;
 pub mod lumps;
 pub mod order;
 mod outputs;
+mod samples;
 mod sums;
 
 use crate::algebra::{SessionError, exclusively};

@@ -72,7 +72,8 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     writer.points();
     writer.orientations();
     writer.guards();
-    Derived { graph: writer.graph, outputs: writer.outputs, guards: writer.guards, structures }
+    let samples = super::samples::samples(writer.k.mechanism);
+    Derived { graph: writer.graph, outputs: writer.outputs, guards: writer.guards, structures, samples }
 }
 
 impl Writer<'_, '_> {

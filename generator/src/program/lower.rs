@@ -390,7 +390,7 @@ mod tests {
         let nodes = [second, third].map(|angle| calls(&mut graph, angle)).concat();
         let outputs =
             vec![crate::program::routine::Output { quantity: Quantity::Forcing, rows: 4, columns: 1, nodes }];
-        Derived { graph, outputs, guards: vec![], structures: vec![] }
+        Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] }
     }
 
     #[test]
@@ -431,7 +431,7 @@ mod tests {
         let nodes = vec![graph.call(Function::Sin, vec![angle]), graph.call(Function::Cos, vec![angle])];
         let outputs =
             vec![crate::program::routine::Output { quantity: Quantity::Forcing, rows: 2, columns: 1, nodes }];
-        let program = lower(&Derived { graph, outputs, guards: vec![], structures: vec![] });
+        let program = lower(&Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] });
         assert_eq!(program.operations.len(), 4, "an input, a pair, and its two parts");
     }
 }

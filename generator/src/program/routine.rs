@@ -1,6 +1,7 @@
 //! What a derivation delivers: named quantities, each an array of nodes.
 
 use super::graph::{Graph, Node};
+use crate::interpret::Inputs;
 
 /// A quantity that a program computes. Shapes: `p` independent speeds, `d` dependent speeds, `n` coordinates, `c` configuration
 /// equations (as many as dependent coordinates). Matrices are stored by rows.
@@ -132,4 +133,6 @@ pub struct Derived {
     pub guards: Vec<Guard>,
     /// per contact, in file order
     pub structures: Vec<Structure>,
+    /// arbitrary states, at which passes weigh what rounding costs; none where it does not matter
+    pub samples: Vec<Inputs>,
 }

@@ -6,6 +6,8 @@ mod collect;
 mod factor;
 mod fold;
 mod fuse;
+mod opened;
+mod order;
 mod pairs;
 mod prune;
 mod share;
@@ -13,6 +15,7 @@ mod sweep;
 mod terms;
 #[cfg(test)]
 mod testing;
+mod weigh;
 
 use std::collections::HashMap;
 
@@ -21,6 +24,7 @@ use super::graph::{Graph, Node, Value};
 use super::lower::{lower, operands, reachable};
 use super::operation::Stage;
 use super::routine::{Derived, Guard, Output};
+use crate::interpret::Inputs;
 
 /// A pass.
 #[derive(Clone, Copy)]
@@ -36,10 +40,11 @@ enum Work {
     Graph(fn(&Derived) -> Derived),
     Lower(fn(&Derived) -> Program),
     Operations(fn(&Program) -> Program),
+    Weighed(fn(&Program, &[Inputs]) -> Program),
 }
 
 /// The passes in their order.
-pub const PASSES: [Pass; 8] = [
+pub const PASSES: [Pass; 9] = [
     Pass { name: "prune", work: Work::Graph(prune::prune) },
     Pass { name: "fold", work: Work::Graph(fold::fold) },
     Pass { name: "collect", work: Work::Graph(collect::collect) },
@@ -48,6 +53,7 @@ pub const PASSES: [Pass; 8] = [
     Pass { name: "lower", work: Work::Lower(lower) },
     Pass { name: "fuse", work: Work::Operations(fuse::fuse) },
     Pass { name: "sweep", work: Work::Operations(sweep::sweep) },
+    Pass { name: "order", work: Work::Weighed(order::order) },
 ];
 
 /// A derivation on its way through the passes.
@@ -64,6 +70,9 @@ pub fn run(derived: &Derived, mut show: impl FnMut(&'static str, &dyn Fn() -> Pr
             (Work::Graph(run), Form::Graph(derived)) => Form::Graph(run(&derived)),
             (Work::Lower(run), Form::Graph(derived)) => Form::Operations(run(&derived)),
             (Work::Operations(run), Form::Operations(program)) => Form::Operations(run(&program)),
+            (Work::Weighed(run), Form::Operations(program)) => {
+                Form::Operations(run(&program, &derived.samples))
+            }
             // The list has one pass that lowers, after those on the graph: a test holds it to that.
             (_, form) => form,
         };
@@ -162,7 +171,8 @@ pub fn rewrite(
         message: guard.message.clone(),
     });
     let (outputs, guards) = (outputs.collect(), guards.collect());
-    Derived { graph, outputs, guards, structures: derived.structures.clone() }
+    let (structures, samples) = (derived.structures.clone(), derived.samples.clone());
+    Derived { graph, outputs, guards, structures, samples }
 }
 
 /// New nodes for old.
@@ -217,7 +227,7 @@ mod tests {
         let order = PASSES.map(|pass| match pass.work {
             Work::Graph(_) => 0,
             Work::Lower(_) => 1,
-            Work::Operations(_) => 2,
+            Work::Operations(_) | Work::Weighed(_) => 2,
         });
         assert!(order.is_sorted() && order.iter().filter(|&&kind| kind == 1).count() == 1, "{order:?}");
     }

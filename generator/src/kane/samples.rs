@@ -1,0 +1,74 @@
+//! Sample states of a mechanism: where passes weigh what rounding costs.
+
+use std::f64::consts::PI;
+
+use crate::interpret::Inputs;
+use crate::model::mechanism::{Mechanism, Orientation, Quantity};
+
+/// How many.
+const SAMPLES: u64 = 24;
+
+/// States all over the mechanism's range, the same ones every time; parameters as the model states them.
+pub fn samples(mechanism: &Mechanism) -> Vec<Inputs> {
+    (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
+}
+
+fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
+    let mut bits = 0xd1b5_4a32_d192_ed03_u64.wrapping_mul(2 * seed + 1);
+    // from -1 to 1
+    let mut next = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    };
+    let given = |quantity: &Quantity| quantity.value.filter(|value| *value != 0.0);
+    // An angle may be any; anything else is of the size that the model gives it.
+    let mut around = |quantity: &Quantity, angle: bool| match given(quantity) {
+        _ if angle && quantity.unit == "rad" => PI * next(),
+        Some(value) => value * (1.0 + 0.5 * next()),
+        None => next(),
+    };
+    let mut coordinates: Vec<f64> =
+        mechanism.coordinates.iter().map(|coordinate| around(coordinate, true)).collect();
+    let speeds: Vec<f64> = mechanism.speeds.iter().map(|speed| around(speed, false)).collect();
+    let inputs: Vec<f64> = mechanism.inputs.iter().map(|input| around(input, false)).collect();
+    for frame in &mechanism.frames {
+        if let Orientation::Quaternion(parts) = &frame.orientation {
+            let length = parts.iter().map(|part| coordinates[part.0].powi(2)).sum::<f64>().sqrt();
+            parts.iter().for_each(|part| coordinates[part.0] /= length);
+        }
+    }
+    let directions = coordinates.len() + speeds.len() + inputs.len();
+    Inputs {
+        parameters: mechanism.parameters.iter().map(|parameter| parameter.value.unwrap_or(1.0)).collect(),
+        time: next(),
+        accelerations: speeds.iter().map(|_| next()).collect(),
+        tangent: (0..directions).map(|_| next()).collect(),
+        coordinates,
+        speeds,
+        inputs,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_of_the_sizes_that_the_model_gives() {
+        let model = "mechanism M; parameters { m: kg = 2, l: m } coordinates { q1: rad = 0.1, x: m = 0.004, y: m }
+            speeds { u1: rad/s, u2: m/s = 3, u3: m/s } frames { B = N.rotate(z, q1); } points { G = O + x*N.x + y*N.y; }
+            bodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] } }
+            kinematics { d(x)/dt = u2; d(y)/dt = u3; }";
+        let checked = crate::model::check(&crate::source::Source::file("m.mech", model));
+        let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+        let samples = samples(&mechanism);
+        assert!(samples.iter().all(|sample| sample.parameters == [2.0, 1.0]));
+        assert!(samples.iter().any(|sample| sample.coordinates[0] > 2.0));
+        assert!(samples.iter().all(|sample| (0.002..=0.006).contains(&sample.coordinates[1])));
+        assert!(samples.iter().any(|sample| sample.coordinates[2] < -0.5));
+        assert!(samples.iter().all(|sample| (1.5..=4.5).contains(&sample.speeds[1])));
+        assert_eq!(samples, super::samples(&mechanism));
+    }
+}

@@ -1,0 +1,217 @@
+//! Sums of operations taken apart, and put together in another order.
+
+use std::collections::HashMap;
+
+use super::weigh::Weighed;
+use crate::program::Program;
+use crate::program::operation::{Bits, Operation, Stage, Value};
+
+/// A term with its sign.
+#[derive(Clone, Debug)]
+pub struct Term {
+    negative: bool,
+    what: What,
+}
+
+#[derive(Clone, Debug)]
+enum What {
+    Value(Value),
+    Product(Value, Value),
+    /// values that are known at construction: their sum is one value
+    Known(Vec<Term>),
+}
+
+impl Term {
+    fn value(negative: bool, value: Value) -> Self {
+        Term { negative, what: What::Value(value) }
+    }
+
+    fn product(negative: bool, a: Value, b: Value) -> Self {
+        Term { negative, what: What::Product(a, b) }
+    }
+
+    /// Is it a product, which a fused operation adds without rounding it?
+    pub fn is_product(&self) -> bool {
+        matches!(self.what, What::Product(..))
+    }
+
+    /// Its number at a state.
+    pub fn number(&self, state: &Weighed) -> f64 {
+        let number = match &self.what {
+            What::Value(value) => state.number(*value),
+            What::Product(a, b) => state.number(*a) * state.number(*b),
+            What::Known(terms) => terms.iter().map(|term| term.number(state)).sum(),
+        };
+        if self.negative { -number } else { number }
+    }
+}
+
+/// How many operations, outputs and guards refer to a value.
+fn uses(program: &Program) -> Vec<u32> {
+    let mut uses = vec![0; program.operations.len()];
+    let operands = program.operations.iter().flat_map(|operation| operation.operands());
+    let outputs = program.outputs.iter().flat_map(|output| output.values.iter().copied());
+    let guards = program.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
+    operands.chain(outputs).chain(guards).for_each(|value| uses[value.index()] += 1);
+    uses
+}
+
+/// The sums of a program.
+pub struct Sums<'a> {
+    program: &'a Program,
+    stages: Vec<Stage>,
+    uses: Vec<u32>,
+}
+
+/// A sum taken apart.
+#[derive(Default)]
+pub struct Sum {
+    /// its terms
+    pub terms: Vec<Term>,
+    /// the operations that serve this sum alone
+    pub inner: Vec<Value>,
+}
+
+impl<'a> Sums<'a> {
+    /// The sums of a program.
+    pub fn new(program: &'a Program) -> Self {
+        Sums { program, stages: program.stages(), uses: uses(program) }
+    }
+
+    /// When a value can be computed.
+    pub fn stage(&self, value: Value) -> Stage {
+        self.stages[value.index()]
+    }
+
+    /// The terms of a sum; none of any other operation.
+    pub fn open(&self, value: Value) -> Sum {
+        let mut sum = Sum::default();
+        self.take(value, false, &mut sum);
+        let is_known = |term: &Term| match term.what {
+            What::Value(value) => self.stages[value.index()] <= Stage::Parameter,
+            _ => false,
+        };
+        if sum.terms.iter().filter(|term| is_known(term)).count() > 1 {
+            let (known, late) = sum.terms.into_iter().partition(is_known);
+            sum.terms = late;
+            sum.terms.push(Term { negative: false, what: What::Known(known) });
+        }
+        sum
+    }
+
+    fn take(&self, value: Value, negative: bool, sum: &mut Sum) {
+        let (a, b, c, minus_product, minus_rest) = match self.program.operation(value) {
+            Operation::Add(a, b) => return self.both([(a, negative), (b, negative)], sum),
+            Operation::Sub(a, b) => return self.both([(a, negative), (b, !negative)], sum),
+            Operation::MulAdd(a, b, c) => (a, b, c, negative, negative),
+            Operation::MulSub(a, b, c) => (a, b, c, negative, !negative),
+            Operation::NegMulAdd(a, b, c) => (a, b, c, !negative, negative),
+            _ => return,
+        };
+        self.operand(c, minus_rest, sum);
+        sum.terms.push(Term::product(minus_product, a, b));
+    }
+
+    fn both(&self, operands: [(Value, bool); 2], sum: &mut Sum) {
+        operands.into_iter().for_each(|(value, negative)| self.operand(value, negative, sum));
+    }
+
+    fn operand(&self, value: Value, negative: bool, sum: &mut Sum) {
+        // What is known at construction is left together.
+        if self.uses[value.index()] == 1 && self.stages[value.index()] > Stage::Parameter {
+            let before = sum.terms.len();
+            match self.program.operation(value) {
+                Operation::Mul(a, b) => sum.terms.push(Term::product(negative, a, b)),
+                _ => self.take(value, negative, sum),
+            }
+            if sum.terms.len() > before {
+                return sum.inner.push(value);
+            }
+        }
+        sum.terms.push(Term::value(negative, value));
+    }
+}
+
+/// The program with the sums that are planned; equal operations are one.
+pub fn put_together(program: &Program, plans: &[Option<Vec<Term>>]) -> Program {
+    let mut operations = Operations::default();
+    let mut renamed: Vec<Value> = Vec::with_capacity(program.operations.len());
+    for (&operation, plan) in program.operations.iter().zip(plans) {
+        let of = |value: Value| renamed[value.index()];
+        let new = match plan {
+            None => operations.push(operation.map(of)),
+            Some(terms) => match add_up(terms, &of, &mut operations) {
+                (value, false) => value,
+                (value, true) => operations.push(Operation::Neg(value)),
+            },
+        };
+        renamed.push(new);
+    }
+    let of = |value: Value| renamed[value.index()];
+    let mut new = Program { operations: operations.list, ..program.clone() };
+    new.outputs.iter_mut().flat_map(|output| &mut output.values).for_each(|value| *value = of(*value));
+    for guard in &mut new.guards {
+        guard.value = of(guard.value);
+        guard.scale = guard.scale.map(of);
+    }
+    new
+}
+
+#[derive(Default)]
+struct Operations {
+    list: Vec<Operation>,
+    places: HashMap<Operation, Value>,
+}
+
+impl Operations {
+    fn push(&mut self, operation: Operation) -> Value {
+        *self.places.entry(operation).or_insert_with(|| {
+            self.list.push(operation);
+            Value(self.list.len() as u32 - 1)
+        })
+    }
+}
+
+/// Adds terms in this order: the sum, and whether its opposite is meant. A sum of negative terms is kept as the opposite.
+fn add_up(terms: &[Term], of: &impl Fn(Value) -> Value, operations: &mut Operations) -> (Value, bool) {
+    let mut sum: Option<(Value, bool)> = None;
+    for term in terms {
+        let (value, minus) = match &term.what {
+            What::Value(value) => (of(*value), term.negative),
+            What::Known(terms) => add_up(terms, of, operations),
+            &What::Product(a, b) => {
+                let (a, b, minus) = (of(a), of(b), term.negative);
+                let (operation, sign) = match sum {
+                    None => (Operation::Mul(a, b), minus),
+                    Some((before, false)) if minus => (Operation::NegMulAdd(a, b, before), false),
+                    Some((before, true)) if !minus => (Operation::MulSub(a, b, before), false),
+                    Some((before, sign)) => (Operation::MulAdd(a, b, before), sign),
+                };
+                sum = Some((operations.push(operation), sign));
+                continue;
+            }
+        };
+        sum = Some(match sum {
+            None => (value, minus),
+            Some(before) => add(before, (value, minus), operations),
+        });
+    }
+    sum.unwrap_or_else(|| (operations.push(Operation::Constant(Bits::new(0.0))), false))
+}
+
+/// Adds two values with their signs; numbers become a number.
+fn add(a: (Value, bool), b: (Value, bool), operations: &mut Operations) -> (Value, bool) {
+    if let (Operation::Constant(first), Operation::Constant(second)) =
+        (operations.list[a.0.index()], operations.list[b.0.index()])
+    {
+        let signed = |number: Bits, negative| if negative { -number.get() } else { number.get() };
+        let number = signed(first, a.1) + signed(second, b.1);
+        return (operations.push(Operation::Constant(Bits::new(number.abs()))), number < 0.0);
+    }
+    let (operation, negative) = match (a.1, b.1) {
+        (false, true) => (Operation::Sub(a.0, b.0), false),
+        (true, false) => (Operation::Sub(b.0, a.0), false),
+        (sign, _) => (Operation::Add(a.0, b.0), sign),
+    };
+    (operations.push(operation), negative)
+}
