@@ -4,6 +4,7 @@
 //! ([`construct`]), a method per quantity ([`methods`]) and per contact ([`contacts`]). Every path in it starts at the
 //! runtime's own crate or at `::core`; it has no panics, no loops over data and no `std`.
 
+mod angles;
 mod construct;
 mod contacts;
 mod fits;

@@ -18,17 +18,23 @@ pub const LONGEST: usize = 4000;
 impl Emitter<'_> {
     /// The statements that compute `values`, in their order; `wanted` are those that are looked at afterwards.
     pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>) -> TokenStream {
-        let (work, given): (Vec<Value>, Vec<Value>) = values.iter().partition(|&&value| self.is_work(value));
+        let pairs = self.together(values);
+        let angles = self.angles(&pairs, values);
+        let of_angles = self.sines_and_cosines(&pairs);
+        let first: BTreeSet<Value> = pairs.iter().chain(&angles).copied().collect();
+        let rest: Vec<Value> = values.iter().copied().filter(|value| !first.contains(value)).collect();
+        let angles = angles.into_iter().filter_map(|value| self.statement(value, Place::Method));
+        let (work, given): (Vec<Value>, Vec<Value>) = rest.iter().partition(|&&value| self.is_work(value));
         if work.len() <= self.longest {
-            let statements = values.iter().filter_map(|&value| self.statement(value, Place::Method));
-            return quote! { #(#statements)* };
+            let statements = rest.iter().filter_map(|&value| self.statement(value, Place::Method));
+            return quote! { #(#angles)* #of_angles #(#statements)* };
         }
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
         let length = work.len().div_ceil(work.len().div_ceil(self.longest.max(1)));
         let parts: Vec<&[Value]> = work.chunks(length).collect();
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
         let calls = (0..parts.len()).map(|index| self.part(&parts, index, &wanted));
-        quote! { #(#given)* #(#calls)* }
+        quote! { #(#angles)* #of_angles #(#given)* #(#calls)* }
     }
 
     /// Is it computed in a method? Numbers, inputs and what is known at construction are only fetched.

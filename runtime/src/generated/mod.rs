@@ -1,5 +1,6 @@
 //! What generated modules are made of. Only generated code names these functions; the errors are for everybody.
 
+mod angles;
 mod arithmetic;
 mod checks;
 #[doc(hidden)]
@@ -11,6 +12,8 @@ mod serial;
 mod trigonometry;
 mod twice;
 
+#[doc(hidden)]
+pub use angles::sines_cosines;
 #[doc(hidden)]
 pub use arithmetic::*;
 #[doc(hidden)]

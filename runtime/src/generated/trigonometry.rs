@@ -40,14 +40,28 @@ const COSINE: [f64; 6] = [
 /// Sine and cosine; `beyond` answers for angles that are too large, infinite or not a number.
 #[inline(always)]
 pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
-    let within = x.abs() <= LARGEST;
-    if !within {
+    if !is_within(x) {
         return beyond(x);
     }
+    let (r, low, turns) = reduced(x);
+    let (sine, cosine) = near_zero(r, low);
+    let quadrant = turns as usize & 3;
+    // Of each product below one factor is 0, 1 or -1: nothing is rounded.
+    let (s, c) = (QUARTERS[quadrant], QUARTERS[quadrant + 1]);
+    (mul_add(sine, c, cosine * s), mul_add(cosine, c, -(sine * s)))
+}
+
+/// Is the angle reduced here?
+#[inline(always)]
+pub fn is_within(x: f64) -> bool {
+    x.abs() <= LARGEST
+}
+
+/// What an angle is beside the nearest multiple of pi/2, what rounding takes from that, and the multiple, of which the last two bits count.
+#[inline(always)]
+pub fn reduced(x: f64) -> (f64, f64, u64) {
     let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUNDER);
     let turns = shifted - ROUNDER;
-    let quadrant = shifted.to_bits() as usize & 3;
-    // r, and what rounding takes from it
     let (r, low) = if FUSED {
         let first = mul_add(-turns, HALF_PI[0], x);
         let r = mul_add(-turns, HALF_PI[1], first);
@@ -59,12 +73,16 @@ pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
         let r = less - third;
         (r, (less - r - third) + (first - less - second))
     };
+    (r, low, shifted.to_bits())
+}
+
+/// Sine and cosine of `r + low`, from -pi/4 to pi/4.
+#[inline(always)]
+pub fn near_zero(r: f64, low: f64) -> (f64, f64) {
     let z = r * r;
     let sine = r + mul_add(r * z, polynomial(SINE, z), low);
     let cosine = 1.0 + mul_add(z, mul_add(z, polynomial(COSINE, z), -0.5), -(r * low));
-    // Of each product below one factor is 0, 1 or -1: nothing is rounded.
-    let (s, c) = (QUARTERS[quadrant], QUARTERS[quadrant + 1]);
-    (mul_add(sine, c, cosine * s), mul_add(cosine, c, -(sine * s)))
+    (sine, cosine)
 }
 
 #[inline(always)]

@@ -1,0 +1,118 @@
+//! Sines and cosines of several angles at once: a loop without branches, which compilers turn into vector instructions.
+
+use core::{any::TypeId, hint::black_box};
+
+use nalgebra::convert;
+
+use super::arithmetic::sin_cos;
+use super::trigonometry::{is_within, near_zero, reduced};
+use crate::Scalar;
+
+/// Sines and cosines of angles: for each what [`sin_cos`] gives, to the last bit.
+#[inline(always)]
+pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+    // Known at compile time; the conversions of a double to a double vanish.
+    if TypeId::of::<T>() == TypeId::of::<f64>() {
+        let (sines, cosines) = of_doubles(angles.map(|angle| angle.to_subset_unchecked()));
+        (sines.map(convert), cosines.map(convert))
+    } else {
+        one_by_one(angles)
+    }
+}
+
+/// A function of its own: within a long one, compilers leave parts of the loops as they are.
+#[inline(never)]
+fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+    if !angles.iter().fold(true, |within, &angle| within & is_within(angle)) {
+        return one_by_one(angles);
+    }
+    let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
+    if N > UNROLLED {
+        for lane in 0..N {
+            let (r, low, turns) = reduced(angles[lane]);
+            (sines[lane], cosines[lane]) = turned(near_zero(r, low), turns);
+        }
+        return (sines, cosines);
+    }
+    let (mut r, mut low, mut turns) = ([0.0; N], [0.0; N], [0; N]);
+    for lane in 0..N {
+        (r[lane], low[lane], turns[lane]) = reduced(angles[lane]);
+    }
+    let low = black_box(low);
+    for lane in 0..N {
+        (sines[lane], cosines[lane]) = near_zero(r[lane], low[lane]);
+    }
+    if N > 2 {
+        (sines, cosines) = (black_box(sines), black_box(cosines));
+    }
+    for lane in 0..N {
+        (sines[lane], cosines[lane]) = turned((sines[lane], cosines[lane]), turns[lane]);
+    }
+    (sines, cosines)
+}
+
+/// Loops of so many turns are unrolled before they are looked at for vector instructions. These are then found from stores backwards,
+/// over a dozen operations: so there are stores on the way, which cost less than what would be missed.
+const UNROLLED: usize = 4;
+
+/// Exchanges sine and cosine and changes their signs as the quadrant tells, without a table.
+#[inline(always)]
+fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
+    let odd = (turns & 1).wrapping_neg();
+    let exchanged = (sine.to_bits() ^ cosine.to_bits()) & odd;
+    let sign = |turns: u64| (turns & 2) << 62;
+    let sine = f64::from_bits(sine.to_bits() ^ exchanged ^ sign(turns));
+    let cosine = f64::from_bits(cosine.to_bits() ^ exchanged ^ sign(turns.wrapping_add(1)));
+    // one zero: the positive one
+    (sine + 0.0, cosine)
+}
+
+#[cold]
+#[inline(never)]
+fn one_by_one<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+    let pairs = angles.map(sin_cos);
+    (pairs.map(|(sine, _)| sine), pairs.map(|(_, cosine)| cosine))
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::vec::Vec;
+
+    use super::*;
+
+    #[test]
+    fn the_same_bits_as_one_by_one() {
+        let near = (-400..400).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_4);
+        let spread = (0..100_000).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract() * 200.0 - 100.0);
+        let all: Vec<f64> =
+            near.chain(spread).chain([0.0, -0.0, 1e-300, -5e-324, 524_288.0, -524_287.5]).collect();
+        for angles in all.chunks_exact(8) {
+            let eight: [f64; 8] = angles.try_into().unwrap();
+            let two = [eight[3], eight[0]];
+            let bits = |(sines, cosines): (&[f64], &[f64])| -> Vec<(u64, u64)> {
+                sines.iter().zip(cosines).map(|(s, c)| (s.to_bits(), c.to_bits())).collect()
+            };
+            let one = |angle: &f64| {
+                let (s, c) = sin_cos(*angle);
+                (s.to_bits(), c.to_bits())
+            };
+            let (s, c) = sines_cosines(eight);
+            assert_eq!(bits((&s, &c)), eight.iter().map(one).collect::<Vec<_>>(), "{eight:?}");
+            let four = [eight[7], eight[1], eight[4], eight[2]];
+            let (s, c) = sines_cosines(four);
+            assert_eq!(bits((&s, &c)), four.iter().map(one).collect::<Vec<_>>(), "{four:?}");
+            let (s, c) = sines_cosines(two);
+            assert_eq!(bits((&s, &c)), two.iter().map(one).collect::<Vec<_>>(), "{two:?}");
+        }
+    }
+
+    #[test]
+    fn angles_beyond_the_reduction_and_other_numbers_go_one_by_one() {
+        let (s, c) = sines_cosines([1e9, f64::INFINITY]);
+        assert_eq!((s[0], c[0]), sin_cos(1e9));
+        assert!(s[1].is_nan() && c[1].is_nan());
+        let (s, c) = sines_cosines([0.3f32, 2.0]);
+        assert_eq!((s[1], c[1]), sin_cos(2.0f32));
+    }
+}
