@@ -1,9 +1,13 @@
-//! How a straight hodograph bends when its inputs change: what derivatives need to know of a direction of slip that stays.
+//! How a straight hodograph bends: where slip begins beside a direction that stays, and when the inputs of one that begins there change.
 
 use nalgebra::Vector2;
 
-use super::terminal::Contact;
-use crate::scalar::{Real, constant};
+use super::{
+    ledger::{Ledger, Line, State},
+    sliding::Slide,
+    terminal::Contact,
+};
+use crate::scalar::{Real, constant, larger};
 
 /// The integral over I_n of the deviation of phi from a zero of h, where h is `turn` = 0 up to its derivatives.
 ///
@@ -19,27 +23,137 @@ pub(super) fn bend<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Op
     let Some(impulse) = impulse.filter(left) else {
         return if sum < T::zero() && g < T::zero() { turn * slip / (g * sum) } else { T::zero() };
     };
-    let size = g.abs() + sum.abs();
-    let small = constant::<T>(1e-8);
+    let (one, half, small) = (T::one(), constant::<T>(0.5), T::default_epsilon().sqrt());
     let ratio = impulse / slip;
     // tau = ln(1 + g I / s) / g
     let x = g * ratio;
-    let tau = if x.abs() <= small { ratio * (T::one() - x * constant(0.5)) } else { (T::one() + x).ln() / g };
+    let tau = if x.abs() <= small { ratio * (one - x * half) } else { x.ln_1p() / g };
+    if tau <= T::zero() {
+        return T::zero();
+    }
+    // (e^(k tau) - 1) / k
     let grown = |k: T| {
         let y = k * tau;
-        if y.abs() <= constant(1e-3) {
-            tau * (T::one()
-                + y * (constant::<T>(0.5) + y * (constant::<T>(1.0 / 6.0) + y * constant(1.0 / 24.0))))
-        } else {
-            (y.exp() - T::one()) / k
-        }
+        if y.abs() <= small { tau * (one + y * half) } else { y.exp_m1() / k }
     };
-    let slope = sum - g;
     // Where h' vanishes too, a neighbour is as good.
-    let slope = if slope.abs() <= small * size { small * size } else { slope };
-    if slope == T::zero() {
-        // Nothing acts along the contact plane.
-        return turn * ratio * impulse * constant(0.5);
-    }
+    let slope = sum - g;
+    let slope = if (slope * tau).abs() <= small { small / tau } else { slope };
     turn * slip * (grown(slope + g) - ratio) / slope
+}
+
+/// The arc from a direction where h hardly differs from zero, to first order in the angle by which slip turns; nothing if that is not exact.
+///
+/// Where two zeros of h are about to merge there, the quadratic q of the exact arc is lost to rounding.
+///
+/// With B the integral of the angle over I_n, slip since the beginning changes by (b - mu T d) I_n - mu T d' B and v_n by f I_n - mu b.d' B. Up to the end of
+/// compression, and from there to the end, the arc is followed along its mean direction, so that both are right where they are needed.
+#[cold]
+#[inline(never)]
+pub(super) fn bent<T: Real>(
+    c: &Contact<T>,
+    d: &Vector2<T>,
+    slip: T,
+    ledger: &mut Ledger<T>,
+) -> Option<Slide<T>> {
+    let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
+    let across = Vector2::new(-d.y, d.x);
+    let pull = Vector2::new(c.tt * across.x + c.ts * across.y, c.ts * across.x + c.ss * across.y);
+    let rate = c.slip_rate(d);
+    let g = rate.dot(d);
+    // An angle that grows faster than slip stops needs more than first order; a zero that is left so fast is no part of a pair.
+    let slope = -c.mu * pull.dot(&across) - g;
+    let size = c.b.x.abs() + c.b.y.abs() + c.mu * (c.tt + c.ss);
+    if slope > constant::<T>(0.25) * g.abs() && slope > constant::<T>(1e-3) * size {
+        return None;
+    }
+    let (f, turn) = (c.normal_rate(d), rate.dot(&across));
+    if f.abs() <= constant::<T>(1024.0) * T::default_epsilon() * c.size() {
+        return None;
+    }
+    let angle = |impulse: T| bend(c, d, slip, Some(impulse));
+    let stop = (g < zero).then(|| -slip / g);
+    // What remains from a state on, were there no bend.
+    let remains = |mut ledger: Ledger<T>, state: &State<T>, stop: Option<T>| match ledger.follow_line(
+        state,
+        f,
+        &(*d * c.mu),
+        stop,
+    ) {
+        Line::Ended { impulse, .. } | Line::Passed(impulse) => Some(impulse),
+        Line::Endless => None,
+    };
+    let mut state = State::approach();
+    let whole = remains(*ledger, &state, stop)?;
+    // A large angle needs more than first order, too.
+    let mut mean = (angle(whole) / whole).abs();
+    // Slip may stop, and where it does depends on B too.
+    let mut last = zero;
+    let stop = stop.map(|stop| {
+        if whole < stop * half {
+            return stop;
+        }
+        last = bend(c, d, slip, None);
+        mean = larger(mean, (last / stop).abs());
+        stop + c.mu * d.dot(&pull) * last / g
+    });
+    let few = constant::<T>(16.0) * T::default_epsilon() * f.abs() / c.size();
+    if slope * whole > slip * constant(0.25)
+        || mean * mean > few
+        || size * mean * mean * mean > few * turn.abs()
+    {
+        return None;
+    }
+    let tangential = |impulse: T, angle: T| -(*d * impulse + across * angle) * c.mu;
+    let left = |impulse: T, angle: T| *d * slip + rate * impulse - pull * (c.mu * angle);
+    // What the chord of v_n leaves out of the work: the integral of B by Boole's rule, with points that crowd where slip may stop.
+    let bow = |from: T, length: T| {
+        let part = |y: f64| (one - constant(y)) * angle(from + length * constant(y * (2.0 - y)));
+        let sum = (part(0.25) + part(0.75)) * constant(32.0)
+            + part(0.5) * constant(12.0)
+            + part(0.0) * constant(7.0);
+        let chord = (angle(from) + angle(from + length)) * half;
+        -c.mu * c.b.dot(&across) * length * (sum * constant(1.0 / 45.0) - chord)
+    };
+    let (mut from, mut spent) = (zero, zero);
+    if ledger.stop.is_none() && f > zero && one / f <= whole {
+        let mean = angle(one / f) * f;
+        let along = *d + across * mean;
+        from = one / c.normal_rate(&along);
+        spent = mean * from;
+        let work = bow(zero, from) - from * half;
+        state = State { normal: from, tangential: tangential(from, spent), velocity: zero, work };
+        if ledger.compressed(&state) {
+            return Some(Slide::Ended(state, left(from, spent)));
+        }
+    }
+    let stop = stop.map(|stop| stop - from);
+    let more = remains(*ledger, &state, stop)?;
+    // Over a short way B is rounding more than a change, and leaves nothing out.
+    let short = whole * constant(1.0 / 1024.0);
+    let bow = if more > short { bow(from, more) } else { zero };
+    let span = larger(more, short);
+    let mean = (angle(from + span) - angle(from)) / span;
+    let along = *d + across * mean;
+    ledger.since(&state, bow);
+    let f = c.normal_rate(&along);
+    Some(match ledger.follow_line(&state, f, &(along * c.mu), stop) {
+        Line::Ended { impulse, velocity, work } => {
+            let (normal, spent) = (from + impulse, spent + mean * impulse);
+            let work = work + bow;
+            let state = State { normal, tangential: tangential(normal, spent), velocity, work };
+            Slide::Ended(state, left(normal, spent))
+        }
+        Line::Passed(impulse) => {
+            let velocity = state.velocity + f * impulse;
+            let done = (state.velocity + velocity) * impulse * half + bow;
+            let (normal, work) = (from + impulse, state.work + done);
+            let stopped = State { normal, tangential: tangential(normal, last), velocity, work };
+            if from > zero {
+                ledger.since(&stopped, done);
+            }
+            Slide::Stopped(stopped)
+        }
+        Line::Endless => Slide::Endless(state),
+    })
 }

@@ -262,7 +262,9 @@ impl<T: Real> Flow<T> {
         let poles = smaller(poles, constant(0.5 * MOST));
         let one = T::one();
         let mut rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).plain();
-        if place.sigma * rates.e > constant(0.06) {
+        let slip = place.sigma * rates.e;
+        let works = slip > constant(0.06) || (slip > constant(1e-3) && poles * rate > constant(12.0));
+        if works {
             // The work goes with slip times the impulse.
             rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().plain());
         }
@@ -281,16 +283,35 @@ impl<T: Real> Flow<T> {
             return both.plain();
         }
         let both = both * constant(0.5);
-        // About the growth at the far end, where it may be steeper.
-        let part = both * constant(0.125);
-        let w = (one + part) / (one - part);
-        let w = w * w;
-        let w = w * w;
-        let w = place.w * w * w;
-        let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
-        let far = (poly(self.central) / poly(self.q)).abs().plain();
-        let both = if far > rate + rate { smaller(both, limited(far)) } else { both };
-        (both + both).plain()
+        // About the growth at the far end, where it may be steeper. Where it rises it rises on beyond.
+        let near = (rates.growth + one).abs().plain();
+        let far = |both: T| {
+            let part = both * constant(0.125);
+            let w = (one + part) / (one - part);
+            let w = w * w;
+            let w = w * w;
+            let w = place.w * w * w;
+            let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
+            let far = (poly(self.central) / poly(self.q)).abs().plain();
+            let far = far + larger(far - near, T::zero());
+            if works { far + far } else { far }
+        };
+        let steepest = far(both);
+        if steepest <= rate + rate {
+            return (both + both).plain();
+        }
+        // Shorter, and then as long again as the growth at that end allows.
+        let (mut least, mut most) = (smaller(both, limited(steepest)), both);
+        for _ in 0..4 {
+            let middle = (least + most) * constant(0.5);
+            let allowed = limited(larger(far(middle), rate));
+            if allowed >= middle {
+                least = middle;
+            } else {
+                (least, most) = (larger(least, allowed), middle);
+            }
+        }
+        (least + least).plain()
     }
 
     /// Whether v_n rises from here, and the length in lambda after which f changes sign, if it does.

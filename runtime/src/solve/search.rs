@@ -153,7 +153,8 @@ impl<T: Real> Search<'_, T> {
             let far = aim.step.plain().abs();
             let near = aim.size <= constant(0.25)
                 && (far <= constant::<T>(0.035) * larger(self.reach, x)
-                    || far <= constant::<T>(0.065) * self.flow.beyond(to));
+                    || far <= constant::<T>(0.065) * self.flow.beyond(to))
+                && (!works || far * rates.growth.plain().abs() <= constant(0.3));
             if near || hi - lo <= constant::<T>(4.0) * T::default_epsilon() * hi {
                 if !works {
                     self.work(to);

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{
-    bend::bend,
+    bend::{bend, bent},
     flow::{Flow, Place},
     ledger::{Ledger, Line, State},
     panel::Panel,
@@ -15,6 +15,9 @@ use crate::{scalar::Real as Scalar, scalar::constant, scalar::length};
 /// Stretches after which the arc is given up. Each is as long, in the logarithm of the distance to the directions where slip stays, as the zeros of q
 /// are away from it, so that a few dozen lead past anything.
 const STRETCHES: u32 = 512;
+
+/// So many times its own rounding h may be where slip begins and is taken to turn by a small angle only, if it does.
+const NEARLY: f64 = 131_072.0;
 
 /// What became of the sliding arc.
 pub(crate) enum Slide<T: Scalar> {
@@ -40,8 +43,13 @@ pub(crate) fn slide<T: Scalar>(
     let direction = from / speed;
     let rate = c.slip_rate(&direction);
     let h = rate.y * direction.x - rate.x * direction.y;
-    if h.abs() <= noise * constant(4.0) {
-        return straight(c, direction, speed, State::approach(), ledger);
+    if h.abs() <= noise * constant(NEARLY) {
+        if h.abs() <= noise * constant(4.0) {
+            return straight(c, direction, speed, State::approach(), ledger);
+        }
+        if let Some(slide) = bent(c, &direction, speed, ledger) {
+            return slide;
+        }
     }
     let (flow, w) = Flow::through(c, &direction);
     let mut at = Place { state: State::approach(), since: T::zero(), w, sigma: speed / flow.e(w) };

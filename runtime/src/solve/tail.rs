@@ -10,7 +10,7 @@ use super::{
     flow::{Flow, Place},
     ledger::State,
 };
-use crate::scalar::{Real, constant, fma};
+use crate::scalar::{Real, constant, fma, larger};
 
 /// One coefficient of the four lanes: the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and the work of friction.
 type Row<T> = [T; 4];
@@ -39,14 +39,17 @@ impl<T: Real> Flow<T> {
         let [k0, k1, _] = self.k;
         // The terms must fall from the beginning, too: steep powers of the distance to the zeros of q make them rise first.
         let u = T::one() / place.w;
-        let rise = ((k1 + q1 + q1).abs() + (k0 + q0 + q0).abs() * u) * u;
+        let (last, fall) = (-self.last_rate(), q2 - self.last_rate());
+        let rise = larger(((k1 + q1 + q1).abs() + (k0 + q0 + q0).abs() * u) * u - fall, T::zero());
         // After 64 terms nothing may be left.
         let power = ratio * ratio;
         let power = power * power;
         let power = power * power;
         let power = power * power;
         let power = power * power;
-        power * power * T::default_epsilon() >= share && rise <= constant::<T>(2.0) * (q2 - self.last_rate())
+        power * power * T::default_epsilon() >= share
+            && rise <= fall
+            && rise * rise * last <= constant::<T>(4.0) * q2 * fall * fall
     }
 
     /// The state where slip stops (g < 0 at the stable end), and the normal work since compression ended.

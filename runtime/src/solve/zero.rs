@@ -31,7 +31,7 @@ impl<T: Real> Zero<T> {
     pub fn close(b: &Vector2<T>, nu: &Vector2<T>, mut v: Vector2<T>, sign: T) -> Self {
         let enough = if T::refined() { constant::<T>(8.0) * T::default_epsilon() } else { constant(3e-8) };
         let (mut slope, mut pull) = (T::zero(), T::zero());
-        for _ in 0..6 {
+        for left in (0..6).rev() {
             let (along, double) = (over(b, &v), over(&over(nu, &v), &v));
             let h = along.y - double.y;
             slope = (double.x + double.x - along.x) * sign;
@@ -39,8 +39,8 @@ impl<T: Real> Zero<T> {
             let bend = constant::<T>(4.0) * double.y - along.y;
             let turn = to_zero(h * sign, slope, bend * sign);
             let size = turn.abs();
-            // Not a number, or another zero.
-            if size <= constant(0.1) {
+            // Not a number, or another zero. Where zeros merge all steps are rounding, and the last one is not taken.
+            if size <= constant(0.1) && left > 0 {
                 let half = turn * turn * constant(0.5);
                 v = Vector2::new(v.x - v.x * half - v.y * turn, v.y - v.y * half + v.x * turn);
                 if size > enough {
