@@ -91,7 +91,8 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         if derivation.case.has_peers() {
             // Each mechanism is derived with parameters at run time first.
             let reference = &derived[index - usize::from(derivation.fixed)];
-            errors.push((derivation, rounding::measure(&folders, &built, derivation, reference)?));
+            let keep = arguments.peers && !derivation.fixed;
+            errors.push((derivation, rounding::measure(&folders, &built, derivation, reference, keep)?));
         }
         rows.push(Row { derivation, compile_seconds: built.seconds, counts, sizes: count::sizes(&built)? });
     }

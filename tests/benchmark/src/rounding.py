@@ -1,7 +1,8 @@
 """How much rounding costs Pinocchio: python rounding.py FOLDER NAME:URDF..
 
-FOLDER holds, per robot, states and answers in twice the digits of a double, as the benchmark writes them. Prints the errors relative to
-the largest entry of an answer, worst and mean over the states, as JSON: the content of `tests/data/peers/rounding.json`.
+FOLDER holds, per robot, states and answers in twice the digits of a double, as the benchmark writes them, a line each. Prints the errors
+relative to the largest entry of an answer, as JSON: the content of `tests/data/peers/rounding.json`. `worst` is the largest of a set of
+states, median over the sets, `of_all` the largest of all states.
 """
 
 import json
@@ -18,7 +19,8 @@ def error(found, exact):
 
 
 def measure(path, urdf):
-    data = json.loads(path.read_text())
+    lines = path.open()
+    data = json.loads(next(lines))
     free = "q_base_e0" in data["coordinates"]
     model = pinocchio.buildModelFromUrdf(urdf, *([pinocchio.JointModelFreeFlyer()] if free else []))
     model.gravity.linear = np.array([0, 0, -9.80665])
@@ -37,7 +39,7 @@ def measure(path, urdf):
     # From the world's axes to those of the contact: normal z, then as the model has them.
     basis = np.array(data["basis"])
     errors = {routine: [] for routine in ["FD", "ID", "CM", "M"]}
-    for state in data["states"]:
+    for state in map(json.loads, lines):
         q, v, a, tau = pinocchio.neutral(model), *(np.zeros(model.nv) for _ in range(3))
         q[of_q] = state["q"]
         v[order], a[order], tau[order] = state["v"], state["a"], state["tau"]
@@ -52,9 +54,14 @@ def measure(path, urdf):
         columns = np.array([pinocchio.cholesky.solve(model, work, row) for row in frame]).T
         reduced = basis @ frame @ columns @ basis.T
         errors["CM"].append(error(reduced[np.triu_indices(3)], state["CM"]))
-    return {routine: {"worst": max(list_), "mean": sum(list_) / len(list_)} for routine, list_ in errors.items()}
+    return {routine: summary(np.array(list_), data["set"]) for routine, list_ in errors.items()}
+
+
+def summary(errors, of_a_set):
+    sets = errors.reshape(-1, of_a_set).max(axis=1)
+    return {"worst": float(np.median(sets)), "of_all": float(errors.max()), "mean": float(errors.mean())}
 
 
 folder = pathlib.Path(sys.argv[1])
 robots = [robot.split(":", 1) for robot in sys.argv[2:]]
-print(json.dumps({name: measure(folder / (name + ".json"), urdf) for name, urdf in robots}, indent=1))
+print(json.dumps({name: measure(folder / (name + ".jsonl"), urdf) for name, urdf in robots}, indent=1))

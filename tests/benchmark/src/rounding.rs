@@ -25,8 +25,10 @@ use crate::tools::{Failure, Folders, output};
 /// Errors of Pinocchio.
 const PEERS: &str = "tests/data/peers/rounding.json";
 
-/// How many states.
-const STATES: usize = 2000;
+/// How many states a set has: the worst of so many is what is compared.
+const SET: usize = 2000;
+/// How many sets. The worst of one is a single state, and says little: their median says more.
+const SETS: usize = 10;
 
 /// A random state: numbers between -1 and 1, angles between -pi and pi, quaternions of unit length.
 struct State {
@@ -39,10 +41,24 @@ struct State {
 /// Errors relative to the largest entry of an answer.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Error {
-    /// the largest of all states
+    /// the largest of a set of states, median over the sets
     pub worst: f64,
+    /// the largest of all states
+    pub of_all: f64,
     /// the mean over the states
     pub mean: f64,
+}
+
+impl Error {
+    fn new(errors: &[f64]) -> Self {
+        let largest = |errors: &[f64]| errors.iter().fold(0.0f64, |largest, &error| largest.max(error));
+        let mut sets: Vec<f64> = errors.chunks(SET).map(largest).collect();
+        sets.sort_by(f64::total_cmp);
+        let middle = sets.len() / 2;
+        let median = if sets.len().is_multiple_of(2) { (sets[middle - 1] + sets[middle]) / 2.0 } else { sets[middle] };
+        let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+        Error { worst: median, of_all: largest(errors), mean }
+    }
 }
 
 /// Errors per routine.
@@ -78,7 +94,7 @@ fn states(mechanism: &Mechanism) -> Vec<State> {
             inputs: list(mechanism.inputs.len()),
         }
     };
-    (0..STATES).map(|_| state()).collect()
+    (0..SETS * SET).map(|_| state()).collect()
 }
 
 /// Quaternions that have unit length to all digits: a double more or less is what both sides round.
@@ -163,12 +179,13 @@ fn answers(built: &Built, states: &[State]) -> Result<Vec<Vec<f64>>, Failure> {
 }
 
 /// The errors of a measured program against the program with parameters at run time, evaluated in twice the digits; the states and
-/// the exact answers are left in the folder for the peers.
+/// the exact answers are left in the folder for the peers, if that is wanted.
 pub fn measure(
     folders: &Folders,
     built: &Built,
     derivation: &Derivation<'_>,
     reference: &Derivation<'_>,
+    keep: bool,
 ) -> Result<Errors, Failure> {
     let mechanism = mechanism(reference)?;
     let states = states(&mechanism);
@@ -179,32 +196,38 @@ pub fn measure(
         .map(|state| json!({"q": state.coordinates, "v": state.speeds, "a": state.accelerations, "tau": state.inputs}))
         .collect();
     for (place, (routine, _)) in ROUTINES.into_iter().enumerate() {
-        let mut error = Error::default();
+        let mut list = Vec::with_capacity(states.len());
         for (index, state) in states.iter().enumerate() {
             let exact = exact(&reference.program, &mechanism, state, routine)?;
             let all = answers.get(index * ROUTINES.len() + place).map_or(&[][..], Vec::as_slice);
             // of V and the reduced matrix the latter, which stands last
             let found = all.get(all.len().saturating_sub(exact.len())..).unwrap_or_default();
             let off = relative(found, &exact);
-            error.worst = error.worst.max(if off.is_nan() { f64::INFINITY } else { off });
-            error.mean += off / states.len() as f64;
-            kept[index][routine] = exact.iter().map(|number| json!([number.high, number.low])).collect();
+            list.push(if off.is_nan() { f64::INFINITY } else { off });
+            if keep {
+                kept[index][routine] = exact.iter().map(|number| json!([number.high, number.low])).collect();
+            }
         }
-        errors.insert(routine, error);
+        errors.insert(routine, Error::new(&list));
     }
-    if !derivation.fixed {
+    if keep {
         let folder = folders.work.join("rounding");
         std::fs::create_dir_all(&folder)?;
         let names = |list: &[hodograph_generator::model::mechanism::Quantity]| -> Vec<String> {
             list.iter().map(|quantity| quantity.name.clone()).collect()
         };
-        let all = json!({
+        let head = json!({
             "coordinates": names(&mechanism.coordinates),
             "speeds": derivation.speeds,
             "basis": basis(&reference.program, &mechanism, &states[0])?,
-            "states": kept,
+            "set": SET,
         });
-        std::fs::write(folder.join(format!("{}.json", derivation.case.name)), all.to_string())?;
+        let file = folder.join(format!("{}.jsonl", derivation.case.name));
+        let mut out = std::io::BufWriter::new(std::fs::File::create(file)?);
+        for line in std::iter::once(&head).chain(&kept) {
+            writeln!(out, "{line}")?;
+        }
+        out.flush()?;
     }
     Ok(errors)
 }
@@ -258,30 +281,24 @@ pub fn of_peers(folders: &Folders, cases: &[Case]) -> Result<(), Failure> {
     Ok(std::fs::write(folders.root.join(PEERS), output(&mut command)?)?)
 }
 
-/// Prints the table: run-time parameters, fixed ones, Pinocchio; worst and mean each.
+/// Prints the table: run-time parameters, fixed ones, Pinocchio; worst of a set, worst of all and mean each.
 pub fn print(folders: &Folders, rows: &[(&Derivation<'_>, Errors)]) -> Result<(), Failure> {
     let peers = peers(folders)?;
     println!(
-        "\n| mechanism | routine | run-time, worst | mean | fixed, worst | mean | Pinocchio, worst | mean |"
+        "\n| mechanism | routine | run-time, worst | of all | mean | fixed, worst | of all | mean | Pinocchio, worst | of all | mean |"
     );
-    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for pair in rows.chunks_exact(2) {
         let [(derivation, slow), (_, fast)] = pair else { continue };
         for (routine, _) in ROUTINES {
             let theirs = &peers[derivation.case.name.as_str()][routine];
+            let number = |error: f64| format!("{error:.2e}");
+            let ours = [slow[routine], fast[routine]];
+            let ours = ours.into_iter().flat_map(|error| [error.worst, error.of_all, error.mean]).map(number);
             let theirs =
-                |key: &str| theirs[key].as_f64().map_or(String::new(), |error| format!("{error:.1e}"));
-            let (slow, fast) = (slow[routine], fast[routine]);
-            println!(
-                "| {} | {routine} | {:.1e} | {:.1e} | {:.1e} | {:.1e} | {} | {} |",
-                derivation.case.title,
-                slow.worst,
-                slow.mean,
-                fast.worst,
-                fast.mean,
-                theirs("worst"),
-                theirs("mean"),
-            );
+                ["worst", "of_all", "mean"].map(|key| theirs[key].as_f64().map_or_else(String::new, number));
+            let all: Vec<String> = ours.chain(theirs).collect();
+            println!("| {} | {routine} | {} |", derivation.case.title, all.join(" | "));
         }
     }
     Ok(())
