@@ -12,6 +12,9 @@ use crate::tools::{Failure, Folders, output};
 /// How often each routine is evaluated at each state.
 const REPEATS: u64 = 50;
 
+/// The runtime's function for sines and cosines of several angles.
+const ANGLES: &str = "angles::of_doubles";
+
 /// Instructions per evaluation and calls of other functions, per routine.
 pub type Counts = BTreeMap<&'static str, f64>;
 
@@ -52,7 +55,8 @@ fn parse(profile: &str) -> Counts {
     totals.into_iter().map(|(routine, (calls, cost))| (routine, cost as f64 / calls as f64)).collect()
 }
 
-/// Bytes of machine code per routine: its function and the method, where that is a function of its own.
+/// Bytes of machine code per routine: its function, the method, where that is a function of its own, and the sines and cosines of several
+/// angles, which all routines share.
 pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
     let text = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(&built.program))?;
     let methods = ["::accelerations", "::inverse_dynamics", "::contact_matrices_", "::mass_matrix"];
@@ -66,7 +70,7 @@ pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
         };
         let Ok(size) = u64::from_str_radix(size, 16) else { continue };
         for ((routine, function), method) in ROUTINES.iter().zip(methods) {
-            if name.contains(function) || name.contains(method) {
+            if name.contains(function) || name.contains(method) || name.contains(ANGLES) {
                 *sizes.entry(*routine).or_default() += size;
             }
         }

@@ -55,7 +55,8 @@ impl Error {
         let mut sets: Vec<f64> = errors.chunks(SET).map(largest).collect();
         sets.sort_by(f64::total_cmp);
         let middle = sets.len() / 2;
-        let median = if sets.len().is_multiple_of(2) { (sets[middle - 1] + sets[middle]) / 2.0 } else { sets[middle] };
+        let median =
+            if sets.len().is_multiple_of(2) { (sets[middle - 1] + sets[middle]) / 2.0 } else { sets[middle] };
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         Error { worst: median, of_all: largest(errors), mean }
     }
