@@ -1,6 +1,6 @@
 //! Sines and cosines of several angles at once: a loop without branches, which compilers turn into vector instructions.
 
-use core::{any::TypeId, hint::black_box};
+use core::{any::TypeId, array::from_fn, hint::black_box};
 
 use nalgebra::convert;
 
@@ -8,23 +8,44 @@ use super::arithmetic::sin_cos;
 use super::trigonometry::{is_within, near_zero, reduced};
 use crate::Scalar;
 
-/// Sines and cosines of angles: for each what [`sin_cos`] gives, to the last bit.
+/// Does the target compute several doubles by one instruction?
+const VECTORS: bool = cfg!(any(
+    target_feature = "sse2",
+    target_feature = "neon",
+    target_feature = "simd128",
+    target_feature = "v"
+));
+
+/// Sines and cosines of up to eight angles: for each what [`sin_cos`] gives, to the last bit.
 #[inline(always)]
 pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
     // Known at compile time; the conversions of a double to a double vanish.
-    if TypeId::of::<T>() == TypeId::of::<f64>() {
-        let (sines, cosines) = of_doubles(angles.map(|angle| angle.to_subset_unchecked()));
-        (sines.map(convert), cosines.map(convert))
-    } else {
-        one_by_one(angles)
+    if !VECTORS || TypeId::of::<T>() != TypeId::of::<f64>() {
+        return one_by_one(angles);
     }
+    let angles = angles.map(|angle| angle.to_subset_unchecked());
+    let (sines, cosines) = match N {
+        0 | 1 => one_by_one(angles),
+        2 => filled::<N, 2>(angles),
+        3 | 4 => filled::<N, 4>(angles),
+        5..=8 => filled::<N, 8>(angles),
+        _ => one_by_one(angles),
+    };
+    (sines.map(convert), cosines.map(convert))
+}
+
+/// `N` angles in `LANES` lanes, at least as many; the last angle fills those that are left over.
+#[inline(always)]
+fn filled<const N: usize, const LANES: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+    let (sines, cosines) = of_doubles::<LANES>(from_fn(|lane| angles[lane.min(N - 1)]));
+    (from_fn(|lane| sines[lane.min(LANES - 1)]), from_fn(|lane| cosines[lane.min(LANES - 1)]))
 }
 
 /// A function of its own: within a long one, compilers leave parts of the loops as they are.
 #[inline(never)]
 fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     if !angles.iter().fold(true, |within, &angle| within & is_within(angle)) {
-        return one_by_one(angles);
+        return beyond(angles);
     }
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     if N > UNROLLED {
@@ -69,6 +90,11 @@ fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
 
 #[cold]
 #[inline(never)]
+fn beyond<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+    one_by_one(angles)
+}
+
+#[inline(always)]
 fn one_by_one<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
     let pairs = angles.map(sin_cos);
     (pairs.map(|(sine, _)| sine), pairs.map(|(_, cosine)| cosine))
@@ -81,6 +107,16 @@ mod tests {
 
     use super::*;
 
+    fn one(angle: f64) -> (u64, u64) {
+        let (s, c) = sin_cos(angle);
+        (s.to_bits(), c.to_bits())
+    }
+
+    fn together<const N: usize>(angles: [f64; N]) -> [(u64, u64); N] {
+        let (s, c) = sines_cosines(angles);
+        from_fn(|lane| (s[lane].to_bits(), c[lane].to_bits()))
+    }
+
     #[test]
     fn the_same_bits_as_one_by_one() {
         let near = (-400..400).map(|k| f64::from(k) * core::f64::consts::FRAC_PI_4);
@@ -89,21 +125,13 @@ mod tests {
             near.chain(spread).chain([0.0, -0.0, 1e-300, -5e-324, 524_288.0, -524_287.5]).collect();
         for angles in all.chunks_exact(8) {
             let eight: [f64; 8] = angles.try_into().unwrap();
-            let two = [eight[3], eight[0]];
-            let bits = |(sines, cosines): (&[f64], &[f64])| -> Vec<(u64, u64)> {
-                sines.iter().zip(cosines).map(|(s, c)| (s.to_bits(), c.to_bits())).collect()
-            };
-            let one = |angle: &f64| {
-                let (s, c) = sin_cos(*angle);
-                (s.to_bits(), c.to_bits())
-            };
-            let (s, c) = sines_cosines(eight);
-            assert_eq!(bits((&s, &c)), eight.iter().map(one).collect::<Vec<_>>(), "{eight:?}");
-            let four = [eight[7], eight[1], eight[4], eight[2]];
-            let (s, c) = sines_cosines(four);
-            assert_eq!(bits((&s, &c)), four.iter().map(one).collect::<Vec<_>>(), "{four:?}");
-            let (s, c) = sines_cosines(two);
-            assert_eq!(bits((&s, &c)), two.iter().map(one).collect::<Vec<_>>(), "{two:?}");
+            assert_eq!(together(eight), eight.map(one), "{eight:?}");
+            assert_eq!(together([eight[3]]), [one(eight[3])]);
+            let [a, b, c, d, e, ..] = eight;
+            assert_eq!(together([b, e]), [b, e].map(one), "{b} {e}");
+            assert_eq!(together([c, a, d]), [c, a, d].map(one), "{c} {a} {d}");
+            assert_eq!(together([d, b, e, a]), [d, b, e, a].map(one), "{d} {b} {e} {a}");
+            assert_eq!(together([a, c, b, e, d]), [a, c, b, e, d].map(one), "{eight:?}");
         }
     }
 
