@@ -2,7 +2,7 @@
 
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
-use crate::kinematics::axes::{AxesId, Symmetric};
+use crate::kinematics::axes::{AxesId, ENTRIES, Symmetric};
 use crate::kinematics::linear;
 use crate::model::mechanism::Body;
 
@@ -19,7 +19,7 @@ pub fn central_inertia(k: &mut Kinematics<'_>, body: &Body) -> Option<(Symmetric
         let r = k.position(body.centre, about);
         let r = k.express(&r, axes);
         let square = linear::dot(&r, &r);
-        for (at, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].into_iter().enumerate() {
+        for (at, (i, j)) in ENTRIES.into_iter().enumerate() {
             let product = r[i].mul(&r[j]);
             let part = if i == j { square.sub(&product) } else { product.neg() };
             components[at] = components[at].sub(&mass.mul(&part));

@@ -8,15 +8,14 @@
 use std::collections::BTreeMap;
 
 use super::lumps::{Lump, Seat};
-use super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple};
+use super::matrix::{Matrix, both_halves, full, name_matrix, times, transposed, turn_rows};
+use super::products::Products;
+use super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple, take_by_first, take_by_second};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
-use crate::kinematics::axes::{Symmetric, entry};
+use crate::kinematics::axes::{ENTRIES, Symmetric};
 use crate::kinematics::linear::{self, LinearVector, Triple};
 use crate::model::mechanism::{FrameId, PointId};
-
-/// Rows along the home axes of one frame, columns along those of another.
-type Coupling = [Triple; 3];
 
 /// Coefficients of the quadratic form
 /// `1/2 sum m v.v + sum v.(w x S) + 1/2 sum w.I.w + sum w.X.w' + sum u v.p + sum u w.h + 1/2 sum M u u`.
@@ -25,10 +24,10 @@ struct Form {
     mass: BTreeMap<PointId, Expr>,
     moment: BTreeMap<(PointId, FrameId), Triple>,
     inertia: BTreeMap<FrameId, Symmetric>,
-    coupling: BTreeMap<(FrameId, FrameId), Coupling>,
+    coupling: BTreeMap<(FrameId, FrameId), Matrix>,
     momentum: BTreeMap<(PointId, usize), Triple>,
     angular: BTreeMap<(FrameId, usize), Triple>,
-    matrix: BTreeMap<(usize, usize), Expr>,
+    matrix: Products,
 }
 
 /// The mass matrix of all speeds, dependent ones included, by slots `(r, s)` with `r <= s`. The slot after the last
@@ -66,7 +65,7 @@ pub fn full_mass_matrix(
         let value = k.z.simplify(&value);
         k.z.name(value)
     };
-    form.matrix.into_iter().map(|(at, value)| (at, tidy(value))).collect()
+    form.matrix.entries().into_iter().map(|(at, value)| (at, tidy(value))).collect()
 }
 
 /// Partial velocities of a relation, the remainder under the slot after the last speed.
@@ -82,14 +81,14 @@ fn slots(k: &Kinematics<'_>, form: &LinearVector) -> Vec<(usize, Triple)> {
 fn spread(r: &Triple, s: &Triple) -> Symmetric {
     let d = linear::dot(r, s);
     let half = Expr::number(&crate::number::Number::ratio(1, 2));
-    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| {
+    ENTRIES.map(|(i, j)| {
         let product = r[i].mul(&s[j]).add(&r[j].mul(&s[i])).mul(&half);
         if i == j { d.sub(&product) } else { product.neg() }
     })
 }
 
 /// `[r]x' C [s]x` for C = 1: the matrix of `(w x r).(w' x s)`.
-fn skew_product(r: &Triple, s: &Triple) -> Coupling {
+fn skew_product(r: &Triple, s: &Triple) -> Matrix {
     let d = linear::dot(r, s);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
@@ -99,35 +98,17 @@ fn skew_product(r: &Triple, s: &Triple) -> Coupling {
     })
 }
 
-fn times(m: &Symmetric, v: &Triple) -> Triple {
-    std::array::from_fn(|i| linear::dot(&std::array::from_fn(|j| m[entry(i, j)].clone()), v))
-}
-
 impl Form {
-    /// Adds `value * u_r * u_s` to the form.
-    fn add_product(&mut self, r: usize, s: usize, value: &Expr) {
-        if value.is_zero() {
-            return;
-        }
-        let value = if r == s { value.mul(&Expr::integer(2)) } else { value.clone() };
-        sum_scalar(&mut self.matrix, (r.min(s), r.max(s)), &value);
-    }
-
     /// Adds `w_f . X . w_g`, rows of X along f's home axes, columns along g's.
-    fn add_coupling(&mut self, k: &mut Kinematics<'_>, f: FrameId, g: FrameId, x: Coupling) {
+    fn add_coupling(&mut self, k: &mut Kinematics<'_>, f: FrameId, g: FrameId, x: Matrix) {
         if f == FrameId::N || g == FrameId::N || x.iter().all(linear::is_zero) {
             return;
         }
         if f == g {
-            let both = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| x[i][j].add(&x[j][i]));
-            sum_symmetric(&mut self.inertia, f, &both.map(|c| k.z.name(c)));
+            sum_symmetric(&mut self.inertia, f, &both_halves(&x).map(|c| k.z.name(c)));
             return;
         }
-        let (key, x) = if f < g {
-            ((f, g), x)
-        } else {
-            ((g, f), std::array::from_fn(|i| std::array::from_fn(|j| x[j][i].clone())))
-        };
+        let (key, x) = if f < g { ((f, g), x) } else { ((g, f), transposed(&x)) };
         sum_matrix(&mut self.coupling, key, &x);
     }
 
@@ -139,8 +120,7 @@ impl Form {
         let base_home = k.frames[base.0].home;
         let partials = slots(k, &motion.relative);
 
-        for point in self.moment.keys().filter(|key| key.1 == frame).map(|key| key.0).collect::<Vec<_>>() {
-            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+        for (point, moment) in take_by_second(&mut self.moment, frame) {
             let moment = linear::name(&mut k.z, moment);
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &moment, home, base_home);
@@ -156,67 +136,39 @@ impl Form {
         if let Some(inertia) = self.inertia.remove(&frame) {
             let inertia = inertia.map(|c| k.z.name(c));
             for (i, (slot, a)) in partials.iter().enumerate() {
-                let column = linear::name(&mut k.z, times(&inertia, a));
+                let column = linear::name(&mut k.z, times(&full(&inertia), a));
                 if base != FrameId::N {
                     let turned = k.tree.convert(&mut k.z, &column, home, base_home);
                     sum_triple(&mut self.angular, (base, *slot), &turned);
                 }
-                for (other, b) in &partials[..=i] {
-                    let value = linear::dot(b, &column);
-                    // 1/2 w.I.w counts the square once and a mixed product of two speeds fully.
-                    if other == slot {
-                        sum_scalar(&mut self.matrix, (*slot, *slot), &value);
-                    } else {
-                        self.add_product(*other, *slot, &value);
-                    }
-                }
+                self.matrix.add_square(&partials[..=i], &column);
             }
             if base != FrameId::N {
                 let turned = k.tree.convert_symmetric(&mut k.z, &inertia, home, base_home);
                 sum_symmetric(&mut self.inertia, base, &turned);
             }
         }
-        for key in
-            self.coupling.keys().filter(|key| key.0 == frame || key.1 == frame).copied().collect::<Vec<_>>()
-        {
-            let Some(x) = self.coupling.remove(&key) else { continue };
-            // rows along this frame
-            let other = if key.0 == frame { key.1 } else { key.0 };
-            let x: Coupling = if key.0 == frame {
-                x
-            } else {
-                std::array::from_fn(|i| std::array::from_fn(|j| x[j][i].clone()))
-            };
-            let x = x.map(|row| linear::name(&mut k.z, row));
+        let coupled: Vec<_> =
+            self.coupling.extract_if(.., |key, _| key.0 == frame || key.1 == frame).collect();
+        for ((f, g), x) in coupled {
+            let (other, x) = if f == frame { (g, x) } else { (f, transposed(&x)) };
+            let x = name_matrix(k, x);
             for (slot, a) in &partials {
-                let row = std::array::from_fn(|j| linear::dot(a, &std::array::from_fn(|i| x[i][j].clone())));
-                let row = linear::name(&mut k.z, row);
+                let row = linear::name(&mut k.z, times(&transposed(&x), a));
                 sum_triple(&mut self.angular, (other, *slot), &row);
             }
             if base != FrameId::N {
-                let columns: [Triple; 3] = std::array::from_fn(|j| {
-                    let column = std::array::from_fn(|i| x[i][j].clone());
-                    k.tree.convert(&mut k.z, &column, home, base_home)
-                });
-                let turned = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i].clone()));
-                if base == other {
-                    // both sides now belong to the same angular velocity
-                    self.add_coupling(k, base, base, turned);
-                } else {
-                    self.add_coupling(k, base, other, turned);
-                }
+                let turned = turn_rows(k, &x, home, base_home);
+                self.add_coupling(k, base, other, turned);
             }
         }
-        for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(h) = self.angular.remove(&(frame, slot)) else { continue };
+        for (slot, h) in take_by_first(&mut self.angular, frame) {
             let h = linear::name(&mut k.z, h);
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &h, home, base_home);
                 sum_triple(&mut self.angular, (base, slot), &turned);
             }
-            for (other, a) in &partials {
-                self.add_product(*other, slot, &linear::dot(a, &h));
-            }
+            self.matrix.add_products(slot, &h, &partials);
         }
     }
 
@@ -269,18 +221,10 @@ impl Form {
                     let turned = k.tree.convert(&mut k.z, &momentum, home, to);
                     sum_triple(&mut self.momentum, (base, *slot), &turned);
                 }
-                for (other, c) in &partials[..=i] {
-                    let value = linear::dot(c, &momentum);
-                    if other == slot {
-                        sum_scalar(&mut self.matrix, (*slot, *slot), &value);
-                    } else {
-                        self.add_product(*other, *slot, &value);
-                    }
-                }
+                self.matrix.add_square(&partials[..=i], &momentum);
             }
         }
-        for frame in self.moment.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+        for (frame, moment) in take_by_first(&mut self.moment, point) {
             let moment = linear::name(&mut k.z, moment);
             if let Some(base) = base {
                 sum_triple(&mut self.moment, (base, frame), &moment);
@@ -296,8 +240,7 @@ impl Form {
             }
             self.arm_times_partials(k, frame, &moment, &partials, home);
         }
-        for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(p) = self.momentum.remove(&(point, slot)) else { continue };
+        for (slot, p) in take_by_first(&mut self.momentum, point) {
             let p = linear::name(&mut k.z, p);
             if let (Some(base), Some(to)) = (base, base_home) {
                 let turned = k.tree.convert(&mut k.z, &p, home, to);
@@ -308,9 +251,7 @@ impl Form {
                 let turned = k.tree.convert(&mut k.z, &p, home, to);
                 sum_triple(&mut self.angular, (*frame, slot), &linear::cross(arm, &turned));
             }
-            for (other, b) in &partials {
-                self.add_product(*other, slot, &linear::dot(b, &p));
-            }
+            self.matrix.add_products(slot, &p, &partials);
         }
     }
 
@@ -324,12 +265,8 @@ impl Form {
         let (f_home, g_home) = (k.frames[f.0].home, k.frames[g.0].home);
         // both along g's axes, then the rows back to f's
         let turned = k.tree.convert(&mut k.z, moment, f_home, g_home);
-        let x = skew_product(&turned, arm).map(|row| linear::name(&mut k.z, row));
-        let columns: [Triple; 3] = std::array::from_fn(|j| {
-            let column = std::array::from_fn(|i| x[i][j].clone());
-            k.tree.convert(&mut k.z, &column, g_home, f_home)
-        });
-        let x = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i].clone()));
+        let x = name_matrix(k, skew_product(&turned, arm));
+        let x = turn_rows(k, &x, g_home, f_home);
         self.add_coupling(k, f, g, x);
     }
 

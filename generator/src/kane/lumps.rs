@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use crate::algebra::{Expr, Intermediates};
 use crate::kinematics::Kinematics;
-use crate::kinematics::axes::{Symmetric, entry, unit};
+use crate::kinematics::axes::{ENTRIES, Symmetric, entry, unit};
 use crate::kinematics::linear::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 use crate::number::Number;
@@ -36,7 +36,7 @@ impl Lump {
 
     /// Adds another lump whose reference point is at `r`, along the same axes.
     fn add_at(&mut self, other: &Lump, r: &Triple) {
-        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)] {
+        for (i, j) in ENTRIES {
             let shift = other.mass.mul(&r[i]).mul(&r[j]);
             let mixed = other.moment[i].mul(&r[j]).add(&other.moment[j].mul(&r[i]));
             let at = entry(i, j);
@@ -196,8 +196,7 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Mas
             let turned = Lump {
                 mass: rod.mass.clone(),
                 moment: linear::scale(&rod.moment[axis], &along),
-                second: [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]
-                    .map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
+                second: ENTRIES.map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
             };
             lumps.entry((base, target)).or_insert_with(Lump::empty).add_at(&turned, &r);
         }

@@ -9,8 +9,10 @@ pub mod energy;
 pub mod forces;
 pub mod inertia;
 pub mod lumps;
+mod matrix;
 pub mod order;
 mod outputs;
+mod products;
 mod samples;
 mod sums;
 

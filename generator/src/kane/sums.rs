@@ -1,4 +1,4 @@
-//! Sums that gather in maps.
+//! Sums that gather in maps, and what is taken out of them again.
 
 use std::collections::BTreeMap;
 
@@ -40,4 +40,20 @@ pub fn sum_symmetric<K: Ord>(map: &mut BTreeMap<K, Symmetric>, key: K, value: &S
         None => value.clone(),
     };
     map.insert(key, sum);
+}
+
+/// Takes out everything whose key begins with this, in the order of the rest of the keys.
+pub fn take_by_first<A: Ord + Copy, B: Ord + Copy, V>(
+    map: &mut BTreeMap<(A, B), V>,
+    first: A,
+) -> Vec<(B, V)> {
+    map.extract_if(.., |key, _| key.0 == first).map(|(key, value)| (key.1, value)).collect()
+}
+
+/// Takes out everything whose key ends with this, in the order of the rest of the keys.
+pub fn take_by_second<A: Ord + Copy, B: Ord + Copy, V>(
+    map: &mut BTreeMap<(A, B), V>,
+    second: B,
+) -> Vec<(A, V)> {
+    map.extract_if(.., |key, _| key.1 == second).map(|(key, value)| (key.0, value)).collect()
 }

@@ -160,6 +160,9 @@ impl AxesTree {
 /// A symmetric matrix: xx, yy, zz, xy, yz, zx.
 pub type Symmetric = [Expr; 6];
 
+/// Row and column of each entry of a symmetric matrix.
+pub const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)];
+
 /// Which of two numbers is much smaller than the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Smaller {
@@ -274,7 +277,7 @@ fn up_symmetric(
             });
             let rows: [Triple; 3] =
                 std::array::from_fn(|i| turned(&std::array::from_fn(|j| columns[j][i].clone())));
-            [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)].map(|(i, j)| z.name(rows[i][j].clone()))
+            ENTRIES.map(|(i, j)| z.name(rows[i][j].clone()))
         }
     }
 }

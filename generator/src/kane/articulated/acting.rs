@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use super::super::matrix::{times, transposed};
 use super::super::sums::{sum_scalar, sum_triple};
 use super::Eliminated;
-use super::relation::{PointRelation, times, transposed};
+use super::relation::PointRelation;
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::linear::{self, Triple};

@@ -3,13 +3,17 @@
 use std::collections::BTreeMap;
 
 use super::super::lumps::{Lump, Seat};
-use super::super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple};
+use super::super::matrix::{
+    Matrix, arm_matrix, both_halves, column, full, name_matrix, times, transposed, turn_rows,
+};
+use super::super::products::Products;
+use super::super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple, take_by_first, take_by_second};
 use super::acting::Acting;
-use super::relation::{Matrix, PointRelation, arm_matrix, column, times, transposed, turn_rows};
+use super::relation::PointRelation;
 use super::{Eliminated, Node};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
-use crate::kinematics::axes::{AxesId, Smaller, Symmetric, entry, is_isotropic};
+use crate::kinematics::axes::{AxesId, ENTRIES, Smaller, Symmetric, is_isotropic};
 use crate::kinematics::linear::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
@@ -22,7 +26,7 @@ pub struct Form {
     inertia: BTreeMap<FrameId, Symmetric>,
     momentum: BTreeMap<(PointId, usize), Triple>,
     angular: BTreeMap<(FrameId, usize), Triple>,
-    matrix: BTreeMap<(usize, usize), Expr>,
+    matrix: Products,
 }
 
 /// A component is much smaller than another that is so many times as large.
@@ -74,10 +78,6 @@ impl OfPoint {
     }
 }
 
-fn full(m: &Symmetric) -> Matrix {
-    std::array::from_fn(|i| std::array::from_fn(|j| m[entry(i, j)].clone()))
-}
-
 /// `a b' f` from both scaled by f. Where one of those is a number what it is a factor of cancels exactly.
 fn scaled_product(a: &Expr, b: &Expr, scaled_a: &Expr, scaled_b: &Expr) -> Expr {
     if scaled_b.is_number() { a.mul(scaled_b) } else { scaled_a.mul(b) }
@@ -85,15 +85,7 @@ fn scaled_product(a: &Expr, b: &Expr, scaled_a: &Expr, scaled_b: &Expr) -> Expr 
 
 /// `v v' f`, its upper half.
 fn square(v: &Triple, scaled: &Triple) -> Symmetric {
-    [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]
-        .map(|(i, j)| scaled_product(&v[i], &v[j], &scaled[i], &scaled[j]))
-}
-
-/// Names what stands in a map.
-fn name_entry<K: Ord + Copy>(k: &mut Kinematics<'_>, map: &mut BTreeMap<K, Triple>, key: K) -> Triple {
-    let named = linear::name(&mut k.z, map.remove(&key).unwrap_or_else(linear::zero));
-    map.insert(key, named.clone());
-    named
+    ENTRIES.map(|(i, j)| scaled_product(&v[i], &v[j], &scaled[i], &scaled[j]))
 }
 
 /// The same dyadic along other axes. What hinges leave of an inertia can be small in one direction and large in another, and the small
@@ -113,8 +105,27 @@ fn graded(k: &mut Kinematics<'_>, m: &Symmetric, from: AxesId, to: AxesId) -> Sy
     })
 }
 
-fn name_matrix(k: &mut Kinematics<'_>, m: Matrix) -> Matrix {
-    m.map(|row| linear::name(&mut k.z, row))
+/// Takes the `u'` with these partial velocities out of a velocity: what it has by itself, its inertia and what it shares with other
+/// `u'`, is named and stays; the products go to the matrix.
+fn split<K: Ord + Copy>(
+    k: &mut Kinematics<'_>,
+    matrix: &mut Products,
+    (key, partials): (K, &[(usize, Triple)]),
+    inertia: &mut BTreeMap<K, Symmetric>,
+    momenta: &mut BTreeMap<(K, usize), Triple>,
+) {
+    for (slot, momentum) in take_by_first(momenta, key) {
+        let momentum = linear::name(&mut k.z, momentum);
+        matrix.add_products(slot, &momentum, partials);
+        momenta.insert((key, slot), momentum);
+    }
+    let Some(inertia) = inertia.get_mut(&key) else { return };
+    *inertia = inertia.clone().map(|c| k.z.name(c));
+    for (i, (slot, partial)) in partials.iter().enumerate() {
+        let momentum = linear::name(&mut k.z, times(&full(inertia), partial));
+        matrix.add_square(&partials[..=i], &momentum);
+        sum_triple(momenta, (key, *slot), &momentum);
+    }
 }
 
 impl Form {
@@ -140,33 +151,11 @@ impl Form {
         form
     }
 
-    fn add_product(&mut self, r: usize, s: usize, value: &Expr) {
-        if !value.is_zero() {
-            let value = if r == s { value.mul(&Expr::integer(2)) } else { value.clone() };
-            sum_scalar(&mut self.matrix, (r.min(s), r.max(s)), &value);
-        }
-    }
-
     /// Takes the `u'` out of a frame's relation, `dalpha = carried + sum a u'`: from now on `carried` is what the frame stands for.
     pub fn split_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
         let partials: Vec<_> = k.frames[frame.0].relative.terms.clone().into_iter().collect();
-        for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
-            let h = name_entry(k, &mut self.angular, (frame, slot));
-            for (other, a) in &partials {
-                self.add_product(*other, slot, &linear::dot(a, &h));
-            }
-        }
-        if let Some(inertia) = self.inertia.get(&frame).cloned() {
-            let inertia = inertia.map(|c| k.z.name(c));
-            for (i, (slot, a)) in partials.iter().enumerate() {
-                let h = linear::name(&mut k.z, times(&full(&inertia), a));
-                self.add_products(&partials[..=i], &h);
-                sum_triple(&mut self.angular, (frame, *slot), &h);
-            }
-            self.inertia.insert(frame, inertia);
-        }
-        for point in self.moment.keys().filter(|key| key.1 == frame).map(|key| key.0).collect::<Vec<_>>() {
-            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+        split(k, &mut self.matrix, (frame, &partials), &mut self.inertia, &mut self.angular);
+        for (point, moment) in take_by_second(&mut self.moment, frame) {
             let moment = name_matrix(k, moment);
             for (slot, a) in &partials {
                 sum_triple(&mut self.momentum, (point, *slot), &times(&moment, a));
@@ -181,8 +170,7 @@ impl Form {
         let motion = k.frames[frame.0].clone();
         let base = k.turning(motion.base);
         let (home, base_home) = (motion.home, k.frames[base.0].home);
-        for point in self.moment.keys().filter(|key| key.1 == frame).map(|key| key.0).collect::<Vec<_>>() {
-            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+        for (point, moment) in take_by_second(&mut self.moment, frame) {
             let moment = name_matrix(k, moment);
             if base != FrameId::N {
                 // columns along the base's axes
@@ -199,9 +187,8 @@ impl Form {
             }
             stood.inertia = Some(inertia);
         }
-        for slot in self.angular.keys().filter(|key| key.0 == frame).map(|key| key.1).collect::<Vec<_>>() {
-            let h = name_entry(k, &mut self.angular, (frame, slot));
-            self.angular.remove(&(frame, slot));
+        for (slot, h) in take_by_first(&mut self.angular, frame) {
+            let h = linear::name(&mut k.z, h);
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &h, home, base_home);
                 sum_triple(&mut self.angular, (base, slot), &turned);
@@ -214,23 +201,8 @@ impl Form {
     /// Takes the `u'` out of a point's relation, `da = carried + sum b u'`: from now on `carried` is what the point stands for.
     pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let partials: Vec<_> = PointRelation::of(k, point)?.partials.into_iter().collect();
-        for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let p = name_entry(k, &mut self.momentum, (point, slot));
-            for (other, b) in &partials {
-                self.add_product(*other, slot, &linear::dot(b, &p));
-            }
-        }
-        if let Some(mass) = self.mass.get(&point).cloned() {
-            let mass = mass.map(|c| k.z.name(c));
-            for (i, (slot, b)) in partials.iter().enumerate() {
-                let p = linear::name(&mut k.z, times(&full(&mass), b));
-                self.add_products(&partials[..=i], &p);
-                sum_triple(&mut self.momentum, (point, *slot), &p);
-            }
-            self.mass.insert(point, mass);
-        }
-        for frame in self.moment.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+        split(k, &mut self.matrix, (point, &partials), &mut self.mass, &mut self.momentum);
+        for (frame, moment) in take_by_first(&mut self.moment, point) {
             let moment = name_matrix(k, moment);
             for (slot, b) in &partials {
                 sum_triple(&mut self.angular, (frame, *slot), &times(&transposed(&moment), b));
@@ -254,8 +226,7 @@ impl Form {
             if let Some((frame, arm)) = &arm {
                 let product: Matrix = std::array::from_fn(|j| times(&rows, &column(arm, j)));
                 let product = name_matrix(k, transposed(&product)); // mass * arm
-                let own = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]
-                    .map(|(i, j)| linear::dot(&column(arm, i), &column(&product, j)));
+                let own = ENTRIES.map(|(i, j)| linear::dot(&column(arm, i), &column(&product, j)));
                 sum_symmetric(&mut self.inertia, *frame, &own);
                 if let Some((base, to)) = base {
                     let turned = turn_rows(k, &product, home, to);
@@ -264,8 +235,7 @@ impl Form {
             }
             stood.mass = Some(mass);
         }
-        for frame in self.moment.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let Some(moment) = self.moment.remove(&(point, frame)) else { continue };
+        for (frame, moment) in take_by_first(&mut self.moment, point) {
             let moment = name_matrix(k, moment);
             if let Some((carrier, arm)) = &arm {
                 if *carrier != frame {
@@ -273,9 +243,7 @@ impl Form {
                 }
                 // dalpha' (arm' X) dalpha: both halves
                 let product: Matrix = std::array::from_fn(|i| times(&transposed(&moment), &column(arm, i)));
-                let own = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]
-                    .map(|(i, j)| product[i][j].add(&product[j][i]));
-                sum_symmetric(&mut self.inertia, frame, &own);
+                sum_symmetric(&mut self.inertia, frame, &both_halves(&product));
             }
             if let Some((base, to)) = base {
                 let turned = turn_rows(k, &moment, home, to);
@@ -283,9 +251,8 @@ impl Form {
             }
             stood.moments.push((frame, moment));
         }
-        for slot in self.momentum.keys().filter(|key| key.0 == point).map(|key| key.1).collect::<Vec<_>>() {
-            let p = name_entry(k, &mut self.momentum, (point, slot));
-            self.momentum.remove(&(point, slot));
+        for (slot, p) in take_by_first(&mut self.momentum, point) {
+            let p = linear::name(&mut k.z, p);
             if let Some((frame, arm)) = &arm {
                 sum_triple(&mut self.angular, (*frame, slot), &times(&transposed(arm), &p));
             }
@@ -296,19 +263,6 @@ impl Form {
             stood.momenta.push((slot, p));
         }
         Some(stood)
-    }
-
-    /// Adds `u_slot` times the products of its momentum with the partial velocities of slots up to its own, which stands last.
-    fn add_products(&mut self, partials: &[(usize, Triple)], momentum: &Triple) {
-        let Some((slot, _)) = partials.last() else { return };
-        for (other, b) in partials {
-            let value = linear::dot(b, momentum);
-            if other == slot {
-                sum_scalar(&mut self.matrix, (*slot, *slot), &value);
-            } else {
-                self.add_product(*other, *slot, &value);
-            }
-        }
     }
 
     /// The point about which everything that a `u'` moves is one rigid body in space, if it is: that is cheaper to carry on than what an
@@ -322,20 +276,15 @@ impl Form {
 
     /// Makes the form least over one `u'`.
     pub fn eliminate(&mut self, k: &mut Kinematics<'_>, slot: usize, split: Node) -> Option<Eliminated> {
-        let pivot = self.matrix.remove(&(slot, slot)).filter(|pivot| !pivot.is_zero())?;
+        let pivot = self.matrix.take_square(slot).filter(|pivot| !pivot.is_zero())?;
         let pivot = k.z.simplify(&pivot);
         let pivot = k.z.name(pivot);
         // Without a name of its own: what the pivot is a factor of cancels.
         let reciprocal = pivot.pow(-1);
         let momentum = taken(&mut self.momentum, slot, k)?;
         let angular = taken(&mut self.angular, slot, k)?;
-        let keys: Vec<(usize, usize)> =
-            self.matrix.keys().filter(|key| key.0 == slot || key.1 == slot).copied().collect();
-        let mut others = Vec::new();
-        for key in keys {
-            let value = self.matrix.remove(&key).unwrap_or_else(Expr::zero);
-            others.push((if key.0 == slot { key.1 } else { key.0 }, k.z.name(value)));
-        }
+        let others: Vec<(usize, Expr)> =
+            self.matrix.take(slot).into_iter().map(|(other, m)| (other, k.z.name(m))).collect();
         let minus = reciprocal.neg();
         let scale = |k: &mut Kinematics<'_>, v: &Triple| linear::name(&mut k.z, linear::scale(&minus, v));
         if let Some((point, p)) = &momentum {
@@ -361,8 +310,7 @@ impl Form {
         for (i, (r, m)) in others.iter().enumerate() {
             let scaled = k.z.name(m.mul(&minus));
             for (s, n) in &others[..=i] {
-                let value = scaled.mul(n);
-                sum_scalar(&mut self.matrix, (*r.min(s), *r.max(s)), &value);
+                self.matrix.add(*r, *s, &scaled.mul(n));
             }
         }
         Some(Eliminated { slot, reciprocal, momentum, angular, others, split })
@@ -376,14 +324,11 @@ fn taken<K: Ord + Copy>(
     slot: usize,
     k: &mut Kinematics<'_>,
 ) -> Option<Option<(K, Triple)>> {
-    let keys: Vec<(K, usize)> = map.keys().filter(|key| key.1 == slot).copied().collect();
     let mut found = None;
-    for key in keys {
-        if let Some(v) = map.remove(&key) {
-            let v = linear::name(&mut k.z, v);
-            if !linear::is_zero(&v) && found.replace((key.0, v)).is_some() {
-                return None;
-            }
+    for (key, v) in take_by_second(map, slot) {
+        let v = linear::name(&mut k.z, v);
+        if !linear::is_zero(&v) && found.replace((key, v)).is_some() {
+            return None;
         }
     }
     Some(found)

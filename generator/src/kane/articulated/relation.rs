@@ -2,15 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use super::super::matrix::{Matrix, arm_matrix, turn_rows};
 use super::super::sums::sum_triple;
-use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::AxesId;
 use crate::kinematics::linear::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
-
-/// Rows along the first's home axes, columns along the second's.
-pub type Matrix = [Triple; 3];
 
 /// `da = da_base + dalpha x r + sum b u'`, along the home axes of the point.
 pub struct PointRelation {
@@ -51,38 +48,4 @@ impl PointRelation {
         let base = motion.base.map(|base| (base, k.points[base.0].home));
         Some(PointRelation { home, base, arm, partials })
     }
-}
-
-/// A column.
-pub fn column(m: &Matrix, j: usize) -> Triple {
-    std::array::from_fn(|i| m[i][j].clone())
-}
-
-/// The transposed matrix.
-pub fn transposed(m: &Matrix) -> Matrix {
-    std::array::from_fn(|i| column(m, i))
-}
-
-/// The rows along other axes.
-pub fn turn_rows(k: &mut Kinematics<'_>, m: &Matrix, from: usize, to: usize) -> Matrix {
-    if from == to {
-        return m.clone();
-    }
-    let columns: Matrix = std::array::from_fn(|j| k.tree.convert(&mut k.z, &column(m, j), from, to));
-    transposed(&columns)
-}
-
-/// `m v`.
-pub fn times(m: &Matrix, v: &Triple) -> Triple {
-    std::array::from_fn(|i| linear::dot(&m[i], v))
-}
-
-/// `-[r]x`: the matrix that takes w to w x r.
-pub fn arm_matrix(r: &Triple) -> Matrix {
-    let [x, y, z] = r;
-    [
-        [Expr::zero(), z.clone(), y.neg()],
-        [z.neg(), Expr::zero(), x.clone()],
-        [y.clone(), x.neg(), Expr::zero()],
-    ]
 }

@@ -1,0 +1,57 @@
+//! What is left of a quadratic form once velocities are inserted: coefficients of products of speeds.
+
+use std::collections::BTreeMap;
+
+use super::sums::sum_scalar;
+use crate::algebra::Expr;
+use crate::kinematics::linear::{self, Triple};
+
+/// The symmetric matrix M of `1/2 sum M u_r u_s`, by slots `(r, s)` with `r <= s`.
+#[derive(Default)]
+pub struct Products(BTreeMap<(usize, usize), Expr>);
+
+impl Products {
+    /// Adds to an entry. An entry beside the diagonal stands for both halves, so that the form gains the whole product.
+    pub fn add(&mut self, r: usize, s: usize, value: &Expr) {
+        sum_scalar(&mut self.0, (r.min(s), r.max(s)), value);
+    }
+
+    /// Adds `value * u_r * u_s` to the form.
+    pub fn add_product(&mut self, r: usize, s: usize, value: &Expr) {
+        if !value.is_zero() {
+            let value = if r == s { value.mul(&Expr::integer(2)) } else { value.clone() };
+            self.add(r, s, &value);
+        }
+    }
+
+    /// Adds `u_slot` times the products of a momentum with these partial velocities.
+    pub fn add_products(&mut self, slot: usize, momentum: &Triple, partials: &[(usize, Triple)]) {
+        for (other, b) in partials {
+            self.add_product(*other, slot, &linear::dot(b, momentum));
+        }
+    }
+
+    /// Adds what half a quadratic form takes from one slot, by its momentum and the partial velocities of slots up to its own, which
+    /// stands last: the square once, and the product with every other speed fully.
+    pub fn add_square(&mut self, partials: &[(usize, Triple)], momentum: &Triple) {
+        let Some(((slot, own), before)) = partials.split_last() else { return };
+        self.add_products(*slot, momentum, before);
+        self.add(*slot, *slot, &linear::dot(own, momentum));
+    }
+
+    /// Takes out the entry of a slot on the diagonal.
+    pub fn take_square(&mut self, slot: usize) -> Option<Expr> {
+        self.0.remove(&(slot, slot))
+    }
+
+    /// Takes out what is left beside a slot, with the slots of the other factors.
+    pub fn take(&mut self, slot: usize) -> Vec<(usize, Expr)> {
+        let entries = self.0.extract_if(.., |key, _| key.0 == slot || key.1 == slot);
+        entries.map(|(key, value)| (if key.0 == slot { key.1 } else { key.0 }, value)).collect()
+    }
+
+    /// All entries, by slots `(r, s)` with `r <= s`.
+    pub fn entries(self) -> BTreeMap<(usize, usize), Expr> {
+        self.0
+    }
+}
