@@ -246,6 +246,49 @@ fn merging_zeros() {
     tally.report("merging zeros", 200);
 }
 
+/// A direction of hardly any mobility that still moves with the normal: slip along it is renewed, and known as far as rounding of T leaves it.
+#[test]
+fn hardly_any_mobility_across() {
+    let mut random = Random(13);
+    let mut renewed = 0;
+    for n in 0..60 {
+        let (nn, tt) = (random.between(0.1, 10.0), random.between(0.1, 10.0));
+        let ss = tt * random.between(1e-20, 1e-14);
+        let (nt, ns) = (0.6 * random.next() * (nn * tt).sqrt(), 0.7 * random.next() * (nn * ss).sqrt());
+        let v = Vector3::new(-1.0, random.next(), random.next() * (ss / tt).sqrt());
+        let surface = Surface { mu: random.between(0.05, 100.0), ..random.surface() };
+        let (m, v) = if n % 2 == 0 {
+            (ReducedMatrix::new(nn, nt, ns, tt, 0.0, ss), v)
+        } else {
+            (ReducedMatrix::new(nn, ns, nt, ss, 0.0, tt), Vector3::new(v.x, v.z, v.y))
+        };
+        let Ok(road) = second_road::solve(&m, &v, &surface) else { continue };
+        let hit = solve(&m, &v, &surface).expect("an outcome");
+        let error = road.error(&hit, &v);
+        assert!(error * (ss / tt).sqrt() <= 1e-13, "{error:e} {road:?} {hit:?} {m:?} {v:?} {surface:?}");
+        renewed += usize::from(hit.path == hodograph::Path::SlidingThenRenewal);
+    }
+    assert!(renewed > 10, "only {renewed}");
+}
+
+/// Restitution that ends just before the bodies would approach again.
+#[test]
+fn just_before_the_fall() {
+    let mut tally = Tally::default();
+    let m = ReducedMatrix::new(
+        1.4188186905498252e1,
+        -6.776239075011882,
+        4.627156408538082,
+        8.30539003853021,
+        -1.594162874491028,
+        2.3577605336339817,
+    );
+    let v = Vector3::new(-2.4695891634244527, 3.55054109332601, 1.146693921511248);
+    let surface = Surface { mu: 3.865491895603112, e: 9.999824176319805e-1, law: Law::Poisson };
+    tally.compare(&m, &v, &surface);
+    tally.report("just before the fall", 1);
+}
+
 /// Slip from almost none to a million times the speed of approach, and friction up to a thousand.
 #[test]
 fn slow_fast_and_steep() {

@@ -181,7 +181,7 @@ impl<T: Real> Search<'_, T> {
         Some(x)
     }
 
-    /// The last short steps, each from the point before; returns the length of all but the very last.
+    /// The last short steps, each from the point before; returns their length.
     #[inline]
     fn close_in(&self, sought: &Sought<T>, rates: Rates<T>, aim: Aim<T>, to: &mut Place<T>) -> T {
         let (mut length, mut rates, mut aim) = (T::zero(), rates, aim);
@@ -201,11 +201,11 @@ impl<T: Real> Search<'_, T> {
         }
         if rough <= close {
             to.touch(self.flow, &rates, aim.step);
-            return length;
+            return length + aim.step.plain();
         }
         let bends = self.flow.bends(to, &rates);
         let step = aim.refined(sought, to, &rates, &bends);
         to.nudge(self.flow, &rates, &bends, step);
-        length
+        length + step.plain()
     }
 }

@@ -36,7 +36,9 @@ impl<T: Scalar> Contact<T> {
         T::one() - self.mu * self.b.dot(d)
     }
 
-    /// The least-norm solution of T x = b by elimination from the larger pivot; a pivot lost to rounding counts as zero.
+    /// The least-norm solution of T x = b by elimination from the larger pivot; a pivot lost to rounding counts as zero if b lies in the range of T.
+    ///
+    /// If b does not, such a pivot is small and no zero: a positive semidefinite matrix has at least the square of what is left of b there.
     #[inline]
     pub fn hold(&self) -> Vector2<T> {
         let swap = self.ss > self.tt;
@@ -48,10 +50,12 @@ impl<T: Scalar> Contact<T> {
         if p <= T::zero() {
             return Vector2::zeros();
         }
+        let eps = T::default_epsilon();
         let l = self.ts / p;
-        let pivot = q - l * self.ts;
-        let x = if pivot > constant::<T>(64.0) * T::default_epsilon() * p {
-            let y = (b.y - l * b.x) / pivot;
+        let (pivot, left) = (q - l * self.ts, b.y - l * b.x);
+        let lost = pivot <= constant::<T>(64.0) * eps * p;
+        let x = if !lost || left.abs() > constant::<T>(4096.0) * eps * p.sqrt() {
+            let y = left / if lost { larger(pivot, left * left) } else { pivot };
             Vector2::new(b.x / p - l * y, y)
         } else {
             let scale = (b.x + l * b.y) / (p * (T::one() + l * l) * (T::one() + l * l));
