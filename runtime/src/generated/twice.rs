@@ -1,6 +1,6 @@
 //! Numbers of twice the digits, the unevaluated sum of two (Dekker 1971): what depends on parameters alone is computed in them, once,
-//! and rounded at the end. Their sums, products and quotients are right to two units in the last of all places; what a number
-//! loses is asked of the operations, and no bits are taken apart, so that derivatives go through.
+//! and rounded at the end. Their products and quotients are right to a few units in the last of all places, their sums to as many units of
+//! their terms. What a number loses is asked of the operations, and no bits are taken apart, so that derivatives go through.
 //!
 //! The interpreter and the runtime hold the same file, so that their bits agree; a test compares the two.
 
@@ -66,9 +66,8 @@ impl<T: Scalar> Add for Twice<T> {
     // a call: constructors are long, and run once
     #[inline(never)]
     fn add(self, other: Self) -> Self {
-        let (high, low) = (self.high + other.high, self.low + other.low);
-        let first = Twice::of(high, lost(self.high, other.high, high) + low);
-        Twice::of(first.high, first.low + lost(self.low, other.low, low))
+        let high = self.high + other.high;
+        Twice::of(high, lost(self.high, other.high, high) + (self.low + other.low))
     }
 }
 

@@ -6,7 +6,7 @@ use hodograph_generator::program::Program;
 use hodograph_generator::program::cost::Count;
 use hodograph_generator::program::routine::{ContactQuantity, Quantity};
 
-use crate::count::Counts;
+use crate::count::{CONSTRUCTION, Counts};
 use crate::derive::Derivation;
 use crate::harness::ROUTINES;
 use crate::peers::Peers;
@@ -74,17 +74,20 @@ pub fn print(rows: &[Row<'_>], peers: &Peers) {
     println!(
         "\nOperations (parameters fixed): multiplications/additions/divisions/pairs of sine and cosine (of them fused).\n"
     );
-    println!("| mechanism | parameters | derivation (s) | memory (MB) | compiling (s) |");
-    println!("| --- | --- | ---: | ---: | ---: |");
+    println!(
+        "| mechanism | parameters | derivation (s) | memory (MB) | compiling (s) | construction (instructions) |"
+    );
+    println!("| --- | --- | ---: | ---: | ---: | ---: |");
     for row in rows {
         let derivation = row.derivation;
         println!(
-            "| {} | {} | {:.2} | {} | {:.1} |",
+            "| {} | {} | {:.2} | {} | {:.1} | {} |",
             derivation.case.title,
             if derivation.fixed { "fixed" } else { "run-time" },
             derivation.seconds,
             derivation.kilobytes.map_or("-".to_owned(), |kilobytes| format!("{}", kilobytes / 1024)),
-            row.compile_seconds
+            row.compile_seconds,
+            row.counts.get(CONSTRUCTION).map_or(String::new(), |count| format!("{count:.0}"))
         );
     }
 }
