@@ -2,7 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::{Document, Entry, Equation, Left, Section, Term, product, stage_title};
+use super::arithmetic::{ZERO, neg, quotient, sum, times};
+use super::exact::Exact;
+use super::{Document, Entry, Equation, Left, Section, Term, stage_title};
 use crate::model::mechanism::{Function, Mechanism, Quantity as Name};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
@@ -14,10 +16,7 @@ const LONGEST: usize = 24;
 
 pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]) -> Document {
     let slice = program.slice(quantities);
-    let mut uses: HashMap<Value, usize> = HashMap::new();
-    for &value in &slice.order {
-        program.operation(value).operands().for_each(|operand| *uses.entry(operand).or_default() += 1);
-    }
+    let exact = Exact::new(program, &slice);
     let stages = program.stages();
     let mut reader = Reader { mechanism, program, terms: HashMap::new(), count: 0 };
     let mut intermediate: Vec<(Stage, Vec<Equation>)> =
@@ -25,8 +24,8 @@ pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
             .map(|s| (s, Vec::new()))
             .into();
     for &value in &slice.order {
+        let Some(times) = exact.uses(value) else { continue };
         let term = reader.term(value);
-        let times = uses.get(&value).copied().unwrap_or(0);
         let pair = matches!(program.operation(value), Operation::SinCos(_));
         let named = !pair && !is_short(&term) && (times > 1 || (times == 1 && size(&term) > LONGEST));
         let term = if named {
@@ -97,7 +96,8 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn of(&self, value: Value) -> Term {
-        self.terms.get(&value).cloned().unwrap_or(Term::Number(f64::NAN))
+        // Only what is exactly nothing has no term.
+        self.terms.get(&value).cloned().unwrap_or(ZERO)
     }
 
     fn term(&self, value: Value) -> Term {
@@ -230,62 +230,6 @@ fn contact_heading(quantity: ContactQuantity) -> (&'static str, &'static str) {
         ContactQuantity::PrescribedWork => ("work of prescribed motion per unit impulse", "w"),
         ContactQuantity::Tangent => ("derivatives of velocity, reduced matrix, response and gap", "l"),
     }
-}
-
-fn neg(a: Term) -> Term {
-    match a {
-        Term::Neg(a) => *a,
-        Term::Number(number) => Term::Number(if number == 0.0 { 0.0 } else { -number }),
-        Term::Sum(terms) => Term::Sum(terms.into_iter().map(neg).collect()),
-        other => Term::Neg(Box::new(other)),
-    }
-}
-
-fn sum(a: Term, b: Term) -> Term {
-    let parts = |term| match term {
-        Term::Sum(terms) => terms,
-        other => vec![other],
-    };
-    let mut terms = parts(a);
-    terms.extend(parts(b));
-    Term::Sum(terms)
-}
-
-fn times(a: Term, b: Term) -> Term {
-    let (minus_a, a) = a.unsigned();
-    let (minus_b, b) = b.unsigned();
-    let parts = |term| match term {
-        Term::Product(factors) => factors,
-        other => vec![other],
-    };
-    let mut factors = parts(a);
-    for factor in parts(b) {
-        let (base, n) = powered(&factor);
-        let known =
-            factors.iter_mut().find(|known| powered(known).0 == base && !matches!(base, Term::Number(_)));
-        match known {
-            Some(known) => *known = Term::Power(Box::new(base.clone()), powered(known).1 + n),
-            None => factors.push(factor),
-        }
-    }
-    factors.sort_by_key(|factor| !matches!(factor, Term::Number(_)));
-    let product = product(factors);
-    if minus_a == minus_b { product } else { neg(product) }
-}
-
-/// Base and exponent.
-fn powered(term: &Term) -> (&Term, u32) {
-    match term {
-        Term::Power(base, n) => (base, *n),
-        other => (other, 1),
-    }
-}
-
-fn quotient(a: Term, b: Term) -> Term {
-    let (minus_a, a) = a.unsigned();
-    let (minus_b, b) = b.unsigned();
-    let quotient = Term::Quotient(Box::new(a), Box::new(b));
-    if minus_a == minus_b { quotient } else { neg(quotient) }
 }
 
 fn function_name(function: Function) -> &'static str {

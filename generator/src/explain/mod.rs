@@ -1,9 +1,11 @@
 //! The equations of a mechanism, to be read: as text, LaTeX or HTML.
 //!
-//! The operations of a program become expressions again. What is used more than once, or would make a line too long, gets
-//! a name: z1, z2 .. as in the paper.
+//! The operations of a program become expressions again, like terms collected and what only mends rounding left out. What is used
+//! more than once, or would make a line too long, gets a name: z1, z2 .. as in the paper.
 
+mod arithmetic;
 mod collect;
+mod exact;
 mod html;
 mod latex;
 mod text;

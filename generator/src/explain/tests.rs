@@ -2,18 +2,21 @@
 
 use super::*;
 use crate::model::mechanism::{Function, Mechanism};
-use crate::program::graph::{Graph, Input};
+use crate::program::graph::{Graph, Input, Node};
 use crate::program::routine::{Derived, Output};
 
-/// M = [m l^2 / 3], F = [-m g l sin q1 / 2 + tau], K = (m l^2 / 6) u1^2
-fn pendulum() -> (Mechanism, Program) {
+fn rod() -> Mechanism {
     let text = "//! A rod.\nmechanism Rod;\nparameters { /// its mass\n m: kg = 1, l: m = 1, g: m/s^2 = 9.81 }\ninputs { tau: \
                 N*m }\ncoordinates { q1: rad }\nspeeds { u1: rad/s }\nframes { B = N.rotate(z, q1); }\npoints { G = O - \
                 l/2*B.y; }\nbodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\nloads { gravity: \
                 -g*N.y; torque on B: tau*N.z; }\n";
     let source = crate::source::Source::file("rod.mech", text);
     let checked = crate::model::check(&source);
-    let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+}
+
+/// M = [m l^2 / 3], F = [-m g l sin q1 / 2 + tau], K = (m l^2 / 6) u1^2
+fn pendulum() -> (Mechanism, Program) {
     let mut graph = Graph::new();
     let [m, l, g] = [0, 1, 2].map(|index| graph.input(Input::Parameter(index)));
     let [q, u, tau] =
@@ -36,7 +39,7 @@ fn pendulum() -> (Mechanism, Program) {
         one(Quantity::KineticEnergy, energy),
     ];
     let derived = Derived { graph, outputs, guards: Vec::new(), structures: Vec::new(), samples: Vec::new() };
-    (mechanism, Program::new(&derived))
+    (rod(), Program::new(&derived))
 }
 
 #[test]
@@ -61,4 +64,34 @@ fn latex_and_html_are_balanced() {
             (html.matches(&format!("<{tag}>")).count(), html.matches(&format!("</{tag}>")).count());
         assert_eq!(open, close, "{tag} in\n{html}");
     }
+}
+
+#[test]
+fn what_mends_the_rounding_of_angles_is_left_out() {
+    let explained = |form: fn(&mut Graph, [Node; 4]) -> Node| {
+        let mut graph = Graph::new();
+        let nodes = [Input::Coordinate(0), Input::Speed(0), Input::Input(0), Input::Time]
+            .map(|input| graph.input(input));
+        let angle = form(&mut graph, nodes);
+        let nodes = [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![angle])).to_vec();
+        let outputs = vec![Output { quantity: Quantity::Forcing, rows: 2, columns: 1, nodes }];
+        let derived = Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] };
+        let text = explain(&rod(), &Program::new(&derived), &[Quantity::Forcing], Format::Text);
+        let equations =
+            text.lines().filter_map(|line| line.strip_prefix("  ").filter(|line| line.contains(" = ")));
+        equations.collect::<Vec<_>>().join("; ")
+    };
+    let sines = |sum: &str| format!("F[1] = sin({sum}); F[2] = cos({sum})");
+    assert_eq!(explained(|g, [q, u, ..]| g.sum([q, u])), sines("q1 + u1"));
+    assert_eq!(explained(|g, [q, u, ..]| g.sub(q, u)), sines("q1 - u1"));
+    let three = explained(|g, [q, u, tau, _]| {
+        let first = g.sub(q, u);
+        g.sub(first, tau)
+    });
+    assert_eq!(three, sines("q1 - u1 - tau"));
+    let turned = explained(|g, [q, u, _, time]| {
+        let turned = g.product([u, time]);
+        g.sum([q, turned])
+    });
+    assert_eq!(turned, sines("u1*time + q1"));
 }
