@@ -73,13 +73,15 @@ pub(super) fn decay<T: Real>(
     if !turns || stays(first, second) {
         return straight(c, from / speed, speed, State::approach(), ledger);
     }
-    follow(&Decay { mu: c.mu, axis, start: [first, second], rates: [fast, slow], difference }, ledger)
+    let begin = State::approach();
+    follow(Decay { mu: c.mu, axis, begin, start: [first, second], rates: [fast, slow], difference }, ledger)
 }
 
 /// The arc; xi = (1 - e^(-nu sigma)) / nu, in which I_n soon becomes linear.
 struct Decay<T: Real> {
     mu: T,
     axis: Vector2<T>,
+    begin: State<T>,
     /// v_1 and v_2 at the start.
     start: [T; 2],
     /// alpha and nu.
@@ -93,15 +95,18 @@ impl<T: Real> Decay<T> {
         self.axis * first + Vector2::new(-self.axis.y, self.axis.x) * second
     }
 
-    /// The state at a normal impulse, when v_1 and v_2 have gone through these times their size at the start.
-    fn state(&self, normal: T, first: T, second: T) -> State<T> {
+    /// The state at a normal impulse, when v_1 and v_2 have gone through these times their size at the start, and the work since then.
+    fn state(&self, normal: T, first: T, second: T) -> (State<T>, T) {
         let [v1, v2] = self.start;
-        State {
-            normal,
-            tangential: -self.plane(v1 * first, v2 * second) * self.mu,
-            velocity: normal - T::one(),
-            work: normal * (normal * constant(0.5) - T::one()),
-        }
+        let State { normal: before, tangential, velocity, work } = self.begin;
+        let since = normal * (normal * constant(0.5) + velocity);
+        let state = State {
+            normal: before + normal,
+            tangential: tangential - self.plane(v1 * first, v2 * second) * self.mu,
+            velocity: velocity + normal,
+            work: work + since,
+        };
+        (state, since)
     }
 
     /// I_n after sigma; all that is left if there is none.
@@ -217,16 +222,25 @@ impl<T: Real> Course<T> for Decay<T> {
         let [first, second] = self.start;
         let sigma = elapsed(slow, xi);
         let left = T::one() - slow * xi;
-        let state = self.state(self.impulse(Some(sigma)), decayed(fast, sigma), xi);
+        let (state, since) = self.state(self.impulse(Some(sigma)), decayed(fast, sigma), xi);
         let slip = self.plane(first * (-fast * sigma).exp(), second * left);
         // dxi = e^(-nu sigma) dsigma
-        Point { state, slip, rate: length(&slip) / left, slope: T::one() }
+        Point { state, slip, rate: length(&slip) / left, slope: T::one(), since }
     }
 
-    fn stop(&self) -> Option<(T, State<T>)> {
+    fn from(&self, point: &Point<T>) -> Self {
+        let (axis, slip) = (self.axis, &point.slip);
+        let start = [axis.dot(slip), axis.x * slip.y - axis.y * slip.x];
+        Self { begin: point.state, start, ..*self }
+    }
+
+    fn stop(&self) -> Option<(T, State<T>, T)> {
         let one = T::one();
         let [fast, slow] = self.rates;
-        (slow > T::zero()).then(|| (one / slow, self.state(self.impulse(None), one / fast, one / slow)))
+        (slow > T::zero()).then(|| {
+            let (state, since) = self.state(self.impulse(None), one / fast, one / slow);
+            (one / slow, state, since)
+        })
     }
 
     fn turn(&self) -> Option<T> {

@@ -24,16 +24,30 @@ pub(super) struct Point<T: Real> {
     pub rate: T,
     /// f = dv_n / dI_n (31).
     pub slope: T,
+    /// Normal work since the course began: a small number that keeps its digits.
+    pub since: T,
 }
 
 /// A sliding arc over a parameter xi that starts at zero and grows with I_n.
-pub(super) trait Course<T: Real> {
+pub(super) trait Course<T: Real>: Sized {
     /// The point at xi.
     fn at(&self, xi: T) -> Point<T>;
-    /// Where slip stops, if it ever does: xi and the state there.
-    fn stop(&self) -> Option<(T, State<T>)>;
+    /// The same arc from one of its points on.
+    fn from(&self, point: &Point<T>) -> Self;
+    /// Where slip stops, if it ever does: xi, the state there and the normal work since the course began.
+    fn stop(&self) -> Option<(T, State<T>, T)>;
     /// Where f changes sign, if it does.
     fn turn(&self) -> Option<T>;
+}
+
+/// What became of a piece of a course.
+enum Piece<T: Real> {
+    /// The law ended the collision.
+    Ended(Point<T>),
+    /// It is over.
+    Passed,
+    /// Compression ended here, and the law (Stronge's) counts the work from here on.
+    Compressed(Point<T>),
 }
 
 /// What a search looks for: a quantity less its target.
@@ -45,11 +59,11 @@ enum Sought<T> {
 }
 
 impl<T: Real> Sought<T> {
-    fn of(&self, state: &State<T>) -> T {
+    fn of(&self, point: &Point<T>) -> T {
         match *self {
-            Self::Velocity(target) => state.velocity - target,
-            Self::Impulse(target) => state.normal - target,
-            Self::Work(target) => state.work - target,
+            Self::Velocity(target) => point.state.velocity - target,
+            Self::Impulse(target) => point.state.normal - target,
+            Self::Work(target) => point.since - target,
         }
     }
 
@@ -64,22 +78,51 @@ impl<T: Real> Sought<T> {
 }
 
 /// Follows a course until the law ends the collision or slip stops.
-pub(super) fn follow<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -> Slide<T> {
+pub(super) fn follow<T: Real>(mut course: impl Course<T>, ledger: &mut Ledger<T>) -> Slide<T> {
+    let mut state = State::approach();
+    // f changes sign once at most.
+    for _ in 0..3 {
+        match along(&course, ledger) {
+            Followed::Over(slide) => return slide,
+            Followed::Compressed(point) => {
+                course = course.from(&point);
+                state = point.state;
+            }
+        }
+    }
+    Slide::Endless(state)
+}
+
+/// What became of a course.
+enum Followed<T: Real> {
+    Over(Slide<T>),
+    /// Compression ended here, and the law counts the work from here on.
+    Compressed(Point<T>),
+}
+
+fn along<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -> Followed<T> {
     let mut from = (T::zero(), course.at(T::zero()));
     let stop = course.stop();
-    let turn = course.turn().filter(|xi| *xi > T::zero() && stop.is_none_or(|(end, _)| *xi < end));
+    let turn = course.turn().filter(|xi| *xi > T::zero() && stop.is_none_or(|(end, ..)| *xi < end));
+    let ended = |end: Point<T>| Followed::Over(Slide::Ended(end.state, end.slip));
     if let Some(xi) = turn {
         let to = (xi, course.at(xi));
-        if let Some(end) = piece(course, ledger, from, (to.0, to.1.state)) {
-            return Slide::Ended(end.state, end.slip);
+        match piece(course, ledger, from, (to.0, to.1.state, to.1.since)) {
+            Piece::Ended(end) => return ended(end),
+            Piece::Compressed(point) => return Followed::Compressed(point),
+            Piece::Passed => {}
         }
         ledger.turns.moved(to.1.state.velocity);
         from = to;
     }
-    if let Some((xi, state)) = stop {
-        return match piece(course, ledger, from, (xi, state)) {
-            Some(end) => Slide::Ended(end.state, end.slip),
-            None => Slide::Stopped(state),
+    if let Some((xi, state, since)) = stop {
+        return match piece(course, ledger, from, (xi, state, since)) {
+            Piece::Ended(end) => ended(end),
+            Piece::Compressed(point) => Followed::Compressed(point),
+            Piece::Passed => {
+                ledger.since(&state, since);
+                Followed::Over(Slide::Stopped(state))
+            }
         };
     }
     // Slip goes on for ever: as far as the law needs.
@@ -90,30 +133,39 @@ pub(super) fn follow<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -
         if !to.1.state.normal.is_finite() {
             break;
         }
-        if let Some(end) = piece(course, ledger, from, (xi, to.1.state)) {
-            return Slide::Ended(end.state, end.slip);
+        match piece(course, ledger, from, (xi, to.1.state, to.1.since)) {
+            Piece::Ended(end) => return ended(end),
+            Piece::Compressed(point) => return Followed::Compressed(point),
+            Piece::Passed => {}
         }
         from = to;
         step += step;
     }
-    Slide::Endless(from.1.state)
+    Followed::Over(Slide::Endless(from.1.state))
 }
 
-/// The end of the collision between two points, between which v_n is monotone.
+/// What the law does between two points, between which v_n is monotone.
 fn piece<T: Real>(
     course: &impl Course<T>,
     ledger: &mut Ledger<T>,
     from: (T, Point<T>),
-    to: (T, State<T>),
-) -> Option<Point<T>> {
+    to: (T, State<T>, T),
+) -> Piece<T> {
     let zero = T::zero();
     let law = ledger.law();
     let (mut from, mut to) = (from, to);
-    if ledger.passes(&from.1.state, &to.1) {
-        return None;
+    // Stronge's law waits for work since compression ended, which may be too little to be seen in the whole.
+    let works = law == Law::Stronge && ledger.compressions > 0 && ledger.stop.is_none();
+    let passes = if works && from.1.state.velocity >= zero {
+        to.1.velocity >= zero && to.2 < ledger.wanted
+    } else {
+        ledger.passes(&from.1.state, &to.1)
+    };
+    if passes {
+        return Piece::Passed;
     }
     if let Some(stop) = ledger.stop {
-        return Some(find(course, &Sought::Impulse(stop), T::one(), &from, to.0).1);
+        return Piece::Ended(find(course, &Sought::Impulse(stop), T::one(), &from, to.0).1);
     }
     if from.1.state.velocity < zero {
         if law == Law::Newton && ledger.target > zero && !ledger.thorough {
@@ -122,25 +174,29 @@ fn piece<T: Real>(
         } else {
             from = find(course, &Sought::Velocity(zero), T::one(), &from, to.0);
             if ledger.compressed(&from.1.state) {
-                return Some(from.1);
+                return Piece::Ended(from.1);
             }
             from.1.state.velocity = zero;
+            if law == Law::Stronge && length(&from.1.slip) > zero {
+                return Piece::Compressed(from.1);
+            }
         }
     } else if to.1.velocity < zero {
         let (xi, point) = find(course, &Sought::Velocity(zero), -T::one(), &from, to.0);
-        to = (xi, point.state);
+        to = (xi, point.state, point.since);
         ledger.falls(&to.1);
     }
     let target = ledger.target;
-    if ledger.watched(&to.1) < target || (law == Law::Newton && ledger.watched(&from.1.state) >= target) {
-        return None;
+    let reached = if works { to.2 >= ledger.wanted } else { ledger.watched(&to.1) >= target };
+    if !reached || (law == Law::Newton && ledger.watched(&from.1.state) >= target) {
+        return Piece::Passed;
     }
     let sought = match law {
         Law::Newton => Sought::Velocity(target),
         Law::Poisson => Sought::Impulse(target),
-        Law::Stronge => Sought::Work(target),
+        Law::Stronge => Sought::Work(ledger.wanted),
     };
-    Some(find(course, &sought, T::one(), &from, to.0).1)
+    Piece::Ended(find(course, &sought, T::one(), &from, to.0).1)
 }
 
 /// The point between `from` and `hi` where what is sought vanishes, rising (`sign` = 1) or falling (-1): Newton's method inside a bracket.
@@ -153,7 +209,7 @@ fn find<T: Real>(
 ) -> (T, Point<T>) {
     let half = constant::<T>(0.5);
     let (mut lo, mut hi) = (*from, hi);
-    let y = sought.of(&begin.state);
+    let y = sought.of(begin);
     let slope = sought.slope(begin);
     // Work begins to grow like a square after compression.
     let v = begin.state.velocity;
@@ -169,7 +225,7 @@ fn find<T: Real>(
     let small = constant::<T>(4.0) * T::default_epsilon();
     for _ in 0..STEPS {
         let point = course.at(xi);
-        let y = sought.of(&point.state);
+        let y = sought.of(&point);
         if y * sign < T::zero() {
             lo = xi;
         } else {
@@ -187,7 +243,7 @@ fn find<T: Real>(
         // A derivative is one step of Newton's behind its value.
         let plain = xi.plain();
         let point = course.at(plain);
-        xi = plain - sought.of(&point.state) / sought.slope(&point);
+        xi = plain - sought.of(&point) / sought.slope(&point);
     }
     (xi, course.at(xi))
 }

@@ -33,25 +33,29 @@ impl Shape for Isotropic {
             return straight(c, d, speed, State::approach(), ledger);
         }
         let axis = c.b / beta;
-        let (along, across) = (axis.dot(&from), axis.x * from.y - axis.y * from.x);
-        let half = constant::<T>(0.5);
         let kappa = c.mu * c.tt;
-        // The lesser of P and M from P M = v_2^2 / 4.
-        let large = (speed + along.abs()) * half;
-        let small = across * across * constant(0.25) / large;
-        let forward = along > T::zero();
-        let (p, m) = if forward { (large, small) } else { (small, large) };
+        let (across, sizes) = split(&axis, &from, speed);
         let arc = Arc {
             mu: c.mu,
             axis,
+            begin: State::approach(),
             across,
             kappa,
             rates: [kappa - beta, kappa + beta],
-            sizes: [p, m],
+            sizes,
             gains: [T::one() - c.mu * beta, T::one() + c.mu * beta],
         };
-        follow(&arc, ledger)
+        follow(arc, ledger)
     }
+}
+
+/// v_2, and P and M.
+fn split<T: Real>(axis: &Vector2<T>, slip: &Vector2<T>, speed: T) -> (T, [T; 2]) {
+    let (along, across) = (axis.dot(slip), axis.x * slip.y - axis.y * slip.x);
+    // The lesser of P and M from P M = v_2^2 / 4.
+    let large = (speed + along.abs()) * constant(0.5);
+    let small = across * across * constant(0.25) / large;
+    (across, if along > T::zero() { [large, small] } else { [small, large] })
 }
 
 /// The arc; xi = (1 - e^(-(kappa - beta) sigma)) / (kappa - beta), in which I_n soon becomes linear.
@@ -59,6 +63,7 @@ struct Arc<T: Real> {
     mu: T,
     /// Unit vector along b.
     axis: Vector2<T>,
+    begin: State<T>,
     /// v_2 at the start.
     across: T,
     kappa: T,
@@ -71,8 +76,8 @@ struct Arc<T: Real> {
 }
 
 impl<T: Real> Arc<T> {
-    /// The state where P, M and v_2 have gone through these times their size at the start, and P after M through `mixed` times both.
-    fn state(&self, [p, m, across]: [T; 3], mixed: T) -> State<T> {
+    /// The state where P, M and v_2 have gone through these times their size at the start, and P after M through `mixed` times both; the work since then.
+    fn state(&self, [p, m, across]: [T; 3], mixed: T) -> (State<T>, T) {
         let half = constant::<T>(0.5);
         let [a, b] = self.gains;
         let [size_p, size_m] = self.sizes;
@@ -80,12 +85,15 @@ impl<T: Real> Arc<T> {
         let normal = p + m;
         let rubbed = self.axis * (p - m) + Vector2::new(-self.axis.y, self.axis.x) * (self.across * across);
         let mixed = size_p * size_m * mixed;
-        State {
-            normal,
-            tangential: -rubbed * self.mu,
-            velocity: a * p + b * m - T::one(),
-            work: half * (a * p * p + b * m * m) + b * mixed + a * (p * m - mixed) - normal,
-        }
+        let State { normal: before, tangential, velocity, work } = self.begin;
+        let since = half * (a * p * p + b * m * m) + b * mixed + a * (p * m - mixed) + velocity * normal;
+        let state = State {
+            normal: before + normal,
+            tangential: tangential - rubbed * self.mu,
+            velocity: a * p + b * m + velocity,
+            work: work + since,
+        };
+        (state, since)
     }
 }
 
@@ -93,7 +101,8 @@ impl<T: Real> Course<T> for Arc<T> {
     fn at(&self, xi: T) -> Point<T> {
         let [p, m] = self.rates;
         let sigma = elapsed(p, xi);
-        let state = self.state([xi, decayed(m, sigma), decayed(self.kappa, sigma)], mixed(p, m, sigma));
+        let (state, since) =
+            self.state([xi, decayed(m, sigma), decayed(self.kappa, sigma)], mixed(p, m, sigma));
         // dxi = e^(-p sigma) dsigma
         let left = T::one() - p * xi;
         let fast = (-m * sigma).exp();
@@ -107,15 +116,22 @@ impl<T: Real> Course<T> for Arc<T> {
             slip: self.axis * (now_p - now_m) + Vector2::new(-self.axis.y, self.axis.x) * across,
             rate: size_p + now_m / left,
             slope: (a * now_p + b * now_m) / s,
+            since,
         }
     }
 
-    fn stop(&self) -> Option<(T, State<T>)> {
+    fn from(&self, point: &Point<T>) -> Self {
+        let (across, sizes) = split(&self.axis, &point.slip, length(&point.slip));
+        Self { begin: point.state, across, sizes, ..*self }
+    }
+
+    fn stop(&self) -> Option<(T, State<T>, T)> {
         let [p, m] = self.rates;
         let one = T::one();
         (p > T::zero()).then(|| {
             let mixed = one / (p * (p + m));
-            (one / p, self.state([one / p, one / m, one / self.kappa], mixed))
+            let (state, since) = self.state([one / p, one / m, one / self.kappa], mixed);
+            (one / p, state, since)
         })
     }
 
