@@ -8,6 +8,9 @@ use crate::model::mechanism::{Mechanism, Orientation, Quantity};
 /// How many.
 const SAMPLES: u64 = 24;
 
+/// Half a turn in the units of angles that coordinates commonly have.
+const HALF_TURNS: [(&str, f64); 4] = [("rad", PI), ("mrad", 1000.0 * PI), ("deg", 180.0), ("rev", 0.5)];
+
 /// States all over the mechanism's range, the same ones every time; parameters as the model states them.
 pub fn samples(mechanism: &Mechanism) -> Vec<Inputs> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
@@ -23,11 +26,12 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
         (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
     let given = |quantity: &Quantity| quantity.value.filter(|value| *value != 0.0);
+    let half_turn = |unit: &str| HALF_TURNS.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
     // An angle may be any; anything else is of the size that the model gives it.
-    let mut around = |quantity: &Quantity, angle: bool| match given(quantity) {
-        _ if angle && quantity.unit == "rad" => PI * next(),
-        Some(value) => value * (1.0 + 0.5 * next()),
-        None => next(),
+    let mut around = |quantity: &Quantity, angle: bool| match (half_turn(&quantity.unit), given(quantity)) {
+        (Some(half_turn), _) if angle => half_turn * next(),
+        (_, Some(value)) => value * (1.0 + 0.5 * next()),
+        (_, None) => next(),
     };
     let mut coordinates: Vec<f64> =
         mechanism.coordinates.iter().map(|coordinate| around(coordinate, true)).collect();
@@ -57,10 +61,10 @@ mod tests {
 
     #[test]
     fn samples_are_of_the_sizes_that_the_model_gives() {
-        let model = "mechanism M; parameters { m: kg = 2, l: m } coordinates { q1: rad = 0.1, x: m = 0.004, y: m }
-            speeds { u1: rad/s, u2: m/s = 3, u3: m/s } frames { B = N.rotate(z, q1); } points { G = O + x*N.x + y*N.y; }
-            bodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] } }
-            kinematics { d(x)/dt = u2; d(y)/dt = u3; }";
+        let model = "mechanism M; parameters { m: kg = 2, l: m } coordinates { q1: rad = 0.1, x: m = 0.004, y: m, q2: deg }
+            speeds { u1: rad/s, u2: m/s = 3, u3: m/s, u4: rad/s } frames { B = N.rotate(z, q1); C = N.rotate(z, q2); } points { G = O + x*N.x + y*N.y; }
+            bodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] }, S { frame: C, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] } }
+            kinematics { d(x)/dt = u2; d(y)/dt = u3; d(q2)/dt = u4; }";
         let checked = crate::model::check(&crate::source::Source::file("m.mech", model));
         let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
         let samples = samples(&mechanism);
@@ -68,6 +72,7 @@ mod tests {
         assert!(samples.iter().any(|sample| sample.coordinates[0] > 2.0));
         assert!(samples.iter().all(|sample| (0.002..=0.006).contains(&sample.coordinates[1])));
         assert!(samples.iter().any(|sample| sample.coordinates[2] < -0.5));
+        assert!(samples.iter().any(|sample| sample.coordinates[3] > 90.0));
         assert!(samples.iter().all(|sample| (1.5..=4.5).contains(&sample.speeds[1])));
         assert_eq!(samples, super::samples(&mechanism));
     }

@@ -9,6 +9,7 @@ mod build;
 mod construction;
 pub mod cost;
 pub mod differentiate;
+pub mod everywhere;
 pub mod graph;
 pub mod linear;
 mod lower;

@@ -9,6 +9,7 @@ use super::super::{habits, similar};
 use super::Lowering;
 use super::dimensions::model_of;
 use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::program::everywhere;
 use crate::syntax::tree::{Expr, ExprKind, Name};
 
 const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
@@ -212,12 +213,8 @@ impl Lowering<'_> {
         };
         let constants: Option<Vec<f64>> = typed.iter().map(|argument| argument.constant).collect();
         let constant = constants.map(|values| match (function, &values[..]) {
-            (_, [a, b]) => match function {
-                Function::Atan2 => a.atan2(*b),
-                Function::Min => a.min(*b),
-                _ => a.max(*b),
-            },
-            (_, [a]) => apply(function, *a),
+            (_, [a, b]) => everywhere::call2(function, *a, *b),
+            (_, [a]) => everywhere::call(function, *a),
             _ => f64::NAN,
         });
         let value = Scalar::Call(function, scalars);
@@ -483,29 +480,6 @@ pub(super) fn axis_named(name: &str) -> Option<Axis> {
 
 fn both(a: Option<Dimension>, b: Option<Dimension>) -> Option<Dimension> {
     a?.times(&b?)
-}
-
-fn apply(function: Function, a: f64) -> f64 {
-    match function {
-        Function::Sin => a.sin(),
-        Function::Cos => a.cos(),
-        Function::Tan => a.tan(),
-        Function::Asin => a.asin(),
-        Function::Acos => a.acos(),
-        Function::Atan => a.atan(),
-        Function::Sqrt => a.sqrt(),
-        Function::Exp => a.exp(),
-        Function::Log => a.ln(),
-        Function::Abs => a.abs(),
-        Function::Sign => {
-            if a < 0.0 {
-                -1.0
-            } else {
-                1.0
-            }
-        }
-        Function::Atan2 | Function::Min | Function::Max => f64::NAN,
-    }
 }
 
 impl Typed {

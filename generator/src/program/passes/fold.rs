@@ -4,7 +4,7 @@ use num_rational::BigRational;
 
 use super::{Survey, rebuild, rewrite};
 use crate::number::Number;
-use crate::program::arithmetic::{call, call2};
+use crate::program::everywhere::{call, call2};
 use crate::program::graph::{Graph, Node, Value};
 use crate::program::operation::Stage;
 use crate::program::routine::Derived;
@@ -70,7 +70,7 @@ mod tests {
     }
 
     #[test]
-    fn functions_of_numbers_become_the_double_that_the_interpreter_computes() {
+    fn functions_of_numbers_become_the_nearest_double() {
         let sine = |g: &mut Graph| {
             let (pi, third) = (g.pi(), g.number(Number::ratio(1, 3)));
             let angle = g.product([pi, third]);

@@ -86,7 +86,7 @@ impl<'a> Sums<'a> {
     /// The terms of a sum; none of any other operation.
     pub fn open(&self, value: Value) -> Sum {
         let mut sum = Sum::default();
-        self.take(value, false, &mut sum);
+        self.take(value, &mut sum);
         let is_known = |term: &Term| match term.what {
             What::Value(value) => self.stages[value.index()] <= Stage::Parameter,
             _ => false,
@@ -99,37 +99,52 @@ impl<'a> Sums<'a> {
         sum
     }
 
-    fn take(&self, value: Value, negative: bool, sum: &mut Sum) {
-        let (a, b, c, minus_product, minus_rest) = match self.program.operation(value) {
-            Operation::Add(a, b) => return self.both([(a, negative), (b, negative)], sum),
-            Operation::Sub(a, b) => return self.both([(a, negative), (b, !negative)], sum),
-            Operation::MulAdd(a, b, c) => (a, b, c, negative, negative),
-            Operation::MulSub(a, b, c) => (a, b, c, negative, !negative),
-            Operation::NegMulAdd(a, b, c) => (a, b, c, !negative, negative),
-            _ => return,
+    /// The two parts of a sum; `None` of any other operation.
+    fn parts(&self, value: Value, negative: bool) -> Option<[Part; 2]> {
+        let (rest, part) = match self.program.operation(value) {
+            Operation::Add(a, b) => ((a, negative), Part::Value(negative, b)),
+            Operation::Sub(a, b) => ((a, negative), Part::Value(!negative, b)),
+            Operation::MulAdd(a, b, c) => ((c, negative), Part::Product(negative, a, b)),
+            Operation::MulSub(a, b, c) => ((c, !negative), Part::Product(negative, a, b)),
+            Operation::NegMulAdd(a, b, c) => ((c, negative), Part::Product(!negative, a, b)),
+            _ => return None,
         };
-        self.operand(c, minus_rest, sum);
-        sum.terms.push(Term::product(minus_product, a, b));
+        Some([Part::Value(rest.1, rest.0), part])
     }
 
-    fn both(&self, operands: [(Value, bool); 2], sum: &mut Sum) {
-        operands.into_iter().for_each(|(value, negative)| self.operand(value, negative, sum));
-    }
-
-    fn operand(&self, value: Value, negative: bool, sum: &mut Sum) {
-        // What is known at construction is left together.
-        if self.uses[value.index()] == 1 && self.stages[value.index()] > Stage::Parameter {
-            let before = sum.terms.len();
-            match self.program.operation(value) {
-                Operation::Mul(a, b) => sum.terms.push(Term::product(negative, a, b)),
-                _ => self.take(value, negative, sum),
-            }
-            if sum.terms.len() > before {
-                return sum.inner.push(value);
+    /// Takes a sum apart. Sums may be nested as deep as they are long, so what is still to do is a list.
+    fn take(&self, value: Value, sum: &mut Sum) {
+        let mut left: Vec<Part> = self.parts(value, false).into_iter().flatten().rev().collect();
+        while let Some(part) = left.pop() {
+            let (negative, value) = match part {
+                Part::Product(negative, a, b) => {
+                    sum.terms.push(Term::product(negative, a, b));
+                    continue;
+                }
+                Part::Value(negative, value) => (negative, value),
+            };
+            // What is known at construction is left together.
+            let alone = self.uses[value.index()] == 1 && self.stages[value.index()] > Stage::Parameter;
+            let parts = match self.program.operation(value) {
+                _ if !alone => None,
+                Operation::Mul(a, b) => Some(vec![Part::Product(negative, a, b)]),
+                _ => self.parts(value, negative).map(Vec::from),
+            };
+            match parts {
+                Some(parts) => {
+                    sum.inner.push(value);
+                    left.extend(parts.into_iter().rev());
+                }
+                None => sum.terms.push(Term::value(negative, value)),
             }
         }
-        sum.terms.push(Term::value(negative, value));
     }
+}
+
+/// What of a sum is still to be taken apart, with its sign.
+enum Part {
+    Value(bool, Value),
+    Product(bool, Value, Value),
 }
 
 /// The program with the sums that are planned; equal operations are one.

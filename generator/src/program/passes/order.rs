@@ -10,9 +10,12 @@ use super::weigh::Weighed;
 use crate::interpret::Inputs;
 use crate::program::Program;
 use crate::program::operation::{Stage, Value};
+use crate::program::twice::Twice;
 
 /// Of so many terms all orders are compared; of more, the order is chosen from the end, term by term.
 const MOST: usize = 10;
+/// Of more than so many terms the order stays: the work grows with their square.
+const MANY: usize = 1000;
 /// A sum that is at most this times its largest term at all states is what rounding leaves: its order is its meaning.
 const ROUNDING: f64 = 1e-10;
 /// An order must cost less than this part of another to count as better: so the choice does not depend on the last digits of samples.
@@ -45,13 +48,13 @@ pub fn order(program: &Program, states: &[Inputs]) -> Program {
 }
 
 impl Sum {
-    /// Does it vanish beside its terms wherever it has a value?
+    /// Does it vanish beside its terms wherever it is a number?
     fn is_rounding(&self, index: usize, states: &[Weighed]) -> bool {
         states.iter().all(|state| {
             let largest =
                 self.terms.iter().fold(0.0f64, |largest, term| largest.max(term.number(state).abs()));
-            let vanishes = state.number(Value(index as u32)).abs() <= ROUNDING * largest;
-            vanishes || !largest.is_finite()
+            let number = state.number(Value(index as u32));
+            number.abs() <= ROUNDING * largest || !number.is_finite()
         })
     }
 
@@ -134,26 +137,39 @@ impl Sum {
         std::iter::once(first).chain(rest).collect()
     }
 
-    /// From the end, the term without which the rest is smallest.
+    /// From the end, the term without which the rest is smallest; as they stand where there are too many to compare.
     fn good(&self, samples: &[(f64, Vec<f64>)]) -> Vec<usize> {
+        if self.terms.len() > MANY {
+            return self.present();
+        }
+        let mut beginnings = (0..self.terms.len()).filter(|&term| self.begins(term)).count();
+        let begins: Vec<bool> = (0..self.terms.len()).map(|term| self.begins(term)).collect();
+        // of twice the digits, so that terms can be taken away
+        let sum = |numbers: &Vec<f64>| numbers.iter().fold(Twice::new(0.0), |sum, &n| sum + Twice::new(n));
+        let mut sums: Vec<Twice<f64>> = samples.iter().map(|(_, numbers)| sum(numbers)).collect();
         let mut left: Vec<usize> = (0..self.terms.len()).collect();
         let mut places = Vec::new();
         while left.len() > 1 {
             let mut best = (f64::INFINITY, None);
             for (place, &term) in left.iter().enumerate().rev() {
-                if !left.iter().any(|&other| other != term && self.begins(other)) {
+                if beginnings == 1 && begins[term] {
                     continue;
                 }
-                let without = |numbers: &[f64]| -> f64 {
-                    left.iter().filter(|&&other| other != term).map(|&other| numbers[other]).sum()
+                let of_sample = |((weight, numbers), sum): (&(f64, Vec<f64>), &Twice<f64>)| {
+                    let without = (*sum - Twice::new(numbers[term])).rounded();
+                    weight * without * without
                 };
-                let cost: f64 =
-                    samples.iter().map(|(weight, numbers)| weight * without(numbers).powi(2)).sum();
+                let cost: f64 = samples.iter().zip(&sums).map(of_sample).sum();
                 if best.1.is_none() || cost < best.0 * BETTER {
                     best = (cost, Some(place));
                 }
             }
-            places.push(left.remove(best.1.unwrap_or(0)));
+            let term = left.remove(best.1.unwrap_or(0));
+            beginnings -= usize::from(begins[term]);
+            for ((_, numbers), sum) in samples.iter().zip(&mut sums) {
+                *sum = *sum - Twice::new(numbers[term]);
+            }
+            places.push(term);
         }
         places.extend(left);
         places.reverse();
@@ -251,6 +267,37 @@ mod tests {
         assert!(after <= before && before > 20, "{before} {after}");
         let [before, after] = both(&derived, numbers);
         agree(&before, &after, "long");
+    }
+
+    #[test]
+    fn nor_where_they_are_no_numbers_at_a_sample() {
+        let derived = small(|g| {
+            let [a, b, c, d] = speeds(g);
+            let root = g.call(Function::Sqrt, vec![d]);
+            let angle = g.sum([a, b, c, root]);
+            [Function::Sin, Function::Cos].map(|function| g.call(function, vec![angle])).to_vec()
+        });
+        let before = sweep(&fuse(&lower(&derived)));
+        let states = [1.0, -1.0].map(|d| Inputs { speeds: vec![0.3, 0.1, 0.7, d], ..inputs() });
+        assert_eq!(order(&before, &states), before);
+    }
+
+    #[test]
+    fn sums_may_be_nested_as_deep_as_they_are_long() {
+        use crate::program::graph::Input::Speed;
+        use crate::program::operation::Operation::{Input, MulAdd, Sub};
+        for (length, few) in [(300, true), (100_000, false)] {
+            let mut program = lower(&small(|g| vec![g.integer(0)]));
+            program.operations = [0, 1, 2, 3].map(|index| Input(Speed(index))).to_vec();
+            for index in 0..length {
+                let (a, b, last) = (Value(index % 4), Value(index / 4 % 4), Value(index + 3));
+                program.operations.push(if few { MulAdd(a, b, last) } else { Sub(a, last) });
+            }
+            program.outputs[0].values = vec![Value(length + 3)];
+            let ordered = order(&program, &[inputs()]);
+            agree(&program, &ordered, "nested");
+            assert!(!few || ordered != program);
+        }
     }
 
     #[test]

@@ -1,12 +1,15 @@
 //! How much an error of each operation would matter: the numbers of a program at sample states, and by how much its answers change with
-//! each of them (reverse differentiation), relative to the largest entry of an answer.
+//! each of them (reverse differentiation), relative to the largest entry of an answer. All of it is the same on every machine.
 
 use crate::interpret::{Inputs, operate};
 use crate::program::Program;
+use crate::program::everywhere::Everywhere;
 use crate::program::operation::{Operation, Value};
 
 /// Sums of answers with random signs that stand for all of them.
 const MIXTURES: u64 = 4;
+/// An answer that is at most this times the largest of all numbers is one that vanishes identically: nothing is relative to it.
+const NOTHING: f64 = 1e-24;
 
 /// A sample state.
 pub struct Weighed {
@@ -19,11 +22,14 @@ pub struct Weighed {
 impl Weighed {
     /// Evaluates a program at a state; the signs of the mixtures follow from the seed.
     pub fn new(program: &Program, state: &Inputs, seed: u64) -> Self {
-        let mut numbers: Vec<(f64, f64)> = Vec::with_capacity(program.operations.len());
+        let mut exact: Vec<(Everywhere, Everywhere)> = Vec::with_capacity(program.operations.len());
         for &operation in &program.operations {
-            let number = operate(operation, state, |value| numbers[value.index()]);
-            numbers.push(number);
+            let number = operate(operation, state, |value| exact[value.index()]);
+            exact.push(number);
         }
+        let numbers: Vec<(f64, f64)> = exact.iter().map(|(a, b)| (a.rounded(), b.rounded())).collect();
+        let sizes = numbers.iter().map(|number| number.0.abs()).filter(|size| size.is_finite());
+        let nothing = NOTHING * sizes.fold(0.0, f64::max);
         let mut bits = 0x9e37_79b9_7f4a_7c15u64.wrapping_mul(2 * seed + 1);
         let mut sign = || {
             bits ^= bits << 13;
@@ -37,7 +43,7 @@ impl Weighed {
             for output in &program.outputs {
                 let entries = || output.values.iter().map(|value| value.index());
                 let largest = entries().fold(0.0f64, |largest, index| largest.max(numbers[index].0.abs()));
-                if largest > 0.0 && largest.is_finite() {
+                if largest > nothing && entries().all(|index| numbers[index].0.is_finite()) {
                     entries().for_each(|index| slopes[index] += sign() / largest);
                 }
             }
@@ -140,6 +146,32 @@ mod tests {
             };
             assert!((weighed.weights[index] - expected).abs() < 1e-12 * expected, "{operation:?}");
         }
+    }
+
+    #[test]
+    fn answers_that_vanish_identically_do_not_count() {
+        use crate::model::mechanism::Function::{Cos, Sin};
+        let mut derived = small(|g| speeds(g)[..1].to_vec());
+        let g = &mut derived.graph;
+        let [a, ..] = speeds(g);
+        let squares = [Sin, Cos].map(|function| {
+            let value = g.call(function, vec![a]);
+            g.power(value, 2)
+        });
+        let minus = g.integer(-1);
+        let zero = g.sum([squares[0], squares[1], minus]);
+        let more = crate::program::routine::Output {
+            quantity: crate::program::routine::Quantity::KineticEnergy,
+            rows: 1,
+            columns: 1,
+            nodes: vec![zero],
+        };
+        derived.outputs.push(more);
+        let (program, speeds) = (lower(&derived), vec![0.3, 0.0, 0.0, 0.0]);
+        let weighed = Weighed::new(&program, &Inputs { speeds, ..inputs() }, 1);
+        let [speed, zero] = [0, 1].map(|output: usize| program.outputs[output].values[0]);
+        assert!((weighed.weights[speed.index()] * 0.09 - 1.0).abs() < 1e-12);
+        assert_eq!((weighed.weights[zero.index()], weighed.number(zero) != 0.0), (0.0, true));
     }
 
     #[test]
