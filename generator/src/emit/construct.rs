@@ -138,7 +138,7 @@ impl Emitter<'_> {
         });
         let bodies = self.body_checks();
         let guards: Vec<_> =
-            self.program.guards.iter().filter(|guard| self.stage(guard.value) == Stage::Parameter).collect();
+            self.program.guards.iter().filter(|guard| self.guard_stage(guard) == Stage::Parameter).collect();
         let values: Vec<Value> =
             guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten().collect();
         let statements = self.at_construction(&values);

@@ -23,10 +23,10 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::model::mechanism::Mechanism;
-use crate::program::Program;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::routine::Quantity;
+use crate::program::{Guard, Program};
 use record::Record;
 
 pub use skeleton::{skeleton, stub};
@@ -183,6 +183,11 @@ impl<'a> Emitter<'a> {
         self.stages.get(value.index()).copied().unwrap_or(Stage::Velocity)
     }
 
+    /// When a guard can be checked: what it is compared with may be known later than its value.
+    fn guard_stage(&self, guard: &Guard) -> Stage {
+        guard_stage(guard, &self.stages)
+    }
+
     fn hoisted_index(&self, value: Value) -> Option<usize> {
         self.hoisted.binary_search(&value).ok()
     }
@@ -214,6 +219,12 @@ fn takes_loads(quantity: Quantity) -> bool {
     )
 }
 
+/// When both the value and the scale of a guard are known.
+fn guard_stage(guard: &Guard, stages: &[Stage]) -> Stage {
+    let stage = |value: Value| stages.get(value.index()).copied().unwrap_or(Stage::Velocity);
+    guard.scale.map(stage).into_iter().fold(stage(guard.value), Stage::max)
+}
+
 /// Values that depend on parameters alone and are used later, in order.
 fn hoisted(program: &Program, stages: &[Stage]) -> Vec<Value> {
     let is_kept = |value: Value| {
@@ -233,7 +244,8 @@ fn hoisted(program: &Program, stages: &[Stage]) -> Vec<Value> {
             .flat_map(|output| output.values.iter().copied())
             .filter(|&value| is_kept(value)),
     );
-    kept.extend(program.guards.iter().filter_map(|guard| guard.scale).filter(|&value| is_kept(value)));
+    let late = program.guards.iter().filter(|guard| guard_stage(guard, stages) > Stage::Parameter);
+    kept.extend(late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten().filter(|&v| is_kept(v)));
     kept.sort_unstable();
     kept.dedup();
     kept

@@ -24,12 +24,12 @@ impl Emitter<'_> {
         let guards = slice
             .guards
             .iter()
-            .filter(|guard| self.stage(guard.value) > Stage::Parameter)
+            .filter(|guard| self.guard_stage(guard) > Stage::Parameter)
             .map(|guard| self.guard(guard));
         let results: BTreeSet<Value> =
             slice.outputs.iter().flat_map(|output| output.values.iter().copied()).collect();
         let finite = self.finite(&results);
-        let late = slice.guards.iter().filter(|guard| self.stage(guard.value) > Stage::Parameter);
+        let late = slice.guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter);
         let checked = late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
         let wanted: BTreeSet<Value> = results.iter().copied().chain(checked).collect();
         let statements = self.statements(&order, &wanted);
@@ -40,7 +40,7 @@ impl Emitter<'_> {
     fn needed(&self, results: &[Value], guards: &[&Guard]) -> BTreeSet<Value> {
         let mut needed = BTreeSet::new();
         let mut stack: Vec<Value> = results.to_vec();
-        for guard in guards.iter().filter(|guard| self.stage(guard.value) > Stage::Parameter) {
+        for guard in guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter) {
             stack.push(guard.value);
             stack.extend(guard.scale);
         }

@@ -157,7 +157,6 @@ fn the_module_is_the_reviewed_one() {
     reviewed("pendulum.rs", &emitted());
 }
 
-/// The same with at most three operations in a function.
 /// What the symbols show of a reduced matrix selects the closed form that the collision calls.
 #[test]
 fn structure_selects_the_closed_form() {
@@ -180,6 +179,23 @@ fn structure_selects_the_closed_form() {
     assert!(!call(Structure::General).contains("resolve_structured"));
 }
 
+/// A value that depends on parameters alone, compared with one that depends on coordinates, is kept for the routines that check it.
+#[test]
+fn a_guard_is_checked_where_all_of_it_is_known() {
+    let mut derived = derived();
+    let g = &mut derived.graph;
+    let coordinate = g.input(Input::Coordinate(0));
+    let scale = g.sum([derived.guards[0].value, coordinate]);
+    derived.guards[0].scale = Some(scale);
+    let options = Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![] };
+    let text = module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string();
+    let (before, check) = text.split_once("fn check (").expect("a check");
+    let (check, after) = check.split_once("impl").expect("more");
+    assert!(!before.contains("vanishes_beside") && !check.contains("q . q1"), "{check}");
+    assert!(after.contains("vanishes_beside"));
+}
+
+/// The same with at most three operations in a function.
 #[test]
 fn long_routines_come_in_parts() {
     let options = Options { krate: quote!(::hodograph), module: "pendulum_in_parts".into(), tracked: vec![] };
