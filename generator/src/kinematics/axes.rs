@@ -135,25 +135,21 @@ impl AxesTree {
         if from == to || super::linear::is_zero(v) {
             return v.clone();
         }
+        self.way(from, to)
+            .fold(v.clone(), |v, (turn, back)| name(z, if back { down(turn, &v) } else { up(turn, &v) }))
+    }
+
+    /// The turns from some axes to others: up to what both stand on, then back.
+    fn way(&self, from: AxesId, to: AxesId) -> impl Iterator<Item = (&Turn, bool)> {
         let top = self.common(from, to);
-        let mut v = v.clone();
-        let mut at = from;
-        while at != top {
-            let Some((parent, turn)) = &self.axes[at].parent else { break };
-            v = name(z, up(turn, &v));
-            at = *parent;
-        }
-        let mut way = Vec::new();
-        let mut at = to;
-        while at != top {
-            let Some((parent, turn)) = &self.axes[at].parent else { break };
-            way.push(turn);
-            at = *parent;
-        }
-        for turn in way.into_iter().rev() {
-            v = name(z, down(turn, &v));
-        }
-        v
+        let below = move |from: AxesId| {
+            let axes = std::iter::successors(Some(from), |&at| Some(self.axes[at].parent.as_ref()?.0));
+            axes.take_while(move |&at| at != top)
+                .filter_map(|at| self.axes[at].parent.as_ref())
+                .map(|(_, turn)| turn)
+        };
+        let back: Vec<&Turn> = below(to).collect();
+        below(from).map(|turn| (turn, false)).chain(back.into_iter().rev().map(|turn| (turn, true)))
     }
 }
 
@@ -207,28 +203,10 @@ impl AxesTree {
         to: AxesId,
         mut smaller: impl FnMut(&Intermediates, &Expr, &Expr) -> Smaller,
     ) -> Symmetric {
-        let mut m = m.clone();
-        if is_isotropic(&m) {
-            return m;
+        if is_isotropic(m) {
+            return m.clone();
         }
-        let top = self.common(from, to);
-        let mut at = from;
-        while at != top {
-            let Some((parent, turn)) = &self.axes[at].parent else { break };
-            m = up_symmetric(z, turn, &m, false, &mut smaller);
-            at = *parent;
-        }
-        let mut way = Vec::new();
-        let mut at = to;
-        while at != top {
-            let Some((parent, turn)) = &self.axes[at].parent else { break };
-            way.push(turn);
-            at = *parent;
-        }
-        for turn in way.into_iter().rev() {
-            m = up_symmetric(z, turn, &m, true, &mut smaller);
-        }
-        m
+        self.way(from, to).fold(m.clone(), |m, (turn, back)| up_symmetric(z, turn, &m, back, &mut smaller))
     }
 }
 
