@@ -4,12 +4,15 @@
 //! to what would otherwise be repeated inside larger expressions; equal expressions get the same name, so that work is
 //! shared wherever it arises. The chain rule goes through names, each derivative computed once.
 
+mod simplify;
+
 use std::collections::HashMap;
 
 use super::expr::{Expr, SymbolId, View};
 use crate::model::mechanism::Function;
 use crate::number::Number;
-use crate::program::graph::{Graph, Input, Node};
+use crate::program::graph::Input;
+pub use simplify::size;
 
 /// What a symbol stands for.
 #[derive(Clone, Debug)]
@@ -295,35 +298,6 @@ impl Intermediates {
         }
     }
 
-    /// The expression with products multiplied out and sin^2 + cos^2 = 1 used wherever that makes it shorter.
-    pub fn simplify(&mut self, expr: &Expr) -> Expr {
-        let mut best = expr.expand();
-        for (sine, cosine) in self.angles_squared(&best) {
-            for (square, other) in [(sine, cosine), (cosine, sine)] {
-                let other = Expr::symbol(other);
-                let reduced = reduce_square(&best, square, &Expr::one().sub(&other.mul(&other)));
-                if size(&reduced) < size(&best) {
-                    best = reduced;
-                }
-            }
-        }
-        if size(expr) <= size(&best) { expr.clone() } else { best }
-    }
-
-    /// Pairs of sine and cosine symbols of one angle of which one occurs squared.
-    fn angles_squared(&self, expr: &Expr) -> Vec<(SymbolId, SymbolId)> {
-        let mut pairs = Vec::new();
-        for symbol in expr.symbols() {
-            if let Meaning::Call(Function::Sin, arguments) = self.meaning(symbol)
-                && let Some(&cosine) = self.calls.get(&(Function::Cos, arguments.clone()))
-                && [symbol, cosine].iter().any(|&s| !expr.derivative(s).derivative(s).is_zero())
-            {
-                pairs.push((symbol, cosine));
-            }
-        }
-        pairs
-    }
-
     /// An upper bound of the magnitude of an expression that is made of parameters wherever possible: the scale against
     /// which a divisor counts as zero.
     pub fn bound(&mut self, expr: &Expr) -> Expr {
@@ -361,23 +335,6 @@ impl Intermediates {
         };
         self.bounds.insert(symbol, bound.clone());
         bound
-    }
-
-    /// The expression with names replaced by what they stand for, as long as it stays within a size.
-    pub fn opened(&self, expr: &Expr, most: usize) -> Expr {
-        let mut best = expr.clone();
-        loop {
-            let named = best.symbols().into_iter().find_map(|symbol| match self.meaning(symbol) {
-                Meaning::Named(value) => Some((symbol, value.clone())),
-                _ => None,
-            });
-            let Some((symbol, value)) = named else { return best };
-            let next = best.replace(symbol, &value);
-            if size(&next) > most {
-                return best;
-            }
-            best = next;
-        }
     }
 
     /// Is anything in the expression, through any names, divided by this?
@@ -426,51 +383,6 @@ impl Intermediates {
     }
 }
 
-/// Writes expressions as nodes of a graph, each symbol once.
-#[derive(Default)]
-pub struct Export {
-    done: HashMap<SymbolId, Node>,
-}
-
-impl Export {
-    /// The node of an expression.
-    pub fn node(&mut self, intermediates: &Intermediates, graph: &mut Graph, expr: &Expr) -> Node {
-        match expr.view() {
-            View::Number(number) => graph.number(number),
-            View::Symbol(symbol) => {
-                if let Some(&node) = self.done.get(&symbol) {
-                    return node;
-                }
-                let node = match intermediates.meaning(symbol) {
-                    Meaning::Input(input) => graph.input(*input),
-                    Meaning::Pi => graph.pi(),
-                    Meaning::Unknown => unreachable!("unknowns are defined before export"),
-                    Meaning::Named(value) => self.node(intermediates, graph, value),
-                    Meaning::Call(function, arguments) => {
-                        let arguments =
-                            arguments.iter().map(|a| self.node(intermediates, graph, a)).collect();
-                        graph.call(*function, arguments)
-                    }
-                };
-                self.done.insert(symbol, node);
-                node
-            }
-            View::Sum(terms) => {
-                let terms: Vec<_> = terms.iter().map(|t| self.node(intermediates, graph, t)).collect();
-                graph.sum(terms)
-            }
-            View::Product(factors) => {
-                let factors: Vec<_> = factors.iter().map(|f| self.node(intermediates, graph, f)).collect();
-                graph.product(factors)
-            }
-            View::Power(base, n) => {
-                let base = self.node(intermediates, graph, &base);
-                graph.power(base, n)
-            }
-        }
-    }
-}
-
 /// The opposite of a sum, term by term.
 fn opposite(terms: &[Expr]) -> Expr {
     let terms: Vec<_> = terms.iter().map(Expr::neg).collect();
@@ -490,51 +402,5 @@ fn leading_number(term: &Expr) -> Number {
             .unwrap_or_else(|| Number::integer(1)),
         View::Sum(terms) => terms.first().map_or_else(|| Number::integer(1), leading_number),
         _ => Number::integer(1),
-    }
-}
-
-/// `expr` with `symbol`^2 replaced by `square`, wherever it stands in an expanded expression.
-fn reduce_square(expr: &Expr, symbol: SymbolId, square: &Expr) -> Expr {
-    if has_divisor(expr) {
-        return expr.clone();
-    }
-    let mut result = Expr::zero();
-    let mut rest = expr.clone();
-    let mut factor = Expr::one();
-    let mut order = 1i64;
-    // Taylor coefficients in `symbol`: exact for a polynomial; give up on anything of high degree or not polynomial.
-    for power in 0..8u32 {
-        let coefficient = rest.replace(symbol, &Expr::zero());
-        let coefficient = coefficient.mul(&Expr::number(&Number::ratio(1, order)));
-        result = result.add(&coefficient.mul(&factor));
-        rest = rest.derivative(symbol);
-        order *= power as i64 + 1;
-        factor = if power % 2 == 0 {
-            factor.mul(&Expr::symbol(symbol))
-        } else {
-            factor.replace(symbol, &Expr::one()).mul(square)
-        };
-        if rest.is_zero() {
-            return result.expand();
-        }
-    }
-    expr.clone()
-}
-
-/// Does a negative power of anything occur?
-fn has_divisor(expr: &Expr) -> bool {
-    match expr.view() {
-        View::Number(_) | View::Symbol(_) => false,
-        View::Sum(parts) | View::Product(parts) => parts.iter().any(has_divisor),
-        View::Power(base, n) => n < 0 || has_divisor(&base),
-    }
-}
-
-/// How many operations an expression costs, roughly.
-pub fn size(expr: &Expr) -> usize {
-    match expr.view() {
-        View::Number(_) | View::Symbol(_) => 1,
-        View::Sum(parts) | View::Product(parts) => parts.iter().map(size).sum::<usize>() + parts.len() - 1,
-        View::Power(base, n) => size(&base) + n.unsigned_abs() as usize,
     }
 }
