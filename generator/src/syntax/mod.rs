@@ -1,5 +1,6 @@
 //! Text to an untyped tree. Reading never fails: it returns a tree and the mistakes found.
 
+mod entries;
 mod expressions;
 pub mod inline;
 pub mod lexer;
