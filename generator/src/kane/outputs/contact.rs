@@ -79,6 +79,33 @@ impl Writer<'_, '_> {
             self.put(of(quantity), 3, 1, nodes);
         }
         let p = self.independent.len();
+        let partials = self.contact_velocity(number, forms);
+        let (structure, Responses { reduced, columns }) = self.contact_responses(forms, factor, &partials);
+        self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
+        let response: Vec<Node> = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        self.put(of(ContactQuantity::Response), p, 3, response);
+        let dependent = self.dependent_responses(&columns);
+        self.put(of(ContactQuantity::DependentResponse), self.dependent.len(), 3, dependent);
+        if let Some(gap) = &forms.gap {
+            let nodes = self.nodes([gap]);
+            self.put(of(ContactQuantity::Gap), 1, 1, nodes);
+        }
+        let work: Vec<Node> = columns
+            .iter()
+            .map(|column| {
+                let terms: Vec<Node> =
+                    column.iter().zip(prescribed).map(|(&c, &m)| self.graph.product([c, m])).collect();
+                self.graph.sum(terms)
+            })
+            .collect();
+        self.put(of(ContactQuantity::PrescribedWork), 3, 1, work);
+        structure
+    }
+
+    /// The velocity, its partial velocities and its remainder; returns the partial velocities by independent speeds, row by row.
+    fn contact_velocity(&mut self, number: u32, forms: &ContactForms) -> Vec<Vec<Node>> {
+        let of = |quantity| Quantity::Contact(number, quantity);
+        let p = self.independent.len();
         let partials: Vec<Vec<Node>> = forms
             .partials
             .iter()
@@ -103,8 +130,18 @@ impl Writer<'_, '_> {
         }
         self.put(of(ContactQuantity::Velocity), 3, 1, velocity);
         self.put(of(ContactQuantity::PartialVelocities), 3, p, partials.concat());
-        self.put(of(ContactQuantity::Remainder), 3, 1, remainder.clone());
+        self.put(of(ContactQuantity::Remainder), 3, 1, remainder);
+        partials
+    }
 
+    /// The reduced matrix with its structure and the responses, by the factorised mass matrix or by articulated inertias: whichever
+    /// takes clearly fewer operations.
+    fn contact_responses(
+        &mut self,
+        forms: &ContactForms,
+        factor: &Factor,
+        partials: &[Vec<Node>],
+    ) -> (Structure, Responses) {
         let halves: Vec<Vec<Node>> =
             partials.iter().map(|row| factor.half_solve(&mut self.graph, row)).collect();
         let mut reduced: Vec<Node> =
@@ -137,12 +174,14 @@ impl Writer<'_, '_> {
             }
             self.articulated = Some(articulated);
         }
-        self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
-        let response: Vec<Node> = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
-        self.put(of(ContactQuantity::Response), p, 3, response);
+        (structure, Responses { reduced, columns })
+    }
+
+    /// How the dependent speeds respond, as the independent ones do by these columns.
+    fn dependent_responses(&mut self, columns: &[Vec<Node>]) -> Vec<Node> {
         let mut dependent = Vec::new();
         for &d in &self.dependent.clone() {
-            for column in &columns {
+            for column in columns {
                 let mut terms = Vec::new();
                 for (i, &r) in self.independent.clone().iter().enumerate() {
                     let by = self.k.dependence(d, r);
@@ -152,21 +191,7 @@ impl Writer<'_, '_> {
                 dependent.push(self.graph.sum(terms));
             }
         }
-        self.put(of(ContactQuantity::DependentResponse), self.dependent.len(), 3, dependent);
-        if let Some(gap) = &forms.gap {
-            let nodes = self.nodes([gap]);
-            self.put(of(ContactQuantity::Gap), 1, 1, nodes);
-        }
-        let work: Vec<Node> = columns
-            .iter()
-            .map(|column| {
-                let terms: Vec<Node> =
-                    column.iter().zip(prescribed).map(|(&c, &m)| self.graph.product([c, m])).collect();
-                self.graph.sum(terms)
-            })
-            .collect();
-        self.put(of(ContactQuantity::PrescribedWork), 3, 1, work);
-        structure
+        dependent
     }
 
     /// The derivative along a direction of what a collision is made of. Where time acts by itself it would not be all.
