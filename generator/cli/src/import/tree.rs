@@ -90,17 +90,7 @@ impl Tree {
 pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<String>> {
     let robot = &document.robot;
     let mut problems = Vec::new();
-    let mut known: HashMap<&str, usize> = HashMap::new();
-    for (index, link) in robot.links.iter().enumerate() {
-        if let Some(first) = known.insert(&link.name, index) {
-            let (at, first) = (document.link(index), document.link(first));
-            problems
-                .push(format!("{at}: a second link `{}`; the first is at {first}: rename one", link.name));
-        }
-    }
-    if robot.links.is_empty() {
-        problems.push(format!("{}: there is no link", document.file));
-    }
+    let known = links(document, &mut problems);
     let mut carried_by: HashMap<usize, usize> = HashMap::new();
     let mut carries: Vec<Vec<usize>> = vec![Vec::new(); robot.links.len()];
     let mut joints = Vec::new();
@@ -143,25 +133,7 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
     if !problems.is_empty() {
         return Err(problems);
     }
-    let roots: Vec<usize> = (0..robot.links.len()).filter(|link| !carried_by.contains_key(link)).collect();
-    let root = match roots[..] {
-        [root] => root,
-        [] => {
-            return Err(vec![format!(
-                "{}: the links form a cycle (every one is carried by a joint): one link must be the root",
-                document.link(0)
-            )]);
-        }
-        [first, second, ..] => {
-            return Err(vec![format!(
-                "{}: link `{}` hangs on no joint, nor does `{}` ({}): connect all but one",
-                document.link(second),
-                robot.links[second].name,
-                robot.links[first].name,
-                document.link(first)
-            )]);
-        }
-    };
+    let root = root(document, &carried_by)?;
     let ground = Joint {
         name: None,
         motion: Motion::Fixed,
@@ -191,6 +163,43 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
         )]);
     }
     Ok(Tree { links, root_has_inertial: document.has_inertial(root) })
+}
+
+/// The links by their names, which must differ.
+fn links<'a>(document: &'a Robot, problems: &mut Vec<String>) -> HashMap<&'a str, usize> {
+    let robot = &document.robot;
+    let mut known: HashMap<&str, usize> = HashMap::new();
+    for (index, link) in robot.links.iter().enumerate() {
+        if let Some(first) = known.insert(&link.name, index) {
+            let (at, first) = (document.link(index), document.link(first));
+            problems
+                .push(format!("{at}: a second link `{}`; the first is at {first}: rename one", link.name));
+        }
+    }
+    if robot.links.is_empty() {
+        problems.push(format!("{}: there is no link", document.file));
+    }
+    known
+}
+
+/// The one link that hangs on no joint.
+fn root(document: &Robot, carried_by: &HashMap<usize, usize>) -> Result<usize, Vec<String>> {
+    let robot = &document.robot;
+    let roots: Vec<usize> = (0..robot.links.len()).filter(|link| !carried_by.contains_key(link)).collect();
+    match roots[..] {
+        [root] => Ok(root),
+        [] => Err(vec![format!(
+            "{}: the links form a cycle (every one is carried by a joint): one link must be the root",
+            document.link(0)
+        )]),
+        [first, second, ..] => Err(vec![format!(
+            "{}: link `{}` hangs on no joint, nor does `{}` ({}): connect all but one",
+            document.link(second),
+            robot.links[second].name,
+            robot.links[first].name,
+            document.link(first)
+        )]),
+    }
 }
 
 fn read_joint(
