@@ -61,7 +61,7 @@ pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
 /// A module with the types that every mechanism has, and nothing in them. `tracked` as in [`super::Options`].
 pub fn skeleton(module: &str, mechanism: Option<&str>, tracked: &[TokenStream]) -> TokenStream {
     let module = names::ident(module);
-    let name = format_ident!("{}", names::type_name(mechanism.unwrap_or("Mechanism")));
+    let name = names::ident(&names::type_name(mechanism.unwrap_or("Mechanism")));
     let records = ["Parameters", "Coordinates", "Speeds", "DependentSpeeds", "Inputs"]
         .map(|name| format_ident!("{name}"));
     quote! {

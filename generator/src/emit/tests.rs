@@ -227,4 +227,9 @@ fn a_foreign_program_is_refused() {
 fn a_skeleton_is_rust() {
     let tokens = skeleton("two_sleds", None, &[quote!("x")]);
     syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
+    // of a file that is missing its name is all that is known
+    for name in ["arm.v2", "2-arms", "-", "ö", "a b"] {
+        let tokens = skeleton(&crate::emit::names::snake_case(name), Some(name), &[]);
+        syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
+    }
 }

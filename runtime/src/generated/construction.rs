@@ -163,4 +163,34 @@ mod tests {
         let expected = (Dual64::new(0.7, 1.0).powi(2) + 1.0).recip().sqrt() - Dual64::new(0.7, 1.0);
         assert!((value.re - expected.re).abs() < 1e-15 && (value.eps - expected.eps).abs() < 1e-15);
     }
+
+    /// Near both ends of the range what rounding takes is infinite or lost itself: the usual digits stay.
+    #[test]
+    fn numbers_of_any_size_keep_the_usual_digits() {
+        let sizes =
+            [0.0, 5e-324, 3e-310, 1.7e-308, 1e-292, 1e-154, 0.3, 7.0, 1.3e154, 1e200, 1.7e308, f64::MAX];
+        let signed = || sizes.into_iter().flat_map(|size| [size, -size]);
+        let same = |found: f64, expected: f64| found == expected || found.is_nan() && expected.is_nan();
+        for a in signed() {
+            for b in signed() {
+                let (x, y) = (of(a), of(b));
+                let found = [x + y, x - y, x * y, x / y, max(x, y)].map(rounded);
+                for (found, expected) in found.into_iter().zip([a + b, a - b, a * b, a / b, a.max(b)]) {
+                    assert!(same(found, expected), "{a:e} {b:e}: {found:e} {expected:e}");
+                }
+                assert!(!(a + b).is_finite() || rounded(x + y - x) == b, "{a:e} {b:e}");
+                let (found, expected) = (rounded(mul_sub(x, y, x / y)), a * b - a / b);
+                let near = same(found, expected) || (found - expected).abs() <= 1e-15 * expected.abs();
+                assert!(near || expected.abs() < 1e-300, "{a:e} {b:e}: {found:e} {expected:e}");
+            }
+            let (found, expected) = (rounded(sqrt(of(a))), a.sqrt());
+            assert!(
+                same(found, expected) || (found - expected).abs() <= 3e-16 * expected,
+                "{a:e}: {found:e}"
+            );
+        }
+        for a in [1e-45f32, 2e-38, 0.3, 1e19, 3e38] {
+            assert_eq!([of(a) * of(a), of(a) / of(a), sqrt(of(a))].map(rounded), [a * a, 1.0, a.sqrt()]);
+        }
+    }
 }
