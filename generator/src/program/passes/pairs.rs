@@ -30,11 +30,16 @@ impl Pair {
     }
 }
 
+/// Longer lists are left as they are: so many pairs would take longer than they save.
+const LONGEST: usize = 1000;
+
 /// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` names the item of a pair.
 pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
     let mut found = Found::default();
     for (index, list) in lists.iter().enumerate() {
-        found.enter(index, list);
+        if list.len() <= LONGEST {
+            found.enter(index, list, |_| true);
+        }
     }
     let mut heap: BinaryHeap<(usize, Reverse<Pair>)> = found
         .pairs
@@ -58,9 +63,11 @@ pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
         let mut touched = BTreeSet::new();
         for index in at.clone() {
             let Some(list) = lists.get_mut(index) else { continue };
-            found.leave(index, list);
+            // Pairs of other items stay.
+            let is_part = |other: Item| [pair.first, pair.second].contains(&other.id);
+            found.leave(index, list, is_part);
             replace(list, pair, item);
-            touched.extend(found.enter(index, list));
+            touched.extend(found.enter(index, list, |other| is_part(other) || other.id == item));
         }
         for pair in touched {
             let count = found.pairs.get(&pair).map_or(0, BTreeSet::len);
@@ -82,8 +89,9 @@ fn replace(list: &mut Vec<Item>, pair: Pair, item: u32) {
 }
 
 fn position(list: &[Item], pair: Pair) -> Option<(usize, usize)> {
-    for (i, &a) in list.iter().enumerate() {
-        for (j, &b) in list.iter().enumerate().skip(i + 1) {
+    let is_part = |item: &Item| [pair.first, pair.second].contains(&item.id);
+    for (i, &a) in list.iter().enumerate().filter(|(_, item)| is_part(item)) {
+        for (j, &b) in list.iter().enumerate().skip(i + 1).filter(|(_, item)| is_part(item)) {
             if Pair::new(a, b) == pair {
                 return Some((i, j));
             }
@@ -99,16 +107,18 @@ struct Found {
 }
 
 impl Found {
-    fn enter(&mut self, index: usize, list: &[Item]) -> BTreeSet<Pair> {
-        let pairs = pairs_of(list);
+    /// Enters the pairs of a list of which one item at least is of interest; these pairs.
+    fn enter(&mut self, index: usize, list: &[Item], which: impl Fn(Item) -> bool) -> BTreeSet<Pair> {
+        let pairs = pairs_of(list, which);
         for &pair in &pairs {
             self.pairs.entry(pair).or_default().insert(index);
         }
         pairs
     }
 
-    fn leave(&mut self, index: usize, list: &[Item]) {
-        for pair in pairs_of(list) {
+    /// Takes such pairs out.
+    fn leave(&mut self, index: usize, list: &[Item], which: impl Fn(Item) -> bool) {
+        for pair in pairs_of(list, which) {
             if let Some(at) = self.pairs.get_mut(&pair) {
                 at.remove(&index);
             }
@@ -116,12 +126,10 @@ impl Found {
     }
 }
 
-fn pairs_of(list: &[Item]) -> BTreeSet<Pair> {
+fn pairs_of(list: &[Item], which: impl Fn(Item) -> bool) -> BTreeSet<Pair> {
     let mut pairs = BTreeSet::new();
-    for (i, &a) in list.iter().enumerate() {
-        for &b in &list[i + 1..] {
-            pairs.insert(Pair::new(a, b));
-        }
+    for (i, &a) in list.iter().enumerate().filter(|(_, item)| which(**item)) {
+        pairs.extend(list.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, &b)| Pair::new(a, b)));
     }
     pairs
 }
@@ -144,6 +152,18 @@ mod tests {
         });
         assert_eq!(pairs, [Pair { first: 1, second: 2, opposite: true }]);
         assert_eq!(lists, [list(&[3, 100]), list(&[4, -100]), list(&[100]), list(&[3, 4])]);
+    }
+
+    #[test]
+    fn long_lists_become_one_item_or_stay() {
+        let numbers: Vec<i32> = (1..=400).collect();
+        let mut lists = vec![list(&numbers), list(&numbers), list(&(1..=1001).collect::<Vec<_>>())];
+        let mut count = 2000;
+        extract(&mut lists, |_| {
+            count += 1;
+            count
+        });
+        assert_eq!((lists[0].len(), lists[1].len(), lists[2].len()), (1, 1, 1001));
     }
 
     #[test]
