@@ -128,7 +128,7 @@ fn timed(tool: &Path, model: &Path) -> Result<(f64, Option<u64>), Failure> {
         Command::new(tool)
     };
     let start = Instant::now();
-    output(command.arg("derive").arg(model))?;
+    output(command.args(["derive", "--force"]).arg(model))?;
     let seconds = start.elapsed().as_secs_f64();
     let kilobytes = std::fs::read_to_string(&figure).ok().and_then(|text| text.trim().parse().ok());
     Ok((seconds, kilobytes))

@@ -19,7 +19,7 @@ pub fn print(folders: &Folders, tool: &Path) -> Result<(), Failure> {
     for (name, theirs) in ARMS {
         let model = folders.work.join(format!("models/{name}.mech"));
         std::fs::copy(folders.root.join(format!("models/{name}.mech")), &model)?;
-        output(std::process::Command::new(tool).arg("derive").arg(&model))?;
+        output(std::process::Command::new(tool).args(["derive", "--force"]).arg(&model))?;
         let text = std::fs::read_to_string(model.with_extension("derivation"))?;
         let derived = artifact::decode(&text).map_err(|error| Failure::new(format!("{name}: {error:?}")))?;
         let count = derived.program.cost(&[Quantity::InverseDynamics]).evaluation();

@@ -63,7 +63,7 @@ def compare(tool, path, link, folder):
     model_file = folder / (identifier(urdf.stem) + ".mech")
     model_file.write_text(run(tool, "import", urdf, "--contact", link))
     start = time.monotonic()
-    run(tool, "derive", model_file)
+    run(tool, "derive", "--force", model_file)
     seconds = time.monotonic() - start
     floating = "q_base_e0" in model_file.read_text()
     model = pinocchio.buildModelFromUrdf(str(urdf), *([pinocchio.JointModelFreeFlyer()] if floating else []))
