@@ -68,7 +68,7 @@ pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
 ///
 /// # Errors
 ///
-/// As [`derive`].
+/// As [`derive()`].
 pub fn trace(model: &Model, limits: &Limits) -> Outcome<String> {
     let file = tempfile::NamedTempFile::new()
         .map_err(|error| Stop::Fault(format!("cannot make a temporary file: {error}")))?;

@@ -1,7 +1,7 @@
 //! From a program to the Rust module that a user sees.
 //!
-//! The module holds the structs of named numbers ([`record`]), the mechanism's own type with its constructor
-//! ([`construct`]), a method per quantity ([`methods`]) and per contact ([`contacts`]). Every path in it starts at the
+//! The module holds the structs of named numbers (`record`), the mechanism's own type with its constructor
+//! (`construct`), a method per quantity (`methods`) and per contact (`contacts`). Every path in it starts at the
 //! runtime's own crate or at `::core`; it has no panics, no loops over data and no `std`.
 
 mod angles;

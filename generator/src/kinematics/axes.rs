@@ -316,7 +316,7 @@ pub fn simple(z: &mut Intermediates, axis: Axis, negative: bool, angle: &Expr) -
     Turn::Simple { axis: index(axis), angle, sine, cosine }
 }
 
-/// Rotation about a unit vector `e`: cos 1 + sin [e]x + (1 - cos) e e'.
+/// Rotation about a unit vector `e`: cos 1 + sin `[e]`x + (1 - cos) e e'.
 pub fn about(z: &mut Intermediates, e: &Triple, angle: &Expr) -> Turn {
     let sine = z.call(Function::Sin, vec![angle.clone()]);
     let cosine = z.call(Function::Cos, vec![angle.clone()]);

@@ -1,4 +1,4 @@
-//! Operations at construction, by the names that [`super::arithmetic`] has for those of routines: in twice the digits.
+//! Operations at construction, by the names that `arithmetic` has for those of routines: in twice the digits.
 
 use super::arithmetic as usual;
 use super::twice::Twice;

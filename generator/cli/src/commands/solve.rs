@@ -25,6 +25,8 @@ const LONGEST_LINE: usize = 1 << 20;
 /// Its answer is {"impulse":[n,t,s],"v":[n,t,s],"dE":..,"dEn":..,"path":[..],"compressions":1} or
 /// {"error":{"kind":"..","message":".."}}. Blank lines are skipped, other fields are left alone. Exit 0 if every line was
 /// solved, 1 if one had an error.
+// the brackets are JSON, as the help shows it
+#[allow(rustdoc::broken_intra_doc_links)]
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
