@@ -23,9 +23,8 @@ const BETTER: f64 = 1.0 - 1e-6;
 /// The order in which terms stand is given up for one that costs less than this part of it; some dozen samples do not tell more.
 const WORTH: f64 = 0.9;
 
-/// The program with the terms of its sums in the order that loses least at the sample states.
+/// A swept program with the terms of its sums in the order that loses least at the sample states.
 pub fn order(program: &Program, states: &[Inputs]) -> Program {
-    let program = &sweep(program);
     let states: Vec<Weighed> =
         (0..).zip(states).map(|(seed, state)| Weighed::new(program, state, seed)).collect();
     if states.is_empty() {
