@@ -16,6 +16,7 @@ pub mod generated;
 mod hodograph;
 mod impact;
 mod law;
+mod mechanism;
 #[cfg(feature = "std")]
 pub mod methods;
 mod phases;
@@ -36,6 +37,7 @@ pub use crate::{
     hodograph::Hodograph,
     impact::{Impact, Path},
     law::Law,
+    mechanism::{CollisionOutcome, Component, ContactState, Contacts, Kind, Mechanism, State},
     phases::{Moment, Motion, Phases},
     phi_bar::phi_bar,
     reduced::ReducedMatrix,

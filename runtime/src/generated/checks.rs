@@ -73,3 +73,37 @@ pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Resul
         Err(ParameterError::Inertia { body })
     }
 }
+
+/// A slice must have so many numbers.
+#[inline]
+pub fn check_length<T>(slice: &[T], expected: usize, what: &'static str) -> Result<(), StateError> {
+    if slice.len() == expected {
+        Ok(())
+    } else {
+        Err(StateError::Length { what, expected, found: slice.len() })
+    }
+}
+
+/// A slice must have so many numbers, or more.
+#[inline]
+pub fn check_room<T>(slice: &[T], needed: usize, what: &'static str) -> Result<(), StateError> {
+    if slice.len() >= needed {
+        Ok(())
+    } else {
+        Err(StateError::Length { what, expected: needed, found: slice.len() })
+    }
+}
+
+/// The numbers of a slice that must have so many.
+#[inline]
+pub fn array<T: Copy, const N: usize>(slice: &[T], what: &'static str) -> Result<[T; N], StateError> {
+    <[T; N]>::try_from(slice).map_err(|_| StateError::Length { what, expected: N, found: slice.len() })
+}
+
+/// Writes numbers into a slice of their length.
+#[inline]
+pub fn write<T: Copy>(slice: &mut [T], numbers: &[T], what: &'static str) -> Result<(), StateError> {
+    check_length(slice, numbers.len(), what)?;
+    slice.copy_from_slice(numbers);
+    Ok(())
+}

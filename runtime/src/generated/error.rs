@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::ImpactError;
+use crate::{ImpactError, Kind};
 
 /// Why a mechanism has no answer in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -17,6 +17,27 @@ pub enum StateError {
     },
     /// The state, or a result, is infinite or not a number.
     NotFinite,
+    /// A slice is too long or too short.
+    Length {
+        /// What it holds.
+        what: &'static str,
+        /// How many numbers it must have.
+        expected: usize,
+        /// How many it has.
+        found: usize,
+    },
+    /// There is none of this number.
+    Missing {
+        /// Of what kind.
+        kind: Kind,
+        /// The number, counted from 0.
+        index: usize,
+    },
+    /// The model does not say enough to know this.
+    Undefined {
+        /// What is not known.
+        what: &'static str,
+    },
 }
 
 impl StateError {
@@ -25,6 +46,9 @@ impl StateError {
         match self {
             Self::Singular { .. } => "singular_state",
             Self::NotFinite => "not_finite",
+            Self::Length { .. } => "wrong_length",
+            Self::Missing { .. } => "missing",
+            Self::Undefined { .. } => "undefined",
         }
     }
 }
@@ -39,6 +63,13 @@ impl fmt::Display for StateError {
                     "a result is infinite or not a number: check the state and the parameters for overflow"
                 )
             }
+            Self::Length { what, expected, found } => {
+                write!(out, "the slice for {what} has {found} numbers: it must have {expected}")
+            }
+            Self::Missing { kind, index } => {
+                write!(out, "there is no {} with the number {index} (they are counted from 0)", kind.noun())
+            }
+            Self::Undefined { what } => write!(out, "the model does not determine the {what}"),
         }
     }
 }
@@ -71,6 +102,13 @@ pub enum ParameterError {
         /// What it is, in the words of the model.
         what: &'static str,
     },
+    /// The slice of parameters is too long or too short.
+    Length {
+        /// How many parameters the mechanism has.
+        expected: usize,
+        /// How many were given.
+        found: usize,
+    },
 }
 
 impl ParameterError {
@@ -81,6 +119,7 @@ impl ParameterError {
             Self::Mass { .. } => "impossible_mass",
             Self::Inertia { .. } => "impossible_inertia",
             Self::Singular { .. } => "singular_parameters",
+            Self::Length { .. } => "wrong_length",
         }
     }
 }
@@ -95,6 +134,9 @@ impl fmt::Display for ParameterError {
                 "no body has the inertia of `{body}`: its moments must not be negative, and none greater than the sum of the others"
             ),
             Self::Singular { what } => write!(out, "the parameters are singular: {what}"),
+            Self::Length { expected, found } => {
+                write!(out, "{found} parameters are given: the mechanism has {expected}")
+            }
         }
     }
 }
@@ -105,7 +147,11 @@ impl From<StateError> for ParameterError {
     fn from(error: StateError) -> Self {
         match error {
             StateError::Singular { what } => Self::Singular { what },
-            StateError::NotFinite => Self::NotFinite { name: "a value that depends on parameters alone" },
+            StateError::Length { expected, found, .. } => Self::Length { expected, found },
+            StateError::Undefined { what } => Self::Singular { what },
+            StateError::NotFinite | StateError::Missing { .. } => {
+                Self::NotFinite { name: "a value that depends on parameters alone" }
+            }
         }
     }
 }

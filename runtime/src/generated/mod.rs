@@ -9,6 +9,7 @@ mod contact;
 mod error;
 mod saltation;
 mod serial;
+mod slices;
 mod trigonometry;
 mod twice;
 
@@ -22,6 +23,8 @@ pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured};
 pub use error::{CollisionError, ParameterError, StateError};
 #[doc(hidden)]
 pub use saltation::{by_coordinate, reset, salted, state};
+#[doc(hidden)]
+pub use slices::{Description, write_array, write_rows};
 
 use crate::Scalar;
 

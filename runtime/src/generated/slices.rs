@@ -1,0 +1,105 @@
+//! Between the slices of the trait `Mechanism` and the types of a generated module.
+
+use nalgebra::SMatrix;
+
+use super::{check_length, write};
+use crate::{Component, Kind, Scalar, State, StateError};
+
+/// The names and units of a mechanism, in the order of the model.
+#[derive(Clone, Copy, Debug)]
+pub struct Description {
+    pub name: &'static str,
+    pub parameters: &'static [Component<'static>],
+    pub coordinates: &'static [Component<'static>],
+    /// the numbers of the dependent coordinates
+    pub dependent_coordinates: &'static [usize],
+    pub speeds: &'static [Component<'static>],
+    pub dependent_speeds: &'static [Component<'static>],
+    pub inputs: &'static [Component<'static>],
+    pub points: &'static [Component<'static>],
+    pub frames: &'static [Component<'static>],
+    pub contacts: &'static [Component<'static>],
+    /// the numbers of the coordinates of each quaternion
+    pub quaternions: &'static [[usize; 4]],
+}
+
+impl Description {
+    /// How many of a kind.
+    pub const fn count(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::DependentCoordinate => self.dependent_coordinates.len(),
+            kind => self.list(kind).len(),
+        }
+    }
+
+    const fn list(&self, kind: Kind) -> &'static [Component<'static>] {
+        match kind {
+            Kind::Parameter => self.parameters,
+            Kind::Coordinate | Kind::DependentCoordinate => self.coordinates,
+            Kind::Speed => self.speeds,
+            Kind::DependentSpeed => self.dependent_speeds,
+            Kind::Input => self.inputs,
+            Kind::Point => self.points,
+            Kind::Frame => self.frames,
+            Kind::Contact => self.contacts,
+        }
+    }
+
+    /// One of a kind.
+    pub fn component(&self, kind: Kind, index: usize) -> Option<Component<'static>> {
+        let index = match kind {
+            Kind::DependentCoordinate => *self.dependent_coordinates.get(index)?,
+            _ => index,
+        };
+        self.list(kind).get(index).copied()
+    }
+
+    /// Have the slices of a state their lengths?
+    #[inline]
+    pub fn check<T>(&self, state: &State<'_, T>) -> Result<(), StateError> {
+        check_length(state.coordinates, self.coordinates.len(), "coordinates")?;
+        check_length(state.speeds, self.speeds.len(), "speeds")?;
+        check_length(state.inputs, self.inputs.len(), "inputs")
+    }
+
+    /// Brings the quaternions among the coordinates to length 1.
+    pub fn normalize<T: Scalar>(&self, coordinates: &mut [T]) -> Result<(), StateError> {
+        check_length(coordinates, self.coordinates.len(), "coordinates")?;
+        for quaternion in self.quaternions {
+            let parts = quaternion.iter().filter_map(|&index| coordinates.get(index));
+            let length = parts.fold(T::zero(), |sum, &part| sum + part * part).sqrt();
+            if length > T::zero() {
+                for &index in quaternion {
+                    if let Some(part) = coordinates.get_mut(index) {
+                        *part /= length;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Writes a matrix by rows.
+#[inline]
+pub fn write_rows<T: Scalar, const R: usize, const C: usize>(
+    slice: &mut [T],
+    matrix: &SMatrix<T, R, C>,
+    what: &'static str,
+) -> Result<(), StateError> {
+    check_length(slice, R * C, what)?;
+    for (row, slice) in matrix.row_iter().zip(slice.chunks_exact_mut(C.max(1))) {
+        slice.iter_mut().zip(row.iter()).for_each(|(slot, &number)| *slot = number);
+    }
+    Ok(())
+}
+
+/// Writes numbers into a slice of their length.
+#[inline]
+pub fn write_array<T: Scalar, const N: usize>(
+    slice: &mut [T],
+    numbers: impl Into<[T; N]>,
+    what: &'static str,
+) -> Result<(), StateError> {
+    write(slice, &numbers.into(), what)
+}

@@ -1,0 +1,138 @@
+//! Mechanisms seen through slices: one integrator, controller or plot serves all of them.
+//!
+//! Every generated module implements [`Mechanism`] and [`Contacts`], and so does the interpreter of derivations. Both traits can be used as
+//! trait objects (`&dyn Contacts`). Nothing here allocates: the caller brings the slices.
+
+mod contacts;
+mod description;
+
+pub use contacts::{CollisionOutcome, ContactState, Contacts};
+pub use description::{Component, Kind};
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::{ParameterError, Scalar, StateError};
+
+/// A state, borrowed. Numbers stand in the order of the model, in the units that it declares.
+///
+/// ```
+/// let state = hodograph::State { time: 0.0, coordinates: &[0.3], speeds: &[2.0], inputs: &[] };
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State<'a, T = f64> {
+    /// time, s; models without explicit time do not read it
+    pub time: T,
+    /// generalized coordinates, independent and dependent ones
+    pub coordinates: &'a [T],
+    /// independent generalized speeds
+    pub speeds: &'a [T],
+    /// named inputs
+    pub inputs: &'a [T],
+}
+
+/// The equations of motion of a mechanism, with slices in place of the named fields that the methods of its own type have.
+///
+/// In the shapes below `n` is the number of coordinates, `p` that of independent and `d` that of dependent speeds, `c` that of dependent
+/// coordinates; [`Mechanism::count`] tells them. Matrices are written by rows.
+///
+/// The type of a generated module has methods of the same names with named fields; Rust prefers these. To call the methods of the trait,
+/// use the mechanism as `&dyn Mechanism` or in a generic function:
+///
+/// ```
+/// use hodograph::{Kind, Mechanism, State, StateError};
+///
+/// /// One step of Euler's method, whatever the mechanism.
+/// fn step(mechanism: &dyn Mechanism, t: f64, dt: f64, q: &mut [f64], u: &mut [f64]) -> Result<(), StateError> {
+///     let (mut q_rates, mut u_rates) = (vec![0.0; q.len()], vec![0.0; u.len()]);
+///     let inputs = vec![0.0; mechanism.count(Kind::Input)];
+///     let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
+///     mechanism.coordinate_rates(&state, &mut q_rates)?;
+///     mechanism.accelerations(&state, &mut u_rates)?;
+///     q.iter_mut().zip(q_rates).for_each(|(q, rate)| *q += dt * rate);
+///     u.iter_mut().zip(u_rates).for_each(|(u, rate)| *u += dt * rate);
+///     mechanism.normalize(q)
+/// }
+/// ```
+///
+/// # Errors
+///
+/// Every routine answers [`StateError`] where a slice has not the length asked for, the state is singular, or a result is not finite. What
+/// it wrote into the slices then has no meaning.
+pub trait Mechanism<T: Scalar = f64> {
+    /// The name of the mechanism in the model.
+    fn name(&self) -> &str;
+    /// How many of a kind it has.
+    fn count(&self, kind: Kind) -> usize;
+    /// Name and unit of one of a kind; `None` past the last.
+    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>>;
+    /// The number of the one with this name, as the model spells it; `None` if there is none.
+    fn index(&self, kind: Kind, name: &str) -> Option<usize> {
+        (0..self.count(kind))
+            .find(|&index| self.component(kind, index).is_some_and(|found| found.name == name))
+    }
+    /// The number among the coordinates of the dependent coordinate with this number; `None` past the last. The configuration equations
+    /// of closed loops determine dependent coordinates.
+    fn dependent_coordinate(&self, index: usize) -> Option<usize>;
+
+    /// The parameters in use, in the order of [`Kind::Parameter`].
+    fn parameters(&self, parameters: &mut [T]) -> Result<(), StateError>;
+    /// Changes the parameters. Where they are refused, the mechanism stays as it is.
+    fn set_parameters(&mut self, parameters: &[T]) -> Result<(), ParameterError>;
+    /// The coordinates (`n`), speeds (`p`) and inputs that the model states; 0 where it states none, and the identity for a quaternion.
+    /// Dependent coordinates are the model's guess.
+    fn initial_state(
+        &self,
+        coordinates: &mut [T],
+        speeds: &mut [T],
+        inputs: &mut [T],
+    ) -> Result<(), StateError>;
+    /// Divides every quaternion among the coordinates (`n`) by its length: integration lets it drift from 1. A quaternion of length 0
+    /// stays as it is.
+    fn normalize(&self, coordinates: &mut [T]) -> Result<(), StateError>;
+
+    /// Rates q' of the coordinates (`n`), per second.
+    fn coordinate_rates(&self, state: &State<'_, T>, rates: &mut [T]) -> Result<(), StateError>;
+    /// Rates u' of the independent speeds (`p`), per second, without contact forces.
+    fn accelerations(&self, state: &State<'_, T>, accelerations: &mut [T]) -> Result<(), StateError>;
+    /// Dependent speeds (`d`).
+    fn dependent_speeds(&self, state: &State<'_, T>, speeds: &mut [T]) -> Result<(), StateError>;
+    /// Rates of the dependent speeds (`d`), per second, without contact forces.
+    fn dependent_accelerations(
+        &self,
+        state: &State<'_, T>,
+        accelerations: &mut [T],
+    ) -> Result<(), StateError>;
+    /// Mass matrix M of the independent speeds (`p` x `p`).
+    fn mass_matrix(&self, state: &State<'_, T>, matrix: &mut [T]) -> Result<(), StateError>;
+    /// Forcing (`p`): M u' = forcing.
+    fn forcing(&self, state: &State<'_, T>, forcing: &mut [T]) -> Result<(), StateError>;
+    /// Generalized forces (`p`) that must be added to the loads for the independent speeds to have the rates `accelerations` (`p`).
+    fn inverse_dynamics(
+        &self,
+        state: &State<'_, T>,
+        accelerations: &[T],
+        forces: &mut [T],
+    ) -> Result<(), StateError>;
+    /// Kinetic energy in N, J.
+    fn kinetic_energy(&self, state: &State<'_, T>) -> Result<T, StateError>;
+    /// Potential energy of gravity and springs, J; `None` where the model has neither.
+    fn potential_energy(&self, state: &State<'_, T>) -> Result<Option<T>, StateError>;
+    /// The configuration equations of closed loops: their residual (`c`), zero where the loops are closed, and its derivatives (`c` x `c`)
+    /// with respect to the dependent coordinates.
+    fn configuration(
+        &self,
+        state: &State<'_, T>,
+        residual: &mut [T],
+        jacobian: &mut [T],
+    ) -> Result<(), StateError>;
+
+    /// Position of a point from O along N.x, N.y, N.z, m. [`StateError::Undefined`] for a point of which the model knows the velocity only.
+    fn position(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
+    /// Velocity of a point in N along N.x, N.y, N.z, m/s.
+    fn velocity(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
+    /// Partial velocities of a point (3 x `p`) along N.x, N.y, N.z (rows) for the independent speeds (columns).
+    fn jacobian(&self, point: usize, state: &State<'_, T>, jacobian: &mut [T]) -> Result<(), StateError>;
+    /// Axes of a frame: the columns are its x, y, z along N.x, N.y, N.z. [`StateError::Undefined`] for a frame of which the model knows the
+    /// angular velocity only.
+    fn orientation(&self, frame: usize, state: &State<'_, T>) -> Result<Matrix3<T>, StateError>;
+}

@@ -1,0 +1,155 @@
+//! Contacts of a mechanism by number.
+
+use nalgebra::Vector3;
+
+use super::{Mechanism, State};
+use crate::generated::{check_length, check_room};
+use crate::{CollisionError, Impact, ReducedMatrix, Scalar, StateError, Surface};
+
+/// What a contact is like in a state. The contact basis is `normal`, `first`, `second`: unit vectors, right-handed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ContactState<T: nalgebra::Scalar = f64> {
+    /// distance of the striking point from what it strikes, m; `None` where the model gives no gap
+    pub gap: Option<T>,
+    /// normal n along N.x, N.y, N.z, from what is struck towards the striking point
+    pub normal: Vector3<T>,
+    /// first tangential axis along N.x, N.y, N.z
+    pub first: Vector3<T>,
+    /// second tangential axis along N.x, N.y, N.z
+    pub second: Vector3<T>,
+    /// velocity of the striking point relative to what it strikes, along the contact basis, m/s
+    pub velocity: Vector3<T>,
+    /// reduced mass matrix V M^-1 V^T (20)-(22) along the contact basis, 1/kg
+    pub reduced: ReducedMatrix<T>,
+}
+
+/// A solved collision of a contact: n is the contact's normal, t lies along the slip of approach, s = n x t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
+    /// n along N.x, N.y, N.z
+    pub normal: Vector3<T>,
+    /// t along N.x, N.y, N.z
+    pub tangent: Vector3<T>,
+    /// s along N.x, N.y, N.z
+    pub binormal: Vector3<T>,
+    /// velocity of approach along n, t, s, m/s
+    pub approach: Vector3<T>,
+    /// reduced mass matrix along n, t, s, 1/kg
+    pub reduced: ReducedMatrix<T>,
+    /// impulse on the striking point along N.x, N.y, N.z, N s; what is struck receives its opposite
+    pub impulse_on_point: Vector3<T>,
+    /// change of the kinetic energy, J; it differs from `impact.contact_work` where motion is prescribed: (24)
+    pub energy_change: T,
+    /// everything that the solver tells, along n, t, s: impulse, velocity of separation, phases
+    pub impact: Impact<T>,
+}
+
+/// The contacts of a mechanism, by number. A mechanism without contacts has the trait too, and its count is 0.
+///
+/// `p` is the number of independent speeds; matrices are written by rows; components along the contact basis stand in the order normal,
+/// first, second (see [`ContactState`]).
+///
+/// # Errors
+///
+/// As those of [`Mechanism`], and [`StateError::Missing`] where there is no contact of that number.
+pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
+    /// Gap, basis, velocity and reduced matrix of a contact.
+    fn contact_state(&self, contact: usize, state: &State<'_, T>) -> Result<ContactState<T>, StateError>;
+    /// Gap alone, m; `None` where the model gives none.
+    fn gap(&self, contact: usize, state: &State<'_, T>) -> Result<Option<T>, StateError>;
+    /// Velocity of the striking point relative to what it strikes, along the contact basis, m/s.
+    fn contact_velocity(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
+    /// beta: rates of the three components of the contact velocity without contact forces, m/s^2. It is the derivative of these components,
+    /// as functions of (t, q, u), along (1, q', u'), so that the turning of the contact basis counts.
+    fn free_acceleration(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
+    /// V (3 x `p`): partial velocities along the contact basis (rows) for the independent speeds (columns).
+    fn partial_velocities(
+        &self,
+        contact: usize,
+        state: &State<'_, T>,
+        partial_velocities: &mut [T],
+    ) -> Result<(), StateError>;
+    /// M^-1 V^T (`p` x 3): change of the independent speeds per unit of impulse along the contact basis, and of their rates per unit of force.
+    fn response(&self, contact: usize, state: &State<'_, T>, response: &mut [T]) -> Result<(), StateError>;
+    /// Solves the collision of a contact. `speeds` (`p`) receives the independent speeds after it: (12a).
+    ///
+    /// # Errors
+    ///
+    /// [`CollisionError::Impact`] where the collision has no outcome.
+    fn collide(
+        &self,
+        contact: usize,
+        state: &State<'_, T>,
+        surface: &Surface<T>,
+        speeds: &mut [T],
+    ) -> Result<CollisionOutcome<T>, CollisionError<T>>;
+
+    /// W (3k x 3k) of the k `contacts`, symmetric: forces along their contact bases accelerate the contact velocities by W times the forces.
+    /// The blocks are W_ij = V_i M^-1 V_j^T. `workspace` needs 3 p (k + 1) numbers.
+    #[doc(alias = "Delassus")]
+    fn coupled_matrix(
+        &self,
+        contacts: &[usize],
+        state: &State<'_, T>,
+        matrix: &mut [T],
+        workspace: &mut [T],
+    ) -> Result<(), StateError> {
+        let (k, p) = (contacts.len(), self.count(super::Kind::Speed));
+        let size = 3 * k;
+        check_length(matrix, size * size, "coupled matrix")?;
+        check_room(workspace, 3 * p * (k + 1), "workspace")?;
+        let (rows, response) = workspace.split_at_mut(3 * p * k);
+        let Some(response) = response.get_mut(..3 * p) else { return Ok(()) };
+        if p == 0 {
+            matrix.fill(T::zero());
+            return Ok(());
+        }
+        for (&contact, rows) in contacts.iter().zip(rows.chunks_exact_mut(3 * p)) {
+            self.partial_velocities(contact, state, rows)?;
+        }
+        for (j, &contact) in contacts.iter().enumerate() {
+            self.response(contact, state, response)?;
+            for axis in 0..3 {
+                // the upper triangle of a column; the lower triangle mirrors it
+                let column = 3 * j + axis;
+                for (row, partial) in rows.chunks_exact(p).enumerate().take(column + 1) {
+                    let terms = partial.iter().zip(response.iter().skip(axis).step_by(3));
+                    let sum = terms.fold(T::zero(), |sum, (&partial, &response)| sum + partial * response);
+                    for place in [row * size + column, column * size + row] {
+                        if let Some(entry) = matrix.get_mut(place) {
+                            *entry = sum;
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Rates u' of the independent speeds (`p`) with forces at contacts: those without, plus M^-1 V^T times each force. A force acts on the
+    /// striking point, its opposite on what is struck; its components are along the contact basis, N. `workspace` needs 3 p numbers.
+    fn accelerations_with_forces(
+        &self,
+        state: &State<'_, T>,
+        forces: &[(usize, Vector3<T>)],
+        accelerations: &mut [T],
+        workspace: &mut [T],
+    ) -> Result<(), StateError> {
+        let needed = 3 * self.count(super::Kind::Speed);
+        check_room(workspace, needed, "workspace")?;
+        let Some(response) = workspace.get_mut(..needed) else { return Ok(()) };
+        self.accelerations(state, accelerations)?;
+        for (contact, force) in forces {
+            self.response(*contact, state, response)?;
+            for (rate, response) in accelerations.iter_mut().zip(response.chunks_exact(3)) {
+                let terms = response.iter().zip(force.iter());
+                *rate = terms.fold(*rate, |sum, (&response, &force)| sum + response * force);
+            }
+        }
+        Ok(())
+    }
+}

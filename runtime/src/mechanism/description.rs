@@ -1,0 +1,56 @@
+//! What a mechanism has, by name and number.
+
+/// The things of a mechanism that have a name and a number, counted from 0 in the order of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Kind {
+    /// parameters that can be changed; those that the model declares `fixed` are none
+    Parameter,
+    /// generalized coordinates, independent and dependent ones
+    Coordinate,
+    /// dependent coordinates alone, which the configuration equations determine
+    DependentCoordinate,
+    /// independent generalized speeds
+    Speed,
+    /// dependent generalized speeds, which the constraints determine
+    DependentSpeed,
+    /// named inputs
+    Input,
+    /// points; the first is O
+    Point,
+    /// frames; the first is N
+    Frame,
+    /// contacts
+    Contact,
+}
+
+impl Kind {
+    /// What one of the kind is called in a sentence.
+    pub const fn noun(self) -> &'static str {
+        match self {
+            Self::Parameter => "parameter",
+            Self::Coordinate => "coordinate",
+            Self::DependentCoordinate => "dependent coordinate",
+            Self::Speed => "speed",
+            Self::DependentSpeed => "dependent speed",
+            Self::Input => "input",
+            Self::Point => "point",
+            Self::Frame => "frame",
+            Self::Contact => "contact",
+        }
+    }
+}
+
+/// Name and unit of one of the things that a mechanism has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Component<'a> {
+    /// the name, as the model spells it
+    pub name: &'a str,
+    /// the unit that the model declares, as `kg*m^2`; `1` for a number without unit, empty for a point, frame or contact
+    pub unit: &'a str,
+}
