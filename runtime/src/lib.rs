@@ -8,6 +8,7 @@
 extern crate std;
 
 mod characteristics;
+mod contact;
 mod derivative;
 mod dual;
 mod error;
@@ -31,6 +32,10 @@ mod surface;
 
 pub use crate::{
     characteristics::{Characteristics, Renewal, rates},
+    contact::{
+        ContactError, ContactForce, ContactMode, Margins, Selection, contact_force, contact_mode,
+        contact_mode_after,
+    },
     derivative::{ImpactDerivative, Obstacle, derivative},
     error::ImpactError,
     generated::{CollisionError, ParameterError, StateError},

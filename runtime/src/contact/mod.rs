@@ -1,0 +1,156 @@
+//! Contact that lasts: force, acceleration and mode of a contact whose gap is closed and whose normal velocity is zero.
+//!
+//! A contact force lambda (n, t, s) changes the rate of the relative velocity by M lambda, M being the reduced matrix; without it the
+//! rate is beta, the free acceleration of the contact. Coulomb's law then leaves four modes:
+//!
+//! | mode | force | holds while |
+//! | --- | --- | --- |
+//! | separate | none | beta_n > 0 |
+//! | slide (slip d s, s > 0) | lambda_n (1, -mu d), lambda_n = -beta_n / f(d) | f > 0, lambda_n >= 0, s > 0 |
+//! | stick (no slip) | the one without acceleration | lambda_n >= 0, abs(lambda_tan) <= mu lambda_n |
+//! | begin to slip (no slip yet) | as slide, d along the acceleration | lambda_n >= 0, acceleration along d positive |
+//!
+//! with f = m_nn - mu b.d (31) and b = (m_nt, m_ns). [`contact_mode`] selects the mode at an event; between events [`contact_force`]
+//! keeps the mode and its margins tell when it ends. Where mu |b| < m_nn exactly one mode fits. Elsewhere several may fit, and while the contact
+//! slides no finite force may exist (Painleve): both are said, never guessed.
+
+mod begin;
+mod error;
+mod roots;
+mod select;
+mod stick;
+mod tangential;
+
+use nalgebra::{Vector2, Vector3};
+
+pub use self::error::ContactError;
+use crate::{ReducedMatrix, Scalar};
+
+/// What a closed contact does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum ContactMode {
+    /// The contact opens: no force.
+    Separate,
+    /// There is slip, and friction opposes it.
+    Slide,
+    /// There is no slip, and friction keeps it so.
+    Stick,
+    /// There is no slip yet; it begins now.
+    BeginSlip,
+}
+
+impl ContactMode {
+    /// A stable lower-case name.
+    #[inline]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Separate => "separate",
+            Self::Slide => "slide",
+            Self::Stick => "stick",
+            Self::BeginSlip => "begin_slip",
+        }
+    }
+}
+
+/// How certain the mode is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Selection {
+    /// No other mode fits, or the mode was given.
+    Unique,
+    /// Several modes fit; this is the one whose force is nearest to the one before.
+    SeveralModes,
+    /// The contact slides with f < 0 and beta_n >= 0: it may lift off or suffer an impact without collision. Lift-off is taken.
+    Indeterminate,
+}
+
+/// How far the mode is from its end; the mode holds while all that are given are positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct Margins<T> {
+    /// Normal force, N: at zero the contact lifts off. `None` while separate.
+    pub lambda_n: Option<T>,
+    /// f (31), 1/kg: at zero a sliding contact jams. `None` unless it slides or begins to.
+    pub f: Option<T>,
+    /// mu lambda_n - |lambda_tan|, N: at zero a sticking contact begins to slip. `None` unless it sticks.
+    pub cone: Option<T>,
+    /// Speed of slip, m/s: at zero slip ends. `None` unless it slides.
+    pub s: Option<T>,
+}
+
+/// Mode, force and acceleration of a closed contact, along n, t, s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct ContactForce<T: nalgebra::Scalar> {
+    /// What the contact does.
+    pub mode: ContactMode,
+    /// Whether another mode would fit too.
+    pub selection: Selection,
+    /// Force on the striking point, N.
+    pub force: Vector3<T>,
+    /// Rate of the relative velocity under that force, m/s^2: M force + beta.
+    pub acceleration: Vector3<T>,
+    /// Direction of slip, or in which slip begins; of length one.
+    pub direction: Option<Vector2<T>>,
+    /// What ends the mode.
+    pub margins: Margins<T>,
+    /// Whether no other force gives this acceleration in this mode. It is false where the contact is wedged: then the least force is given.
+    pub force_is_unique: bool,
+}
+
+/// Selects the mode of a closed contact with v_n = 0, coming from no contact force (free flight, or an impact).
+///
+/// `free_acceleration` is beta (n, t, s), `slip` the tangential velocity (t, s); the contact counts as not slipping where it is exactly zero.
+/// Bounded work: at most some 20 000 operations, where there is no slip.
+///
+/// # Errors
+/// Every reason is a variant of [`ContactError`].
+#[inline]
+pub fn contact_mode<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    free_acceleration: &Vector3<T>,
+    slip: &Vector2<T>,
+    mu: T,
+) -> Result<ContactForce<T>, ContactError<T>> {
+    contact_mode_after(matrix, free_acceleration, slip, mu, &Vector3::zeros())
+}
+
+/// Selects the mode as [`contact_mode`] does; where several fit, the one whose force is nearest to the force before.
+///
+/// # Errors
+/// As [`contact_mode`].
+#[inline]
+pub fn contact_mode_after<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    free_acceleration: &Vector3<T>,
+    slip: &Vector2<T>,
+    mu: T,
+    force_before: &Vector3<T>,
+) -> Result<ContactForce<T>, ContactError<T>> {
+    select::select(matrix, free_acceleration, slip, mu, force_before)
+}
+
+/// Force and margins of a mode that is kept. A margin that is not positive says that the mode has ended; the force is then the one that
+/// would keep it.
+///
+/// `slip` is read while sliding only. [`ContactMode::BeginSlip`] selects the direction anew.
+///
+/// # Errors
+/// [`ContactError::Jam`] or [`ContactError::ImpactWithoutCollision`] where a sliding contact has no force; [`ContactError::NoMode`] where no force
+/// keeps the contact from slipping, or none begins slip; [`ContactError::Input`].
+#[inline]
+pub fn contact_force<T: Scalar>(
+    mode: ContactMode,
+    matrix: &ReducedMatrix<T>,
+    free_acceleration: &Vector3<T>,
+    slip: &Vector2<T>,
+    mu: T,
+) -> Result<ContactForce<T>, ContactError<T>> {
+    select::keep(mode, matrix, free_acceleration, slip, mu)
+}

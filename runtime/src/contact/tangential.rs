@@ -1,0 +1,96 @@
+//! The closed contact in units where m_nn = 1 and its free acceleration is about one.
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::{
+    ReducedMatrix,
+    scalar::{Real, constant, larger, length},
+};
+
+/// M and beta in these units; the tangential part of M is T, its coupling to the normal b.
+#[derive(Clone, Copy)]
+pub(super) struct Closed<T: Real> {
+    pub mu: T,
+    pub b: Vector2<T>,
+    pub tt: T,
+    pub ts: T,
+    pub ss: T,
+    /// beta_n and the tangential part of beta
+    pub normal: T,
+    pub tangential: Vector2<T>,
+    /// The unit of force, N.
+    pub force: T,
+}
+
+/// T x = rhs in the sense of least squares.
+pub(super) struct Held<T: Real> {
+    pub x: Vector2<T>,
+    /// The part of the right side that T does not reach.
+    pub left: T,
+}
+
+impl<T: Real> Closed<T> {
+    /// From the contact's own numbers.
+    pub fn new(m: &ReducedMatrix<T>, beta: &Vector3<T>, mu: T) -> Self {
+        let size = larger(larger(beta.x.abs(), beta.y.abs()), beta.z.abs()).plain();
+        let unit = if size > T::zero() { size } else { T::one() };
+        Self {
+            mu,
+            b: Vector2::new(m.nt / m.nn, m.ns / m.nn),
+            tt: m.tt / m.nn,
+            ts: m.ts / m.nn,
+            ss: m.ss / m.nn,
+            normal: beta.x / unit,
+            tangential: Vector2::new(beta.y / unit, beta.z / unit),
+            force: unit / m.nn,
+        }
+    }
+
+    /// T x.
+    #[inline]
+    pub fn pulled(&self, x: &Vector2<T>) -> Vector2<T> {
+        Vector2::new(self.tt * x.x + self.ts * x.y, self.ts * x.x + self.ss * x.y)
+    }
+
+    /// f (31) over m_nn.
+    #[inline]
+    pub fn f(&self, d: &Vector2<T>) -> T {
+        T::one() - self.mu * self.b.dot(d)
+    }
+
+    /// What rounding may do to f.
+    #[inline]
+    pub fn f_noise(&self) -> T {
+        constant::<T>(8.0) * T::default_epsilon() * (T::one() + self.mu * length(&self.b))
+    }
+
+    /// The least x with T x = rhs as nearly as possible, by elimination from the larger pivot; a pivot lost to rounding counts as zero.
+    pub fn hold(&self, rhs: &Vector2<T>) -> Held<T> {
+        let swap = self.ss > self.tt;
+        let (p, q, r) =
+            if swap { (self.ss, self.tt, Vector2::new(rhs.y, rhs.x)) } else { (self.tt, self.ss, *rhs) };
+        // b lies in the range of T, so T that vanishes beside b^2 <= m_nn T is none.
+        if p <= T::zero() {
+            return Held { x: Vector2::zeros(), left: length(rhs) };
+        }
+        let l = self.ts / p;
+        let (pivot, left) = (q - l * self.ts, r.y - l * r.x);
+        let square = T::one() + l * l;
+        let (x, left) = if pivot > constant::<T>(64.0) * T::default_epsilon() * p {
+            let y = left / pivot;
+            (Vector2::new(r.x / p - l * y, y), T::zero())
+        } else {
+            let scale = (r.x + l * r.y) / (p * square * square);
+            (Vector2::new(scale, l * scale), left.abs() / square.sqrt())
+        };
+        Held { x: if swap { Vector2::new(x.y, x.x) } else { x }, left }
+    }
+
+    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from slipping; zero where that is
+    /// lost in rounding.
+    pub fn held_rate(&self, hold: &Vector2<T>) -> T {
+        let rate = T::one() - (self.b + self.b - self.pulled(hold)).dot(hold);
+        let known = T::one() + (self.tt + self.ss) * hold.dot(hold);
+        if rate <= constant::<T>(32.0) * T::default_epsilon() * known { T::zero() } else { rate }
+    }
+}
