@@ -4,11 +4,11 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use hodograph_generator::emit::names::snake_case;
+use hodograph_generator::rust_names::snake_case;
 use hodograph_generator::emit::{self, Options, names};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::source::Source;
-use hodograph_generator::{artifact, model};
+use hodograph_generator::{artifact, check::check};
 
 fn main() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
@@ -26,7 +26,7 @@ fn main() {
         println!("cargo::rerun-if-changed={}", path.display());
         println!("cargo::rerun-if-changed={}", derivation.display());
         // A model that is not accepted or not derived is a matter for the tests, which say so.
-        let Some(mechanism) = model::check(&Source::read(&path)).mechanism else { continue };
+        let Some(mechanism) = check(&Source::read(&path)).mechanism else { continue };
         let Ok(derived) = std::fs::read_to_string(derivation) else { continue };
         let Ok(artifact) = artifact::decode(&derived) else { continue };
         let module = path.file_stem().expect("a stem").to_string_lossy().into_owned();

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use proc_macro2::Span;
 
-use crate::source::Location;
+use crate::span::Location;
 
 /// The compiler's own span, while there is a compiler.
 fn known(span: Span) -> Option<proc_macro::Span> {

@@ -1,34 +1,10 @@
 //! Mistakes in a model: where, what, and what to do about it.
 
 pub mod codes;
-pub mod explanations;
-mod render;
-
-use std::ops::Range;
 
 pub use codes::Code;
-pub use render::render;
 
-/// A place in the source: bytes of a file, or tokens of an inline model (see `syntax`).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Span {
-    /// first byte (file) or first token (inline)
-    pub start: u32,
-    /// one past the last
-    pub end: u32,
-}
-
-impl Span {
-    /// The place as a range.
-    pub fn range(self) -> Range<usize> {
-        self.start as usize..self.end as usize
-    }
-
-    /// The smallest place that holds both.
-    pub fn to(self, other: Span) -> Span {
-        Span { start: self.start.min(other.start), end: self.end.max(other.end) }
-    }
-}
+use crate::span::Span;
 
 /// Does it stop the model from being used?
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -99,21 +75,5 @@ impl Diagnostic {
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help = Some(text.into());
         self
-    }
-}
-
-impl Diagnostic {
-    /// One line: `models/x.mech:14:23: error[E020]: unknown name `zz`; did you mean `z`?`
-    pub fn one_line(&self, source: &crate::source::Source) -> String {
-        let place = match source.location(self.primary.span) {
-            Some(at) => format!("{}:{}:{}", source.name(), at.line, at.column),
-            None => source.name().to_owned(),
-        };
-        let severity = match self.severity {
-            Severity::Error => "error",
-            Severity::Warning => "warning",
-        };
-        let help = self.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
-        format!("{place}: {severity}[{}]: {}{help}", self.code, self.message)
     }
 }

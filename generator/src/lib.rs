@@ -18,11 +18,14 @@
 #[cfg(feature = "derive")]
 pub mod algebra;
 pub mod artifact;
+pub mod check;
 mod compiler;
 pub mod diagnostics;
+pub mod dimension;
 pub mod emit;
 pub mod expand;
 pub mod explain;
+pub mod explanations;
 pub mod interpret;
 #[cfg(feature = "derive")]
 pub mod kane;
@@ -33,8 +36,13 @@ pub mod number;
 pub mod numeric;
 pub mod program;
 pub mod reading;
+pub mod rendering;
+pub mod rust_names;
 pub mod source;
+pub mod span;
+mod suggest;
 pub mod syntax;
+mod vocabulary;
 
 #[cfg(feature = "derive")]
 pub use kane::{DerivationError, derive};

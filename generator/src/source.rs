@@ -6,8 +6,9 @@ use proc_macro2::{Span as RustSpan, TokenStream};
 use sha2::{Digest, Sha256};
 
 use crate::compiler;
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
 use crate::reading;
+use crate::span::{Location, Span};
 use crate::syntax::token::{Token, TokenKind};
 use crate::syntax::{inline, lexer};
 
@@ -32,15 +33,6 @@ enum Content {
         tokens: Vec<Token>,
         places: Vec<RustSpan>,
     },
-}
-
-/// Line and column, both from 1; the column counts characters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Location {
-    /// line, from 1
-    pub line: usize,
-    /// column in characters, from 1
-    pub column: usize,
 }
 
 impl Source {

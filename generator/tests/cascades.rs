@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use hodograph_generator::diagnostics::{Diagnostic, Severity, codes, render};
-use hodograph_generator::model;
+use hodograph_generator::diagnostics::{Diagnostic, Severity, codes};
+use hodograph_generator::rendering::render;
+use hodograph_generator::check::check;
 use hodograph_generator::source::Source;
 
 /// The shipped models: name and text.
@@ -53,7 +54,7 @@ fn declared_units(text: &str) -> Vec<(String, std::ops::Range<usize>)> {
 
 fn errors(name: &str, text: &str) -> (usize, Vec<Diagnostic>, String) {
     let source = Source::file(name, text.to_owned());
-    let found = model::check(&source).diagnostics;
+    let found = check(&source).diagnostics;
     let said = render(&found, &source);
     (found.iter().filter(|d| d.severity == Severity::Error).count(), found, said)
 }

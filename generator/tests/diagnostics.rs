@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::{diagnostics::render, model, source::Source};
+use hodograph_generator::{check::{Checked, check}, rendering::render, source::Source};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics")
@@ -29,7 +29,7 @@ fn messages_are_as_expected() {
         let name = path.file_name().and_then(|n| n.to_str()).expect("a name").to_owned();
         let text = std::fs::read_to_string(&path).expect("text");
         let source = Source::file(name.as_str(), text);
-        let checked = model::check(&source);
+        let checked = check(&source);
         assert!(!checked.diagnostics.is_empty(), "{name} is accepted");
         let said = render(&checked.diagnostics, &source);
         let expected = path.with_extension("txt");
@@ -54,10 +54,10 @@ fn inline_models_have_the_same_mistakes() {
         let text = std::fs::read_to_string(&path).expect("text");
         // what is not a sequence of Rust tokens does not reach the macro
         let Ok(stream) = text.parse::<proc_macro2::TokenStream>() else { continue };
-        let file = model::check(&Source::file("x.mech", text));
+        let file = check(&Source::file("x.mech", text));
         let source = Source::inline("here", stream);
-        let inline = model::check(&source);
-        let said = |checked: &model::Checked| -> Vec<(String, String)> {
+        let inline = check(&source);
+        let said = |checked: &Checked| -> Vec<(String, String)> {
             checked.diagnostics.iter().map(|d| (d.code.to_string(), d.message.clone())).collect()
         };
         assert_eq!(said(&file), said(&inline), "{}", path.display());

@@ -3,13 +3,14 @@
 use std::path::Path;
 
 use hodograph_generator::diagnostics::codes::ALL;
-use hodograph_generator::diagnostics::explanations::{explanation, page, whole};
-use hodograph_generator::diagnostics::{Code, render};
-use hodograph_generator::{model, source::Source};
+use hodograph_generator::explanations::{explanation, page, whole};
+use hodograph_generator::diagnostics::{Code};
+use hodograph_generator::rendering::render;
+use hodograph_generator::{check::check, source::Source};
 
 fn check(code: Code, example: &str) -> (Vec<Code>, String) {
     let source = Source::file(format!("{code}.mech"), whole(example));
-    let checked = model::check(&source);
+    let checked = check(&source);
     let said = render(&checked.diagnostics, &source);
     (checked.diagnostics.iter().map(|d| d.code).collect(), said)
 }

@@ -1,10 +1,10 @@
 //! Correct models are accepted.
 
-use hodograph_generator::{model, source::Source};
+use hodograph_generator::{check::check, source::Source};
 
 fn accept(name: &str, text: &str) -> model::mechanism::Mechanism {
     let source = Source::file(name, text);
-    let checked = model::check(&source);
+    let checked = check(&source);
     let messages: Vec<String> = checked.diagnostics.iter().map(|d| d.one_line(&source)).collect();
     assert!(messages.is_empty(), "{}", messages.join("\n"));
     checked.mechanism.expect("a mechanism")
@@ -107,6 +107,6 @@ fn inline_and_file_agree() {
         assert_eq!(inline.content_hash(), file.content_hash());
         let other = Source::file("x.mech", text.replace('\n', "\r\n").replace("    ", "\t// a comment\n"));
         assert_eq!(other.content_hash(), file.content_hash());
-        assert!(model::check(&inline).mechanism.is_some());
+        assert!(check(&inline).mechanism.is_some());
     }
 }

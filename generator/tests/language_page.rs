@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use hodograph_generator::diagnostics::{explanations::within, render};
-use hodograph_generator::{model, source::Source};
+use hodograph_generator::diagnostics::{explanations::within};
+use hodograph_generator::rendering::render;
+use hodograph_generator::{check::check, source::Source};
 
 /// An example and the sections that complete it, which stand in a comment above it.
 struct Example {
@@ -41,7 +42,7 @@ fn examples_are_correct_models() {
     let mut wrong = String::new();
     for example in examples() {
         let source = Source::file(format!("line {}", example.line), within(&example.context, &example.text));
-        let checked = model::check(&source);
+        let checked = check(&source);
         if !checked.diagnostics.is_empty() {
             wrong.push_str(&render(&checked.diagnostics, &source));
         }

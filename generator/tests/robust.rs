@@ -2,15 +2,16 @@
 
 use std::time::{Duration, Instant};
 
-use hodograph_generator::diagnostics::{codes, render};
-use hodograph_generator::{model, source::Source};
+use hodograph_generator::diagnostics::{codes};
+use hodograph_generator::rendering::render;
+use hodograph_generator::{check::check, source::Source};
 use proptest::prelude::*;
 
 /// Checks a text that must be refused with this code, soon: in two seconds, or unoptimised and on a busy machine in thirty.
 fn refused(what: &str, text: String, code: hodograph_generator::diagnostics::Code) {
     let begun = Instant::now();
     let source = Source::file("big.mech", text);
-    let checked = model::check(&source);
+    let checked = check(&source);
     let said = render(&checked.diagnostics, &source);
     assert!(checked.mechanism.is_none(), "{what} is accepted");
     assert!(checked.diagnostics.iter().any(|d| d.code == code), "{what}: {said}");
@@ -117,7 +118,7 @@ fn ten_thousand_parameters() {
          definitions {{ a = {sum} q1; }} points {{ P = O + a*N.x; }} particles {{ A {{ point: P, mass: m }} }}"
     );
     let begun = Instant::now();
-    let checked = model::check(&Source::file("many.mech", text));
+    let checked = check(&Source::file("many.mech", text));
     assert!(checked.mechanism.is_some(), "{:?}", checked.diagnostics.first());
     assert!(begun.elapsed() < Duration::from_secs(30));
 }
@@ -144,13 +145,13 @@ fn chain(links: usize, inertia: &str) -> String {
 #[test]
 fn the_largest_mechanism() {
     let begun = Instant::now();
-    let checked = model::check(&Source::file("chain.mech", chain(64, "[J, J, J]")));
+    let checked = check(&Source::file("chain.mech", chain(64, "[J, J, J]")));
     assert!(
         checked.mechanism.is_some() && checked.diagnostics.is_empty(),
         "{:?}",
         checked.diagnostics.first()
     );
-    let checked = model::check(&Source::file("chain.mech", chain(64, "[J, J, 3*J]")));
+    let checked = check(&Source::file("chain.mech", chain(64, "[J, J, 3*J]")));
     assert!(checked.diagnostics.len() == 64 && checked.diagnostics.iter().all(|d| d.code == codes::INERTIA));
     assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
     refused("65 speeds", chain(65, "[J, J, J]"), codes::TOO_LARGE);
@@ -160,23 +161,23 @@ fn the_largest_mechanism() {
 #[test]
 fn too_many_parts_to_look_at() {
     let frames: String = (0..2000).map(|i| format!("F{i} = N; ")).collect();
-    let checked = model::check(&Source::file("many.mech", with(&format!("frames {{ {frames} }}"))));
+    let checked = check(&Source::file("many.mech", with(&format!("frames {{ {frames} }}"))));
     assert!(checked.mechanism.is_some());
     assert_eq!(checked.diagnostics.iter().map(|d| d.code).collect::<Vec<_>>(), [codes::UNCHECKED]);
 }
 
 #[test]
 fn files_that_are_no_text() {
-    let checked = model::check(&Source::bytes("x.mech", vec![b'm', 0xff, 0xfe]));
+    let checked = check(&Source::bytes("x.mech", vec![b'm', 0xff, 0xfe]));
     assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
-    let checked = model::check(&Source::read(std::path::Path::new("/no/such/file.mech")));
+    let checked = check(&Source::read(std::path::Path::new("/no/such/file.mech")));
     assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
     let texts = ["", "\u{feff}", "\n", "//", "/", "\0", "mechanism", "mechanism ;", "mechanism A;"];
     for text in
         texts.into_iter().chain(["mechanism \"A\";", "mechanism\" points- . \"", "mechanism! {", "\"\""])
     {
         let source = Source::file("x.mech", text);
-        let checked = model::check(&source);
+        let checked = check(&source);
         assert!(checked.mechanism.is_none() && !checked.diagnostics.is_empty(), "{text:?}");
         render(&checked.diagnostics, &source);
     }
@@ -247,7 +248,7 @@ const WORDS: &[&str] = &[
 /// An answer, whatever it is; a refusal has reasons, and all of it can be shown.
 fn answered(bytes: Vec<u8>) {
     let source = Source::bytes("x.mech", bytes);
-    let checked = model::check(&source);
+    let checked = check(&source);
     assert!(checked.mechanism.is_some() || !checked.diagnostics.is_empty());
     render(&checked.diagnostics, &source);
     source.content_hash();

@@ -3,7 +3,7 @@
 mod common;
 
 use common::root;
-use hodograph_generator::model;
+use hodograph_generator::check::check;
 use hodograph_generator::source::Source;
 
 /// The code blocks of a page that are whole models, with the line each begins at. Blocks may be indented (in lists).
@@ -34,7 +34,7 @@ fn shown_models_are_accepted() {
         let text = std::fs::read_to_string(root().join(page)).expect(page);
         for (line, text) in shown(&text) {
             let source = Source::file(format!("{page} from line {line}"), text);
-            let checked = model::check(&source);
+            let checked = check(&source);
             let messages: Vec<String> = checked.diagnostics.iter().map(|d| d.one_line(&source)).collect();
             assert!(messages.is_empty(), "{}", messages.join("\n"));
             count += 1;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact::place;
-use hodograph_generator::emit::names::snake_case;
+use hodograph_generator::rust_names::snake_case;
 use hodograph_generator::source::Source;
 
 use crate::inline::{self, Invocation};

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use hodograph_generator::artifact::place;
-use hodograph_generator::diagnostics::render;
-use hodograph_generator::model::check;
+use hodograph_generator::rendering::render;
+use hodograph_generator::check::check;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::reading;
 use hodograph_generator::source::Source;

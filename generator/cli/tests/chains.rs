@@ -13,7 +13,7 @@ use hodograph_generator::numeric::{self, State};
 use hodograph_generator::program::Program;
 use hodograph_generator::program::routine::{ContactQuantity, Quantity};
 use hodograph_generator::source::Source;
-use hodograph_generator::{artifact, model};
+use hodograph_generator::{artifact, check::check};
 use nalgebra::{DMatrix, DVector};
 
 /// Derives a model that stands in a folder.
@@ -23,7 +23,7 @@ fn derived(folder: &Path, text: &str) -> (Mechanism, Program) {
     let run = hodograph(&["derive", &path.display().to_string()], "");
     assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
     let kept = std::fs::read_to_string(path.with_extension("derivation")).unwrap();
-    let mechanism = model::check(&Source::read(&path)).mechanism.unwrap();
+    let mechanism = check(&Source::read(&path)).mechanism.unwrap();
     (mechanism, artifact::decode(&kept).unwrap().program)
 }
 

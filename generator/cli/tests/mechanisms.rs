@@ -4,8 +4,9 @@
 mod common;
 
 use common::{difference, hodograph, number, numbers, root};
-use hodograph_generator::diagnostics::explanations::within;
-use hodograph_generator::model::{check, mechanism::Quantity};
+use hodograph_generator::explanations::within;
+use hodograph_generator::check::check;
+use hodograph_generator::model::mechanism::Quantity;
 use hodograph_generator::numeric::{self, State};
 use hodograph_generator::source::Source;
 use serde_json::{Value, json};

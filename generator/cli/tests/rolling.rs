@@ -4,7 +4,7 @@
 mod common;
 
 use common::{Run, hodograph, number, numbers};
-use hodograph_generator::model::check;
+use hodograph_generator::check::check;
 use hodograph_generator::numeric::{self, State};
 use hodograph_generator::source::Source;
 use serde_json::Value;

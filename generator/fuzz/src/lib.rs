@@ -1,12 +1,12 @@
 //! What a run of the fuzzer does: it checks a text, renders what is said of it, and holds the results to their promises.
 
-use hodograph_generator::diagnostics::render;
-use hodograph_generator::{model, source::Source};
+use hodograph_generator::rendering::render;
+use hodograph_generator::{check::check, source::Source};
 
 /// Checks bytes as a file and, if they are Rust tokens, as an inline model. Panics if a promise is broken.
 pub fn run(bytes: &[u8]) {
     let source = Source::bytes("fuzz.mech", bytes.to_vec());
-    let checked = model::check(&source);
+    let checked = check(&source);
     assert_eq!(checked.has_errors(), checked.mechanism.is_none());
     if checked.has_errors() {
         assert!(!checked.diagnostics.is_empty(), "refused without a reason");
@@ -24,7 +24,7 @@ pub fn run_inline(text: &str) {
     }
     let Ok(stream) = text.parse::<proc_macro2::TokenStream>() else { return };
     let source = Source::inline("fuzz", stream);
-    let checked = model::check(&source);
+    let checked = check(&source);
     for diagnostic in &checked.diagnostics {
         // a model without tokens has no place of its own
         let empty = source.tokens().is_ok_and(|tokens| tokens.is_empty());
@@ -34,7 +34,7 @@ pub fn run_inline(text: &str) {
     let file = Source::file("fuzz.mech", text);
     // a text that both can read means the same to both
     if checked.mechanism.is_some() {
-        assert!(model::check(&file).mechanism.is_some(), "inline and file differ");
+        assert!(check(&file).mechanism.is_some(), "inline and file differ");
         assert_eq!(source.content_hash(), file.content_hash());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::emit::names::snake_case;
+use crate::rust_names::snake_case;
 
 /// The derivation of a model file: `models/hopper.mech` has `models/hopper.derivation` beside it.
 pub fn beside(model: &Path) -> PathBuf {

@@ -245,8 +245,8 @@ impl Emitter<'_> {
                 },
             );
 
-        let name = super::names::ident(&self.contact_method("collide", contact));
-        let docs = super::names::docs(&format!(
+        let name = crate::rust_names::ident(&self.contact_method("collide", contact));
+        let docs = crate::rust_names::docs(&format!(
             "Solves the collision at {}.\n\nConfiguration and time stay, the speeds jump: du = M^-1 V^T I (12a).\n\n# Errors\n\n\
              Where the state is singular, or the collision has no outcome.",
             self.contact_words(contact)

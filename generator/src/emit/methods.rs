@@ -4,11 +4,11 @@ use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::names::{prose, snake_case};
 use super::record::Record;
 use super::values::local;
 use crate::program::Output;
 use crate::program::routine::{PointQuantity, Quantity};
+use crate::rust_names::{prose, snake_case};
 
 impl Emitter<'_> {
     /// All methods that do not belong to a contact.
@@ -37,8 +37,8 @@ impl Emitter<'_> {
         value: TokenStream,
     ) -> TokenStream {
         let krate = self.krate;
-        let name = super::names::ident(name);
-        let docs = super::names::docs(&format!(
+        let name = crate::rust_names::ident(name);
+        let docs = crate::rust_names::docs(&format!(
             "{docs}\n\n# Errors\n\nWhere the state is singular, or a result is not finite."
         ));
         let signature = self.signature(self.arguments(quantities));

@@ -10,7 +10,6 @@ mod contacts;
 mod fits;
 mod linearisation;
 mod methods;
-pub mod names;
 mod record;
 mod routine;
 mod saltation;

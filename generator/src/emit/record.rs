@@ -3,8 +3,8 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use super::names::{ident, prose};
 use crate::model::mechanism::Quantity;
+use crate::rust_names::{ident, prose};
 
 /// A struct of named numbers.
 pub struct Record {

@@ -4,9 +4,9 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
-use super::names::{docs, ident};
 use super::values::local;
 use crate::program::routine::{ContactQuantity, Quantity};
+use crate::rust_names::{docs, ident};
 
 /// What the derivative by the speeds needs of a contact.
 const NEEDED: [ContactQuantity; 4] = [

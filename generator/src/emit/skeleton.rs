@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::{Options, fits, names};
+use super::{Options, fits};
 use crate::model::mechanism::Mechanism;
 use crate::program::operation::{Bits, Operation, Value};
 use crate::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q, Structure};

@@ -3,13 +3,13 @@
 use super::{Options, Program, module, module_in_parts, skeleton};
 use quote::quote;
 
-use crate::diagnostics::Span;
 use crate::model::mechanism::*;
 use crate::number::Number;
 use crate::program::graph::{Graph, Input};
 use crate::program::routine::{
     ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity as Q, Structure,
 };
+use crate::span::Span;
 
 fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Quantity {
     Quantity {
@@ -229,7 +229,7 @@ fn a_skeleton_is_rust() {
     syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
     // of a file that is missing its name is all that is known
     for name in ["arm.v2", "2-arms", "-", "ö", "a b"] {
-        let tokens = skeleton(&crate::emit::names::snake_case(name), Some(name), &[]);
+        let tokens = skeleton(&crate::rust_names::snake_case(name), Some(name), &[]);
         syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
     }
 }

@@ -80,7 +80,7 @@ fn absent(_source: &Source, _mechanism: &Mechanism, shown: &str, command: &str) 
 
 #[cfg(test)]
 mod tests {
-    use crate::model::check;
+    use crate::check::check;
 
     use super::*;
 

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::check::check;
 use crate::emit;
-use crate::model::check;
 use crate::source::Source;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;

@@ -11,7 +11,7 @@ fn rod() -> Mechanism {
                 l/2*B.y; }\nbodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\nloads { gravity: \
                 -g*N.y; torque on B: tau*N.z; }\n";
     let source = crate::source::Source::file("rod.mech", text);
-    let checked = crate::model::check(&source);
+    let checked = crate::check::check(&source);
     checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
 }
 

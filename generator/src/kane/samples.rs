@@ -65,7 +65,7 @@ mod tests {
             speeds { u1: rad/s, u2: m/s = 3, u3: m/s, u4: rad/s } frames { B = N.rotate(z, q1); C = N.rotate(z, q2); } points { G = O + x*N.x + y*N.y; }
             bodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] }, S { frame: C, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] } }
             kinematics { d(x)/dt = u2; d(y)/dt = u3; d(q2)/dt = u4; }";
-        let checked = crate::model::check(&crate::source::Source::file("m.mech", model));
+        let checked = crate::check::check(&crate::source::Source::file("m.mech", model));
         let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
         let samples = samples(&mechanism);
         assert!(samples.iter().all(|sample| sample.parameters == [2.0, 1.0]));

@@ -4,8 +4,8 @@ use super::linear::LinearScalar;
 use super::solve::{SolveError, Solver};
 use super::{DeriveError, Kinematics};
 use crate::algebra::Expr;
+use crate::check::dependent_components;
 use crate::diagnostics::codes;
-use crate::model::entangled;
 
 impl Kinematics<'_> {
     /// Solves the constraints for the dependent speeds, and their time derivatives for those of the dependent speeds.
@@ -23,7 +23,7 @@ impl Kinematics<'_> {
         let unknowns: Vec<usize> =
             (0..mechanism.speeds.len()).filter(|&slot| mechanism.speeds[slot].dependent).collect();
         if let Some(equation) = entangled {
-            let found = entangled::report(equation.span);
+            let found = dependent_components(equation.span);
             return Err(DeriveError {
                 code: found.code,
                 span: equation.span,

@@ -20,9 +20,10 @@ pub mod vectors;
 use std::collections::BTreeMap;
 
 use crate::algebra::{Direction, Expr, Intermediates, Sample, SymbolId, View};
-use crate::diagnostics::{Code, Diagnostic, Span};
+use crate::diagnostics::{Code, Diagnostic};
 use crate::model::mechanism::{CoordinateId, FrameId, Mechanism, PointId};
 use crate::program::graph::Input;
+use crate::span::Span;
 
 use axes::{AxesId, AxesTree};
 use linear::{LinearScalar, LinearVector, Triple};

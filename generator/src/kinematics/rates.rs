@@ -5,10 +5,11 @@ use super::solve::{SolveError, Solver};
 use super::vectors::{add_linear, scale_linear};
 use super::{DeriveError, Kinematics, MixedLinear};
 use crate::algebra::{Direction, Expr, size};
-use crate::diagnostics::{Span, codes};
+use crate::diagnostics::codes;
 use crate::model::mechanism::{FrameId, Orientation, Place, PointId};
 use crate::number::Number;
 use crate::program::graph::Input;
+use crate::span::Span;
 
 /// Coefficients of kinematical equations up to this size are written out, for what their sines and cosines cancel.
 const OPEN: usize = 24;

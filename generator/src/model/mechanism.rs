@@ -7,8 +7,8 @@
 //! rates nothing else speaks; what declared velocities imply is not repeated there. Names refer to names in chains of at most 300,
 //! and expressions are nested a few hundred deep at most, so recursion over them is safe.
 
-use crate::diagnostics::Span;
 use crate::number::Number;
+use crate::span::Span;
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(

@@ -2,9 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::similar;
-use crate::diagnostics::{Diagnostic, Span, codes};
-use crate::emit::names::{is_keyword, snake_case};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::rust_names::{is_keyword, snake_case};
+use crate::span::Span;
+use crate::suggest;
 use crate::syntax::tree::{Name, Tree};
 
 /// What a name stands for. Indices as in `Mechanism`: frame 0 is N, point 0 is O, dependent speeds follow the independent ones
@@ -149,7 +150,7 @@ impl Names {
     /// Is no name nearer to `name` than this?
     pub fn is_near(&self, name: &str, this: &str) -> bool {
         let candidates = std::iter::once(this).chain(self.order.iter().map(|(text, _)| text.as_str()));
-        similar::nearest(name, candidates) == Some(this)
+        suggest::nearest(name, candidates) == Some(this)
     }
 
     /// Is it declared twice?
@@ -201,7 +202,7 @@ impl Names {
     /// The declared name most like this one, among those that fit.
     pub fn nearest(&self, name: &str, fits: impl Fn(Symbol) -> bool) -> Option<&str> {
         let candidates = self.order.iter().filter(|(_, symbol)| fits(*symbol)).map(|(text, _)| text.as_str());
-        similar::nearest(name, candidates)
+        suggest::nearest(name, candidates)
     }
 }
 

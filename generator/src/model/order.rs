@@ -3,7 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use super::names::{Names, Symbol};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::span::Span;
 use crate::syntax::tree::{AngularVelocity, Expr, ExprKind, Name, Tree, Velocity};
 
 /// Something that must be understood before what refers to it.

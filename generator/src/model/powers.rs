@@ -2,8 +2,8 @@
 
 use num_traits::{CheckedAdd, CheckedMul, Zero};
 
-use super::dimension::Exponent;
 use super::names::Symbol;
+use crate::dimension::Exponent;
 
 /// What depends on more names than this is not traced back to them.
 const MOST_NAMES: usize = 32;

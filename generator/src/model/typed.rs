@@ -2,11 +2,11 @@
 
 use num_rational::BigRational;
 
-use super::dimension::Dimension;
 use super::mechanism::{Scalar, Vector};
 use super::powers::Powers;
-use crate::diagnostics::Span;
+use crate::dimension::Dimension;
 use crate::number::Number;
+use crate::span::Span;
 
 /// The expression itself.
 #[derive(Clone, Debug)]

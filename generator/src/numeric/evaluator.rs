@@ -7,8 +7,8 @@ use std::cell::{Cell, RefCell};
 
 use super::Failure;
 use super::hyper::*;
-use crate::diagnostics::Span;
 use crate::model::mechanism::*;
+use crate::span::Span;
 
 /// At which level an expression is evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

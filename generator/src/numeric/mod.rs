@@ -17,8 +17,8 @@ pub use dynamics::{central_inertia, evaluate};
 pub use evaluator::{Evaluator, Level};
 pub use linear::{rank, singular_column};
 
-use crate::diagnostics::Span;
 use crate::model::mechanism::{CoordinateId, Mechanism, SpeedId};
+use crate::span::Span;
 
 /// How many independent equations the constraints of a mechanism amount to at a state.
 pub fn constraint_rank(m: &Mechanism, state: &State) -> Result<usize, Failure> {

@@ -4,8 +4,8 @@ use super::evaluator::{Evaluator, Level};
 use super::hyper::*;
 use super::linear::solve;
 use super::{Failure, State};
-use crate::diagnostics::Span;
 use crate::model::mechanism::*;
+use crate::span::Span;
 
 /// Declared motions may contradict the positions by this much, relative to their terms.
 const CONSISTENT: f64 = 1e-7;

@@ -3,8 +3,8 @@
 use super::parser::{Lost, Parser};
 use super::token::TokenKind;
 use super::tree::*;
+use super::units;
 use crate::diagnostics::{Diagnostic, codes};
-use crate::model::units;
 
 impl Parser<'_> {
     /// One entry of a section, without what ends it.

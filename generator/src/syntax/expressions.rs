@@ -3,7 +3,8 @@
 use super::parser::{Lost, MAX_DEPTH, Parser};
 use super::token::TokenKind;
 use super::tree::{Expr, ExprKind, Name};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::span::Span;
 
 impl Parser<'_> {
     /// A sum.

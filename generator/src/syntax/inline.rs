@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, Span as RustSpan, TokenStream, TokenTree};
 
 use super::lexer::classify_number;
 use super::token::{Bad, Token, TokenKind};
-use crate::diagnostics::Span;
+use crate::span::Span;
 
 /// The tokens of a macro's input, and where each stands in the user's source.
 pub fn tokens(stream: TokenStream) -> (Vec<Token>, Vec<RustSpan>) {

@@ -2,7 +2,7 @@
 //! token.
 
 use super::token::{Bad, Token, TokenKind, is_decimal};
-use crate::diagnostics::Span;
+use crate::span::Span;
 
 /// The tokens of a text, at most `most` and a few. Positions are bytes.
 pub fn tokens(text: &str, most: usize) -> Vec<Token> {

@@ -9,5 +9,6 @@ mod parser;
 mod sections;
 pub mod token;
 pub mod tree;
+pub mod units;
 
 pub use parser::{MAX_DEPTH, parse};

@@ -3,8 +3,9 @@
 use super::parser::{Docs, Lost, Parser};
 use super::token::TokenKind;
 use super::tree::Section;
-use crate::diagnostics::{Diagnostic, Span, codes};
-use crate::model::{habits, similar};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::span::Span;
+use crate::{suggest, vocabulary};
 
 impl Parser<'_> {
     /// The whole model.
@@ -200,7 +201,7 @@ impl Parser<'_> {
                 format!("there is no section `{}`", token.text),
             );
             let near =
-                habits::section(&token.text).or_else(|| similar::nearest(&token.text, words.into_iter()));
+                vocabulary::section(&token.text).or_else(|| suggest::nearest(&token.text, words.into_iter()));
             let error = match near {
                 Some(word) => error.help(format!("did you mean `{word}`?")),
                 None => error.help(format!("the sections are {}", words.join(", "))),
@@ -296,4 +297,18 @@ fn longest_rise(sections: &[(Section, Span)]) -> Vec<usize> {
         best.push(rise);
     }
     best.into_iter().rev().max_by_key(Vec::len).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_sections_that_vocabulary_advises_exist() {
+        for word in
+            ["constants", "forces", "body", "holonomic", "impacts", "variables", "controls", "equations"]
+        {
+            assert!(vocabulary::section(word).and_then(Section::of_word).is_some(), "{word}");
+        }
+    }
 }

@@ -2,7 +2,8 @@
 
 use super::token::{Bad, Token, TokenKind};
 use super::tree::{Name, Section, Tree};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::span::Span;
 
 /// Brackets, signs and exponents may be nested this deep.
 pub const MAX_DEPTH: usize = 64;

@@ -1,6 +1,6 @@
 //! Tokens: what a model's text is made of, whether it comes from a file or from a macro's input.
 
-use crate::diagnostics::Span;
+use crate::span::Span;
 
 /// What a token is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The untyped tree of a model, with the place of everything.
 
-use crate::diagnostics::Span;
+use crate::span::Span;
 
 /// A name and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use hodograph_generator::interpret::{Evaluator, Inputs};
-use hodograph_generator::model;
+use hodograph_generator::check::check;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
@@ -155,7 +155,7 @@ fn exact(
 /// The model of a derivation.
 fn mechanism(derivation: &Derivation<'_>) -> Result<Mechanism, Failure> {
     let path: PathBuf = derivation.path.clone();
-    model::check(&Source::read(&path))
+    check(&Source::read(&path))
         .mechanism
         .ok_or_else(|| Failure::new(format!("{} is not accepted", path.display())))
 }

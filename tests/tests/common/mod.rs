@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact;
 use hodograph_generator::interpret::{Array, Evaluator, Inputs};
-use hodograph_generator::model::{self, mechanism::Mechanism};
+use hodograph_generator::check::check;
+use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::routine::Quantity;
 use hodograph_generator::source::Source;
@@ -49,7 +50,7 @@ impl Model {
     pub fn load(name: &str) -> Model {
         let path = root().join("models").join(name).with_extension("mech");
         let source = Source::read(&path);
-        let mechanism = model::check(&source).mechanism.unwrap_or_else(|| panic!("{name} is not accepted"));
+        let mechanism = check(&source).mechanism.unwrap_or_else(|| panic!("{name} is not accepted"));
         let derivation = std::fs::read_to_string(path.with_extension("derivation"))
             .unwrap_or_else(|error| panic!("{name} has no derivation: {error}"));
         let artifact = artifact::decode(&derivation).unwrap_or_else(|error| panic!("{name}: {error}"));

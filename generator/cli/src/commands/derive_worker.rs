@@ -29,8 +29,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     use crate::stop::Stop;
     use hodograph_generator::DerivationError;
     use hodograph_generator::artifact;
-    use hodograph_generator::diagnostics::render;
-    use hodograph_generator::model::check;
+    use hodograph_generator::rendering::render;
+    use hodograph_generator::check::check;
     use hodograph_generator::program::{Program, cost};
     use hodograph_generator::source::Source;
 

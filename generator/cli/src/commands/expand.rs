@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use hodograph_generator::emit;
-use hodograph_generator::emit::names::snake_case;
+use hodograph_generator::rust_names::snake_case;
 
 use crate::derivation::Limits;
 use crate::model;

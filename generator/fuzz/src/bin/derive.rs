@@ -8,7 +8,7 @@ use hodograph_fuzz::{Random, mutate};
 use hodograph_generator::algebra::SessionError;
 use hodograph_generator::program::Program;
 use hodograph_generator::source::Source;
-use hodograph_generator::{DerivationError, derive, model};
+use hodograph_generator::{DerivationError, check::check, derive};
 
 /// Shipped models that are quick to derive.
 fn models() -> Vec<Vec<u8>> {
@@ -31,7 +31,7 @@ fn main() {
     while derived + refused < count {
         seed += 1;
         let bytes = mutate(&good, &mut Random::new(seed));
-        let Some(mechanism) = model::check(&Source::bytes("fuzz.mech", bytes.clone())).mechanism else { continue };
+        let Some(mechanism) = check(&Source::bytes("fuzz.mech", bytes.clone())).mechanism else { continue };
         let begun = Instant::now();
         match derive(&mechanism) {
             Ok(result) => {

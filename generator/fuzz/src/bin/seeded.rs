@@ -66,7 +66,7 @@ fn main() {
                     }
                     if seed % 16 == 0 {
                         let source = hodograph_generator::source::Source::bytes("x", bytes);
-                        let ok = hodograph_generator::model::check(&source).mechanism.is_some();
+                        let ok = hodograph_generator::check::check(&source).mechanism.is_some();
                         accepted.fetch_add(u64::from(ok), Ordering::Relaxed);
                     }
                 }

@@ -1,12 +1,13 @@
 //! Bodies and particles.
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::{Body, FrameId, Inertia, PointId, Scalar};
-use super::super::{habits, similar};
 use super::Lowering;
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
 use crate::number::Number;
+use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Field, Name, Record};
+use crate::{suggest, vocabulary};
 
 impl Lowering<'_> {
     pub(super) fn bodies(&mut self) {
@@ -54,8 +55,8 @@ impl Lowering<'_> {
             let Some(i) = known.iter().position(|name| *name == field.name.text) else {
                 let message = format!("{what} has no field `{}`", field.name.text);
                 let error = Diagnostic::new(codes::FIELD, field.name.span, message);
-                let near = habits::field(&field.name.text, &known)
-                    .or_else(|| similar::nearest(&field.name.text, known.into_iter()));
+                let near = vocabulary::field(&field.name.text, &known)
+                    .or_else(|| suggest::nearest(&field.name.text, known.into_iter()));
                 self.report(match near {
                     Some(near) => {
                         meant.push(near);

@@ -1,16 +1,17 @@
 //! Functions, axes and what is asked of points and frames.
 
-use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::powers::Powers;
 use super::super::typed::{Traits, Typed, Value};
-use super::super::{habits, similar};
 use super::Lowering;
 use super::dimensions::model_of;
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::{Dimension, Exponent};
 use crate::program::everywhere;
+use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
+use crate::{suggest, vocabulary};
 
 const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
     ("sin", Function::Sin),
@@ -118,7 +119,7 @@ impl Lowering<'_> {
     }
 
     fn unknown_function(&mut self, name: &Name, arguments: &[Expr], span: Span) -> Typed {
-        if let ([inner] | [inner, _], true) = (arguments, habits::differentiates(&name.text)) {
+        if let ([inner] | [inner, _], true) = (arguments, vocabulary::differentiates(&name.text)) {
             self.expression(inner);
             let error =
                 Diagnostic::new(codes::FUNCTION, name.span, format!("there is no function `{}`", name.text));
@@ -154,7 +155,7 @@ impl Lowering<'_> {
                     name.span,
                     format!("there is no function `{}`", name.text),
                 );
-                match (habits::function(&name.text), similar::nearest(&name.text, all.clone())) {
+                match (vocabulary::function(&name.text), suggest::nearest(&name.text, all.clone())) {
                     (Some(advice), _) => error.help(advice),
                     (None, Some(near)) => error.help(format!("did you mean `{near}`?")),
                     (None, None) => {

@@ -1,10 +1,10 @@
 //! Contacts, and what is never used.
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::{Against, BodyId, Contact, PointId, Vector};
 use super::super::names::Symbol;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
 use crate::syntax::tree::{ExprKind, Field, Name, Record};
 
 impl Lowering<'_> {

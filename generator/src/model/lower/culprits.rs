@@ -5,12 +5,12 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::dimension::{Dimension, Exponent};
 use super::super::names::Symbol;
 use super::super::powers::Powers;
 use super::Lowering;
 use super::dimensions::{Balances, Declared, in_words};
 use crate::diagnostics::{Diagnostic, Label, codes};
+use crate::dimension::{Dimension, Exponent};
 
 /// So many declarations are looked for; nobody reads so many messages.
 const MOST_DECLARATIONS: usize = 100;

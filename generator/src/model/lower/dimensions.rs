@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 
-use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::Scalar;
 use super::super::names::Symbol;
 use super::super::powers::Powers;
 use super::super::typed::{Typed, Value};
 use super::culprits::Contradiction;
 use super::{Lowering, QuantityFacts};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::{Dimension, Exponent};
+use crate::span::Span;
 use crate::syntax::tree::{self, Name};
 
 /// `in m/s`, or that there is no dimension.

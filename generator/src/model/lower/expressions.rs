@@ -4,15 +4,16 @@ use num_bigint::BigInt;
 use num_rational::{BigRational, Ratio};
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::super::dimension::{Dimension, Exponent};
 use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::powers::Powers;
 use super::super::typed::{Traits, Typed, Value, moderate};
 use super::Lowering;
 use super::dimensions::{in_words, model_of, quantity};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::{Dimension, Exponent};
 use crate::number::Number;
+use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
 
 /// Constant exponents are at most this large.

@@ -1,15 +1,15 @@
 //! Frames: orientation and angular velocity.
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::{Axis, FrameId, Orientation, Scalar};
 use super::super::names::Symbol;
 use super::super::order::base_frame;
 use super::super::powers::Powers;
-use super::super::similar;
 use super::super::typed::Traits;
 use super::Lowering;
 use super::calls::axis_named;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
+use crate::suggest;
 use crate::syntax::tree::{Expr, ExprKind, Name};
 
 const OPERATIONS: [&str; 5] = ["rotate", "euler", "space", "quaternion", "spin"];
@@ -77,7 +77,7 @@ impl Lowering<'_> {
             _ => {
                 let message = format!("a frame has no operation `{}`", operation.text);
                 let error = Diagnostic::new(codes::FRAME, operation.span, message);
-                self.report(match similar::nearest(&operation.text, OPERATIONS.into_iter()) {
+                self.report(match suggest::nearest(&operation.text, OPERATIONS.into_iter()) {
                     Some(near) => error.help(format!("did you mean `{near}`?")),
                     None => error.help("a frame is made by rotate, euler, space, quaternion or spin"),
                 });

@@ -1,13 +1,13 @@
 //! Loads.
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::{Load, LoadKind, Scalar};
 use super::super::typed::Typed;
-use super::super::{habits, similar};
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
 use crate::number::Number;
 use crate::syntax::tree::{self, Expr, Field, Name};
+use crate::{suggest, vocabulary};
 
 const WORDS: [&str; 5] = ["gravity", "force", "torque", "spring", "torsion"];
 
@@ -33,7 +33,7 @@ impl Lowering<'_> {
                 other => {
                     let error =
                         Diagnostic::new(codes::LOAD, load.word.span, format!("there is no load `{other}`"));
-                    let near = habits::load(other).or_else(|| similar::nearest(other, WORDS.into_iter()));
+                    let near = vocabulary::load(other).or_else(|| suggest::nearest(other, WORDS.into_iter()));
                     self.report(match near {
                         Some(near) => error.help(format!("did you mean `{near}`?")),
                         None => error.help("loads are gravity, force, torque, spring and torsion"),

@@ -15,15 +15,16 @@ mod rates;
 
 use std::collections::HashSet;
 
-use super::habits;
 use super::mechanism::*;
 use super::names::{Names, Symbol};
 use super::order::{Item, Stated, order};
 use super::powers::Powers;
 use super::typed::{Traits, Typed, Value};
-use super::units::{self, Unit};
-use crate::diagnostics::{Code, Diagnostic, Label, Span, codes};
+use crate::diagnostics::{Code, Diagnostic, Label, codes};
+use crate::span::Span;
 use crate::syntax::tree::{ExprKind, Name, Tree};
+use crate::syntax::units::{self, Unit};
+use crate::vocabulary;
 use dimensions::Balances;
 
 /// Lowers a tree. The mechanism is complete only if no error was reported.
@@ -364,7 +365,7 @@ impl<'a> Lowering<'a> {
     fn meant_by(&self, text: &str) -> Option<String> {
         let declared =
             |name: &str| matches!(self.names.get(name), Some(Symbol::Coordinate(_) | Symbol::Definition(_)));
-        if let Some(name) = habits::rate_of(text, declared) {
+        if let Some(name) = vocabulary::rate_of(text, declared) {
             return Some(format!("a time derivative is written `d({name})/dt`"));
         }
         if text.contains('·') {
@@ -373,7 +374,7 @@ impl<'a> Lowering<'a> {
         if !self.constant_only && ["x", "y", "z"].contains(&text) {
             return Some(format!("an axis belongs to a frame: `N.{text}`"));
         }
-        if let Some(given) = habits::name(text) {
+        if let Some(given) = vocabulary::name(text) {
             return Some(format!("did you mean `{given}`?"));
         }
         None

@@ -1,12 +1,13 @@
 //! Points: positions and velocities.
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::{Place, PointId, Vector};
 use super::super::names::Symbol;
 use super::super::typed::{Traits, Typed};
 use super::Lowering;
 use super::expressions::negated;
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
+use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
 
 impl Lowering<'_> {

@@ -2,15 +2,16 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::{Quantity, Scalar};
 use super::super::names::Symbol;
 use super::super::powers::Powers;
 use super::super::typed::{Traits, Typed, Value};
-use super::super::units::{self, Unit};
 use super::{Lowering, QuantityFacts};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
+use crate::span::Span;
 use crate::syntax::tree::{self, Expr, Modifier};
+use crate::syntax::units::{self, Unit};
 
 impl Lowering<'_> {
     /// Reads a unit; reports a mistake in it.

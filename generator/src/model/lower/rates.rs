@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use super::super::dimension::Dimension;
 use super::super::mechanism::*;
 use super::super::names::Symbol;
 use super::super::powers::Powers;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::Dimension;
 
 /// A set of coordinates.
 #[derive(Clone, Default)]

@@ -1,7 +1,7 @@
 //! Equations and unknowns must agree in number, as far as that shows without numbers.
 
-use super::mechanism::*;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::model::mechanism::*;
 
 /// Mistakes in the numbers of equations.
 pub fn counts(m: &Mechanism) -> Vec<Diagnostic> {

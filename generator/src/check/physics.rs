@@ -1,9 +1,10 @@
 //! Checks that need numbers: they look at the mechanism at several arbitrary states near its initial values. What is wrong at
 //! all of them is wrong with the mechanism; what is wrong at one may be a singular state, which is no mistake of the model.
 
-use super::mechanism::*;
-use crate::diagnostics::{Code, Diagnostic, Span, codes};
+use crate::diagnostics::{Code, Diagnostic, codes};
+use crate::model::mechanism::*;
 use crate::numeric::{self, Evaluation, Evaluator, Failure, Level, State, hyper::Hyper};
+use crate::span::Span;
 
 /// Mechanisms of more parts than this are not looked at: it would take too long.
 pub const MOST_PARTS: usize = 2000;
@@ -82,9 +83,9 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
             out.push(Diagnostic::new(codes::INERTIA, span, message).help(help));
         }
         inertia_of_speeds(m, &seen, &mut out);
-        out.extend(super::members::strangers(m, &seen));
+        out.extend(super::body_points::strangers(m, &seen));
         contacts(m, &seen, &mut out);
-        out.extend(super::entangled::entangled(m, &states_seen));
+        out.extend(super::vector_constraints::inseparable(m, &states_seen));
     }
     out
 }

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
-use super::{Diagnostic, Label, Severity, Span};
+use crate::diagnostics::{Diagnostic, Label, Severity, codes};
 use crate::source::Source;
+use crate::span::Span;
 
 /// So many messages are shown with their lines; the rest is counted.
 const MAX_SHOWN: usize = 100;
@@ -87,6 +88,20 @@ impl Diagnostic {
         renderer.render(&[title.element(snippet).elements(notes).elements(help)])
     }
 
+    /// One line: `models/x.mech:14:23: error[E020]: unknown name `zz`; did you mean `z`?`
+    pub fn one_line(&self, source: &Source) -> String {
+        let place = match source.location(self.primary.span) {
+            Some(at) => format!("{}:{}:{}", source.name(), at.line, at.column),
+            None => source.name().to_owned(),
+        };
+        let severity = match self.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let help = self.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
+        format!("{place}: {severity}[{}]: {}{help}", self.code, self.message)
+    }
+
     /// The message as the text of a compile error. For a file: one line with the place, then the line and a caret. For an inline
     /// model, whose tokens the compiler underlines: what is wrong and what to do.
     pub fn compiler_text(&self, source: &Source) -> String {
@@ -122,7 +137,7 @@ impl Diagnostic {
 
     /// The file, and the line and column if there are any.
     fn place(&self, source: &Source) -> String {
-        match source.location(self.primary.span).filter(|_| self.code != super::codes::TOO_LARGE) {
+        match source.location(self.primary.span).filter(|_| self.code != codes::TOO_LARGE) {
             Some(at) if source.text().is_some_and(|text| !text.is_empty()) => {
                 format!("{}:{}:{}", source.name(), at.line, at.column)
             }
@@ -132,8 +147,7 @@ impl Diagnostic {
 
     /// Can the line of a place be shown?
     fn has_line(&self, source: &Source, place: &Range<usize>) -> bool {
-        let Some(text) =
-            source.text().filter(|text| !text.is_empty() && self.code != super::codes::TOO_LARGE)
+        let Some(text) = source.text().filter(|text| !text.is_empty() && self.code != codes::TOO_LARGE)
         else {
             return false;
         };

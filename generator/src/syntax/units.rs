@@ -1,10 +1,10 @@
 //! Units: what `kg*m^2` or `mm` means in SI.
 
-use super::dimension::{Dimension, Exponent};
-use super::{habits, similar};
+use super::tree::{Expr, ExprKind};
 use crate::diagnostics::{Diagnostic, codes};
+use crate::dimension::{Dimension, Exponent};
 use crate::number::Number;
-use crate::syntax::tree::{Expr, ExprKind};
+use crate::{suggest, vocabulary};
 
 /// A unit: its dimension and its size in SI, `number * pi^pi_power`.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,14 +155,14 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
 
 fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, format!("there is no unit `{name}`"));
-    if let Some(right) = habits::unit(name) {
+    if let Some(right) = vocabulary::unit(name) {
         return error.help(format!("write `{right}`"));
     }
     let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
     if let Some(base) = name.strip_suffix(digits).filter(|base| !digits.is_empty() && is_symbol(base)) {
         return error.help(format!("write `{base}^{digits}`"));
     }
-    if let Some(advice) = habits::unit_advice(name) {
+    if let Some(advice) = vocabulary::unit_advice(name) {
         return error.help(advice);
     }
     let prefixed =
@@ -170,7 +170,7 @@ fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     if prefixed.is_some() {
         return error.help("this unit takes no prefix");
     }
-    match similar::nearest(name, SYMBOLS.iter().map(|s| s.0).chain(["kg", "mm", "cm", "km", "ms", "kN"])) {
+    match suggest::nearest(name, SYMBOLS.iter().map(|s| s.0).chain(["kg", "mm", "cm", "km", "ms", "kN"])) {
         Some(near) => error.help(format!("did you mean `{near}`?")),
         None => error
             .help("units are kg g m s min h rad deg rev N Pa J W Hz 1, with SI prefixes, and their products"),

@@ -1,9 +1,10 @@
 //! Vector constraints whose components depend on each other: the derivation needs axes along which those that say nothing are
 //! identically 0.
 
-use super::mechanism::{EquationSides, Mechanism};
-use crate::diagnostics::{Diagnostic, Span, codes};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::model::mechanism::{EquationSides, Mechanism};
 use crate::numeric::{self, Evaluation, State};
+use crate::span::Span;
 
 /// What is nothing beside the other entries of a matrix.
 const NOISE: f64 = 1e-9;
@@ -12,7 +13,7 @@ const NOISE: f64 = 1e-9;
 type Rows = [Vec<f64>; 3];
 
 /// The vector constraints that no frame takes apart, by what they are at some states.
-pub fn entangled(m: &Mechanism, states: &[(State, Evaluation)]) -> Vec<Diagnostic> {
+pub fn inseparable(m: &Mechanism, states: &[(State, Evaluation)]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     let at: Option<Vec<Vec<Vec<f64>>>> =
         states.iter().map(|(state, _)| numeric::constraint_coefficients(m, state).ok()).collect();
@@ -40,14 +41,14 @@ pub fn entangled(m: &Mechanism, states: &[(State, Evaluation)]) -> Vec<Diagnosti
             turned.is_some_and(|turned| components(&turned) <= rank)
         };
         if rank < 3 && components(&along_n) > rank && !(0..m.frames.len()).any(fits) {
-            out.push(report(equation.span));
+            out.push(dependent_components(equation.span));
         }
     }
     out
 }
 
 /// A vector equation whose components depend on each other along the axes of all frames.
-pub fn report(span: Span) -> Diagnostic {
+pub fn dependent_components(span: Span) -> Diagnostic {
     let message = "the components of this equation depend on each other, and along the axes of no frame is one of them identically 0";
     let help = "orient a frame along the direction in which the equation says nothing, or state the others one by one, along vectors of your own: `dot(velocity(C), v) = 0;`";
     Diagnostic::new(codes::CONSTRAINT_COUNT, span, message).help(help)

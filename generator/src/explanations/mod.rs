@@ -6,8 +6,8 @@ mod names;
 mod syntax;
 mod values;
 
-use super::Code;
-use super::codes::ALL;
+use crate::diagnostics::Code;
+use crate::diagnostics::codes::ALL;
 use crate::syntax::tree::Section;
 
 /// What a code means.
@@ -86,7 +86,7 @@ pub fn page() -> String {
     let mut out = String::from(
         "# Errors and warnings\n\n\
          Every mistake in a model has a code. Codes keep their meaning from version to version. This page is written from the\n\
-         sources (`generator/src/diagnostics/explanations`); a test checks that each wrong example gives its code and that each\n\
+         sources (`generator/src/explanations`); a test checks that each wrong example gives its code and that each\n\
          right one gives none. An example that does not begin with `mechanism` shows sections that take the place of those of\n\
          this model:\n\n",
     );

@@ -1,8 +1,8 @@
 //! Is a point a point of the body that is named? In `P of B = Q + ..` the velocity of P is that of Q plus the turning of B about
 //! Q, which is so only if Q moves with B. That shows in numbers.
 
-use super::mechanism::*;
 use crate::diagnostics::{Diagnostic, codes};
+use crate::model::mechanism::*;
 use crate::numeric::Evaluation;
 
 type Vector3 = [f64; 3];

@@ -1,0 +1,64 @@
+//! Reads a model and checks it as a whole: counts of equations and unknowns, and what shows only in numbers.
+
+mod body_points;
+mod counts;
+mod physics;
+mod vector_constraints;
+
+use crate::diagnostics::{Diagnostic, Severity};
+use crate::model::{self, mechanism::Mechanism};
+use crate::source::Source;
+use crate::span::Span;
+use crate::syntax;
+
+pub use vector_constraints::dependent_components;
+
+/// What was found in a model.
+#[derive(Clone, Debug)]
+pub struct Checked {
+    /// the mechanism; there if and only if no error was found
+    pub mechanism: Option<Mechanism>,
+    /// errors and warnings, in the order of their places
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Checked {
+    /// Was an error found?
+    pub fn has_errors(&self) -> bool {
+        self.mechanism.is_none()
+    }
+}
+
+/// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
+pub fn check(source: &Source) -> Checked {
+    let tokens = match source.tokens() {
+        Ok(tokens) => tokens,
+        Err(error) => return Checked { mechanism: None, diagnostics: vec![*error] },
+    };
+    let (tree, diagnostics) = syntax::parse(&tokens);
+    // without a name nothing else could be read
+    let unread = tree.name.is_none() && tree.sections.is_empty();
+    let (mechanism, mut diagnostics) = if let Some(error) = model::too_many(&tree) {
+        (None, diagnostics.into_iter().chain([error]).collect())
+    } else if unread {
+        (None, diagnostics)
+    } else {
+        let (mechanism, diagnostics) = model::lower(&tree, diagnostics);
+        (Some(mechanism), diagnostics)
+    };
+    // what follows looks at the mechanism as a whole, so it must be whole
+    let unclear = |list: &[Diagnostic]| list.iter().any(Diagnostic::hides_meaning);
+    if let Some(mechanism) = mechanism.as_ref().filter(|_| !unclear(&diagnostics)) {
+        diagnostics.extend(counts::counts(mechanism));
+        if !unclear(&diagnostics) {
+            let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
+            diagnostics.extend(checks::physics(mechanism, name));
+        }
+    }
+    // one mistake at a place: what else is found there follows from it
+    let mut places = std::collections::HashSet::new();
+    diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
+    diagnostics.sort_by_key(|d| (d.primary.span, d.code));
+    let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    Checked { mechanism: mechanism.filter(|_| !failed), diagnostics }
+}
