@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::model::mechanism::{Mechanism, Quantity};
+use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_generator::numeric::{self, Evaluation, State};
 use hodograph_generator::{check::check, source::Source};
 use serde_json::Value;
@@ -19,7 +19,7 @@ fn names(value: &Value) -> Vec<&str> {
     value.as_array().map_or(Vec::new(), |list| list.iter().filter_map(Value::as_str).collect())
 }
 
-fn index(list: &[Quantity], name: &str) -> usize {
+fn index(list: &[Variable], name: &str) -> usize {
     list.iter().position(|q| q.name == name).unwrap_or_else(|| panic!("no quantity {name}"))
 }
 

@@ -23,7 +23,7 @@ fn error(name: &str) -> (f64, f64) {
         let mut list = |count: usize| (0..count).map(|_| random.number()).collect::<Vec<f64>>();
         let initial = model.initial();
         let (speeds, inputs) = (list(initial.speeds.len()), list(initial.inputs.len()));
-        let turn = |(value, coordinate): (f64, &hodograph_generator::model::mechanism::Quantity)| {
+        let turn = |(value, coordinate): (f64, &hodograph_generator::model::mechanism::Variable)| {
             value * if coordinate.unit == "rad" { std::f64::consts::PI } else { 1.0 }
         };
         let coordinates = list(initial.coordinates.len());

@@ -6,7 +6,7 @@ mod common;
 use common::{difference, hodograph, number, numbers, root};
 use hodograph_generator::explanations::within;
 use hodograph_generator::check::check;
-use hodograph_generator::model::mechanism::Quantity;
+use hodograph_generator::model::mechanism::Variable;
 use hodograph_generator::numeric::{self, State};
 use hodograph_generator::source::Source;
 use serde_json::{Value, json};
@@ -127,10 +127,10 @@ fn examples_of_the_language_reference_agree_with_the_numeric_road() {
             }
         }
         state.speeds.iter_mut().enumerate().for_each(|(i, value)| *value = 0.4 - 0.15 * i as f64);
-        numeric::complete(&mechanism, &mut state).unwrap();
+        numeric::assemble(&mechanism, &mut state).unwrap();
         let expected =
             numeric::evaluate(&mechanism, &state).unwrap_or_else(|error| panic!("{error}\n{text}"));
-        let named = |list: &[Quantity], values: &[f64]| -> Value {
+        let named = |list: &[Variable], values: &[f64]| -> Value {
             list.iter().zip(values).map(|(quantity, value)| (quantity.name.clone(), json!(value))).collect()
         };
         let given = json!({

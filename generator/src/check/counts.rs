@@ -6,8 +6,8 @@ use crate::model::mechanism::*;
 /// Mistakes in the numbers of equations.
 pub fn counts(m: &Mechanism) -> Vec<Diagnostic> {
     let mut out = Vec::new();
-    let speeds: Vec<&Quantity> = m.speeds.iter().filter(|u| u.dependent).collect();
-    let coordinates: Vec<&Quantity> = m.coordinates.iter().filter(|q| q.dependent).collect();
+    let speeds: Vec<&Variable> = m.speeds.iter().filter(|u| u.dependent).collect();
+    let coordinates: Vec<&Variable> = m.coordinates.iter().filter(|q| q.dependent).collect();
     let constraint = Case {
         equations: &m.constraints,
         unknowns: &speeds,
@@ -33,7 +33,7 @@ pub fn counts(m: &Mechanism) -> Vec<Diagnostic> {
 
 struct Case<'a> {
     equations: &'a [Equation],
-    unknowns: &'a [&'a Quantity],
+    unknowns: &'a [&'a Variable],
     code: crate::diagnostics::Code,
     equation: &'a str,
     unknown: &'a str,

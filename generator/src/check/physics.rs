@@ -3,7 +3,7 @@
 
 use crate::diagnostics::{Code, Diagnostic, codes};
 use crate::model::mechanism::*;
-use crate::numeric::{self, Evaluation, Evaluator, Failure, Level, State, hyper::Hyper};
+use crate::numeric::{self, Evaluation, Evaluator, Failure, Level, State, hyper_dual::HyperDual};
 use crate::span::Span;
 
 /// Mechanisms of more parts than this are not looked at: it would take too long.
@@ -49,7 +49,7 @@ fn look(m: &Mechanism) -> Vec<Diagnostic> {
     let mut turns: Option<Vec<bool>> = None;
     let mut failures = Vec::new();
     for mut state in states {
-        let result = numeric::complete(m, &mut state).and_then(|()| numeric::evaluate(m, &state));
+        let result = numeric::assemble(m, &mut state).and_then(|()| numeric::evaluate(m, &state));
         match result {
             Ok(evaluation) => {
                 let turning = turning_inertias(m, &state, &evaluation);
@@ -128,9 +128,9 @@ fn state(m: &Mechanism, distance: f64, seed: u64) -> State {
 
 /// Values of expressions at a state at rest.
 fn at_rest<'m>(m: &'m Mechanism, state: &'m State) -> Evaluator<'m> {
-    let coordinates = state.coordinates.iter().map(|q| Hyper::constant(*q)).collect();
-    let speeds = vec![Hyper::ZERO; m.speeds.len()];
-    Evaluator::new(m, &state.parameters, &state.inputs, Hyper::constant(state.time), coordinates, speeds)
+    let coordinates = state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect();
+    let speeds = vec![HyperDual::ZERO; m.speeds.len()];
+    Evaluator::new(m, &state.parameters, &state.inputs, HyperDual::constant(state.time), coordinates, speeds)
 }
 
 /// Does the model say what every parameter is?

@@ -3,7 +3,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::model::mechanism::Quantity;
+use crate::model::mechanism::Variable;
 use crate::rust_names::{ident, prose};
 
 /// A struct of named numbers.
@@ -21,7 +21,7 @@ struct Field {
 
 impl Record {
     /// A struct `name` with a field for each of the quantities; defaults are their values in the model, else 0.
-    pub fn new<'a>(name: &str, docs: &str, quantities: impl Iterator<Item = &'a Quantity>) -> Self {
+    pub fn new<'a>(name: &str, docs: &str, quantities: impl Iterator<Item = &'a Variable>) -> Self {
         let fields = quantities
             .map(|quantity| {
                 let text = if quantity.docs.is_empty() { &quantity.name } else { &quantity.docs };

@@ -11,8 +11,8 @@ use crate::program::routine::{
 };
 use crate::span::Span;
 
-fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Quantity {
-    Quantity {
+fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Variable {
+    Variable {
         name: name.into(),
         docs: docs.into(),
         unit: unit.into(),

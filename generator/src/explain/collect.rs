@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::arithmetic::{ZERO, neg, quotient, sum, times};
 use super::exact::Exact;
 use super::{Document, Entry, Equation, Left, Section, Term, stage_title};
-use crate::model::mechanism::{Function, Mechanism, Quantity as Name};
+use crate::model::mechanism::{Function, Mechanism, Variable};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::routine::{ContactQuantity, PointQuantity, Quantity};
@@ -53,9 +53,12 @@ pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
 }
 
 fn names(mechanism: &Mechanism) -> Vec<(&'static str, Vec<Entry>)> {
-    let entries = |list: &[Name]| {
-        let entry =
-            |q: &Name| Entry { name: q.name.clone(), unit: q.unit.clone(), docs: q.docs.replace('\n', " ") };
+    let entries = |list: &[Variable]| {
+        let entry = |q: &Variable| Entry {
+            name: q.name.clone(),
+            unit: q.unit.clone(),
+            docs: q.docs.replace('\n', " "),
+        };
         list.iter().map(entry).collect::<Vec<_>>()
     };
     let lists = [
@@ -124,8 +127,9 @@ impl Reader<'_> {
     }
 
     fn input(&self, input: Input) -> Term {
-        let name =
-            |list: &[Name], index: u32| list.get(index as usize).map_or("?".to_owned(), |q| q.name.clone());
+        let name = |list: &[Variable], index: u32| {
+            list.get(index as usize).map_or("?".to_owned(), |q| q.name.clone())
+        };
         let mechanism = self.mechanism;
         match input {
             Input::Time => Term::Name("time".to_owned()),
@@ -147,10 +151,10 @@ impl Reader<'_> {
 
     fn section(&self, output: &Output) -> Section {
         let (title, symbol) = self.heading(output.quantity);
-        let (independent, dependent): (Vec<&Name>, Vec<&Name>) =
+        let (independent, dependent): (Vec<&Variable>, Vec<&Variable>) =
             self.mechanism.speeds.iter().partition(|speed| !speed.dependent);
         let own =
-            |list: Vec<&Name>, rate: bool| list.iter().map(|q| Left::Of(q.name.clone(), rate)).collect();
+            |list: Vec<&Variable>, rate: bool| list.iter().map(|q| Left::Of(q.name.clone(), rate)).collect();
         let lefts: Vec<Left> = match output.quantity {
             Quantity::CoordinateRates => own(self.mechanism.coordinates.iter().collect(), true),
             Quantity::DependentSpeeds => own(dependent, false),

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::interpret::Inputs;
-use crate::model::mechanism::{Mechanism, Orientation, Quantity};
+use crate::model::mechanism::{Mechanism, Orientation, Variable};
 
 /// How many.
 const SAMPLES: u64 = 24;
@@ -25,10 +25,10 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
         bits ^= bits << 17;
         (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
-    let given = |quantity: &Quantity| quantity.value.filter(|value| *value != 0.0);
+    let given = |quantity: &Variable| quantity.value.filter(|value| *value != 0.0);
     let half_turn = |unit: &str| HALF_TURNS.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
     // An angle may be any; anything else is of the size that the model gives it.
-    let mut around = |quantity: &Quantity, angle: bool| match (half_turn(&quantity.unit), given(quantity)) {
+    let mut around = |quantity: &Variable, angle: bool| match (half_turn(&quantity.unit), given(quantity)) {
         (Some(half_turn), _) if angle => half_turn * next(),
         (_, Some(value)) => value * (1.0 + 0.5 * next()),
         (_, None) => next(),

@@ -55,13 +55,13 @@ pub struct Mechanism {
     /// its documentation, lines joined by newlines
     pub docs: String,
     /// parameters in file order
-    pub parameters: Vec<Quantity>,
+    pub parameters: Vec<Variable>,
     /// inputs in file order
-    pub inputs: Vec<Quantity>,
+    pub inputs: Vec<Variable>,
     /// coordinates in file order
-    pub coordinates: Vec<Quantity>,
+    pub coordinates: Vec<Variable>,
     /// independent speeds in file order, then dependent ones in file order
-    pub speeds: Vec<Quantity>,
+    pub speeds: Vec<Variable>,
     /// named subexpressions
     pub definitions: Vec<Definition>,
     /// frames; the first is N
@@ -91,7 +91,7 @@ impl Mechanism {
 
 /// A parameter, input, coordinate or speed.
 #[derive(Clone, Debug)]
-pub struct Quantity {
+pub struct Variable {
     /// name as spelled
     pub name: String,
     /// documentation

@@ -1,10 +1,10 @@
 //! The meaning of a model: names resolved, dimensions checked.
 
+mod dependency_order;
 mod lower;
 pub mod mechanism;
 mod names;
-mod order;
-mod powers;
+mod provenance;
 mod typed;
 
 use crate::diagnostics::{Diagnostic, codes};

@@ -73,7 +73,7 @@ impl Names {
                 names.declare(name, symbol, diagnostics);
             }
         };
-        let quantities = |list: &[crate::syntax::tree::Quantity]| -> Vec<Name> {
+        let quantities = |list: &[crate::syntax::tree::Declaration]| -> Vec<Name> {
             list.iter().map(|quantity| quantity.name.clone()).collect()
         };
         for (i, name) in quantities(&tree.parameters).iter().enumerate() {

@@ -3,14 +3,14 @@
 use num_rational::BigRational;
 
 use super::mechanism::{Scalar, Vector};
-use super::powers::Powers;
+use super::provenance::Provenance;
 use crate::dimension::Dimension;
 use crate::number::Number;
 use crate::span::Span;
 
 /// The expression itself.
 #[derive(Clone, Debug)]
-pub enum Value {
+pub enum TypedValue {
     /// a scalar
     Scalar(Scalar),
     /// a vector
@@ -88,11 +88,11 @@ impl Traits {
 #[derive(Clone, Debug)]
 pub struct Typed {
     /// the expression
-    pub value: Value,
+    pub value: TypedValue,
     /// its dimension; `None` fits everything: the number 0, or a mistake that is reported already
     pub dimension: Option<Dimension>,
     /// the declarations from which the dimension comes
-    pub powers: Powers,
+    pub provenance: Provenance,
     /// on what it depends
     pub traits: Traits,
     /// its value, if it is a constant scalar
@@ -108,9 +108,9 @@ impl Typed {
     pub fn poison(span: Span) -> Self {
         let traits = Traits::default();
         Typed {
-            value: Value::Poison,
+            value: TypedValue::Poison,
             dimension: None,
-            powers: Powers::none(),
+            provenance: Provenance::none(),
             traits,
             constant: None,
             exact: None,
@@ -120,12 +120,12 @@ impl Typed {
 
     /// A scalar that is not constant.
     pub fn scalar(value: Scalar, dimension: Option<Dimension>, traits: Traits, span: Span) -> Self {
-        Typed { value: Value::Scalar(value), dimension, traits, ..Typed::poison(span) }
+        Typed { value: TypedValue::Scalar(value), dimension, traits, ..Typed::poison(span) }
     }
 
     /// A vector.
     pub fn vector(value: Vector, dimension: Option<Dimension>, traits: Traits, span: Span) -> Self {
-        Typed { value: Value::Vector(value), dimension, traits, ..Typed::poison(span) }
+        Typed { value: TypedValue::Vector(value), dimension, traits, ..Typed::poison(span) }
     }
 
     /// A rational number.
@@ -134,7 +134,7 @@ impl Typed {
         let zero = number.is_zero();
         Typed {
             constant: Some(number.to_f64()),
-            value: Value::Scalar(Scalar::Number(number.clone())),
+            value: TypedValue::Scalar(Scalar::Number(number.clone())),
             dimension: if zero { None } else { Some(Dimension::none()) },
             exact: moderate(number),
             ..Typed::poison(span)
@@ -142,13 +142,13 @@ impl Typed {
     }
 
     /// The same, with a dimension that comes from these declarations.
-    pub fn from(self, powers: Powers) -> Self {
-        Typed { powers, ..self }
+    pub fn from(self, provenance: Provenance) -> Self {
+        Typed { provenance, ..self }
     }
 
     /// Is it a mistake that is reported already?
     pub fn is_poison(&self) -> bool {
-        matches!(self.value, Value::Poison)
+        matches!(self.value, TypedValue::Poison)
     }
 
     /// Is it the constant 0?

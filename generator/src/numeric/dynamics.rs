@@ -1,9 +1,9 @@
 //! Kane's equations in numbers: mass matrix and forcing as sums over bodies and loads.
 
 use super::evaluator::{Evaluator, Level};
-use super::hyper::*;
+use super::hyper_dual::*;
 use super::motion::{Instant, Maps};
-use super::{ContactEvaluation, Evaluation, Failure, State};
+use super::state::{ContactEvaluation, Evaluation, Failure, State};
 use crate::model::mechanism::*;
 
 type Vector3 = [f64; 3];
@@ -60,39 +60,41 @@ impl Views<'_> {
 
 /// Everything at a state.
 pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
-    let at = |time: Hyper, coordinates: Vec<Hyper>| Instant { m, state, time, coordinates };
-    let still =
-        at(Hyper::constant(state.time), state.coordinates.iter().map(|q| Hyper::constant(*q)).collect());
+    let at = |time: HyperDual, coordinates: Vec<HyperDual>| Instant { m, state, time, coordinates };
+    let still = at(
+        HyperDual::constant(state.time),
+        state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect(),
+    );
     let maps = still.maps()?;
-    let view = |maps: &Maps, independent: &[Hyper]| {
+    let view = |maps: &Maps, independent: &[HyperDual]| {
         let speeds = maps.speeds(independent);
         (maps.rates(&speeds), speeds)
     };
-    let independent: Vec<Hyper> = state.speeds.iter().map(|u| Hyper::constant(*u)).collect();
+    let independent: Vec<HyperDual> = state.speeds.iter().map(|u| HyperDual::constant(*u)).collect();
     let p = independent.len();
     let (rates, speeds) = view(&maps, &independent);
     let onward = at(
-        Hyper { re: state.time, e2: 1.0, ..Hyper::ZERO },
+        HyperDual { re: state.time, e2: 1.0, ..HyperDual::ZERO },
         state
             .coordinates
             .iter()
             .zip(&rates)
-            .map(|(q, r)| Hyper { re: *q, e2: r.re, ..Hyper::ZERO })
+            .map(|(q, r)| HyperDual { re: *q, e2: r.re, ..HyperDual::ZERO })
             .collect(),
     );
     let onward_maps = onward.maps()?;
     let (onward_rates, onward_speeds) = view(&onward_maps, &independent);
-    let evaluator_at = |w: &[Hyper]| {
+    let evaluator_at = |w: &[HyperDual]| {
         let (rates, speeds) = view(&maps, w);
         still.evaluator(&rates, speeds)
     };
-    let mut unit = vec![Hyper::ZERO; p];
+    let mut unit = vec![HyperDual::ZERO; p];
     let rest = evaluator_at(&unit);
     let mut units = Vec::new();
     for r in 0..p {
-        unit[r] = Hyper::ONE;
+        unit[r] = HyperDual::ONE;
         units.push(evaluator_at(&unit));
-        unit[r] = Hyper::ZERO;
+        unit[r] = HyperDual::ZERO;
     }
     let views = Views {
         now: still.evaluator(&rates, speeds.clone()),
@@ -132,7 +134,7 @@ pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
 /// Inertia about the mass centre, along N's axes.
 pub fn central_inertia(values: &Evaluator<'_>, body: &Body) -> Result<Option<[Vector3; 3]>, Failure> {
     let Some(inertia) = &body.inertia else { return Ok(None) };
-    let mut components = [Hyper::ZERO; 6];
+    let mut components = [HyperDual::ZERO; 6];
     for (c, scalar) in components.iter_mut().zip(inertia.components.iter()) {
         *c = values.scalar(scalar, Level::Motion)?;
     }

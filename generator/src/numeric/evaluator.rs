@@ -5,8 +5,8 @@
 
 use std::cell::{Cell, RefCell};
 
-use super::Failure;
-use super::hyper::*;
+use super::hyper_dual::*;
+use super::state::Failure;
 use crate::model::mechanism::*;
 use crate::span::Span;
 
@@ -23,7 +23,7 @@ type Cache<T> = RefCell<Vec<Option<T>>>;
 
 #[derive(Clone, Copy)]
 enum Known {
-    Scalar(Hyper),
+    Scalar(HyperDual),
     Vector(Triple),
 }
 
@@ -32,9 +32,9 @@ pub struct Evaluator<'m> {
     m: &'m Mechanism,
     parameters: &'m [f64],
     inputs: &'m [f64],
-    time: Hyper,
-    coordinates: Vec<Hyper>,
-    speeds: Vec<Hyper>,
+    time: HyperDual,
+    coordinates: Vec<HyperDual>,
+    speeds: Vec<HyperDual>,
     definitions: [Cache<Known>; 2],
     orientations: Cache<Matrix3>,
     turning: Cache<Triple>,
@@ -52,9 +52,9 @@ impl<'m> Evaluator<'m> {
         m: &'m Mechanism,
         parameters: &'m [f64],
         inputs: &'m [f64],
-        time: Hyper,
-        coordinates: Vec<Hyper>,
-        speeds: Vec<Hyper>,
+        time: HyperDual,
+        coordinates: Vec<HyperDual>,
+        speeds: Vec<HyperDual>,
     ) -> Self {
         fn cache<T>(n: usize) -> Cache<T> {
             RefCell::new((0..n).map(|_| None).collect())
@@ -107,14 +107,14 @@ impl<'m> Evaluator<'m> {
     }
 
     /// A scalar, in SI units.
-    pub fn scalar(&self, scalar: &Scalar, level: Level) -> Result<Hyper, Failure> {
-        let still = |value: Hyper| if level == Level::Motion { value.still() } else { value };
+    pub fn scalar(&self, scalar: &Scalar, level: Level) -> Result<HyperDual, Failure> {
+        let still = |value: HyperDual| if level == Level::Motion { value.still() } else { value };
         Ok(match scalar {
-            Scalar::Number(n) => Hyper::constant(n.to_f64()),
-            Scalar::Pi => Hyper::constant(std::f64::consts::PI),
+            Scalar::Number(n) => HyperDual::constant(n.to_f64()),
+            Scalar::Pi => HyperDual::constant(std::f64::consts::PI),
             Scalar::Time => still(self.time),
-            Scalar::Parameter(i) => Hyper::constant(self.parameters[i.0]),
-            Scalar::Input(i) => Hyper::constant(self.inputs[i.0]),
+            Scalar::Parameter(i) => HyperDual::constant(self.parameters[i.0]),
+            Scalar::Input(i) => HyperDual::constant(self.inputs[i.0]),
             Scalar::Coordinate(i) => still(self.coordinates[i.0]),
             Scalar::Speed(i) => match level {
                 Level::Motion => self.speeds[i.0],
@@ -130,14 +130,14 @@ impl<'m> Evaluator<'m> {
             },
             Scalar::Neg(inner) => -self.scalar(inner, level)?,
             Scalar::Add(items) => {
-                let mut sum = Hyper::ZERO;
+                let mut sum = HyperDual::ZERO;
                 for item in items {
                     sum = sum + self.scalar(item, level)?;
                 }
                 sum
             }
             Scalar::Mul(items) => {
-                let mut product = Hyper::ONE;
+                let mut product = HyperDual::ONE;
                 for item in items {
                     product = product * self.scalar(item, level)?;
                 }
@@ -152,7 +152,7 @@ impl<'m> Evaluator<'m> {
             }
             Scalar::Pow(base, exponent) => {
                 let (b, e) = (self.scalar(base, level)?, self.scalar(exponent, level)?);
-                if e == Hyper::constant(e.re) { b.power(e.re) } else { (e * b.ln()).exp() }
+                if e == HyperDual::constant(e.re) { b.power(e.re) } else { (e * b.ln()).exp() }
             }
             Scalar::Call(function, arguments) => {
                 let a = self.scalar(&arguments[0], level)?;
@@ -167,7 +167,7 @@ impl<'m> Evaluator<'m> {
                     Function::Exp => a.exp(),
                     Function::Log => a.ln(),
                     Function::Abs => a.abs(),
-                    Function::Sign => Hyper::constant(if a.re < 0.0 { -1.0 } else { 1.0 }),
+                    Function::Sign => HyperDual::constant(if a.re < 0.0 { -1.0 } else { 1.0 }),
                     Function::Atan2 => a.atan2(self.scalar(&arguments[1], level)?),
                     Function::Min | Function::Max => {
                         let b = self.scalar(&arguments[1], level)?;
@@ -185,15 +185,15 @@ impl<'m> Evaluator<'m> {
 
     /// A vector, by its components along N.x, N.y, N.z.
     pub fn vector(&self, vector: &Vector, level: Level) -> Result<Triple, Failure> {
-        let still = |v: Triple| if level == Level::Motion { v.map(Hyper::still) } else { v };
+        let still = |v: Triple| if level == Level::Motion { v.map(HyperDual::still) } else { v };
         let moving_only = |what| match level {
             Level::Motion => Ok(()),
             Level::Geometry => Err(Failure::Unsupported(what)),
         };
         Ok(match vector {
-            Vector::Zero => [Hyper::ZERO; 3],
+            Vector::Zero => [HyperDual::ZERO; 3],
             Vector::Components(frame, components) => {
-                let mut v = [Hyper::ZERO; 3];
+                let mut v = [HyperDual::ZERO; 3];
                 for (c, component) in v.iter_mut().zip(components.iter()) {
                     *c = self.scalar(component, level)?;
                 }
@@ -206,7 +206,7 @@ impl<'m> Evaluator<'m> {
             },
             Vector::Neg(inner) => self.vector(inner, level)?.map(|c| -c),
             Vector::Add(items) => {
-                let mut sum = [Hyper::ZERO; 3];
+                let mut sum = [HyperDual::ZERO; 3];
                 for item in items {
                     sum = add(sum, self.vector(item, level)?);
                 }
@@ -220,7 +220,7 @@ impl<'m> Evaluator<'m> {
                 if length.re == 0.0 {
                     return Err(Failure::DivisionByZero(*span));
                 }
-                scale(Hyper::ONE / length, v)
+                scale(HyperDual::ONE / length, v)
             }
             Vector::Position { of, from } => still(sub(self.position(*of)?, self.position(*from)?)),
             Vector::Velocity(point) => {
@@ -245,9 +245,9 @@ impl<'m> Evaluator<'m> {
 
     fn relative_orientation(&self, orientation: &Orientation) -> Result<Matrix3, Failure> {
         let g = Level::Geometry;
-        let simple = |axis: Axis, angle: Hyper| {
-            let mut v = [Hyper::ZERO; 3];
-            v[axis as usize] = Hyper::ONE;
+        let simple = |axis: Axis, angle: HyperDual| {
+            let mut v = [HyperDual::ZERO; 3];
+            v[axis as usize] = HyperDual::ONE;
             about(v, angle)
         };
         Ok(match orientation {
@@ -257,7 +257,7 @@ impl<'m> Evaluator<'m> {
                 simple(*axis, if *negative { -angle } else { angle })
             }
             Orientation::About { axis, angle } => {
-                let mut v = [Hyper::ZERO; 3];
+                let mut v = [HyperDual::ZERO; 3];
                 for (c, component) in v.iter_mut().zip(axis.iter()) {
                     *c = self.scalar(component, g)?;
                 }
@@ -273,7 +273,7 @@ impl<'m> Evaluator<'m> {
             }
             Orientation::Quaternion(ids) => {
                 let [a, b, c, d] = ids.map(|i| self.coordinates[i.0]);
-                let two = Hyper::constant(2.0);
+                let two = HyperDual::constant(2.0);
                 [
                     [a * a + b * b - c * c - d * d, two * (b * c - a * d), two * (b * d + a * c)],
                     [two * (b * c + a * d), a * a - b * b + c * c - d * d, two * (c * d - a * b)],
@@ -288,10 +288,11 @@ impl<'m> Evaluator<'m> {
     pub fn turning_by_geometry(&self, of: FrameId, within: FrameId) -> Result<Triple, Failure> {
         let (a, b) = (self.orientation(of)?, self.orientation(within)?);
         let rates = |m: &Matrix3| {
-            let (rate, value) = (m.map(|row| row.map(Hyper::rate)), m.map(|row| row.map(Hyper::still)));
+            let (rate, value) =
+                (m.map(|row| row.map(HyperDual::rate)), m.map(|row| row.map(HyperDual::still)));
             let spin = product(&rate, &transposed(&value));
             // antisymmetric for a rotation; the mean keeps what rounding and a quaternion's length disturb small
-            let half = Hyper::constant(0.5);
+            let half = HyperDual::constant(0.5);
             [
                 half * (spin[2][1] - spin[1][2]),
                 half * (spin[0][2] - spin[2][0]),
@@ -305,7 +306,7 @@ impl<'m> Evaluator<'m> {
     pub fn angular_velocity(&self, frame: FrameId) -> Result<Triple, Failure> {
         self.cached(&self.turning, frame.0, || {
             let f = &self.m.frames[frame.0];
-            let Some(parent) = f.parent else { return Ok([Hyper::ZERO; 3]) };
+            let Some(parent) = f.parent else { return Ok([HyperDual::ZERO; 3]) };
             match (&f.angular_velocity, &f.orientation) {
                 (Some((within, value)), _) => {
                     Ok(add(self.angular_velocity(*within)?, self.vector(value, Level::Motion)?))
@@ -323,7 +324,7 @@ impl<'m> Evaluator<'m> {
     /// Position of a point from O, or from the point by whose velocity it is known. At the level of geometry.
     pub fn position(&self, point: PointId) -> Result<Triple, Failure> {
         self.cached(&self.positions, point.0, || match &self.m.points[point.0].place {
-            Place::Origin | Place::Velocity(_) => Ok([Hyper::ZERO; 3]),
+            Place::Origin | Place::Velocity(_) => Ok([HyperDual::ZERO; 3]),
             Place::Offset { from, by } | Place::Material { from, by, .. } => {
                 Ok(add(self.position(*from)?, self.vector(by, Level::Geometry)?))
             }
@@ -341,13 +342,13 @@ impl<'m> Evaluator<'m> {
     /// Velocity of a point as its place tells, whatever is declared of it.
     pub fn velocity_by_position(&self, point: PointId) -> Result<Triple, Failure> {
         match &self.m.points[point.0].place {
-            Place::Origin => Ok([Hyper::ZERO; 3]),
+            Place::Origin => Ok([HyperDual::ZERO; 3]),
             Place::Velocity(value) => self.vector(value, Level::Motion),
             Place::Offset { from, by } => {
-                Ok(add(self.velocity(*from)?, self.vector(by, Level::Geometry)?.map(Hyper::rate)))
+                Ok(add(self.velocity(*from)?, self.vector(by, Level::Geometry)?.map(HyperDual::rate)))
             }
             Place::Material { frame, from, by } => {
-                let arm = self.vector(by, Level::Geometry)?.map(Hyper::still);
+                let arm = self.vector(by, Level::Geometry)?.map(HyperDual::still);
                 Ok(add(self.velocity(*from)?, cross(self.angular_velocity(*frame)?, arm)))
             }
         }
@@ -372,7 +373,7 @@ impl<'m> Evaluator<'m> {
         let body = &self.m.bodies[body.0];
         match body.frame {
             Some(frame) if self.same_root(point, body.centre) => {
-                let arm = sub(self.position(point)?, self.position(body.centre)?).map(Hyper::still);
+                let arm = sub(self.position(point)?, self.position(body.centre)?).map(HyperDual::still);
                 Ok(add(self.velocity(body.centre)?, cross(self.angular_velocity(frame)?, arm)))
             }
             Some(_) => self.velocity(point),
@@ -388,7 +389,7 @@ impl<'m> Evaluator<'m> {
         };
         let striking = of(contact.point, contact.body)?;
         let struck = match &contact.against {
-            Against::Fixed => [Hyper::ZERO; 3],
+            Against::Fixed => [HyperDual::ZERO; 3],
             Against::Point(point, body) => of(*point, *body)?,
             Against::Body(body) => self.velocity_on_body(contact.point, *body)?,
             Against::Velocity(value) => self.vector(value, Level::Motion)?,
@@ -397,7 +398,7 @@ impl<'m> Evaluator<'m> {
     }
 
     /// Left side less right side of an equation: one number, or three along N's axes.
-    pub fn residual(&self, equation: &Equation, level: Level) -> Result<Vec<Hyper>, Failure> {
+    pub fn residual(&self, equation: &Equation, level: Level) -> Result<Vec<HyperDual>, Failure> {
         match &equation.sides {
             EquationSides::Scalar(l, r) => Ok(vec![self.scalar(l, level)? - self.scalar(r, level)?]),
             EquationSides::Vector(l, r) => Ok(sub(self.vector(l, level)?, self.vector(r, level)?).to_vec()),
@@ -411,10 +412,10 @@ impl<'m> Evaluator<'m> {
 }
 
 /// Right-handed rotation about a unit vector.
-fn about(axis: Triple, angle: Hyper) -> Matrix3 {
+fn about(axis: Triple, angle: HyperDual) -> Matrix3 {
     let (s, c) = (angle.sin(), angle.cos());
     let [x, y, z] = axis;
-    let rest = Hyper::ONE - c;
+    let rest = HyperDual::ONE - c;
     [
         [c + rest * x * x, rest * x * y - s * z, rest * x * z + s * y],
         [rest * y * x + s * z, c + rest * y * y, rest * y * z - s * x],

@@ -1,11 +1,25 @@
 //! Rates of coordinates and dependent speeds as functions of the independent speeds.
 
 use super::evaluator::{Evaluator, Level};
-use super::hyper::*;
-use super::linear::solve;
-use super::{Failure, State};
+use super::hyper_dual::*;
+use super::linear_system::{rank, solve};
+use super::state::{Failure, State};
 use crate::model::mechanism::*;
 use crate::span::Span;
+
+/// How many independent equations the constraints of a mechanism amount to at a state.
+pub fn constraint_rank(m: &Mechanism, state: &State) -> Result<usize, Failure> {
+    let mut rows = constraint_coefficients(m, state)?;
+    rows.iter_mut().for_each(|row| row.truncate(m.speeds.len()));
+    Ok(rank(rows))
+}
+
+/// The constraints at a state by their coefficients: speeds, then the constant; a vector equation has three rows, along N.x, N.y, N.z.
+pub fn constraint_coefficients(m: &Mechanism, state: &State) -> Result<Vec<Vec<f64>>, Failure> {
+    let coordinates = state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect();
+    let time = HyperDual::constant(state.time);
+    Instant { m, state, time, coordinates }.constraint_coefficients()
+}
 
 /// Declared motions may contradict the positions by this much, relative to their terms.
 const CONSISTENT: f64 = 1e-7;
@@ -17,42 +31,42 @@ pub struct Instant<'m> {
     /// the state
     pub state: &'m State,
     /// time, with its e2
-    pub time: Hyper,
+    pub time: HyperDual,
     /// coordinates, with their e2
-    pub coordinates: Vec<Hyper>,
+    pub coordinates: Vec<HyperDual>,
 }
 
 /// Affine maps: the last entry of each row is the constant.
 pub struct Maps {
     /// rates of coordinates from all speeds
-    rates: Vec<Vec<Hyper>>,
+    rates: Vec<Vec<HyperDual>>,
     /// all speeds from the independent ones
-    speeds: Vec<Vec<Hyper>>,
+    speeds: Vec<Vec<HyperDual>>,
 }
 
-fn affine(row: &[Hyper], arguments: &[Hyper]) -> Hyper {
-    let Some((constant, coefficients)) = row.split_last() else { return Hyper::ZERO };
+fn affine(row: &[HyperDual], arguments: &[HyperDual]) -> HyperDual {
+    let Some((constant, coefficients)) = row.split_last() else { return HyperDual::ZERO };
     coefficients.iter().zip(arguments).fold(*constant, |sum, (c, a)| sum + *c * *a)
 }
 
 impl Maps {
     /// All speeds, given the independent ones.
-    pub fn speeds(&self, independent: &[Hyper]) -> Vec<Hyper> {
+    pub fn speeds(&self, independent: &[HyperDual]) -> Vec<HyperDual> {
         self.speeds.iter().map(|row| affine(row, independent)).collect()
     }
 
     /// Rates of the coordinates, given all speeds.
-    pub fn rates(&self, speeds: &[Hyper]) -> Vec<Hyper> {
+    pub fn rates(&self, speeds: &[HyperDual]) -> Vec<HyperDual> {
         self.rates.iter().map(|row| affine(row, speeds)).collect()
     }
 }
 
 /// A basis of affine maps in `n` arguments: 0, then each unit.
-fn probes(n: usize) -> Vec<Vec<Hyper>> {
-    let mut list = vec![vec![Hyper::ZERO; n]];
+fn probes(n: usize) -> Vec<Vec<HyperDual>> {
+    let mut list = vec![vec![HyperDual::ZERO; n]];
     for i in 0..n {
-        let mut probe = vec![Hyper::ZERO; n];
-        probe[i] = Hyper::ONE;
+        let mut probe = vec![HyperDual::ZERO; n];
+        probe[i] = HyperDual::ONE;
         list.push(probe);
     }
     list
@@ -60,10 +74,10 @@ fn probes(n: usize) -> Vec<Vec<Hyper>> {
 
 impl<'m> Instant<'m> {
     /// All values, for these rates and speeds.
-    pub fn evaluator(&self, rates: &[Hyper], speeds: Vec<Hyper>) -> Evaluator<'m> {
+    pub fn evaluator(&self, rates: &[HyperDual], speeds: Vec<HyperDual>) -> Evaluator<'m> {
         let coordinates =
-            self.coordinates.iter().zip(rates).map(|(q, rate)| Hyper::moving(*q, *rate)).collect();
-        let time = Hyper::moving(self.time, Hyper::ONE);
+            self.coordinates.iter().zip(rates).map(|(q, rate)| HyperDual::moving(*q, *rate)).collect();
+        let time = HyperDual::moving(self.time, HyperDual::ONE);
         Evaluator::new(self.m, &self.state.parameters, &self.state.inputs, time, coordinates, speeds)
     }
 
@@ -71,8 +85,8 @@ impl<'m> Instant<'m> {
     pub fn maps(&self) -> Result<Maps, Failure> {
         let rates = self.solve_rates()?;
         let count = self.m.speeds.len();
-        let identity: Vec<Vec<Hyper>> = (0..count)
-            .map(|i| (0..=count).map(|j| if i == j { Hyper::ONE } else { Hyper::ZERO }).collect())
+        let identity: Vec<Vec<HyperDual>> = (0..count)
+            .map(|i| (0..=count).map(|j| if i == j { HyperDual::ONE } else { HyperDual::ZERO }).collect())
             .collect();
         let mut maps = Maps { rates, speeds: identity };
         maps.speeds = self.solve_speeds(&maps)?;
@@ -83,11 +97,11 @@ impl<'m> Instant<'m> {
     fn coefficients(
         &self,
         arguments: usize,
-        residuals: impl Fn(&[Hyper]) -> Result<Vec<(Hyper, Span)>, Failure>,
-    ) -> Result<(Vec<Vec<Hyper>>, Vec<Span>), Failure> {
+        residuals: impl Fn(&[HyperDual]) -> Result<Vec<(HyperDual, Span)>, Failure>,
+    ) -> Result<(Vec<Vec<HyperDual>>, Vec<Span>), Failure> {
         let mut probes = probes(arguments).into_iter();
         let zero = residuals(&probes.next().unwrap_or_default())?;
-        let mut rows: Vec<Vec<Hyper>> = vec![Vec::new(); zero.len()];
+        let mut rows: Vec<Vec<HyperDual>> = vec![Vec::new(); zero.len()];
         for probe in probes {
             for ((row, (value, _)), (constant, _)) in rows.iter_mut().zip(residuals(&probe)?).zip(&zero) {
                 row.push(value - *constant);
@@ -104,7 +118,7 @@ impl<'m> Instant<'m> {
         Ok((rows, zero.into_iter().map(|(_, span)| span).collect()))
     }
 
-    fn solve_rates(&self) -> Result<Vec<Vec<Hyper>>, Failure> {
+    fn solve_rates(&self) -> Result<Vec<Vec<HyperDual>>, Failure> {
         let (q, u) = (self.m.coordinates.len(), self.m.speeds.len());
         let (rows, spans) = self.coefficients(q + u, |arguments| {
             let (rates, speeds) = arguments.split_at(q);
@@ -120,7 +134,7 @@ impl<'m> Instant<'m> {
 
     /// What must vanish: the stated equations, declared motions less those that follow from positions, and for each quaternion
     /// that its length stays.
-    fn kinematical_residuals(&self, values: &Evaluator<'_>) -> Result<Vec<(Hyper, Span)>, Failure> {
+    fn kinematical_residuals(&self, values: &Evaluator<'_>) -> Result<Vec<(HyperDual, Span)>, Failure> {
         let mut out = Vec::new();
         for equation in &self.m.kinematics {
             out.extend(values.residual(equation, Level::Motion)?.into_iter().map(|r| (r, equation.span)));
@@ -133,7 +147,7 @@ impl<'m> Instant<'m> {
             }
             if let Orientation::Quaternion(ids) = &frame.orientation {
                 let at = |id: CoordinateId| Scalar::Coordinate(id);
-                let mut sum = Hyper::ZERO;
+                let mut sum = HyperDual::ZERO;
                 for id in ids {
                     let value = values.scalar(&at(*id), Level::Geometry)?;
                     sum = sum + value.still() * value.rate();
@@ -153,19 +167,20 @@ impl<'m> Instant<'m> {
         Ok(out)
     }
 
-    fn solve_speeds(&self, maps: &Maps) -> Result<Vec<Vec<Hyper>>, Failure> {
+    fn solve_speeds(&self, maps: &Maps) -> Result<Vec<Vec<HyperDual>>, Failure> {
         let count = self.m.speeds.len();
         let independent = self.m.speeds.iter().filter(|u| !u.dependent).count();
         let dependent = count - independent;
         let (rows, spans) = self.constraint_rows(maps, dependent)?;
-        let rows: Vec<Vec<Hyper>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
+        let rows: Vec<Vec<HyperDual>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
         let solved = solve(rows, dependent)
             .map_err(|e| Failure::SpeedsUndetermined(SpeedId(independent + e.unknown)))?;
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::ConstraintsInconsistent(spans[solved.contradiction.0]));
         }
-        let units = (0..independent)
-            .map(|i| (0..=independent).map(|j| if i == j { Hyper::ONE } else { Hyper::ZERO }).collect());
+        let units = (0..independent).map(|i| {
+            (0..=independent).map(|j| if i == j { HyperDual::ONE } else { HyperDual::ZERO }).collect()
+        });
         Ok(units.chain(solved.unknowns).collect())
     }
 
@@ -174,10 +189,10 @@ impl<'m> Instant<'m> {
         &self,
         maps: &Maps,
         dependent: usize,
-    ) -> Result<(Vec<Vec<Hyper>>, Vec<Span>), Failure> {
+    ) -> Result<(Vec<Vec<HyperDual>>, Vec<Span>), Failure> {
         self.coefficients(self.m.speeds.len(), |arguments| {
             let (unknown, given) = arguments.split_at(dependent);
-            let speeds: Vec<Hyper> = given.iter().chain(unknown).copied().collect();
+            let speeds: Vec<HyperDual> = given.iter().chain(unknown).copied().collect();
             let values = self.evaluator(&maps.rates(&speeds), speeds);
             let mut out = Vec::new();
             for equation in &self.m.constraints {
@@ -197,7 +212,7 @@ impl<'m> Instant<'m> {
 }
 
 /// Moves all but the unknowns to the right side.
-fn negate_from(mut row: Vec<Hyper>, unknowns: usize) -> Vec<Hyper> {
+fn negate_from(mut row: Vec<HyperDual>, unknowns: usize) -> Vec<HyperDual> {
     row.iter_mut().skip(unknowns).for_each(|c| *c = -*c);
     row
 }

@@ -141,7 +141,7 @@ impl Parser<'_> {
     }
 
     /// `fixed name: unit = value`
-    fn quantity(&mut self, docs: String) -> Result<Quantity, Lost> {
+    fn quantity(&mut self, docs: String) -> Result<Declaration, Lost> {
         let mut modifier = None;
         let named = self.peek_at(1).is_some_and(|token| token.kind == TokenKind::Name);
         if named {
@@ -173,7 +173,7 @@ impl Parser<'_> {
         if value.is_some() {
             self.unit_of_value(&name, &unit)?;
         }
-        Ok(Quantity { docs, modifier, name, unit, value })
+        Ok(Declaration { docs, modifier, name, unit, value })
     }
 
     /// `tau: N m = 1`: what follows is of the unit, unless it begins the next entry.

@@ -93,15 +93,15 @@ pub struct Tree {
     /// its name, if it was read
     pub name: Option<Name>,
     /// parameters
-    pub parameters: Vec<Quantity>,
+    pub parameters: Vec<Declaration>,
     /// inputs
-    pub inputs: Vec<Quantity>,
+    pub inputs: Vec<Declaration>,
     /// coordinates
-    pub coordinates: Vec<Quantity>,
+    pub coordinates: Vec<Declaration>,
     /// independent speeds
-    pub speeds: Vec<Quantity>,
+    pub speeds: Vec<Declaration>,
     /// dependent speeds
-    pub dependent: Vec<Quantity>,
+    pub dependent: Vec<Declaration>,
     /// definitions
     pub definitions: Vec<Definition>,
     /// frames
@@ -147,7 +147,7 @@ pub enum Modifier {
 
 /// `fixed name: unit = value`
 #[derive(Clone, Debug)]
-pub struct Quantity {
+pub struct Declaration {
     /// documentation
     pub docs: String,
     /// `fixed` or `dependent`

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use hodograph_generator::interpret::{Evaluator, Inputs};
 use hodograph_generator::check::check;
-use hodograph_generator::model::mechanism::{Mechanism, Orientation};
+use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::routine::{ContactQuantity, Quantity};
@@ -214,7 +214,7 @@ pub fn measure(
     if keep {
         let folder = folders.work.join("rounding");
         std::fs::create_dir_all(&folder)?;
-        let names = |list: &[hodograph_generator::model::mechanism::Quantity]| -> Vec<String> {
+        let names = |list: &[Variable]| -> Vec<String> {
             list.iter().map(|quantity| quantity.name.clone()).collect()
         };
         let head = json!({

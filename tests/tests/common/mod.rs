@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use hodograph_generator::artifact;
 use hodograph_generator::interpret::{Array, Evaluator, Inputs};
 use hodograph_generator::check::check;
-use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_generator::program::Program;
 use hodograph_generator::program::routine::Quantity;
 use hodograph_generator::source::Source;
@@ -71,7 +71,7 @@ impl Model {
     /// The state and parameters that the model states.
     pub fn initial(&self) -> Inputs {
         let m = &self.mechanism;
-        let values = |list: &[model::mechanism::Quantity]| -> Vec<f64> {
+        let values = |list: &[Variable]| -> Vec<f64> {
             list.iter().map(|quantity| quantity.value.unwrap_or(0.0)).collect()
         };
         Inputs {
@@ -129,10 +129,10 @@ pub fn references() -> Vec<Reference> {
 impl Reference {
     /// Inputs of a program at one of its states.
     pub fn inputs(&self, model: &Model, state: &Value) -> Inputs {
-        let named = |list: &[model::mechanism::Quantity], values: &Value| -> Vec<f64> {
+        let named = |list: &[Variable], values: &Value| -> Vec<f64> {
             list.iter().map(|quantity| number(&values[&quantity.name])).collect()
         };
-        let listed = |names: &Value, values: &Value, list: &[model::mechanism::Quantity]| -> Vec<f64> {
+        let listed = |names: &Value, values: &Value, list: &[Variable]| -> Vec<f64> {
             let names: Vec<&str> =
                 names.as_array().expect("names").iter().filter_map(Value::as_str).collect();
             let expected: Vec<&str> = list.iter().map(|quantity| quantity.name.as_str()).collect();

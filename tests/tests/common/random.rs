@@ -62,7 +62,7 @@ pub fn samples(model: &Model, count: usize) -> Vec<Sample> {
         }
         state.speeds.iter_mut().for_each(|value| *value = 2.0 * random.number());
         // A linkage does not close everywhere, and some descriptions have poles: such states are not sampled.
-        let numeric = numeric::complete(m, &mut state).and_then(|()| numeric::evaluate(m, &state));
+        let numeric = numeric::assemble(m, &mut state).and_then(|()| numeric::evaluate(m, &state));
         let Ok(numeric) = numeric else { continue };
         let inputs = Inputs {
             parameters: state.parameters.clone(),

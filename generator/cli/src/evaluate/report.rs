@@ -25,7 +25,7 @@ impl<T: Serialize> Serialize for Named<'_, T> {
 
 /// Numbers under the names of quantities of a model.
 pub fn named<'a>(
-    quantities: impl IntoIterator<Item = &'a hodograph_generator::model::mechanism::Quantity>,
+    quantities: impl IntoIterator<Item = &'a hodograph_generator::model::mechanism::Variable>,
     numbers: impl IntoIterator<Item = f64>,
 ) -> Named<'a, f64> {
     Named(quantities.into_iter().map(|quantity| quantity.name.as_str()).zip(numbers).collect())

@@ -1,6 +1,6 @@
 //! The state in which a model is evaluated: names to numbers.
 
-use hodograph_generator::model::mechanism::{Mechanism, Orientation, Quantity};
+use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 
 use super::fields::number;
 use super::{Failure, Fields, Json, Kind};
@@ -26,7 +26,7 @@ pub fn independent(mechanism: &Mechanism) -> usize {
     mechanism.speeds.iter().filter(|speed| !speed.dependent).count()
 }
 
-fn values(quantities: &[Quantity]) -> Vec<f64> {
+fn values(quantities: &[Variable]) -> Vec<f64> {
     quantities.iter().map(|quantity| quantity.value.unwrap_or(0.0)).collect()
 }
 
@@ -89,7 +89,7 @@ impl State {
     /// Where the number of that name belongs.
     fn slot(&mut self, mechanism: &Mechanism, section: &str, name: &str) -> Result<&mut f64, Failure> {
         let unknown = |message: String| Err(Failure::new(Kind::UnknownName, message));
-        let find = |list: &[Quantity]| list.iter().position(|quantity| quantity.name == name);
+        let find = |list: &[Variable]| list.iter().position(|quantity| quantity.name == name);
         let parameter = find(&mechanism.parameters);
         let input = find(&mechanism.inputs);
         let coordinate = find(&mechanism.coordinates);
@@ -138,7 +138,7 @@ impl State {
     }
 }
 
-fn names(quantities: &[Quantity]) -> impl Iterator<Item = &str> + Clone {
+fn names(quantities: &[Variable]) -> impl Iterator<Item = &str> + Clone {
     quantities.iter().map(|quantity| quantity.name.as_str())
 }
 

@@ -2,8 +2,8 @@
 
 use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
 use super::super::names::Symbol;
-use super::super::powers::Powers;
-use super::super::typed::{Traits, Typed, Value};
+use super::super::provenance::Provenance;
+use super::super::typed::{Traits, Typed, TypedValue};
 use super::Lowering;
 use super::dimensions::model_of;
 use crate::diagnostics::{Diagnostic, codes};
@@ -76,7 +76,7 @@ impl Lowering<'_> {
                 let dimension = both(a.dimension, b.dimension);
                 let value = Scalar::Dot(Box::new(v), Box::new(w));
                 Typed::scalar(value, dimension, a.traits.times(b.traits), span)
-                    .from(a.powers.times(&b.powers))
+                    .from(a.provenance.times(&b.provenance))
             }
             ("cross", [a, b]) => {
                 let what = "an argument of `cross`";
@@ -85,12 +85,12 @@ impl Lowering<'_> {
                 let dimension = both(a.dimension, b.dimension);
                 let value = Vector::Cross(Box::new(v), Box::new(w));
                 Typed::vector(value, dimension, a.traits.times(b.traits), span)
-                    .from(a.powers.times(&b.powers))
+                    .from(a.provenance.times(&b.provenance))
             }
             ("norm", [v]) => match self.need_vector(v, "the argument of `norm`") {
                 Some(vector) => {
                     Typed::scalar(Scalar::Norm(Box::new(vector)), v.dimension, v.traits.bent(), span)
-                        .from(v.powers.clone())
+                        .from(v.provenance.clone())
                 }
                 None => Typed::poison(span),
             },
@@ -187,29 +187,29 @@ impl Lowering<'_> {
             return Typed::poison(span);
         };
         let traits = typed.iter().fold(Traits::default(), |sum, argument| sum.plus(argument.traits.bent()));
-        let (first, powers) = (typed[0].dimension, &typed[0].powers);
-        let (dimension, powers) = match function {
+        let (first, provenance) = (typed[0].dimension, &typed[0].provenance);
+        let (dimension, provenance) = match function {
             Function::Sqrt => {
                 let half = Exponent::new(1, 2);
-                (first.and_then(|d| d.power(half)), powers.power(half))
+                (first.and_then(|d| d.power(half)), provenance.power(half))
             }
-            Function::Abs => (first, powers.clone()),
-            Function::Sign => (Some(Dimension::none()), Powers::none()),
+            Function::Abs => (first, provenance.clone()),
+            Function::Sign => (Some(Dimension::none()), Provenance::none()),
             Function::Atan2 | Function::Min | Function::Max => {
                 let (a, b) = (&typed[0], &typed[1]);
                 let fit = self.same(a, b, |a, b| {
                     format!("the arguments of `{}` have the dimensions {a} and {b}", name.text)
                 });
                 match function {
-                    Function::Atan2 => (Some(Dimension::none()), Powers::none()),
+                    Function::Atan2 => (Some(Dimension::none()), Provenance::none()),
                     _ if !fit => return Typed { traits, ..Typed::poison(span) },
-                    _ if first.is_some() => (first, powers.clone()),
-                    _ => (b.dimension, b.powers.clone()),
+                    _ if first.is_some() => (first, provenance.clone()),
+                    _ => (b.dimension, b.provenance.clone()),
                 }
             }
             _ => {
                 self.demand(&typed[0], Dimension::none(), &what);
-                (Some(Dimension::none()), Powers::none())
+                (Some(Dimension::none()), Provenance::none())
             }
         };
         let constants: Option<Vec<f64>> = typed.iter().map(|argument| argument.constant).collect();
@@ -219,7 +219,7 @@ impl Lowering<'_> {
             _ => f64::NAN,
         });
         let value = Scalar::Call(function, scalars);
-        Typed { constant, powers, ..Typed::scalar(value, dimension, traits, span) }
+        Typed { constant, provenance, ..Typed::scalar(value, dimension, traits, span) }
     }
 
     fn point_argument(&mut self, argument: &Expr, of: &str) -> Option<PointId> {
@@ -324,7 +324,7 @@ impl Lowering<'_> {
                     format!("only a frame has axes, but `{}` is {}", name.text, symbol.kind()),
                 );
                 if let Symbol::Body(b) = symbol
-                    && let Some(frame) = super::super::order::body_frame(self.tree, b)
+                    && let Some(frame) = super::super::dependency_order::body_frame(self.tree, b)
                 {
                     error = error.help(format!("its frame is `{}`", frame.text));
                 } else if let Symbol::Point(_) = symbol {
@@ -433,8 +433,9 @@ impl Lowering<'_> {
         };
         let traits = traits.times(self.frames[frame.0].orientation);
         let dimension = model.and_then(|model| model.dimension);
-        let powers = model.map_or(Powers::none(), |model| model.powers.clone());
-        Typed::vector(Vector::Components(frame, Box::new(components)), dimension, traits, span).from(powers)
+        let provenance = model.map_or(Provenance::none(), |model| model.provenance.clone());
+        Typed::vector(Vector::Components(frame, Box::new(components)), dimension, traits, span)
+            .from(provenance)
     }
 
     /// Demands a vector with a dimension that enters linearly: a velocity, say.
@@ -486,6 +487,6 @@ fn both(a: Option<Dimension>, b: Option<Dimension>) -> Option<Dimension> {
 impl Typed {
     /// Is its value a vector?
     pub fn is_vector(&self) -> bool {
-        matches!(self.value, Value::Vector(_))
+        matches!(self.value, TypedValue::Vector(_))
     }
 }

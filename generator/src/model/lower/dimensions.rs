@@ -4,9 +4,9 @@ use std::collections::HashMap;
 
 use super::super::mechanism::Scalar;
 use super::super::names::Symbol;
-use super::super::powers::Powers;
-use super::super::typed::{Typed, Value};
-use super::culprits::Contradiction;
+use super::super::provenance::Provenance;
+use super::super::typed::{Typed, TypedValue};
+use super::balances::Contradiction;
 use super::{Lowering, QuantityFacts};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::{Dimension, Exponent};
@@ -27,7 +27,7 @@ pub(super) fn quantity(dimension: Dimension) -> String {
 /// have. Numbers have no vote where there are names.
 pub(super) fn model_of<'t>(things: impl Iterator<Item = &'t Typed> + Clone) -> Option<&'t Typed> {
     let mut votes: HashMap<Dimension, usize> = HashMap::new();
-    for thing in things.clone().filter(|thing| !thing.powers.is_empty()) {
+    for thing in things.clone().filter(|thing| !thing.provenance.is_empty()) {
         if let Some(dimension) = thing.dimension {
             *votes.entry(dimension).or_default() += 1;
         }
@@ -37,35 +37,25 @@ pub(super) fn model_of<'t>(things: impl Iterator<Item = &'t Typed> + Clone) -> O
     things.find(|thing| thing.dimension.is_some_and(|d| votes.get(&d).copied().unwrap_or(0) == most))
 }
 
-/// What is found out about dimensions.
-#[derive(Default)]
-pub(super) struct Balances {
-    pub contradictions: Vec<Contradiction>,
-    /// the names in quotients of dimensions that are the same, as they must be
-    pub agreements: Vec<Powers>,
-    /// what is not of one dimension was left out of the mechanism
-    pub incomplete: bool,
-}
-
 impl Lowering<'_> {
     /// Two dimensions are the same, as they must be.
-    pub(super) fn agreement(&mut self, powers: Powers) {
-        if !powers.is_empty() {
-            self.balances.agreements.push(powers);
+    pub(super) fn agreement(&mut self, provenance: Provenance) {
+        if !provenance.is_empty() {
+            self.balances.agreements.push(provenance);
         }
     }
 
-    /// Two dimensions are not the same: `powers` are those of their quotient, and `missing` what it lacks.
+    /// Two dimensions are not the same: `provenance` is that of their quotient, and `missing` what it lacks.
     pub(super) fn contradiction(
         &mut self,
         error: Diagnostic,
-        powers: Powers,
+        provenance: Provenance,
         missing: Option<Dimension>,
         says: String,
     ) {
         if let Some(missing) = missing.filter(|missing| !missing.is_none()) {
             let error = self.diagnostics.len();
-            self.balances.contradictions.push(Contradiction { error, powers, missing, says });
+            self.balances.contradictions.push(Contradiction { error, provenance, missing, says });
         }
         self.report(error);
     }
@@ -77,7 +67,7 @@ impl Lowering<'_> {
             return;
         }
         if dimension == wanted {
-            self.agreement(typed.powers.clone());
+            self.agreement(typed.provenance.clone());
             return;
         }
         let needed = match (wanted.is_none(), typed.is_vector()) {
@@ -100,7 +90,7 @@ impl Lowering<'_> {
             None => error,
         };
         let says = format!("{what} must be {needed}");
-        self.contradiction(error, typed.powers.clone(), wanted.over(&dimension), says);
+        self.contradiction(error, typed.provenance.clone(), wanted.over(&dimension), says);
     }
 
     /// Demands that two things have one dimension; 0 has any. Returns whether they do.
@@ -111,21 +101,22 @@ impl Lowering<'_> {
         message: impl Fn(Dimension, Dimension) -> String,
     ) -> bool {
         let (Some(wanted), Some(dimension)) = (model.dimension, other.dimension) else { return true };
-        let powers = other.powers.over(&model.powers);
+        let provenance = other.provenance.over(&model.provenance);
         if wanted == dimension {
-            self.agreement(powers);
+            self.agreement(provenance);
             return true;
         }
         let error = Diagnostic::new(codes::DIMENSION, other.span, message(wanted, dimension))
             .label(format!("this is {}", in_words(dimension)))
             .related(model.span, format!("this is {}", in_words(wanted)));
-        let is_number = |typed: &Typed, dimension: Dimension| dimension.is_none() && typed.powers.is_empty();
+        let is_number =
+            |typed: &Typed, dimension: Dimension| dimension.is_none() && typed.provenance.is_empty();
         let mut error = error;
         if is_number(model, wanted) || is_number(other, dimension) {
             error = error.help("a plain number has no unit; declare a parameter with one");
         }
         let says = format!("this stands beside {}", quantity(wanted));
-        self.contradiction(error, powers, wanted.over(&dimension), says);
+        self.contradiction(error, provenance, wanted.over(&dimension), says);
         self.balances.incomplete = true;
         false
     }
@@ -133,11 +124,11 @@ impl Lowering<'_> {
     /// The quantity or definition that an expression is, alone or with a factor that is a number, and its place.
     fn declaration(&self, typed: &Typed) -> Option<(String, Span)> {
         let definition = match &typed.value {
-            Value::Poison => return None,
-            Value::Scalar(scalar) => definition_of(scalar),
-            Value::Vector(_) => None,
+            TypedValue::Poison => return None,
+            TypedValue::Scalar(scalar) => definition_of(scalar),
+            TypedValue::Vector(_) => None,
         };
-        let symbol = match (definition, typed.powers.names()) {
+        let symbol = match (definition, typed.provenance.names()) {
             (Some(symbol), _) => symbol,
             (None, [(symbol, power)]) if *power == Exponent::from_integer(1) => *symbol,
             _ => return None,
@@ -149,7 +140,7 @@ impl Lowering<'_> {
     pub(super) fn declared(&self, symbol: Symbol) -> Option<Declared<'_>> {
         let tree = self.tree;
         fn quantity<'d>(
-            source: Option<&'d tree::Quantity>,
+            source: Option<&'d tree::Declaration>,
             facts: Option<&'d QuantityFacts>,
         ) -> Option<Declared<'d>> {
             let (source, unit) = (source?, facts?.unit.as_ref()?);

@@ -2,7 +2,7 @@
 
 use super::super::mechanism::{Equation, EquationSides, Scalar, Vector};
 use super::super::names::Symbol;
-use super::super::typed::{Typed, Value};
+use super::super::typed::{Typed, TypedValue};
 use super::Lowering;
 use super::dimensions::quantity;
 use crate::diagnostics::{Diagnostic, codes};
@@ -78,7 +78,7 @@ impl Lowering<'_> {
 
     /// `q1 = u1` where `d(q1)/dt = u1` is meant.
     fn rate_forgotten(&mut self, left: &Typed, right: &Typed, linear: bool) {
-        let (Value::Scalar(Scalar::Coordinate(q)), Value::Scalar(Scalar::Speed(u))) =
+        let (TypedValue::Scalar(Scalar::Coordinate(q)), TypedValue::Scalar(Scalar::Speed(u))) =
             (&left.value, &right.value)
         else {
             return;
@@ -101,10 +101,10 @@ impl Lowering<'_> {
         }
         let zero = |typed: &Typed| typed.is_zero();
         let sides = match (&left.value, &right.value) {
-            (Value::Scalar(l), Value::Scalar(r)) => EquationSides::Scalar(l.clone(), r.clone()),
-            (Value::Vector(l), Value::Vector(r)) => EquationSides::Vector(l.clone(), r.clone()),
-            (Value::Vector(l), _) if zero(right) => EquationSides::Vector(l.clone(), Vector::Zero),
-            (_, Value::Vector(r)) if zero(left) => EquationSides::Vector(Vector::Zero, r.clone()),
+            (TypedValue::Scalar(l), TypedValue::Scalar(r)) => EquationSides::Scalar(l.clone(), r.clone()),
+            (TypedValue::Vector(l), TypedValue::Vector(r)) => EquationSides::Vector(l.clone(), r.clone()),
+            (TypedValue::Vector(l), _) if zero(right) => EquationSides::Vector(l.clone(), Vector::Zero),
+            (_, TypedValue::Vector(r)) if zero(left) => EquationSides::Vector(Vector::Zero, r.clone()),
             _ => {
                 let kind = |typed: &Typed| if typed.is_vector() { "a vector" } else { "a scalar" };
                 let message = format!("{what} between {} and {}", kind(left), kind(right));

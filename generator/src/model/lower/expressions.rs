@@ -6,8 +6,8 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
-use super::super::powers::Powers;
-use super::super::typed::{Traits, Typed, Value, moderate};
+use super::super::provenance::Provenance;
+use super::super::typed::{Traits, Typed, TypedValue, moderate};
 use super::Lowering;
 use super::dimensions::{in_words, model_of, quantity};
 use crate::diagnostics::{Diagnostic, codes};
@@ -130,9 +130,9 @@ impl Lowering<'_> {
                 None => Typed::poison(span),
                 Some(known) => {
                     let value = match known.value {
-                        Value::Scalar(_) => Value::Scalar(Scalar::Definition(DefinitionId(i))),
-                        Value::Vector(_) => Value::Vector(Vector::Definition(DefinitionId(i))),
-                        Value::Poison => Value::Poison,
+                        TypedValue::Scalar(_) => TypedValue::Scalar(Scalar::Definition(DefinitionId(i))),
+                        TypedValue::Vector(_) => TypedValue::Vector(Vector::Definition(DefinitionId(i))),
+                        TypedValue::Poison => TypedValue::Poison,
                     };
                     Typed { value, span, traits: known.traits.seen_from(span), ..known.clone() }
                 }
@@ -184,17 +184,17 @@ impl Lowering<'_> {
         let (mut wrong, mut fit) = (poisoned, true);
         for term in &terms {
             let is_vector = match &term.value {
-                Value::Poison => continue,
+                TypedValue::Poison => continue,
                 // 0 joins scalars and vectors alike
-                Value::Scalar(scalar) if term.is_zero() => {
+                TypedValue::Scalar(scalar) if term.is_zero() => {
                     scalars.push(scalar.clone());
                     continue;
                 }
-                Value::Scalar(scalar) => {
+                TypedValue::Scalar(scalar) => {
                     scalars.push(scalar.clone());
                     false
                 }
-                Value::Vector(v) => {
+                TypedValue::Vector(v) => {
                     vectors.push(v.clone());
                     true
                 }
@@ -224,20 +224,20 @@ impl Lowering<'_> {
             }
         }
         let dimension = model.and_then(|model| model.dimension);
-        let powers = model.map_or(Powers::none(), |model| model.powers.clone());
+        let provenance = model.map_or(Provenance::none(), |model| model.provenance.clone());
         if wrong {
             return Typed { traits, ..Typed::poison(span) };
         }
         let value = match vector {
-            Some((true, _)) if vectors.len() == 1 => Value::Vector(vectors.remove(0)),
-            Some((true, _)) => Value::Vector(Vector::Add(vectors)),
-            _ => Value::Scalar(Scalar::Add(scalars)),
+            Some((true, _)) if vectors.len() == 1 => TypedValue::Vector(vectors.remove(0)),
+            Some((true, _)) => TypedValue::Vector(Vector::Add(vectors)),
+            _ => TypedValue::Scalar(Scalar::Add(scalars)),
         };
-        let is_scalar = matches!(value, Value::Scalar(_));
+        let is_scalar = matches!(value, TypedValue::Scalar(_));
         Typed {
             value,
             dimension,
-            powers,
+            provenance,
             traits,
             constant: constant.filter(|_| is_scalar),
             exact: exact.filter(|_| is_scalar),
@@ -248,7 +248,7 @@ impl Lowering<'_> {
     fn product(&mut self, factors: &[(bool, Expr)], span: Span) -> Typed {
         let mut traits = Traits::default();
         let mut dimension = Some(Dimension::none());
-        let mut powers = Powers::none();
+        let mut provenance = Provenance::none();
         let mut any_dimension = false;
         let (mut constant, mut exact) = (Some(1.0), Some(BigRational::from_integer(BigInt::from(1))));
         let (mut numerator, mut denominator) = (Vec::new(), Vec::new());
@@ -290,7 +290,11 @@ impl Lowering<'_> {
                 wrong = true;
             }
             dimension = combined;
-            powers = if *divides { powers.over(&typed.powers) } else { powers.times(&typed.powers) };
+            provenance = if *divides {
+                provenance.over(&typed.provenance)
+            } else {
+                provenance.times(&typed.provenance)
+            };
             constant = constant.and_then(|c| typed.constant.map(|v| if *divides { c / v } else { c * v }));
             exact = match (exact, &typed.exact) {
                 (Some(e), Some(v)) if *divides && !v.is_zero() => moderate(Number(e / &v.0)).map(|n| n.0),
@@ -298,20 +302,20 @@ impl Lowering<'_> {
                 _ => None,
             };
             match typed.value {
-                Value::Poison => wrong = true,
-                Value::Scalar(scalar) if *divides => {
+                TypedValue::Poison => wrong = true,
+                TypedValue::Scalar(scalar) if *divides => {
                     divisor_span = Some(divisor_span.map_or(typed.span, |s| s.to(typed.span)));
                     denominator.push(scalar);
                 }
-                Value::Scalar(scalar) => numerator.push(scalar),
-                Value::Vector(_) if *divides => {
+                TypedValue::Scalar(scalar) => numerator.push(scalar),
+                TypedValue::Vector(_) if *divides => {
                     let error =
                         Diagnostic::new(codes::SCALAR_VECTOR, typed.span, "a vector cannot be a divisor")
                             .help("divide by its magnitude `norm(v)`");
                     self.report(error);
                     wrong = true;
                 }
-                Value::Vector(v) => match &vector {
+                TypedValue::Vector(v) => match &vector {
                     None => vector = Some((v, typed.span)),
                     Some((_, first)) => {
                         let error =
@@ -340,14 +344,22 @@ impl Lowering<'_> {
         };
         let dimension = dimension.filter(|_| !any_dimension);
         match vector {
-            Some((vector, _)) if plain => Typed::vector(vector, dimension, traits, span).from(powers),
+            Some((vector, _)) if plain => Typed::vector(vector, dimension, traits, span).from(provenance),
             Some((vector, _)) => {
                 Typed::vector(Vector::Scale(Box::new(scalar), Box::new(vector)), dimension, traits, span)
-                    .from(powers)
+                    .from(provenance)
             }
             None => {
                 let exact = exact.map(Number);
-                Typed { value: Value::Scalar(scalar), dimension, powers, traits, constant, exact, span }
+                Typed {
+                    value: TypedValue::Scalar(scalar),
+                    dimension,
+                    provenance,
+                    traits,
+                    constant,
+                    exact,
+                    span,
+                }
             }
         }
     }
@@ -379,13 +391,13 @@ impl Lowering<'_> {
             self.report(error.related(base.span, "this is 0"));
             return Typed::poison(span);
         }
-        let powers = small.map_or(Powers::none(), |exponent| base.powers.power(exponent));
+        let provenance = small.map_or(Provenance::none(), |exponent| base.provenance.power(exponent));
         let dimension = match (base.dimension, small) {
             (None, _) if base.is_zero() => Some(Dimension::none()),
             (None, _) => None,
             (Some(d), Some(_)) if d.is_none() => Some(d),
             (Some(d), None) if d.is_none() => {
-                self.agreement(base.powers.clone());
+                self.agreement(base.provenance.clone());
                 Some(d)
             }
             (Some(d), Some(e)) => match d.power(e) {
@@ -403,7 +415,12 @@ impl Lowering<'_> {
                     .related(base.span, format!("this is {}", in_words(d)))
                     .help("divide the base by a quantity of its own dimension");
                 let says = "with an exponent that is no number, this must be without dimension";
-                self.contradiction(error, base.powers.clone(), Dimension::none().over(&d), says.to_owned());
+                self.contradiction(
+                    error,
+                    base.provenance.clone(),
+                    Dimension::none().over(&d),
+                    says.to_owned(),
+                );
                 return Typed::poison(span);
             }
         };
@@ -416,8 +433,8 @@ impl Lowering<'_> {
         };
         let one = small == Some(Exponent::from_integer(1));
         let traits = if one { base.traits } else { base.traits.bent().plus(exponent.traits.bent()) };
-        let value = Value::Scalar(Scalar::Pow(Box::new(b), Box::new(e)));
-        Typed { value, dimension, powers, traits, constant, exact, span }
+        let value = TypedValue::Scalar(Scalar::Pow(Box::new(b), Box::new(e)));
+        Typed { value, dimension, provenance, traits, constant, exact, span }
     }
 
     /// `d(E)/dt`
@@ -442,7 +459,7 @@ impl Lowering<'_> {
         let per_second = Dimension::of(0, 0, -1);
         let dimension = typed.dimension.and_then(|d| d.times(&per_second));
         let value = Scalar::Rate(Box::new(scalar));
-        Typed::scalar(value, dimension, typed.traits.derivative(span), span).from(typed.powers)
+        Typed::scalar(value, dimension, typed.traits.derivative(span), span).from(typed.provenance)
     }
 
     /// Is the expression a bare coordinate?
@@ -460,9 +477,9 @@ impl Lowering<'_> {
 /// The opposite.
 pub(super) fn negated(typed: Typed) -> Typed {
     let value = match typed.value {
-        Value::Scalar(scalar) => Value::Scalar(Scalar::Neg(Box::new(scalar))),
-        Value::Vector(vector) => Value::Vector(Vector::Neg(Box::new(vector))),
-        Value::Poison => Value::Poison,
+        TypedValue::Scalar(scalar) => TypedValue::Scalar(Scalar::Neg(Box::new(scalar))),
+        TypedValue::Vector(vector) => TypedValue::Vector(Vector::Neg(Box::new(vector))),
+        TypedValue::Poison => TypedValue::Poison,
     };
     Typed { value, constant: typed.constant.map(|c| -c), exact: typed.exact.map(|n| Number(-n.0)), ..typed }
 }

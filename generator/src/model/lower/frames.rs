@@ -1,9 +1,9 @@
 //! Frames: orientation and angular velocity.
 
+use super::super::dependency_order::base_frame;
 use super::super::mechanism::{Axis, FrameId, Orientation, Scalar};
 use super::super::names::Symbol;
-use super::super::order::base_frame;
-use super::super::powers::Powers;
+use super::super::provenance::Provenance;
 use super::super::typed::Traits;
 use super::Lowering;
 use super::calls::axis_named;
@@ -224,15 +224,15 @@ impl Lowering<'_> {
                         return None;
                     }
                     if let Some(unit) = self.coordinates[coordinate.0].unit.clone() {
-                        let powers = Powers::of(Symbol::Coordinate(coordinate.0));
+                        let provenance = Provenance::of(Symbol::Coordinate(coordinate.0));
                         if unit.is_si() && unit.dimension.is_none() {
-                            self.agreement(powers);
+                            self.agreement(provenance);
                         } else {
                             let message = "the parts of a quaternion are plain numbers";
                             let error = Diagnostic::new(codes::DIMENSION, argument.span, message)
                                 .help("declare the coordinate with the unit 1");
                             let off = Dimension::none().over(&unit.dimension);
-                            self.contradiction(error, powers, off, message.to_owned());
+                            self.contradiction(error, provenance, off, message.to_owned());
                         }
                     }
                     coordinates.push(coordinate);

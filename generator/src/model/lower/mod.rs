@@ -1,9 +1,10 @@
 //! From the tree to a [`Mechanism`]: every name resolved, every dimension checked, all mistakes collected.
 
+mod balances;
+mod blame;
 mod bodies;
 mod calls;
 mod contacts;
-mod culprits;
 mod dimensions;
 mod equations;
 mod expressions;
@@ -15,17 +16,17 @@ mod rates;
 
 use std::collections::HashSet;
 
+use super::dependency_order::{Item, Stated, order};
 use super::mechanism::*;
 use super::names::{Names, Symbol};
-use super::order::{Item, Stated, order};
-use super::powers::Powers;
-use super::typed::{Traits, Typed, Value};
+use super::provenance::Provenance;
+use super::typed::{Traits, Typed, TypedValue};
 use crate::diagnostics::{Code, Diagnostic, Label, codes};
 use crate::span::Span;
 use crate::syntax::tree::{ExprKind, Name, Tree};
 use crate::syntax::units::{self, Unit};
 use crate::vocabulary;
-use dimensions::Balances;
+use balances::Balances;
 
 /// Lowers a tree. The mechanism is complete only if no error was reported.
 pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagnostic>) {
@@ -300,20 +301,20 @@ impl<'a> Lowering<'a> {
                         ));
                     }
                     let says = format!("its value is in {dimension}");
-                    let powers = Powers::of(Symbol::Definition(i)).over(&typed.powers);
-                    self.contradiction(error, powers, dimension.over(&unit.dimension), says);
+                    let provenance = Provenance::of(Symbol::Definition(i)).over(&typed.provenance);
+                    self.contradiction(error, provenance, dimension.over(&unit.dimension), says);
                     typed.dimension = Some(unit.dimension);
                 }
-                Some(_) => self.agreement(Powers::of(Symbol::Definition(i)).over(&typed.powers)),
+                Some(_) => self.agreement(Provenance::of(Symbol::Definition(i)).over(&typed.provenance)),
             }
-            typed.powers = Powers::of(Symbol::Definition(i));
+            typed.provenance = Provenance::of(Symbol::Definition(i));
         } else {
-            typed.powers = typed.powers.times(&Powers::of(Symbol::Definition(i)));
+            typed.provenance = typed.provenance.times(&Provenance::of(Symbol::Definition(i)));
         }
         let value = match &typed.value {
-            Value::Scalar(scalar) => DefinitionValue::Scalar(scalar.clone()),
-            Value::Vector(vector) => DefinitionValue::Vector(vector.clone()),
-            Value::Poison => return,
+            TypedValue::Scalar(scalar) => DefinitionValue::Scalar(scalar.clone()),
+            TypedValue::Vector(vector) => DefinitionValue::Vector(vector.clone()),
+            TypedValue::Poison => return,
         };
         self.out.definitions[i].value = value;
         self.definitions[i].typed = Some(typed);
@@ -385,7 +386,7 @@ impl<'a> Lowering<'a> {
         match self.resolve(name, |s| matches!(s, Symbol::Frame(_) | Symbol::Body(_)))? {
             Symbol::Frame(f) => Some(FrameId(f)),
             Symbol::Body(b) => {
-                let frame = super::order::body_frame(self.tree, b);
+                let frame = super::dependency_order::body_frame(self.tree, b);
                 match frame.and_then(|frame| self.names.get(&frame.text)) {
                     Some(Symbol::Frame(f)) => Some(FrameId(f)),
                     _ if b < self.tree.bodies.len() => None,
@@ -436,9 +437,9 @@ impl<'a> Lowering<'a> {
     /// Demands a scalar.
     pub fn need_scalar(&mut self, typed: &Typed, what: &str) -> Option<Scalar> {
         match &typed.value {
-            Value::Scalar(scalar) => Some(scalar.clone()),
-            Value::Poison => None,
-            Value::Vector(_) => {
+            TypedValue::Scalar(scalar) => Some(scalar.clone()),
+            TypedValue::Poison => None,
+            TypedValue::Vector(_) => {
                 let message = format!("{what} must be a scalar, but this is a vector");
                 let error = Diagnostic::new(codes::SCALAR_VECTOR, typed.span, message)
                     .help("take a component with `dot(v, A.x)` or the magnitude with `norm(v)`");
@@ -451,10 +452,10 @@ impl<'a> Lowering<'a> {
     /// Demands a vector; the number 0 is one.
     pub fn need_vector(&mut self, typed: &Typed, what: &str) -> Option<Vector> {
         match &typed.value {
-            Value::Vector(vector) => Some(vector.clone()),
-            Value::Poison => None,
-            Value::Scalar(_) if typed.is_zero() => Some(Vector::Zero),
-            Value::Scalar(_) => {
+            TypedValue::Vector(vector) => Some(vector.clone()),
+            TypedValue::Poison => None,
+            TypedValue::Scalar(_) if typed.is_zero() => Some(Vector::Zero),
+            TypedValue::Scalar(_) => {
                 let message = format!("{what} must be a vector, but this is a scalar");
                 let error = Diagnostic::new(codes::SCALAR_VECTOR, typed.span, message)
                     .help("multiply it by an axis, for instance `s*N.x`, or write `A.vec(a, b, c)`");

@@ -2,10 +2,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::super::mechanism::{Quantity, Scalar};
+use super::super::mechanism::{Scalar, Variable};
 use super::super::names::Symbol;
-use super::super::powers::Powers;
-use super::super::typed::{Traits, Typed, Value};
+use super::super::provenance::Provenance;
+use super::super::typed::{Traits, Typed, TypedValue};
 use super::{Lowering, QuantityFacts};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
@@ -81,10 +81,10 @@ impl Lowering<'_> {
 
     fn quantity(
         &mut self,
-        source: &tree::Quantity,
+        source: &tree::Declaration,
         kind: Symbol,
         dependent: bool,
-    ) -> (Quantity, QuantityFacts) {
+    ) -> (Variable, QuantityFacts) {
         let unit = self.unit(&source.unit);
         let value = source.value.as_ref().map(|value| self.constant(value));
         let (mut is_fixed, mut is_dependent) = (false, dependent);
@@ -121,7 +121,7 @@ impl Lowering<'_> {
             self.report(error.help("give it one, as in `fixed l: m = 1`, or remove `fixed`"));
         }
         let number = value.as_ref().and_then(|typed| typed.constant);
-        let quantity = Quantity {
+        let quantity = Variable {
             name: source.name.text.clone(),
             docs: source.docs.clone(),
             unit: unit.as_ref().map_or(String::new(), |unit| unit.text.clone()),
@@ -139,8 +139,8 @@ impl Lowering<'_> {
         let typed = self.expression(expr);
         self.constant_only = false;
         match &typed.value {
-            Value::Poison => typed,
-            Value::Scalar(_) if typed.constant.is_some() => typed,
+            TypedValue::Poison => typed,
+            TypedValue::Scalar(_) if typed.constant.is_some() => typed,
             _ => {
                 let error = Diagnostic::new(codes::CONSTANT, expr.span, "a value is a number, not a vector");
                 self.report(error);
@@ -178,20 +178,20 @@ impl Lowering<'_> {
         let fixed_parameter = matches!(symbol, Symbol::Parameter(i) if self.out.parameters[i].fixed);
         match fixed {
             Some(value) => match value.value {
-                Value::Scalar(number) => Typed {
-                    value: Value::Scalar(in_si(number, &unit)),
+                TypedValue::Scalar(number) => Typed {
+                    value: TypedValue::Scalar(in_si(number, &unit)),
                     dimension: Some(unit.dimension),
                     constant: value.constant.map(|c| c * unit.factor()),
                     exact: value.exact.filter(|_| unit.is_si()),
                     traits,
                     span,
-                    powers: Powers::of(symbol),
+                    provenance: Provenance::of(symbol),
                 },
                 _ => Typed::poison(span),
             },
             None if fixed_parameter => Typed::poison(span),
             None => Typed::scalar(in_si(scalar, &unit), Some(unit.dimension), traits, span)
-                .from(Powers::of(symbol)),
+                .from(Provenance::of(symbol)),
         }
     }
 }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::super::mechanism::*;
 use super::super::names::Symbol;
-use super::super::powers::Powers;
+use super::super::provenance::Provenance;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
@@ -94,10 +94,11 @@ impl Lowering<'_> {
             let units = (&self.coordinates[i].unit, &self.speeds[speed].unit);
             let (coordinate, rate) = (self.out.coordinates[i].clone(), self.out.speeds[speed].clone());
             if let (Some(q), Some(u)) = units {
-                let powers = Powers::of(Symbol::Speed(speed)).over(&Powers::of(Symbol::Coordinate(i)));
+                let provenance =
+                    Provenance::of(Symbol::Speed(speed)).over(&Provenance::of(Symbol::Coordinate(i)));
                 let needed = q.dimension.over(&second);
                 if needed == Some(u.dimension) {
-                    self.agreement(powers);
+                    self.agreement(provenance);
                 } else {
                     let message = format!(
                         "`d({})/dt = {}` is meant where nothing else is said, but their units do not fit",
@@ -109,7 +110,7 @@ impl Lowering<'_> {
                         .help("state the kinematical equation, or correct a unit");
                     let missing = needed.and_then(|needed| needed.over(&u.dimension));
                     let says = format!("`d({})/dt = {}` is meant", coordinate.name, rate.name);
-                    self.contradiction(error, powers, missing, says);
+                    self.contradiction(error, provenance, missing, says);
                     continue;
                 }
             }
@@ -118,7 +119,7 @@ impl Lowering<'_> {
                 let left = self.quantity_in_expression(Symbol::Coordinate(i), coordinate.span);
                 let right = self.quantity_in_expression(Symbol::Speed(speed), rate.span);
                 match (left.value, right.value) {
-                    (super::Value::Scalar(q), super::Value::Scalar(u)) => {
+                    (super::TypedValue::Scalar(q), super::TypedValue::Scalar(u)) => {
                         EquationSides::Scalar(Scalar::Rate(Box::new(q)), u)
                     }
                     _ => continue,
@@ -133,7 +134,7 @@ impl Lowering<'_> {
     /// Coordinates of whose rates nothing is said, with the speeds to which they might be equal: mostly one statement is missing.
     fn without_rate(&mut self, missing: &[(usize, Option<String>)]) {
         let Some(((first, _), others)) = missing.split_first() else { return };
-        let coordinates: Vec<&Quantity> = missing.iter().map(|(i, _)| &self.out.coordinates[*i]).collect();
+        let coordinates: Vec<&Variable> = missing.iter().map(|(i, _)| &self.out.coordinates[*i]).collect();
         let shown = &coordinates[..coordinates.len().min(6)];
         let names: Vec<String> = shown.iter().map(|q| format!("`{}`", q.name)).collect();
         let message = match (&names[..], coordinates.len() - shown.len()) {

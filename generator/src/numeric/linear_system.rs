@@ -1,11 +1,11 @@
 //! Linear equations, more than unknowns if they agree.
 
-use super::hyper::Hyper;
+use super::hyper_dual::HyperDual;
 
 /// What became of a system of equations.
 pub struct Solved {
     /// the unknowns, each as a row of right sides
-    pub unknowns: Vec<Vec<Hyper>>,
+    pub unknowns: Vec<Vec<HyperDual>>,
     /// the equation that contradicts the others most, and by how much relative to its terms
     pub contradiction: (usize, f64),
 }
@@ -19,16 +19,16 @@ pub struct Undetermined {
 /// Solves `A x = B` for `count` unknowns. Each row holds the coefficients of the unknowns and then the right sides.
 ///
 /// Gaussian elimination with the largest pivots; equations are scaled to their largest coefficient.
-pub fn solve(mut rows: Vec<Vec<Hyper>>, count: usize) -> Result<Solved, Undetermined> {
+pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize) -> Result<Solved, Undetermined> {
     let width = rows.first().map_or(count, Vec::len);
-    let size = |row: &Vec<Hyper>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
+    let size = |row: &Vec<HyperDual>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
     // what is this small beside the other equations is the rounding error of an equation that says 0 = 0
     let noise = 1e-12 * rows.iter().map(size).fold(0.0_f64, f64::max);
-    let mut numbered: Vec<(usize, Vec<Hyper>)> = Vec::new();
+    let mut numbered: Vec<(usize, Vec<HyperDual>)> = Vec::new();
     for (i, row) in rows.drain(..).enumerate() {
         let largest = size(&row);
         if largest > noise && largest.is_finite() {
-            let scale = Hyper::constant(1.0 / largest);
+            let scale = HyperDual::constant(1.0 / largest);
             numbered.push((i, row.into_iter().map(|c| c * scale).collect()));
         }
     }
@@ -52,7 +52,7 @@ pub fn solve(mut rows: Vec<Vec<Hyper>>, count: usize) -> Result<Solved, Undeterm
         order.push(column);
         let row = numbered[step].1.clone();
         for (r, (_, other)) in numbered.iter_mut().enumerate() {
-            if r != step && other[column] != Hyper::ZERO {
+            if r != step && other[column] != HyperDual::ZERO {
                 let factor = other[column] / row[column];
                 for (entry, above) in other.iter_mut().zip(&row) {
                     *entry = *entry - factor * *above;
@@ -60,7 +60,7 @@ pub fn solve(mut rows: Vec<Vec<Hyper>>, count: usize) -> Result<Solved, Undeterm
             }
         }
     }
-    let mut unknowns = vec![vec![Hyper::ZERO; width - count]; count];
+    let mut unknowns = vec![vec![HyperDual::ZERO; width - count]; count];
     for (step, &column) in order.iter().enumerate() {
         let row = &numbered[step].1;
         unknowns[column] = row[count..].iter().map(|right| *right / row[column]).collect();

@@ -1,14 +1,14 @@
 //! Dependent coordinates from the configuration equations.
 
 use super::evaluator::{Evaluator, Level};
-use super::hyper::Hyper;
-use super::linear::solve;
-use super::{Failure, State};
+use super::hyper_dual::HyperDual;
+use super::linear_system::solve;
+use super::state::{Failure, State};
 use crate::model::mechanism::Mechanism;
 
 /// Changes the dependent coordinates so that the configuration equations hold, starting from what they are: Newton's method,
 /// with steps halved where they make things worse.
-pub fn complete(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
+pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
     let unknown: Vec<usize> = (0..m.coordinates.len()).filter(|i| m.coordinates[*i].dependent).collect();
     if unknown.is_empty() {
         return Ok(());
@@ -18,14 +18,14 @@ pub fn complete(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
         if size < 1e-13 {
             break;
         }
-        let mut rows: Vec<Vec<Hyper>> = Vec::new();
+        let mut rows: Vec<Vec<HyperDual>> = Vec::new();
         for &q in &unknown {
             let column = residuals(m, state, Some(q))?;
             rows.resize(column.len(), Vec::new());
-            rows.iter_mut().zip(column).for_each(|(row, r)| row.push(Hyper::constant(r.e1)));
+            rows.iter_mut().zip(column).for_each(|(row, r)| row.push(HyperDual::constant(r.e1)));
         }
         let now = residuals(m, state, None)?;
-        rows.iter_mut().zip(now).for_each(|(row, r)| row.push(Hyper::constant(-r.re)));
+        rows.iter_mut().zip(now).for_each(|(row, r)| row.push(HyperDual::constant(-r.re)));
         let Ok(step) = solve(rows, unknown.len()) else { return Err(Failure::NotClosed(size)) };
         let before = state.coordinates.clone();
         let mut scale = 1.0;
@@ -50,15 +50,15 @@ pub fn complete(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
     if size < 1e-9 { Ok(()) } else { Err(Failure::NotClosed(size)) }
 }
 
-fn residuals(m: &Mechanism, state: &State, moving: Option<usize>) -> Result<Vec<Hyper>, Failure> {
+fn residuals(m: &Mechanism, state: &State, moving: Option<usize>) -> Result<Vec<HyperDual>, Failure> {
     let coordinates = state
         .coordinates
         .iter()
         .enumerate()
-        .map(|(i, q)| Hyper { re: *q, e1: f64::from(u8::from(moving == Some(i))), ..Hyper::ZERO })
+        .map(|(i, q)| HyperDual { re: *q, e1: f64::from(u8::from(moving == Some(i))), ..HyperDual::ZERO })
         .collect();
-    let speeds = vec![Hyper::ZERO; m.speeds.len()];
-    let time = Hyper::constant(state.time);
+    let speeds = vec![HyperDual::ZERO; m.speeds.len()];
+    let time = HyperDual::constant(state.time);
     let values = Evaluator::new(m, &state.parameters, &state.inputs, time, coordinates, speeds);
     let mut out = Vec::new();
     for equation in &m.configuration {

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A hyper-dual number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hyper {
+pub struct HyperDual {
     /// value
     pub re: f64,
     /// coefficient of e1
@@ -17,30 +17,30 @@ pub struct Hyper {
     pub e12: f64,
 }
 
-impl Hyper {
+impl HyperDual {
     /// A constant.
     pub const fn constant(re: f64) -> Self {
-        Hyper { re, e1: 0.0, e2: 0.0, e12: 0.0 }
+        HyperDual { re, e1: 0.0, e2: 0.0, e12: 0.0 }
     }
 
     /// Zero.
-    pub const ZERO: Hyper = Hyper::constant(0.0);
+    pub const ZERO: HyperDual = HyperDual::constant(0.0);
     /// One.
-    pub const ONE: Hyper = Hyper::constant(1.0);
+    pub const ONE: HyperDual = HyperDual::constant(1.0);
 
     /// `value + e1 rate`, where both may carry e2.
-    pub fn moving(value: Hyper, rate: Hyper) -> Self {
-        Hyper { re: value.re, e1: rate.re, e2: value.e2, e12: rate.e2 }
+    pub fn moving(value: HyperDual, rate: HyperDual) -> Self {
+        HyperDual { re: value.re, e1: rate.re, e2: value.e2, e12: rate.e2 }
     }
 
     /// The value without what e1 carries.
     pub fn still(self) -> Self {
-        Hyper { e1: 0.0, e12: 0.0, ..self }
+        HyperDual { e1: 0.0, e12: 0.0, ..self }
     }
 
     /// What e1 carries: the rate.
     pub fn rate(self) -> Self {
-        Hyper { re: self.e1, e1: 0.0, e2: self.e12, e12: 0.0 }
+        HyperDual { re: self.e1, e1: 0.0, e2: self.e12, e12: 0.0 }
     }
 
     /// Are all parts finite?
@@ -52,7 +52,7 @@ impl Hyper {
     fn chain(self, f: f64, f1: f64, f2: f64) -> Self {
         // a part that is exactly 0 stays so, even where a derivative is infinite
         let part = |slope: f64, part: f64| if part == 0.0 { 0.0 } else { slope * part };
-        Hyper {
+        HyperDual {
             re: f,
             e1: part(f1, self.e1),
             e2: part(f1, self.e2),
@@ -98,11 +98,11 @@ impl Hyper {
     }
 
     /// angle of the point (`x`, `self`)
-    pub fn atan2(self, x: Hyper) -> Self {
+    pub fn atan2(self, x: HyperDual) -> Self {
         // d atan2 = (x dy - y dx)/(x^2 + y^2): take the quotient whose divisor is larger, and put the branch right
         let angle = self.re.atan2(x.re);
         let shape = if x.re.abs() >= self.re.abs() { (self / x).atan() } else { -(x / self).atan() };
-        Hyper { re: angle, ..shape }
+        HyperDual { re: angle, ..shape }
     }
 
     /// square root
@@ -130,7 +130,7 @@ impl Hyper {
     /// power with a constant exponent
     pub fn power(self, exponent: f64) -> Self {
         if exponent == 0.0 {
-            return Hyper::ONE;
+            return HyperDual::ONE;
         }
         let whole = exponent.fract() == 0.0 && exponent.abs() <= 1000.0;
         let raise = |e: f64| if whole { self.re.powi(e as i32) } else { self.re.powf(e) };
@@ -143,31 +143,31 @@ impl Hyper {
     }
 }
 
-impl Add for Hyper {
-    type Output = Hyper;
-    fn add(self, o: Hyper) -> Hyper {
-        Hyper { re: self.re + o.re, e1: self.e1 + o.e1, e2: self.e2 + o.e2, e12: self.e12 + o.e12 }
+impl Add for HyperDual {
+    type Output = HyperDual;
+    fn add(self, o: HyperDual) -> HyperDual {
+        HyperDual { re: self.re + o.re, e1: self.e1 + o.e1, e2: self.e2 + o.e2, e12: self.e12 + o.e12 }
     }
 }
 
-impl Sub for Hyper {
-    type Output = Hyper;
-    fn sub(self, o: Hyper) -> Hyper {
+impl Sub for HyperDual {
+    type Output = HyperDual;
+    fn sub(self, o: HyperDual) -> HyperDual {
         self + -o
     }
 }
 
-impl Neg for Hyper {
-    type Output = Hyper;
-    fn neg(self) -> Hyper {
-        Hyper { re: -self.re, e1: -self.e1, e2: -self.e2, e12: -self.e12 }
+impl Neg for HyperDual {
+    type Output = HyperDual;
+    fn neg(self) -> HyperDual {
+        HyperDual { re: -self.re, e1: -self.e1, e2: -self.e2, e12: -self.e12 }
     }
 }
 
-impl Mul for Hyper {
-    type Output = Hyper;
-    fn mul(self, o: Hyper) -> Hyper {
-        Hyper {
+impl Mul for HyperDual {
+    type Output = HyperDual;
+    fn mul(self, o: HyperDual) -> HyperDual {
+        HyperDual {
             re: self.re * o.re,
             e1: self.re * o.e1 + self.e1 * o.re,
             e2: self.re * o.e2 + self.e2 * o.re,
@@ -176,16 +176,16 @@ impl Mul for Hyper {
     }
 }
 
-impl Div for Hyper {
-    type Output = Hyper;
-    fn div(self, o: Hyper) -> Hyper {
+impl Div for HyperDual {
+    type Output = HyperDual;
+    fn div(self, o: HyperDual) -> HyperDual {
         let i = 1.0 / o.re;
         self * o.chain(i, -i * i, 2.0 * i * i * i)
     }
 }
 
 /// A vector by its components along N.x, N.y, N.z.
-pub type Triple = [Hyper; 3];
+pub type Triple = [HyperDual; 3];
 
 /// Sum of two vectors.
 pub fn add(a: Triple, b: Triple) -> Triple {
@@ -198,12 +198,12 @@ pub fn sub(a: Triple, b: Triple) -> Triple {
 }
 
 /// Multiple of a vector.
-pub fn scale(s: Hyper, a: Triple) -> Triple {
+pub fn scale(s: HyperDual, a: Triple) -> Triple {
     a.map(|c| s * c)
 }
 
 /// Dot product.
-pub fn dot(a: Triple, b: Triple) -> Hyper {
+pub fn dot(a: Triple, b: Triple) -> HyperDual {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
@@ -217,7 +217,7 @@ pub type Matrix3 = [Triple; 3];
 
 /// Product of two matrices.
 pub fn product(a: &Matrix3, b: &Matrix3) -> Matrix3 {
-    let mut out = [[Hyper::ZERO; 3]; 3];
+    let mut out = [[HyperDual::ZERO; 3]; 3];
     for (i, row) in out.iter_mut().enumerate() {
         for (j, entry) in row.iter_mut().enumerate() {
             *entry = a[i][0] * b[0][j] + a[i][1] * b[1][j] + a[i][2] * b[2][j];
@@ -244,37 +244,37 @@ pub fn apply(a: &Matrix3, v: Triple) -> Triple {
 
 /// The matrix that changes nothing.
 pub const IDENTITY: Matrix3 = [
-    [Hyper::ONE, Hyper::ZERO, Hyper::ZERO],
-    [Hyper::ZERO, Hyper::ONE, Hyper::ZERO],
-    [Hyper::ZERO, Hyper::ZERO, Hyper::ONE],
+    [HyperDual::ONE, HyperDual::ZERO, HyperDual::ZERO],
+    [HyperDual::ZERO, HyperDual::ONE, HyperDual::ZERO],
+    [HyperDual::ZERO, HyperDual::ZERO, HyperDual::ONE],
 ];
 
 #[cfg(test)]
 mod tests {
-    use super::Hyper;
+    use super::HyperDual;
 
     /// Values and derivatives agree with differences.
     #[test]
     fn derivatives() {
-        type Function = fn(Hyper) -> Hyper;
+        type Function = fn(HyperDual) -> HyperDual;
         let functions: [Function; 12] = [
-            Hyper::sin,
-            Hyper::cos,
-            Hyper::tan,
-            Hyper::asin,
-            Hyper::acos,
-            Hyper::atan,
-            Hyper::sqrt,
-            Hyper::exp,
-            Hyper::ln,
-            |x| x.power(3.0) / (x + Hyper::constant(2.0)),
+            HyperDual::sin,
+            HyperDual::cos,
+            HyperDual::tan,
+            HyperDual::asin,
+            HyperDual::acos,
+            HyperDual::atan,
+            HyperDual::sqrt,
+            HyperDual::exp,
+            HyperDual::ln,
+            |x| x.power(3.0) / (x + HyperDual::constant(2.0)),
             |x| x.power(-1.5),
-            |x| x.atan2(Hyper::constant(0.3) - x),
+            |x| x.atan2(HyperDual::constant(0.3) - x),
         ];
         for f in functions {
             let (x, h) = (0.4, 1e-4);
-            let d = f(Hyper { re: x, e1: 1.0, e2: 1.0, e12: 0.0 });
-            let at = |x: f64| f(Hyper::constant(x)).re;
+            let d = f(HyperDual { re: x, e1: 1.0, e2: 1.0, e12: 0.0 });
+            let at = |x: f64| f(HyperDual::constant(x)).re;
             let first = (at(x + h) - at(x - h)) / (2.0 * h);
             let second = (at(x + h) - 2.0 * at(x) + at(x - h)) / (h * h);
             assert!((d.e1 - first).abs() < 1e-5 * (1.0 + first.abs()));

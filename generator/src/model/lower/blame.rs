@@ -6,9 +6,10 @@
 use std::collections::{HashMap, HashSet};
 
 use super::super::names::Symbol;
-use super::super::powers::Powers;
+use super::super::provenance::Provenance;
 use super::Lowering;
-use super::dimensions::{Balances, Declared, in_words};
+use super::balances::{Balances, Contradiction};
+use super::dimensions::{Declared, in_words};
 use crate::diagnostics::{Diagnostic, Label, codes};
 use crate::dimension::{Dimension, Exponent};
 
@@ -23,40 +24,6 @@ const MAJORITY: usize = 4;
 
 /// What speaks for one declaration makes another one trustworthy, and so on: so many steps are gone.
 const MOST_PASSES: usize = 8;
-
-/// A place where two dimensions must be the same and are not.
-pub(super) struct Contradiction {
-    /// which diagnostic says so
-    pub error: usize,
-    /// the names in the quotient of the two
-    pub powers: Powers,
-    /// the dimension that is missing in this quotient
-    pub missing: Dimension,
-    /// what is said of the place, seen from the declaration
-    pub says: String,
-}
-
-impl Contradiction {
-    /// The names for whose declarations nothing speaks.
-    fn doubtful<'c>(
-        &'c self,
-        evidence: &'c HashMap<Symbol, usize>,
-    ) -> impl Iterator<Item = &'c (Symbol, Exponent)> {
-        self.powers.names().iter().filter(|(symbol, _)| !evidence.contains_key(symbol))
-    }
-
-    /// The name whose declaration is wrong, if nothing speaks for it, but for all others in it.
-    fn plain(&self, evidence: &HashMap<Symbol, usize>) -> Option<(Symbol, Exponent)> {
-        let mut doubtful = self.doubtful(evidence);
-        doubtful.next().copied().filter(|_| doubtful.next().is_none())
-    }
-
-    /// Supposes that a name is declared in another dimension, by this factor.
-    fn suppose(&mut self, symbol: Symbol, change: Option<Dimension>) {
-        let change = change.and_then(|change| change.power(self.powers.of_name(symbol)));
-        self.missing = change.and_then(|change| self.missing.over(&change)).unwrap_or(self.missing);
-    }
-}
 
 /// A declaration that would resolve several contradictions if it were of another dimension.
 #[derive(Clone)]
@@ -162,7 +129,7 @@ impl Lowering<'_> {
         // places where nothing else is in doubt say for certain what is needed
         let mut certain: HashMap<Symbol, usize> = HashMap::new();
         for (i, at) in open.iter().enumerate() {
-            let names = at.powers.names();
+            let names = at.provenance.names();
             let doubtful = at.doubtful(evidence).count();
             let plain = at.plain(evidence).map(|(symbol, _)| symbol);
             for (symbol, power) in names.iter().filter(|(symbol, _)| !settled.contains(symbol)) {
@@ -239,13 +206,13 @@ impl Lowering<'_> {
 }
 
 /// How many uses speak for the declarations of names. A use speaks for a name if it holds no other, or others for which uses speak.
-fn evidence(agreements: &[Powers]) -> HashMap<Symbol, usize> {
+fn evidence(agreements: &[Provenance]) -> HashMap<Symbol, usize> {
     let mut evidence: HashMap<Symbol, usize> = HashMap::new();
     for _ in 0..MOST_PASSES {
         let before = evidence.len();
         let mut counts = HashMap::new();
-        for powers in agreements {
-            let names = powers.names().iter().map(|(symbol, _)| *symbol);
+        for provenance in agreements {
+            let names = provenance.names().iter().map(|(symbol, _)| *symbol);
             let mut unknown = names.clone().filter(|symbol| !evidence.contains_key(symbol));
             match (unknown.next(), unknown.next()) {
                 (None, _) => names.for_each(|symbol| *counts.entry(symbol).or_default() += 1),

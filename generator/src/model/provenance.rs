@@ -10,49 +10,49 @@ const MOST_NAMES: usize = 32;
 
 /// The powers in which names enter a product, in the order of names, none of them 0; `None` where there are too many.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Powers(Option<Vec<(Symbol, Exponent)>>);
+pub struct Provenance(Option<Vec<(Symbol, Exponent)>>);
 
-impl Default for Powers {
+impl Default for Provenance {
     fn default() -> Self {
-        Powers::none()
+        Provenance::none()
     }
 }
 
-impl Powers {
+impl Provenance {
     /// Of what holds no name.
     pub fn none() -> Self {
-        Powers(Some(Vec::new()))
+        Provenance(Some(Vec::new()))
     }
 
     /// Of a name.
     pub fn of(symbol: Symbol) -> Self {
-        Powers(Some(vec![(symbol, Exponent::from_integer(1))]))
+        Provenance(Some(vec![(symbol, Exponent::from_integer(1))]))
     }
 
     /// Of a product.
-    pub fn times(&self, other: &Powers) -> Powers {
+    pub fn times(&self, other: &Provenance) -> Provenance {
         self.combine(other, Exponent::from_integer(1))
     }
 
     /// Of a quotient.
-    pub fn over(&self, other: &Powers) -> Powers {
+    pub fn over(&self, other: &Provenance) -> Provenance {
         self.combine(other, Exponent::from_integer(-1))
     }
 
     /// Of a power.
-    pub fn power(&self, exponent: Exponent) -> Powers {
-        Powers::none().combine(self, exponent)
+    pub fn power(&self, exponent: Exponent) -> Provenance {
+        Provenance::none().combine(self, exponent)
     }
 
-    fn combine(&self, other: &Powers, factor: Exponent) -> Powers {
-        let (Some(a), Some(b)) = (&self.0, &other.0) else { return Powers(None) };
+    fn combine(&self, other: &Provenance, factor: Exponent) -> Provenance {
+        let (Some(a), Some(b)) = (&self.0, &other.0) else { return Provenance(None) };
         let mut sum = a.clone();
         for (symbol, exponent) in b {
-            let Some(exponent) = exponent.checked_mul(&factor) else { return Powers(None) };
+            let Some(exponent) = exponent.checked_mul(&factor) else { return Provenance(None) };
             match sum.binary_search_by_key(symbol, |(symbol, _)| *symbol) {
                 Ok(i) => match sum[i].1.checked_add(&exponent) {
                     Some(total) => sum[i].1 = total,
-                    None => return Powers(None),
+                    None => return Provenance(None),
                 },
                 Err(i) => sum.insert(i, (*symbol, exponent)),
             }
@@ -60,7 +60,7 @@ impl Powers {
         sum.retain(|(_, exponent)| !exponent.is_zero());
         let bounded = |e: &Exponent| e.numer().abs() <= 1000 && *e.denom() <= 1000;
         let moderate = sum.len() <= MOST_NAMES && sum.iter().all(|(_, e)| bounded(e));
-        Powers(moderate.then_some(sum))
+        Provenance(moderate.then_some(sum))
     }
 
     /// Is no name in it?
