@@ -5,12 +5,12 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::program::arithmetic::Arithmetic;
+use crate::arithmetic::Arithmetic;
+use crate::arithmetic::DoubleDouble;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::routine::Quantity;
 use crate::program::slice::Slice;
-use crate::program::twice::Twice;
 use crate::program::{Guard, Program, VANISHING};
 
 /// The numbers from outside, each in the unit that the model declares, in file order.
@@ -177,7 +177,7 @@ impl<'a> Evaluator<'a> {
     /// Every value of the slice; of a sine-cosine pair both, else the second is 0. What depends on parameters alone is computed in
     /// twice the digits and rounded for the rest.
     fn numbers(&self, inputs: &Inputs, slice: &Slice<'_>) -> Vec<(f64, f64)> {
-        let (none, nothing) = ((0.0, 0.0), Twice::new(0.0));
+        let (none, nothing) = ((0.0, 0.0), DoubleDouble::new(0.0));
         let mut numbers = vec![none; self.program.operations.len()];
         let mut early = vec![(nothing, nothing); self.program.operations.len()];
         for &value in &slice.order {

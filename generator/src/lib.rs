@@ -17,6 +17,7 @@
 
 #[cfg(feature = "derive")]
 pub mod algebra;
+pub mod arithmetic;
 pub mod artifact;
 pub mod check;
 mod compiler;

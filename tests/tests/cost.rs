@@ -3,7 +3,7 @@
 mod common;
 
 use common::Model;
-use hodograph_generator::model::mechanism::Function;
+use hodograph_generator::arithmetic::Function;
 use hodograph_generator::program::operation::{Operation, Stage};
 use hodograph_generator::program::routine::Quantity;
 

@@ -9,7 +9,7 @@ mod simplify;
 use std::collections::HashMap;
 
 use super::expr::{Expr, SymbolId, View};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::number::Number;
 use crate::program::graph::Input;
 pub use simplify::size;

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use super::expr::{Expr, SymbolId, View};
 use super::intermediates::{Intermediates, Meaning};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::program::graph::Input;
 
 /// What rounding can make of 0, in units of the size of the terms.

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{FORMAT, FUNCTIONS};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::program::Program;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Value};

@@ -24,7 +24,7 @@ pub mod place;
 pub use decode::{DecodeError, decode};
 pub use encode::encode;
 
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::program::Program;
 
 /// The version of the format. It changes when a program of one version would mean something else in another.

@@ -3,6 +3,7 @@
 use super::{Options, Program, module, module_in_parts, skeleton};
 use quote::quote;
 
+use crate::arithmetic::Function;
 use crate::model::mechanism::*;
 use crate::number::Number;
 use crate::program::graph::{Graph, Input};

@@ -5,7 +5,8 @@ use quote::quote;
 
 use super::Emitter;
 use super::record::number;
-use crate::model::mechanism::{Body, DefinitionValue, Function, Scalar};
+use crate::arithmetic::Function;
+use crate::model::mechanism::{Body, DefinitionValue, Scalar};
 
 /// Expressions nested deeper than this are not checked.
 const DEPTH: usize = 64;

@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::Emitter;
 use super::record::number;
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 

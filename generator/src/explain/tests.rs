@@ -1,7 +1,8 @@
 //! Equations of a pendulum, and what they mean.
 
 use super::*;
-use crate::model::mechanism::{Function, Mechanism};
+use crate::arithmetic::Function;
+use crate::model::mechanism::Mechanism;
 use crate::program::graph::{Graph, Input, Node};
 use crate::program::routine::{Derived, Output};
 

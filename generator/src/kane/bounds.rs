@@ -26,7 +26,7 @@ use Magnitude::{Of, Speed};
 
 /// A bound of each diagonal entry of the mass matrix of all speeds.
 pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>) -> Vec<Expr> {
-    // Twice the kinetic energy: coefficients of products of magnitudes, each pair once.
+    // DoubleDouble the kinetic energy: coefficients of products of magnitudes, each pair once.
     let mut form: BTreeMap<(Magnitude, Magnitude), Expr> = BTreeMap::new();
     let two = Expr::integer(2);
     for (&(frame, point), lump) in lumps {

@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use super::forces::Wrenches;
 use crate::algebra::Expr;
+use crate::arithmetic::Function;
 use crate::kinematics::axes::{AxesId, AxesTree, unit};
 use crate::kinematics::linear::{self, LinearVector, Triple};
 use crate::kinematics::{Kinematics, vectors};
-use crate::model::mechanism::{Against, Body, BodyId, Contact, FrameId, Function, PointId, Vector};
+use crate::model::mechanism::{Against, Body, BodyId, Contact, FrameId, PointId, Vector};
 
 /// A contact, as algebra.
 pub struct ContactForms {

@@ -2,7 +2,8 @@
 
 use super::linear::{Triple, cross, dot, name, scale, zero};
 use crate::algebra::{Expr, Intermediates};
-use crate::model::mechanism::{Axis, FrameId, Function};
+use crate::arithmetic::Function;
+use crate::model::mechanism::{Axis, FrameId};
 
 /// Index of a set of axes.
 pub type AxesId = usize;

@@ -4,7 +4,8 @@ use super::linear::{self, LinearScalar, LinearVector};
 use super::vectors::{add, add_linear, constant, mixed, scale, scale_linear};
 use super::{Kinematics, Mixed, MixedLinear};
 use crate::algebra::{Expr, View};
-use crate::model::mechanism::{DefinitionId, DefinitionValue, Function, Mechanism, Scalar, Vector};
+use crate::arithmetic::Function;
+use crate::model::mechanism::{DefinitionId, DefinitionValue, Mechanism, Scalar, Vector};
 use crate::program::graph::Input;
 
 /// Definitions evaluated so far.

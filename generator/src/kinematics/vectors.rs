@@ -134,6 +134,6 @@ impl Kinematics<'_> {
     /// `|v|`.
     pub fn norm(&mut self, v: &Mixed) -> Expr {
         let square = self.dot(v, v);
-        self.z.call(crate::model::mechanism::Function::Sqrt, vec![square])
+        self.z.call(crate::arithmetic::Function::Sqrt, vec![square])
     }
 }

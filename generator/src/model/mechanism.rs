@@ -7,6 +7,7 @@
 //! rates nothing else speaks; what declared velocities imply is not repeated there. Names refer to names in chains of at most 300,
 //! and expressions are nested a few hundred deep at most, so recursion over them is safe.
 
+use crate::arithmetic::Function;
 use crate::number::Number;
 use crate::span::Span;
 
@@ -430,27 +431,6 @@ pub enum Scalar {
     Dot(Box<Vector>, Box<Vector>),
     /// magnitude
     Norm(Box<Vector>),
-}
-
-/// A function of scalars.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-#[allow(missing_docs)]
-pub enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Atan2,
-    Sqrt,
-    Exp,
-    Log,
-    Abs,
-    /// 1 if the argument is not negative, else -1
-    Sign,
-    Min,
-    Max,
 }
 
 /// A vector expression.

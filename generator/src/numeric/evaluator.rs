@@ -7,6 +7,7 @@ use std::cell::{Cell, RefCell};
 
 use super::hyper_dual::*;
 use super::state::Failure;
+use crate::arithmetic::Function;
 use crate::model::mechanism::*;
 use crate::span::Span;
 

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::everywhere;
 use super::operation::{Bits, Operation, Stage, Value};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
+use crate::arithmetic::reproducible;
 
 /// The operations so far.
 #[derive(Debug, Default)]
@@ -152,7 +152,7 @@ impl Builder {
     /// A function of one value.
     pub fn call(&mut self, function: Function, a: Value) -> Value {
         match self.number(a) {
-            Some(x) => self.constant(everywhere::call(function, x)),
+            Some(x) => self.constant(reproducible::call(function, x)),
             None => self.push(Operation::Call(function, a)),
         }
     }
@@ -160,7 +160,7 @@ impl Builder {
     /// A function of two values.
     pub fn call2(&mut self, function: Function, a: Value, b: Value) -> Value {
         match (self.number(a), self.number(b)) {
-            (Some(x), Some(y)) => self.constant(everywhere::call2(function, x, y)),
+            (Some(x), Some(y)) => self.constant(reproducible::call2(function, x, y)),
             _ => self.push(Operation::Call2(function, a, b)),
         }
     }

@@ -32,7 +32,7 @@ impl Count {
     }
 
     fn of(operation: Operation) -> Self {
-        use crate::model::mechanism::Function;
+        use crate::arithmetic::Function;
         let mut count = Count::default();
         match operation {
             Operation::Constant(_) | Operation::Input(_) | Operation::Sine(_) | Operation::Cosine(_) => {}

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::graph::{Graph, Input, Node, Value};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 
 /// The derivatives of `nodes` along the direction in which each input changes as `rates` says (others do not).
 pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, Node>) -> Vec<Node> {

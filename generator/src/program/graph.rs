@@ -4,7 +4,7 @@
 
 use std::collections::HashMap;
 
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::number::Number;
 
 /// A node of a [`Graph`].

@@ -13,7 +13,7 @@ use super::graph::{Graph, Node, Value as Form};
 use super::operation::{Operation, Stage, Value};
 use super::routine::Derived;
 use super::{Guard, Output, Program};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 
 /// A value and whether its opposite is meant.
 #[derive(Clone, Copy, Debug)]

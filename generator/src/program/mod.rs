@@ -4,12 +4,9 @@
 //! graph (sums, products, functions)  ->  passes, one of which lowers it to binary operations  ->  program
 //! ```
 
-pub mod arithmetic;
 mod build;
-mod construction;
 pub mod cost;
 pub mod differentiate;
-pub mod everywhere;
 pub mod graph;
 pub mod linear;
 mod lower;
@@ -17,11 +14,8 @@ pub mod operation;
 pub mod passes;
 pub mod routine;
 pub mod slice;
-mod trigonometry;
-pub mod twice;
 mod words;
 
-use arithmetic::Scalar;
 use operation::{Operation, Stage, Value};
 use routine::{Derived, Quantity, Structure};
 

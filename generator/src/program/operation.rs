@@ -1,7 +1,7 @@
 //! The operations of a program, and the stage at which each can be computed.
 
 use super::graph::Input;
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 
 /// A value of a program: the result of the operation with this index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -2,10 +2,10 @@
 
 use core::{any::TypeId, array::from_fn, hint::black_box};
 
+use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced};
 use nalgebra::convert;
 
 use super::arithmetic::sin_cos;
-use super::trigonometry::{is_within, near_zero, reduced};
 use crate::Scalar;
 
 /// Does the target compute several doubles by one instruction?

@@ -2,16 +2,10 @@
 
 use core::any::TypeId;
 
+use hodograph_arithmetic::{FUSED, trigonometry};
 use nalgebra::{ComplexField, convert};
 
-use super::trigonometry;
 use crate::Scalar;
-
-/// Are a * b + c and its kin one operation, with one rounding?
-pub(crate) const FUSED: bool = cfg!(all(
-    feature = "std",
-    any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))
-));
 
 /// A number of the program.
 #[inline(always)]

@@ -1,82 +1,136 @@
 //! Operations at construction, by the names that `arithmetic` has for those of routines: in twice the digits.
 
 use super::arithmetic as usual;
-use super::twice::Twice;
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use hodograph_arithmetic::{Component, DoubleDouble};
+use nalgebra::ComplexField;
+
 use crate::Scalar;
+
+/// A number of twice the digits.
+pub type Paired<T> = DoubleDouble<Usual<T>>;
+
+/// A number of the usual digits, in a type of this crate, so that it can have another crate's trait.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+#[repr(transparent)]
+pub struct Usual<T>(T);
+
+macro_rules! operators {
+    ($($operator:ident::$method:ident),*) => {$(
+        impl<T: Scalar> $operator for Usual<T> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Usual($operator::$method(self.0, other.0))
+            }
+        }
+    )*};
+}
+
+operators!(Add::add, Sub::sub, Mul::mul, Div::div);
+
+impl<T: Scalar> Neg for Usual<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Usual(-self.0)
+    }
+}
+
+impl<T: Scalar> Component for Usual<T> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Usual(T::zero())
+    }
+    #[inline(always)]
+    fn is_finite(&self) -> bool {
+        ComplexField::is_finite(&self.0)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Usual(ComplexField::sqrt(self.0))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        Usual(ComplexField::mul_add(self.0, a.0, b.0))
+    }
+}
 
 /// A number of the program, or a parameter.
 #[inline]
-pub fn exactly<T: Scalar>(number: T) -> Twice<T> {
-    Twice::new(number)
+pub fn exactly<T: Scalar>(number: T) -> Paired<T> {
+    Paired::new(Usual(number))
 }
 
 /// The number that routines work with.
 #[inline]
-pub fn rounded<T: Scalar>(a: Twice<T>) -> T {
-    a.rounded()
+pub fn rounded<T: Scalar>(a: Paired<T>) -> T {
+    a.rounded().0
 }
 
 /// a * b + c
-pub fn mul_add<T: Scalar>(a: Twice<T>, b: Twice<T>, c: Twice<T>) -> Twice<T> {
+pub fn mul_add<T: Scalar>(a: Paired<T>, b: Paired<T>, c: Paired<T>) -> Paired<T> {
     a * b + c
 }
 
 /// a * b - c
-pub fn mul_sub<T: Scalar>(a: Twice<T>, b: Twice<T>, c: Twice<T>) -> Twice<T> {
+pub fn mul_sub<T: Scalar>(a: Paired<T>, b: Paired<T>, c: Paired<T>) -> Paired<T> {
     a * b - c
 }
 
 /// c - a * b
-pub fn neg_mul_add<T: Scalar>(a: Twice<T>, b: Twice<T>, c: Twice<T>) -> Twice<T> {
+pub fn neg_mul_add<T: Scalar>(a: Paired<T>, b: Paired<T>, c: Paired<T>) -> Paired<T> {
     c - a * b
 }
 
 /// 1 / a
-pub fn recip<T: Scalar>(a: Twice<T>) -> Twice<T> {
-    Twice::new(T::one()) / a
+pub fn recip<T: Scalar>(a: Paired<T>) -> Paired<T> {
+    exactly(T::one()) / a
 }
 
 /// Sine and cosine.
-pub fn sin_cos<T: Scalar>(a: Twice<T>) -> (Twice<T>, Twice<T>) {
-    let (sine, cosine) = usual::sin_cos(a.rounded());
+pub fn sin_cos<T: Scalar>(a: Paired<T>) -> (Paired<T>, Paired<T>) {
+    let (sine, cosine) = usual::sin_cos(rounded(a));
+    let (sine, cosine) = (Usual(sine), Usual(cosine));
     (a.function(sine, cosine), a.function(cosine, -sine))
 }
 
 /// Sine.
-pub fn sin<T: Scalar>(a: Twice<T>) -> Twice<T> {
+pub fn sin<T: Scalar>(a: Paired<T>) -> Paired<T> {
     sin_cos(a).0
 }
 
 /// Cosine.
-pub fn cos<T: Scalar>(a: Twice<T>) -> Twice<T> {
+pub fn cos<T: Scalar>(a: Paired<T>) -> Paired<T> {
     sin_cos(a).1
 }
 
 /// Square root.
-pub fn sqrt<T: Scalar>(a: Twice<T>) -> Twice<T> {
+pub fn sqrt<T: Scalar>(a: Paired<T>) -> Paired<T> {
     a.sqrt()
 }
 
 /// Magnitude.
-pub fn abs<T: Scalar>(a: Twice<T>) -> Twice<T> {
-    if a.rounded() < T::zero() { -a } else { a }
+pub fn abs<T: Scalar>(a: Paired<T>) -> Paired<T> {
+    if rounded(a) < T::zero() { -a } else { a }
 }
 
 /// The lesser.
-pub fn min<T: Scalar>(a: Twice<T>, b: Twice<T>) -> Twice<T> {
+pub fn min<T: Scalar>(a: Paired<T>, b: Paired<T>) -> Paired<T> {
     if a.is_less(b) { a } else { b }
 }
 
 /// The greater.
-pub fn max<T: Scalar>(a: Twice<T>, b: Twice<T>) -> Twice<T> {
+pub fn max<T: Scalar>(a: Paired<T>, b: Paired<T>) -> Paired<T> {
     if b.is_less(a) { a } else { b }
 }
 
 macro_rules! of_the_nearest {
     ($($(#[$doc:meta])* $name:ident($($argument:ident),*)),* $(,)?) => {$(
         $(#[$doc])*
-        pub fn $name<T: Scalar>($($argument: Twice<T>),*) -> Twice<T> {
-            Twice::new(usual::$name($($argument.rounded()),*))
+        pub fn $name<T: Scalar>($($argument: Paired<T>),*) -> Paired<T> {
+            exactly(usual::$name($(rounded($argument)),*))
         }
     )*};
 }
@@ -104,7 +158,7 @@ of_the_nearest! {
 mod tests {
     use super::*;
 
-    fn of<T: Scalar>(number: T) -> Twice<T> {
+    fn of<T: Scalar>(number: T) -> Paired<T> {
         exactly(number)
     }
 

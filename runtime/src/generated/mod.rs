@@ -10,8 +10,6 @@ mod error;
 mod saltation;
 mod serial;
 mod slices;
-mod trigonometry;
-mod twice;
 
 #[doc(hidden)]
 pub use angles::sines_cosines;

@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use hodograph_generator::model::mechanism::Function;
+use hodograph_generator::arithmetic::Function;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::operation::{Operation, Value};

@@ -2,7 +2,7 @@
 
 use super::{Intermediates, Meaning};
 use crate::algebra::expr::{Expr, SymbolId, View};
-use crate::model::mechanism::Function;
+use crate::arithmetic::Function;
 use crate::number::Number;
 
 impl Intermediates {

@@ -1,14 +1,16 @@
 //! Functions, axes and what is asked of points and frames.
 
-use super::super::mechanism::{Axis, FrameId, Function, PointId, Scalar, Vector};
+use super::super::mechanism::{Axis, FrameId, PointId, Scalar, Vector};
+
 use super::super::names::Symbol;
 use super::super::provenance::Provenance;
 use super::super::typed::{Traits, Typed, TypedValue};
 use super::Lowering;
 use super::dimensions::model_of;
+use crate::arithmetic::Function;
+use crate::arithmetic::reproducible;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::{Dimension, Exponent};
-use crate::program::everywhere;
 use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
 use crate::{suggest, vocabulary};
@@ -214,8 +216,8 @@ impl Lowering<'_> {
         };
         let constants: Option<Vec<f64>> = typed.iter().map(|argument| argument.constant).collect();
         let constant = constants.map(|values| match (function, &values[..]) {
-            (_, [a, b]) => everywhere::call2(function, *a, *b),
-            (_, [a]) => everywhere::call(function, *a),
+            (_, [a, b]) => reproducible::call2(function, *a, *b),
+            (_, [a]) => reproducible::call(function, *a),
             _ => f64::NAN,
         });
         let value = Scalar::Call(function, scalars);

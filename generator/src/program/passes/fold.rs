@@ -3,8 +3,8 @@
 use num_rational::BigRational;
 
 use super::{Survey, rebuild, rewrite};
+use crate::arithmetic::reproducible::{call, call2};
 use crate::number::Number;
-use crate::program::everywhere::{call, call2};
 use crate::program::graph::{Graph, Node, Value};
 use crate::program::operation::Stage;
 use crate::program::routine::Derived;
@@ -51,7 +51,7 @@ fn double(graph: &Graph, node: Node) -> Option<f64> {
 mod tests {
     use super::super::testing::{keeps_the_meaning, late, parameters, small, speeds};
     use super::*;
-    use crate::model::mechanism::Function;
+    use crate::arithmetic::Function;
 
     fn folded(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Vec<Value> {
         let folded = fold(&small(build));

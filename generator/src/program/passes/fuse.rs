@@ -60,7 +60,7 @@ mod tests {
     use super::super::testing::{agree, bits, operations, random, small, speeds};
     use super::super::{lower, sweep::sweep};
     use super::*;
-    use crate::program::arithmetic::FUSED;
+    use crate::arithmetic::FUSED;
 
     fn fused(derived: &crate::program::routine::Derived) -> Vec<String> {
         operations(&sweep(&fuse(&lower(derived))))

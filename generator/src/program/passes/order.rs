@@ -7,10 +7,10 @@
 use super::opened::{Sum, Sums, Term, put_together};
 use super::sweep::sweep;
 use super::weigh::Weighed;
+use crate::arithmetic::DoubleDouble;
 use crate::interpret::Inputs;
 use crate::program::Program;
 use crate::program::operation::{Stage, Value};
-use crate::program::twice::Twice;
 
 /// Of so many terms all orders are compared; of more, the order is chosen from the end, term by term.
 const MOST: usize = 10;
@@ -144,8 +144,10 @@ impl Sum {
         let mut beginnings = (0..self.terms.len()).filter(|&term| self.begins(term)).count();
         let begins: Vec<bool> = (0..self.terms.len()).map(|term| self.begins(term)).collect();
         // of twice the digits, so that terms can be taken away
-        let sum = |numbers: &Vec<f64>| numbers.iter().fold(Twice::new(0.0), |sum, &n| sum + Twice::new(n));
-        let mut sums: Vec<Twice<f64>> = samples.iter().map(|(_, numbers)| sum(numbers)).collect();
+        let sum = |numbers: &Vec<f64>| {
+            numbers.iter().fold(DoubleDouble::new(0.0), |sum, &n| sum + DoubleDouble::new(n))
+        };
+        let mut sums: Vec<DoubleDouble<f64>> = samples.iter().map(|(_, numbers)| sum(numbers)).collect();
         let mut left: Vec<usize> = (0..self.terms.len()).collect();
         let mut places = Vec::new();
         while left.len() > 1 {
@@ -154,8 +156,8 @@ impl Sum {
                 if beginnings == 1 && begins[term] {
                     continue;
                 }
-                let of_sample = |((weight, numbers), sum): (&(f64, Vec<f64>), &Twice<f64>)| {
-                    let without = (*sum - Twice::new(numbers[term])).rounded();
+                let of_sample = |((weight, numbers), sum): (&(f64, Vec<f64>), &DoubleDouble<f64>)| {
+                    let without = (*sum - DoubleDouble::new(numbers[term])).rounded();
                     weight * without * without
                 };
                 let cost: f64 = samples.iter().zip(&sums).map(of_sample).sum();
@@ -166,7 +168,7 @@ impl Sum {
             let term = left.remove(best.1.unwrap_or(0));
             beginnings -= usize::from(begins[term]);
             for ((_, numbers), sum) in samples.iter().zip(&mut sums) {
-                *sum = *sum - Twice::new(numbers[term]);
+                *sum = *sum - DoubleDouble::new(numbers[term]);
             }
             places.push(term);
         }
@@ -181,8 +183,8 @@ mod tests {
     use super::super::testing::{agree, inputs, operations, random, small, speeds};
     use super::super::{fuse::fuse, lower};
     use super::*;
+    use crate::arithmetic::Function;
     use crate::interpret::Evaluator;
-    use crate::model::mechanism::Function;
     use crate::program::routine::{Derived, Quantity};
 
     /// The program before the pass and after it, with these speeds as the only sample.

@@ -1,8 +1,8 @@
 //! What the tests of the passes share: derivations small and random, and the interpreter as referee.
 
 use super::lower;
+use crate::arithmetic::Function;
 use crate::interpret::{Evaluator, Inputs};
-use crate::model::mechanism::Function;
 use crate::number::Number;
 use crate::program::Program;
 use crate::program::graph::{Graph, Input, Node};

@@ -1,9 +1,9 @@
 //! How much an error of each operation would matter: the numbers of a program at sample states, and by how much its answers change with
 //! each of them (reverse differentiation), relative to the largest entry of an answer. All of it is the same on every machine.
 
+use crate::arithmetic::reproducible::Reproducible;
 use crate::interpret::{Inputs, operate};
 use crate::program::Program;
-use crate::program::everywhere::Everywhere;
 use crate::program::operation::{Operation, Value};
 
 /// Sums of answers with random signs that stand for all of them.
@@ -22,7 +22,7 @@ pub struct Weighed {
 impl Weighed {
     /// Evaluates a program at a state; the signs of the mixtures follow from the seed.
     pub fn new(program: &Program, state: &Inputs, seed: u64) -> Self {
-        let mut exact: Vec<(Everywhere, Everywhere)> = Vec::with_capacity(program.operations.len());
+        let mut exact: Vec<(Reproducible, Reproducible)> = Vec::with_capacity(program.operations.len());
         for &operation in &program.operations {
             let number = operate(operation, state, |value| exact[value.index()]);
             exact.push(number);
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn answers_that_vanish_identically_do_not_count() {
-        use crate::model::mechanism::Function::{Cos, Sin};
+        use crate::arithmetic::Function::{Cos, Sin};
         let mut derived = small(|g| speeds(g)[..1].to_vec());
         let g = &mut derived.graph;
         let [a, ..] = speeds(g);
@@ -179,8 +179,8 @@ mod tests {
         let derived = small(|g| {
             let [a, b, c, d] = speeds(g);
             let angle = g.sum([a, b]);
-            let sine = g.call(crate::model::mechanism::Function::Sin, vec![angle]);
-            let cosine = g.call(crate::model::mechanism::Function::Cos, vec![angle]);
+            let sine = g.call(crate::arithmetic::Function::Sin, vec![angle]);
+            let cosine = g.call(crate::arithmetic::Function::Cos, vec![angle]);
             let quotient = g.power(c, -1);
             let first = g.product([sine, quotient]);
             let second = g.product([cosine, d]);

@@ -2,9 +2,8 @@
 //!
 //! The angle is reduced by multiples of pi/2 in three parts, sine and cosine of the rest are polynomials (Chebyshev
 //! interpolation on [0, pi/4], error below 2^-55), and the quadrant says which is which. Angles beyond 2^19 go another way.
-//! The interpreter and the runtime hold the same file, so that their bits agree; a test compares the two.
 
-use super::arithmetic::{FUSED, mul_add};
+use crate::fused::{FUSED, mul_add};
 
 /// Angles up to here are reduced here, rad.
 const LARGEST: f64 = 524288.0;

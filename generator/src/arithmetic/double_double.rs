@@ -1,13 +1,14 @@
 //! What the operations mean at construction, where they depend on parameters alone: in twice the digits, rounded once at the end. Generated
 //! code means the same (`hodograph::generated::construction`).
 
-use super::arithmetic::{self, Arithmetic};
-use super::twice::Twice;
-use crate::model::mechanism::Function;
+use hodograph_arithmetic::DoubleDouble;
 
-impl Arithmetic for Twice<f64> {
+use super::doubles::{self, Arithmetic};
+use super::function::Function;
+
+impl Arithmetic for DoubleDouble<f64> {
     fn exactly(number: f64) -> Self {
-        Twice::new(number)
+        DoubleDouble::new(number)
     }
 
     fn mul_add(self, b: Self, c: Self) -> Self {
@@ -15,7 +16,7 @@ impl Arithmetic for Twice<f64> {
     }
 
     fn sin_cos(self) -> (Self, Self) {
-        let (sine, cosine) = arithmetic::sin_cos(self.rounded());
+        let (sine, cosine) = doubles::sin_cos(self.rounded());
         (self.function(sine, cosine), self.function(cosine, -sine))
     }
 
@@ -32,7 +33,7 @@ impl Arithmetic for Twice<f64> {
                 }
             }
             // of the nearest double
-            _ => Twice::new(arithmetic::call(function, self.rounded())),
+            _ => DoubleDouble::new(doubles::call(function, self.rounded())),
         }
     }
 
@@ -52,7 +53,7 @@ impl Arithmetic for Twice<f64> {
                     b
                 }
             }
-            _ => Twice::new(arithmetic::call2(function, self.rounded(), b.rounded())),
+            _ => DoubleDouble::new(doubles::call2(function, self.rounded(), b.rounded())),
         }
     }
 }

@@ -1,40 +1,72 @@
 //! Numbers of twice the digits, the unevaluated sum of two (Dekker 1971): what depends on parameters alone is computed in them, once,
 //! and rounded at the end. Their products and quotients are right to a few units in the last of all places, their sums to as many units of
 //! their terms. What a number loses is asked of the operations, and no bits are taken apart, so that derivatives go through.
-//!
-//! The interpreter and the runtime hold the same file, so that their bits agree; a test compares the two.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Scalar;
+/// What is asked of the numbers that come in pairs.
+pub trait Component:
+    Copy
+    + PartialOrd
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// 0
+    fn zero() -> Self;
+    /// Is it neither infinite nor not a number?
+    fn is_finite(&self) -> bool;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// `self * a + b` with one rounding.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+}
+
+#[cfg(feature = "std")]
+impl Component for f64 {
+    fn zero() -> Self {
+        0.0
+    }
+    fn is_finite(&self) -> bool {
+        f64::is_finite(*self)
+    }
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        f64::mul_add(self, a, b)
+    }
+}
 
 /// `high + low`, where `low` is at most half a unit in the last place of `high`, and zero where `high` is not finite.
 #[derive(Clone, Copy, Debug)]
-pub struct Twice<T> {
+pub struct DoubleDouble<T> {
     high: T,
     low: T,
 }
 
 /// What rounding took from `high = a + b` (Knuth 1969).
-fn lost<T: Scalar>(a: T, b: T, high: T) -> T {
+fn lost<T: Component>(a: T, b: T, high: T) -> T {
     let of_b = high - a;
     let of_a = high - of_b;
     (a - of_a) + (b - of_b)
 }
 
-impl<T: Scalar> Twice<T> {
+impl<T: Component> DoubleDouble<T> {
     /// A number as it is.
     pub fn new(high: T) -> Self {
-        Twice { high, low: T::zero() }
+        DoubleDouble { high, low: T::zero() }
     }
 
     /// `high + low`, where `low` is small.
     fn of(high: T, low: T) -> Self {
         if !low.is_finite() {
-            return Twice::new(high);
+            return DoubleDouble::new(high);
         }
         let sum = high + low;
-        Twice { high: sum, low: low - (sum - high) }
+        DoubleDouble { high: sum, low: low - (sum - high) }
     }
 
     /// The nearest number of the usual digits.
@@ -42,9 +74,9 @@ impl<T: Scalar> Twice<T> {
         self.high
     }
 
-    /// A function of this number, from its value and slope at [`Twice::rounded`].
+    /// A function of this number, from its value and slope at [`DoubleDouble::rounded`].
     pub fn function(self, value: T, slope: T) -> Self {
-        Twice::of(value, slope * self.low)
+        DoubleDouble::of(value, slope * self.low)
     }
 
     /// Is it less than another?
@@ -57,51 +89,51 @@ impl<T: Scalar> Twice<T> {
         let near = self.high.sqrt();
         let rest = (-near).mul_add(near, self.high) + self.low;
         // zero has no slope: what comes of it is not finite and left out
-        Twice::of(near, rest / (near + near))
+        DoubleDouble::of(near, rest / (near + near))
     }
 }
 
-impl<T: Scalar> Add for Twice<T> {
+impl<T: Component> Add for DoubleDouble<T> {
     type Output = Self;
     // a call: constructors are long, and run once
     #[inline(never)]
     fn add(self, other: Self) -> Self {
         let high = self.high + other.high;
-        Twice::of(high, lost(self.high, other.high, high) + (self.low + other.low))
+        DoubleDouble::of(high, lost(self.high, other.high, high) + (self.low + other.low))
     }
 }
 
-impl<T: Scalar> Neg for Twice<T> {
+impl<T: Component> Neg for DoubleDouble<T> {
     type Output = Self;
     fn neg(self) -> Self {
-        Twice { high: -self.high, low: -self.low }
+        DoubleDouble { high: -self.high, low: -self.low }
     }
 }
 
-impl<T: Scalar> Sub for Twice<T> {
+impl<T: Component> Sub for DoubleDouble<T> {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl<T: Scalar> Mul for Twice<T> {
+impl<T: Component> Mul for DoubleDouble<T> {
     type Output = Self;
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let high = self.high * other.high;
         // with one rounding on every target, if need be in many operations: this is done once
         let lost = self.high.mul_add(other.high, -high);
-        Twice::of(high, lost + (self.high * other.low + self.low * other.high))
+        DoubleDouble::of(high, lost + (self.high * other.low + self.low * other.high))
     }
 }
 
-impl<T: Scalar> Div for Twice<T> {
+impl<T: Component> Div for DoubleDouble<T> {
     type Output = Self;
     #[inline(never)]
     fn div(self, other: Self) -> Self {
         let near = self.high / other.high;
         let rest = (-near).mul_add(other.high, self.high) + (self.low - near * other.low);
-        Twice::of(near, rest / other.high)
+        DoubleDouble::of(near, rest / other.high)
     }
 }

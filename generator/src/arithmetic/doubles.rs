@@ -1,48 +1,10 @@
-//! What the operations mean in doubles. Generated code means the same (`hodograph::generated`).
+//! What operations and functions mean in doubles.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::trigonometry;
-use crate::model::mechanism::Function;
+use hodograph_arithmetic::{mul_add, trigonometry};
 
-/// Are a * b + c and its kin one operation, with one rounding, on this build's target?
-pub const FUSED: bool =
-    cfg!(any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon")));
-
-/// What the file on twice the digits asks of a number; the runtime has more of them than doubles.
-pub trait Scalar:
-    Copy
-    + PartialOrd
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
-{
-    /// 0
-    fn zero() -> Self;
-    /// Is it neither infinite nor not a number?
-    fn is_finite(&self) -> bool;
-    /// Square root.
-    fn sqrt(self) -> Self;
-    /// `self * a + b` with one rounding.
-    fn mul_add(self, a: Self, b: Self) -> Self;
-}
-
-impl Scalar for f64 {
-    fn zero() -> Self {
-        0.0
-    }
-    fn is_finite(&self) -> bool {
-        f64::is_finite(*self)
-    }
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
-    }
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        f64::mul_add(self, a, b)
-    }
-}
+use super::function::Function;
 
 /// What the operations of a program mean in a kind of numbers.
 pub trait Arithmetic:
@@ -76,12 +38,6 @@ impl Arithmetic for f64 {
     fn call2(self, function: Function, b: Self) -> Self {
         call2(function, self, b)
     }
-}
-
-/// a * b + c, with one rounding where this build's target has the instruction.
-#[inline(always)]
-pub fn mul_add(a: f64, b: f64, c: f64) -> f64 {
-    if FUSED { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// Sine and cosine.
@@ -157,14 +113,5 @@ mod tests {
         }
         assert!(worst <= 1.0, "{worst}");
         assert!(sin_cos(f64::NAN).0.is_nan() && sin_cos(f64::INFINITY).1.is_nan());
-    }
-
-    #[test]
-    fn the_runtime_has_the_same_files() {
-        let files = [("trigonometry", include_str!("trigonometry.rs")), ("twice", include_str!("twice.rs"))];
-        for (name, ours) in files {
-            let theirs = format!("{}/../runtime/src/generated/{name}.rs", env!("CARGO_MANIFEST_DIR"));
-            assert_eq!(std::fs::read_to_string(theirs).unwrap(), ours, "{name}");
-        }
     }
 }

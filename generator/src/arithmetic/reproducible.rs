@@ -5,28 +5,29 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::arithmetic::{self, Arithmetic};
-use super::twice::Twice;
-use crate::model::mechanism::Function;
+use hodograph_arithmetic::DoubleDouble;
+
+use super::doubles::{self, Arithmetic};
+use super::function::Function;
 
 /// Angles up to here are reduced here, rad; of larger ones sine and cosine are those of the system.
 const LARGEST: f64 = 524288.0;
 
 /// A number of twice the digits.
 #[derive(Clone, Copy, Debug)]
-pub struct Everywhere(Twice<f64>);
+pub struct Reproducible(DoubleDouble<f64>);
 
 /// A function of a double, to the nearest double; NaN if it is one of two.
 pub fn call(function: Function, a: f64) -> f64 {
-    Everywhere::exactly(a).call(function).rounded()
+    Reproducible::exactly(a).call(function).rounded()
 }
 
 /// A function of two doubles, to the nearest double; NaN if it is one of one.
 pub fn call2(function: Function, a: f64, b: f64) -> f64 {
-    Everywhere::exactly(a).call2(function, Everywhere::exactly(b)).rounded()
+    Reproducible::exactly(a).call2(function, Reproducible::exactly(b)).rounded()
 }
 
-impl Everywhere {
+impl Reproducible {
     /// The nearest double.
     pub fn rounded(self) -> f64 {
         self.0.rounded()
@@ -90,7 +91,7 @@ impl Everywhere {
     }
 
     fn sqrt(self) -> Self {
-        Everywhere(self.0.sqrt())
+        Reproducible(self.0.sqrt())
     }
 
     /// The other side of a right triangle whose longest side is 1.
@@ -100,9 +101,9 @@ impl Everywhere {
     }
 }
 
-impl Arithmetic for Everywhere {
+impl Arithmetic for Reproducible {
     fn exactly(number: f64) -> Self {
-        Everywhere(Twice::new(number))
+        Reproducible(DoubleDouble::new(number))
     }
 
     fn mul_add(self, b: Self, c: Self) -> Self {
@@ -138,8 +139,8 @@ impl Arithmetic for Everywhere {
             Function::Atan => self.angle(Self::exactly(1.0)),
             Function::Exp => self.exp(),
             Function::Log => self.log(),
-            Function::Sqrt | Function::Abs => Everywhere(self.0.call(function)),
-            Function::Sign => Self::exactly(arithmetic::call(function, self.rounded())),
+            Function::Sqrt | Function::Abs => Reproducible(self.0.call(function)),
+            Function::Sign => Self::exactly(doubles::call(function, self.rounded())),
             Function::Atan2 | Function::Min | Function::Max => Self::exactly(f64::NAN),
         }
     }
@@ -147,44 +148,44 @@ impl Arithmetic for Everywhere {
     fn call2(self, function: Function, b: Self) -> Self {
         match function {
             Function::Atan2 => self.angle(b),
-            Function::Min | Function::Max => Everywhere(self.0.call2(function, b.0)),
+            Function::Min | Function::Max => Reproducible(self.0.call2(function, b.0)),
             _ => Self::exactly(f64::NAN),
         }
     }
 }
 
-impl Add for Everywhere {
+impl Add for Reproducible {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Everywhere(self.0 + other.0)
+        Reproducible(self.0 + other.0)
     }
 }
 
-impl Sub for Everywhere {
+impl Sub for Reproducible {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Everywhere(self.0 - other.0)
+        Reproducible(self.0 - other.0)
     }
 }
 
-impl Mul for Everywhere {
+impl Mul for Reproducible {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        Everywhere(self.0 * other.0)
+        Reproducible(self.0 * other.0)
     }
 }
 
-impl Div for Everywhere {
+impl Div for Reproducible {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        Everywhere(self.0 / other.0)
+        Reproducible(self.0 / other.0)
     }
 }
 
-impl Neg for Everywhere {
+impl Neg for Reproducible {
     type Output = Self;
     fn neg(self) -> Self {
-        Everywhere(-self.0)
+        Reproducible(-self.0)
     }
 }
 
@@ -193,11 +194,11 @@ mod tests {
     use super::*;
     use Function::*;
 
-    fn of(number: f64) -> Everywhere {
-        Everywhere::exactly(number)
+    fn of(number: f64) -> Reproducible {
+        Reproducible::exactly(number)
     }
 
-    fn vanishes(difference: Everywhere, context: &str) {
+    fn vanishes(difference: Reproducible, context: &str) {
         assert!(difference.rounded().abs() < 1e-28, "{context}: {difference:?}");
     }
 
@@ -225,7 +226,7 @@ mod tests {
             for x in
                 [0.0, 1e-300, 0.3, 1.0, -0.7, 2.5, -40.0, 699.0, 1e4, 1e9, 1e300, f64::INFINITY, f64::NAN]
             {
-                let (found, expected) = (call(function, x), arithmetic::call(function, x));
+                let (found, expected) = (call(function, x), doubles::call(function, x));
                 let same = found == expected || found.is_nan() && expected.is_nan();
                 assert!(
                     same || (found - expected).abs() <= 4e-16 * expected.abs(),
@@ -235,7 +236,7 @@ mod tests {
         }
         for (a, b) in [(0.0, 0.0), (1.0, 0.0), (0.0, -1.0), (-2.0, -3.0), (1e300, 1e-300)] {
             for function in [Atan2, Min, Max] {
-                let (found, expected) = (call2(function, a, b), arithmetic::call2(function, a, b));
+                let (found, expected) = (call2(function, a, b), doubles::call2(function, a, b));
                 assert!((found - expected).abs() <= 4e-16 * expected.abs(), "{function:?} {a} {b}: {found}");
             }
         }

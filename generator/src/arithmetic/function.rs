@@ -1,0 +1,22 @@
+//! The functions of the language.
+
+/// A function of scalars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Atan2,
+    Sqrt,
+    Exp,
+    Log,
+    Abs,
+    /// 1 if the argument is not negative, else -1
+    Sign,
+    Min,
+    Max,
+}

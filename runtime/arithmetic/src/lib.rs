@@ -1,0 +1,20 @@
+//! The arithmetic that the interpreter (`hodograph-generator`) and generated code (`hodograph`) share, so that both compute the same bits:
+//!
+//! * [`mul_add`]: a * b + c with one rounding where the target has the instruction,
+//! * [`trigonometry`]: sine and cosine of a double, the same on every machine,
+//! * [`DoubleDouble`]: numbers of twice the digits.
+//!
+//! No part of Hodograph's interface: versions may differ in any way.
+
+#![no_std]
+#![forbid(unsafe_code)]
+
+#[cfg(any(feature = "std", test))]
+extern crate std;
+
+mod double_double;
+mod fused;
+pub mod trigonometry;
+
+pub use double_double::{Component, DoubleDouble};
+pub use fused::{FUSED, mul_add};
