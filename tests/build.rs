@@ -4,9 +4,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use hodograph_generator::rust_names::snake_case;
-use hodograph_generator::emit::{self, Options, names};
+use hodograph_generator::emit::{self, Options};
 use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::rust_names::{self, snake_case};
 use hodograph_generator::source::Source;
 use hodograph_generator::{artifact, check::check};
 
@@ -45,7 +45,7 @@ fn main() {
 
 fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
     let path = format!("hodograph_models::{module}");
-    let name = names::type_name(&mechanism.name);
+    let name = rust_names::type_name(&mechanism.name);
     let mut routines = String::new();
     let mut collisions = String::new();
     for method in code.split("pub fn ").skip(1) {

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! source text -> syntax      tokens and an untyped tree, with the place of everything
-//!             -> model       names resolved, dimensions and physics checked, all mistakes collected
+//!             -> model       names resolved, dimensions checked, all mistakes collected
+//!             -> check       the model as a whole, counted and in numbers
 //!             -> kinematics  frames, points, velocities, contact bases            (feature `derive`)
 //!             -> kane        partial velocities, generalized forces, constraints  (feature `derive`)
 //!             -> program     straight-line operations: shared, hoisted, factorised

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use hodograph_generator::check::check;
 use hodograph_generator::diagnostics::{Diagnostic, Severity, codes};
 use hodograph_generator::rendering::render;
-use hodograph_generator::check::check;
 use hodograph_generator::source::Source;
 
 /// The shipped models: name and text.

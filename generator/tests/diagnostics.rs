@@ -5,7 +5,11 @@
 
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::{check::{Checked, check}, rendering::render, source::Source};
+use hodograph_generator::{
+    check::{Checked, check},
+    rendering::render,
+    source::Source,
+};
 
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/diagnostics")

@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use hodograph_generator::diagnostics::Code;
 use hodograph_generator::diagnostics::codes::ALL;
 use hodograph_generator::explanations::{explanation, page, whole};
-use hodograph_generator::diagnostics::{Code};
 use hodograph_generator::rendering::render;
-use hodograph_generator::{check::check, source::Source};
+use hodograph_generator::source::Source;
 
 fn check(code: Code, example: &str) -> (Vec<Code>, String) {
     let source = Source::file(format!("{code}.mech"), whole(example));
-    let checked = check(&source);
+    let checked = hodograph_generator::check::check(&source);
     let said = render(&checked.diagnostics, &source);
     (checked.diagnostics.iter().map(|d| d.code).collect(), said)
 }

@@ -1,8 +1,8 @@
 //! Correct models are accepted.
 
-use hodograph_generator::{check::check, source::Source};
+use hodograph_generator::{check::check, model::mechanism::Mechanism, source::Source};
 
-fn accept(name: &str, text: &str) -> model::mechanism::Mechanism {
+fn accept(name: &str, text: &str) -> Mechanism {
     let source = Source::file(name, text);
     let checked = check(&source);
     let messages: Vec<String> = checked.diagnostics.iter().map(|d| d.one_line(&source)).collect();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hodograph_generator::diagnostics::{explanations::within};
+use hodograph_generator::explanations::within;
 use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
 

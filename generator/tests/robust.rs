@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use hodograph_generator::diagnostics::{codes};
+use hodograph_generator::diagnostics::codes;
 use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
 use proptest::prelude::*;

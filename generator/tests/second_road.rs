@@ -162,7 +162,10 @@ fn identities() {
             let (Some(a), Some(b)) = (after.positions[i], before.positions[i]) else { continue };
             for k in 0..3 {
                 let v = (a[k] - b[k]) / (2.0 * h);
-                let material = matches!(m.points[i].place, model::mechanism::Place::Material { .. });
+                let material = matches!(
+                    m.points[i].place,
+                    hodograph_generator::model::mechanism::Place::Material { .. }
+                );
                 assert!(
                     material || (v - velocity[k]).abs() < 1e-6 * (1.0 + v.abs()),
                     "{name}: {}",

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use hodograph_generator::artifact::place;
-use hodograph_generator::rendering::render;
 use hodograph_generator::check::check;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::reading;
+use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
 use crate::derivation::{self, Found, Limits};

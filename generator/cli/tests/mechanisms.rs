@@ -4,8 +4,8 @@
 mod common;
 
 use common::{difference, hodograph, number, numbers, root};
-use hodograph_generator::explanations::within;
 use hodograph_generator::check::check;
+use hodograph_generator::explanations::within;
 use hodograph_generator::model::mechanism::Variable;
 use hodograph_generator::numeric::{self, State};
 use hodograph_generator::source::Source;

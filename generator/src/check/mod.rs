@@ -52,7 +52,7 @@ pub fn check(source: &Source) -> Checked {
         diagnostics.extend(counts::counts(mechanism));
         if !unclear(&diagnostics) {
             let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
-            diagnostics.extend(checks::physics(mechanism, name));
+            diagnostics.extend(physics::physics(mechanism, name));
         }
     }
     // one mistake at a place: what else is found there follows from it

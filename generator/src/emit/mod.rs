@@ -26,6 +26,7 @@ use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::routine::Quantity;
 use crate::program::{Guard, Program};
+use crate::rust_names;
 use record::Record;
 
 pub use skeleton::{skeleton, stub};
@@ -56,9 +57,9 @@ fn module_in_parts(
     fits::fits(mechanism, program)?;
     let emitter = Emitter { longest, ..Emitter::new(mechanism, program, &options.krate) };
     let krate = &options.krate;
-    let module = names::ident(&options.module);
+    let module = rust_names::ident(&options.module);
     let tracked = &options.tracked;
-    let docs = names::docs(&emitter.module_docs());
+    let docs = rust_names::docs(&emitter.module_docs());
     let records =
         [&emitter.parameters, &emitter.coordinates, &emitter.speeds, &emitter.dependent, &emitter.inputs];
     let records = records.into_iter().filter(|record| !record.is_empty()).map(|record| record.tokens(krate));
@@ -124,7 +125,7 @@ impl<'a> Emitter<'a> {
             mechanism,
             program,
             krate,
-            name: format_ident!("{}", names::type_name(&mechanism.name)),
+            name: format_ident!("{}", rust_names::type_name(&mechanism.name)),
             parameters: Record::new("Parameters", "Parameters of the mechanism.", run_time),
             coordinates: Record::new("Coordinates", "Generalized coordinates.", mechanism.coordinates.iter()),
             speeds: Record::new(

@@ -8,6 +8,7 @@ use crate::model::mechanism::Mechanism;
 use crate::program::operation::{Bits, Operation, Value};
 use crate::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q, Structure};
 use crate::program::{Output, Program};
+use crate::rust_names;
 
 /// The module of a sound model whose derivation is missing: everything has its type, and nothing a meaning.
 pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
@@ -60,8 +61,8 @@ pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
 
 /// A module with the types that every mechanism has, and nothing in them. `tracked` as in [`super::Options`].
 pub fn skeleton(module: &str, mechanism: Option<&str>, tracked: &[TokenStream]) -> TokenStream {
-    let module = names::ident(module);
-    let name = names::ident(&names::type_name(mechanism.unwrap_or("Mechanism")));
+    let module = rust_names::ident(module);
+    let name = rust_names::ident(&rust_names::type_name(mechanism.unwrap_or("Mechanism")));
     let records = ["Parameters", "Coordinates", "Speeds", "DependentSpeeds", "Inputs"]
         .map(|name| format_ident!("{name}"));
     quote! {

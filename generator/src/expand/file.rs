@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::check::check;
-use crate::emit;
-use crate::source::Source;
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
 use super::{derivation, report};
+use crate::check::check;
 use crate::compiler;
+use crate::emit;
+use crate::rust_names;
+use crate::source::Source;
 
 /// The path that the user wrote, and where.
 pub struct ModelPath {
@@ -77,7 +78,7 @@ pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStr
     let stem = Path::new(&path.text)
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
-    let module = emit::names::snake_case(&stem);
+    let module = rust_names::snake_case(&stem);
     let place = match find(path, package) {
         Ok(place) => place,
         Err(message) => {

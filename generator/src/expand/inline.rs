@@ -2,14 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::check::check;
-use crate::emit;
-use crate::source::Source;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 
 use super::{derivation, report};
+use crate::check::check;
 use crate::compiler;
+use crate::emit;
+use crate::rust_names;
+use crate::source::Source;
 
 /// The module of an inline model.
 pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenStream {
@@ -18,7 +19,7 @@ pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenS
     let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
     let source = Source::inline("mechanism!", model);
     let checked = check(&source);
-    let module = emit::names::snake_case(name.as_deref().unwrap_or("mechanism"));
+    let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let Some(mechanism) = checked.mechanism else {
         let errors = report::of_inline(&source, &checked.diagnostics);
         // what has no name nobody refers to

@@ -11,7 +11,7 @@ use super::axes::{AxesId, AxesTree};
 use super::linear::{LinearScalar, LinearVector};
 use crate::algebra::{Expr, Intermediates, Sample};
 use crate::model::mechanism::{
-    DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Quantity, Vector,
+    DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Variable, Vector,
 };
 use crate::numeric;
 use crate::program::graph::Input;
@@ -186,7 +186,7 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Sample {
         (bits >> 11) as f64 / (1_u64 << 53) as f64
     };
     let mut inputs = HashMap::from([(Input::Time, next())]);
-    let given = |quantity: &Quantity| quantity.value.filter(|value| *value != 0.0);
+    let given = |quantity: &Variable| quantity.value.filter(|value| *value != 0.0);
     for (i, parameter) in mechanism.parameters.iter().enumerate() {
         // small where the model says 0, so that roots of what it says keep their domain
         let share = next();

@@ -1,4 +1,4 @@
-//! Operations of generated code. `hodograph_generator::program::arithmetic` means the same in doubles.
+//! Operations of generated code. `hodograph_generator::arithmetic` means the same in doubles.
 
 use core::any::TypeId;
 

@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn derivatives_go_through() {
-        use num_dual::{Dual64, DualNum};
+        use num_dual::Dual64;
         let x = exactly(Dual64::new(0.7, 1.0));
         let one = exactly(Dual64::from(1.0));
         let value = rounded(sqrt(recip(x * x + one)) - x);

@@ -24,8 +24,6 @@ pub use saltation::{by_coordinate, reset, salted, state};
 #[doc(hidden)]
 pub use slices::{Description, write_array, write_rows};
 
-use crate::Scalar;
-
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;

@@ -7,8 +7,8 @@ pub mod random;
 use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact;
-use hodograph_generator::interpret::{Array, Evaluator, Inputs};
 use hodograph_generator::check::check;
+use hodograph_generator::interpret::{Array, Evaluator, Inputs};
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_generator::program::Program;
 use hodograph_generator::program::routine::Quantity;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use hodograph_generator::rendering::render;
 use hodograph_generator::check::check;
+use hodograph_generator::rendering::render;
 
 use crate::files::collect;
 use crate::output;

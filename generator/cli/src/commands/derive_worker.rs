@@ -29,9 +29,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     use crate::stop::Stop;
     use hodograph_generator::DerivationError;
     use hodograph_generator::artifact;
-    use hodograph_generator::rendering::render;
     use hodograph_generator::check::check;
     use hodograph_generator::program::{Program, cost};
+    use hodograph_generator::rendering::render;
     use hodograph_generator::source::Source;
 
     end_with_parent();

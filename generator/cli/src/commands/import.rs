@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::ValueEnum;
-use hodograph_generator::rendering::render;
 use hodograph_generator::check::check;
 use hodograph_generator::reading;
+use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
 use crate::import::{Options, import};

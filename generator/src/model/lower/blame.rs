@@ -11,7 +11,7 @@ use super::Lowering;
 use super::balances::{Balances, Contradiction};
 use super::dimensions::{Declared, in_words};
 use crate::diagnostics::{Diagnostic, Label, codes};
-use crate::dimension::{Dimension, Exponent};
+use crate::dimension::Dimension;
 
 /// So many declarations are looked for; nobody reads so many messages.
 const MOST_DECLARATIONS: usize = 100;
