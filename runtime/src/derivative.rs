@@ -10,13 +10,13 @@ use crate::{
 /// Inputs: approach velocity (3), reduced matrix (6), mu, e.
 const INPUTS: usize = 11;
 
-/// Why a derivative does not exist at this input. What is given then is the derivative along the path that the solver took, which
+/// Why an outcome is not differentiable at this input. What is given then is the derivative along the path that the solver took, which
 /// is one-sided: it holds for changes of the input that keep the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Obstacle {
+pub enum NonSmoothness {
     /// There is no slip at the start. The outcome is continuous there, but what a little slip does depends on its direction: the
     /// columns of v_t and v_s are zero and mean nothing. The other columns hold for changes that bring no slip.
     NoSlip,
@@ -50,7 +50,7 @@ pub struct ImpactDerivative<T: nalgebra::Scalar> {
     /// Why this is only a one-sided derivative, if it is.
     ///
     /// At mu = 0, e = 0 and e = 1, where the range of an input ends, the column of that input is one-sided by itself and nothing is reported.
-    pub obstacle: Option<Obstacle>,
+    pub non_smoothness: Option<NonSmoothness>,
 }
 
 impl<T: Scalar> ImpactDerivative<T> {
@@ -130,12 +130,12 @@ pub fn derivative<T: Scalar>(
         impact,
         impulse: rows(&hit.impulse),
         velocity: rows(&hit.velocity),
-        obstacle: None,
+        non_smoothness: None,
     };
     if surface.e <= T::zero() {
         plastic(matrix, approach, surface, &mut result);
     }
-    result.obstacle = obstacle(matrix, approach, surface, &result);
+    result.non_smoothness = non_smoothness(matrix, approach, surface, &result);
     Ok(result)
 }
 
@@ -187,19 +187,19 @@ fn matrix_hold<T: Scalar>(m: &ReducedMatrix<T>) -> Option<[T; 2]> {
     (square > T::zero()).then(|| [x / square, y / square])
 }
 
-/// What stands against a derivative: the path, or the number of compressions, is another one close by.
-fn obstacle<T: Scalar>(
+/// Why there is no derivative: another path, or number of compressions, is found close by.
+fn non_smoothness<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
     surface: &Surface<T>,
     result: &ImpactDerivative<T>,
-) -> Option<Obstacle> {
+) -> Option<NonSmoothness> {
     let here = &result.impact;
     if matches!(here.path, Path::Sticking | Path::Renewal) {
-        return Some(Obstacle::NoSlip);
+        return Some(NonSmoothness::NoSlip);
     }
     let step = T::default_epsilon().sqrt();
-    let mut found = straight(matrix, approach, surface.mu).then_some(Obstacle::Straight);
+    let mut found = straight(matrix, approach, surface.mu).then_some(NonSmoothness::Straight);
     for sign in [T::one(), -T::one()] {
         let factor = T::one() + sign * step;
         let slip = Vector3::new(approach.x, approach.y * factor, approach.z * factor);
@@ -207,26 +207,26 @@ fn obstacle<T: Scalar>(
         let e = Surface { e: (surface.e * factor).min(T::one()), ..*surface };
         for (velocity, surface) in [(&slip, surface), (approach, &mu), (approach, &e)] {
             let Ok(near) = solve(matrix, velocity, surface) else {
-                return Some(Obstacle::Grazing);
+                return Some(NonSmoothness::Grazing);
             };
             // The outcome jumps, or falls steeply like a root.
             let moved = (near.impulse - here.impulse).norm();
             let jumps = moved > here.impulse.norm() * step.sqrt() * constant(64.0);
             if near.compressions != here.compressions || jumps {
-                return Some(Obstacle::Grazing);
+                return Some(NonSmoothness::Grazing);
             }
             if near.path != here.path {
                 let slides = |path: Path| path == Path::Sliding;
                 found = Some(if slides(near.path) || slides(here.path) {
-                    Obstacle::PathChange
+                    NonSmoothness::PathChange
                 } else {
-                    Obstacle::CriticalFriction
+                    NonSmoothness::CriticalFriction
                 });
             }
         }
     }
     let finite = result.impulse.iter().chain(result.velocity.iter()).all(|x| x.is_finite());
-    if finite { found } else { Some(Obstacle::Grazing) }
+    if finite { found } else { Some(NonSmoothness::Grazing) }
 }
 
 /// Whether slip starts in a direction that stays, while the normal velocity depends on that direction.

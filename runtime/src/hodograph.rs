@@ -3,10 +3,10 @@
 use nalgebra::{Vector2, Vector3};
 
 use crate::{
-    Impact, ImpactError, Moment, Motion, ReducedMatrix, Scalar, Surface,
+    Impact, ImpactError, Motion, ReducedMatrix, Scalar, Snapshot, Surface,
     phases::{Units, after_slip},
     scalar::constant,
-    solve::{Contact, Ledger, Slide, State, Terminal, check, collide, contact, slide, slips},
+    solve::{Contact, Restitution, Slide, State, Terminal, check, collide, contact, slide, slips},
 };
 
 /// A solved collision that can be evaluated at any normal impulse, exactly: the curve of v_s over v_t that the paper calls hodograph, with the
@@ -18,8 +18,8 @@ use crate::{
 /// let matrix = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
 /// let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge };
 /// let hodograph = Hodograph::new(&matrix, &Vector3::new(-0.946, 1.063, 0.0), &surface)?;
-/// for moment in hodograph.points(100) {
-///     let (v_t, v_s) = (moment.velocity.y, moment.velocity.z);
+/// for snapshot in hodograph.points(100) {
+///     let (v_t, v_s) = (snapshot.velocity.y, snapshot.velocity.z);
 ///     # let _ = (v_t, v_s);
 /// }
 /// # Ok::<(), hodograph::ImpactError<f64>>(())
@@ -49,9 +49,9 @@ impl<T: Scalar> Hodograph<T> {
         surface: &Surface<T>,
     ) -> Result<Self, ImpactError<T>> {
         check(matrix, approach, surface)?;
-        let mut ledger = Ledger::new(surface.law, surface.e);
-        ledger.thorough = true;
-        let impact = collide(matrix, approach, surface, ledger, slide)?;
+        let mut restitution = Restitution::new(surface.law, surface.e);
+        restitution.thorough = true;
+        let impact = collide(matrix, approach, surface, restitution, slide)?;
         let terminal = (after_slip(impact.path) != Motion::Sliding).then(|| {
             let Terminal { push, gain, rate, .. } = Terminal::of(&contact(matrix, surface.mu));
             (push, gain, rate)
@@ -73,7 +73,7 @@ impl<T: Scalar> Hodograph<T> {
 
     /// All quantities where the normal impulse is `normal_impulse`, in N s: the approach at 0 and below, the outcome at I_n2 and above.
     #[inline]
-    pub fn at(&self, normal_impulse: T) -> Moment<T> {
+    pub fn at(&self, normal_impulse: T) -> Snapshot<T> {
         let zero = T::zero();
         let after = after_slip(self.impact.path);
         if normal_impulse >= self.impact.impulse.x {
@@ -90,18 +90,18 @@ impl<T: Scalar> Hodograph<T> {
         // No: it is the beginning, or not a number.
         let begun = normal_impulse > zero;
         if !begun {
-            return units.moment(&State::approach(), &tangential, first);
+            return units.snapshot(&State::approach(), &tangential, first);
         }
         let stop = normal_impulse / scale;
-        let slip_end = self.impact.phases.slip_end.map(|moment| self.state(&moment, scale, speed));
+        let slip_end = self.impact.phases.slip_end.map(|snapshot| self.state(&snapshot, scale, speed));
         let from = match slip_end {
             None if !slides => State::approach(),
             Some(end) if stop >= end.normal => end,
-            _ => match slide(&contact, tangential, slip, &mut Ledger::until(stop)) {
-                Slide::Ended(state, velocity) => return units.moment(&state, &velocity, first),
+            _ => match slide(&contact, tangential, slip, &mut Restitution::until(stop)) {
+                Slide::Ended(state, velocity) => return units.snapshot(&state, &velocity, first),
                 // Rounding alone tells this from the end of slip.
                 Slide::Stopped(state) | Slide::Endless(state) => {
-                    return units.moment(&state, &Vector2::zeros(), first);
+                    return units.snapshot(&state, &Vector2::zeros(), first);
                 }
             },
         };
@@ -114,15 +114,15 @@ impl<T: Scalar> Hodograph<T> {
             velocity,
             work: from.work + (from.velocity + velocity) * impulse * constant(0.5),
         };
-        units.moment(&state, &(gain * impulse), after)
+        units.snapshot(&state, &(gain * impulse), after)
     }
 
-    /// `count` moments at even steps of the normal impulse, from the approach to the outcome; one moment is the outcome.
+    /// `count` snapshots at even steps of the normal impulse, from the approach to the outcome; a single one is the outcome.
     #[inline]
     pub fn points(
         &self,
         count: usize,
-    ) -> impl ExactSizeIterator<Item = Moment<T>> + DoubleEndedIterator + Clone + '_ {
+    ) -> impl ExactSizeIterator<Item = Snapshot<T>> + DoubleEndedIterator + Clone + '_ {
         let last = count.saturating_sub(1);
         (0..count).map(move |index| {
             let impulse = self.impact.impulse.x;
@@ -133,18 +133,18 @@ impl<T: Scalar> Hodograph<T> {
         })
     }
 
-    fn end(&self, motion: Motion) -> Moment<T> {
+    fn end(&self, motion: Motion) -> Snapshot<T> {
         let Impact { impulse, velocity, contact_work, normal_work, .. } = self.impact;
-        Moment { impulse, velocity, contact_work, normal_work, motion }
+        Snapshot { impulse, velocity, contact_work, normal_work, motion }
     }
 
-    fn state(&self, moment: &Moment<T>, scale: T, speed: T) -> State<T> {
-        let impulse = moment.impulse / scale;
+    fn state(&self, snapshot: &Snapshot<T>, scale: T, speed: T) -> State<T> {
+        let impulse = snapshot.impulse / scale;
         State {
             normal: impulse.x,
             tangential: Vector2::new(impulse.y, impulse.z),
-            velocity: moment.velocity.x / speed,
-            work: moment.normal_work / (scale * speed),
+            velocity: snapshot.velocity.x / speed,
+            work: snapshot.normal_work / (scale * speed),
         }
     }
 }

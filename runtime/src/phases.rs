@@ -1,11 +1,11 @@
-//! All quantities of a collision at one moment, and at the moments where a phase begins.
+//! Snapshots of a collision: all quantities at one normal impulse, and where a phase begins or ends.
 
 use nalgebra::{Vector2, Vector3};
 
 use crate::{
     Path, Scalar,
     scalar::{Real, constant},
-    solve::{Contact, Ledger, State},
+    solve::{Contact, Restitution, State},
 };
 
 /// What the contact does.
@@ -22,12 +22,12 @@ pub enum Motion {
     Renewal,
 }
 
-/// All quantities at one moment of a collision, in the axes n, t, s of the input.
+/// All quantities at one instant of a collision, in the axes n, t, s of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub struct Moment<T: nalgebra::Scalar> {
+pub struct Snapshot<T: nalgebra::Scalar> {
     /// Impulse (n, t, s) so far, in N s; the first is I_n.
     pub impulse: Vector3<T>,
     /// Relative velocity (n, t, s), in m/s.
@@ -40,7 +40,7 @@ pub struct Moment<T: nalgebra::Scalar> {
     pub motion: Motion,
 }
 
-impl<T: Scalar> Moment<T> {
+impl<T: Scalar> Snapshot<T> {
     /// The normal impulse I_n, in N s.
     #[inline]
     pub fn normal_impulse(&self) -> T {
@@ -67,7 +67,7 @@ impl<T: Scalar> Moment<T> {
     }
 }
 
-/// The moments where a phase begins or ends.
+/// The instants at which a phase begins or ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -77,11 +77,11 @@ pub struct Phases<T: nalgebra::Scalar> {
     ///
     /// Under Newton's hypothesis, while slip lasts, nothing depends on it: [`crate::solve`] passes it by and leaves `None`;
     /// [`crate::Hodograph`] has it always.
-    pub compression_end: Option<Moment<T>>,
+    pub compression_end: Option<Snapshot<T>>,
     /// The end of the latest compression, the one the law counts from; the same as the first unless the bodies approached again.
-    pub last_compression_end: Option<Moment<T>>,
+    pub last_compression_end: Option<Snapshot<T>>,
     /// Where slip stopped (index S in the paper); `None` if it never did, or there was none at the start.
-    pub slip_end: Option<Moment<T>>,
+    pub slip_end: Option<Snapshot<T>>,
 }
 
 /// From the units of the solver, where m_nn = 1 and v_n1 = -1, to those of the input.
@@ -94,12 +94,12 @@ pub(crate) struct Units<'a, T: Real> {
 }
 
 impl<T: Real> Units<'_, T> {
-    /// A moment from a state and the tangential velocity there.
+    /// The snapshot of a state with its tangential velocity.
     #[inline]
-    pub fn moment(&self, state: &State<T>, tangential: &Vector2<T>, motion: Motion) -> Moment<T> {
+    pub fn snapshot(&self, state: &State<T>, tangential: &Vector2<T>, motion: Motion) -> Snapshot<T> {
         let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * self.scale;
         let velocity = Vector3::new(state.velocity, tangential.x, tangential.y) * self.speed;
-        Moment {
+        Snapshot {
             impulse,
             velocity,
             contact_work: impulse.dot(&(velocity + self.approach)) * constant(0.5),
@@ -119,11 +119,11 @@ impl<T: Real> Units<'_, T> {
     }
 }
 
-/// From what the solver noted on its way.
+/// The snapshots of the states that the solver recorded.
 #[inline]
 pub(crate) fn phases<T: Real>(
     units: &Units<'_, T>,
-    ledger: &Ledger<T>,
+    restitution: &Restitution<T>,
     slip_end: Option<State<T>>,
     path: Path,
 ) -> Phases<T> {
@@ -134,20 +134,20 @@ pub(crate) fn phases<T: Real>(
             None => path == Path::Sliding,
         };
         if slides {
-            units.moment(&state, &units.tangential(&state), Motion::Sliding)
+            units.snapshot(&state, &units.tangential(&state), Motion::Sliding)
         } else if after == Motion::Renewal {
-            units.moment(&state, &units.tangential(&state), after)
+            units.snapshot(&state, &units.tangential(&state), after)
         } else {
-            units.moment(&state, &Vector2::zeros(), after)
+            units.snapshot(&state, &Vector2::zeros(), after)
         }
     };
-    let compression_end = ledger.first.map(compression);
+    let compression_end = restitution.first.map(compression);
     let last_compression_end =
-        if ledger.compressions == 1 { compression_end } else { ledger.latest.map(compression) };
+        if restitution.compressions == 1 { compression_end } else { restitution.latest.map(compression) };
     Phases {
         compression_end,
         last_compression_end,
-        slip_end: slip_end.map(|state| units.moment(&state, &Vector2::zeros(), after)),
+        slip_end: slip_end.map(|state| units.snapshot(&state, &Vector2::zeros(), after)),
     }
 }
 

@@ -2,15 +2,15 @@
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 
-use crate::{ImpactDerivative, Obstacle, Scalar};
+use crate::{ImpactDerivative, NonSmoothness, Scalar};
 
 /// A saltation matrix, and why it is only a one-sided derivative, if it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Saltation<T, const N: usize> {
     /// To first order, deviation of the state after = matrix * deviation before, at the same time.
     pub matrix: SMatrix<T, N, N>,
-    /// What stands against a derivative of the outcome.
-    pub obstacle: Option<Obstacle>,
+    /// Why the outcome is not differentiable, if it is not.
+    pub non_smoothness: Option<NonSmoothness>,
 }
 
 /// Derivative of the speeds after a collision with respect to those before, at the same configuration: 1 + R (dI/dv) V.

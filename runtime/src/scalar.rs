@@ -45,7 +45,7 @@ pub(crate) trait Real:
 
     fn constant(value: f64) -> Self;
     /// The value without its derivatives.
-    fn plain(self) -> Self;
+    fn primal(self) -> Self;
     fn default_epsilon() -> Self;
     fn is_finite(&self) -> bool;
     fn abs(self) -> Self;
@@ -69,7 +69,7 @@ impl<T: RealField + Copy> Real for T {
         convert(value)
     }
     #[inline(always)]
-    fn plain(self) -> Self {
+    fn primal(self) -> Self {
         if T::refined() { convert(convert_unchecked::<T, f64>(self)) } else { self }
     }
     #[inline(always)]

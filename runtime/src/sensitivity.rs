@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use crate::{
     scalar::{Real, constant, larger, length},
-    solve::{Contact, Ledger, State},
+    solve::{Contact, Restitution, State},
 };
 
 /// How near is near: in |mu / mu_c - 1|, in v_n over the speed of approach, and in radians.
@@ -59,15 +59,15 @@ impl Sensitivity {
     pub(crate) fn ended<T: Real>(
         &mut self,
         contact: &Contact<T>,
-        ledger: &mut Ledger<T>,
+        restitution: &mut Restitution<T>,
         end: &State<T>,
         slides: Option<&Vector2<T>>,
     ) {
         let near = constant::<T>(NEAR);
-        ledger.turns.moved(end.velocity);
-        self.grazing = ledger.turns.nearest <= near;
+        restitution.grazing.moved(end.velocity);
+        self.grazing = restitution.grazing.nearest <= near;
         if let Some(velocity) = slides
-            && (ledger.law() == crate::Law::Newton || end.velocity <= near)
+            && (restitution.law() == crate::Law::Newton || end.velocity <= near)
         {
             let slip = length(velocity);
             // f < 0: the bodies are about to approach again.

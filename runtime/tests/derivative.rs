@@ -1,6 +1,6 @@
 //! The derivative of the outcome against central differences, and where it does not exist.
 
-use hodograph::{Law, Obstacle, ReducedMatrix, Surface, derivative, saltation, solve, speed_derivative};
+use hodograph::{Law, NonSmoothness, ReducedMatrix, Surface, derivative, saltation, solve, speed_derivative};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
@@ -81,7 +81,7 @@ fn agrees_with_central_differences() {
         ];
         let law = LAWS[n % 3];
         let (d, all) = exact(&x, law);
-        if d.obstacle.is_some() {
+        if d.non_smoothness.is_some() {
             continue;
         }
         for input in 0..11 {
@@ -104,7 +104,7 @@ fn straight_hodographs_bend() {
         for (mu, e, vt) in [(0.3, 0.6, 2.0), (0.9, 0.5, 0.3), (0.2, 0.7, 0.1)] {
             let x = [-1.0, vt, 0.0, 1.0, 0.3, 0.0, 1.7, 0.0, 0.8, mu, e];
             let (d, all) = exact(&x, law);
-            assert_eq!(d.obstacle, None);
+            assert_eq!(d.non_smoothness, None);
             for input in 0..11 {
                 let numeric = difference(&x, law, input).expect("one path");
                 let error = (numeric - all.column(input)).amax();
@@ -147,39 +147,41 @@ fn says_where_there_is_none() {
     for law in LAWS {
         let at = |mu: f64| {
             let surface = Surface { mu, e: 0.8, law };
-            derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.0), &surface).expect("solved").obstacle
+            derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.0), &surface)
+                .expect("solved")
+                .non_smoothness
         };
-        assert_eq!(at(critical), Some(Obstacle::CriticalFriction));
+        assert_eq!(at(critical), Some(NonSmoothness::CriticalFriction));
         assert_eq!([at(0.6), at(1.1), at(1.6)], [None; 3]);
     }
     let surface = Surface { mu: 0.5, e: 0.5, law: Law::Poisson };
     let still = derivative(&m, &Vector3::new(-1.0, 0.0, 0.0), &surface).expect("solved");
-    assert_eq!(still.obstacle, Some(Obstacle::NoSlip));
+    assert_eq!(still.non_smoothness, Some(NonSmoothness::NoSlip));
     // Slip that stops just when the collision ends: mu I_n2 = v_t.
     let m = ReducedMatrix::new(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
     let surface = Surface { mu: 0.5, e: 0.5, law: Law::Poisson };
     let last = derivative(&m, &Vector3::new(-1.0, 0.75, 0.0), &surface).expect("solved");
-    assert_eq!(last.obstacle, Some(Obstacle::PathChange));
+    assert_eq!(last.non_smoothness, Some(NonSmoothness::PathChange));
 }
 
 /// The example at mu = mu_s: slip along t stays along t, and v_n would feel it turn.
 #[test]
-fn straight_hodographs_are_an_obstacle() {
+fn straight_hodographs_are_not_smooth() {
     let m: ReducedMatrix<f64> =
         ReducedMatrix::new(0.22510385, -0.10936656, -0.12575887, 0.23598633, -0.11584858, 0.27021211);
     let surface = |law| Surface { mu: m.ns / m.ts, e: 0.8, law };
     for law in LAWS {
         let d = derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.0), &surface(law)).expect("solved");
-        assert_eq!(d.obstacle, Some(Obstacle::Straight), "{law:?}");
+        assert_eq!(d.non_smoothness, Some(NonSmoothness::Straight), "{law:?}");
         // A little to the side there is one again.
         let d = derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.01), &surface(law)).expect("solved");
-        assert_eq!(d.obstacle, None, "{law:?}");
+        assert_eq!(d.non_smoothness, None, "{law:?}");
     }
 }
 
 /// Where restitution ends just before the bodies approach again, or just after: the outcome jumps between the two.
 #[test]
-fn grazing_is_an_obstacle() {
+fn grazing_is_not_smooth() {
     let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);
     let v = Vector3::new(-0.22, -0.2, 1.0);
     for law in [Law::Poisson, Law::Stronge] {
@@ -194,12 +196,12 @@ fn grazing_is_an_obstacle() {
         assert!(jump > 1e-3 * at(once).impulse.norm(), "{law:?} {jump}");
         for e in [once, twice] {
             let d = derivative(&m, &v, &Surface { mu: 1.95, e, law }).expect("solved");
-            assert_eq!(d.obstacle, Some(Obstacle::Grazing), "{law:?}");
+            assert_eq!(d.non_smoothness, Some(NonSmoothness::Grazing), "{law:?}");
             assert!(d.impact.sensitivity.grazing);
         }
         for e in [once - 5e-3, twice + 0.1] {
             let d = derivative(&m, &v, &Surface { mu: 1.95, e, law }).expect("solved");
-            assert_eq!(d.obstacle, None, "{law:?}");
+            assert_eq!(d.non_smoothness, None, "{law:?}");
         }
     }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::{reference_cases, two_sleds};
 use hodograph::{
-    Characteristics, Hodograph, Law, Moment, Motion, Path, ReducedMatrix, Surface, phi_bar, rates, solve,
+    Characteristics, Hodograph, Law, Motion, Path, ReducedMatrix, Snapshot, Surface, phi_bar, rates, solve,
 };
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
@@ -12,7 +12,7 @@ use proptest::prelude::*;
 const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
 
 /// What must agree in two moments, over the size of the collision.
-fn apart(a: &Moment<f64>, b: &Moment<f64>, whole: &Hodograph<f64>, v: &Vector3<f64>) -> f64 {
+fn apart(a: &Snapshot<f64>, b: &Snapshot<f64>, whole: &Hodograph<f64>, v: &Vector3<f64>) -> f64 {
     let (impulse, velocity) = (whole.impact().impulse.amax(), whole.impact().velocity.amax() + v.amax());
     ((a.impulse - b.impulse).amax() / impulse)
         .max((a.velocity - b.velocity).amax() / velocity)
@@ -125,7 +125,7 @@ fn the_course_obeys_the_differential_equations() {
                 if before.motion != after.motion {
                     continue;
                 }
-                let by = |of: fn(&Moment<f64>) -> f64| (of(&after) - of(&before)) / (2.0 * step);
+                let by = |of: fn(&Snapshot<f64>) -> f64| (of(&after) - of(&before)) / (2.0 * step);
                 let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "mu {mu} {law:?} {i}: {a} {b}");
                 near(by(|p| p.normal_work), point.velocity.x);
                 let left = m.apply(&point.impulse) - (point.velocity - v);

@@ -1,6 +1,6 @@
 //! Derivatives of collisions and saltation matrices of generated modules, against differences of what the modules compute.
 
-use hodograph::{Law, Obstacle, Surface};
+use hodograph::{Law, NonSmoothness, Surface};
 use nalgebra::{SMatrix, SVector};
 
 const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
@@ -20,7 +20,7 @@ macro_rules! derivative {
                 let (q, u): (_, Speeds<f64>) = ($q, $u);
                 let surface = Surface { mu, e: 0.6, law };
                 let exact = machine.$derivative(&q, &u, &surface).expect("an outcome");
-                assert_eq!(exact.outcome.obstacle, None);
+                assert_eq!(exact.outcome.non_smoothness, None);
                 let after = |u: [f64; $p], surface: &Surface<f64>| {
                     let hit = machine.$collide(&q, &u.into(), surface).expect("an outcome");
                     SVector::<f64, $p>::from(<[f64; $p]>::from(hit.speeds))
@@ -133,7 +133,7 @@ macro_rules! saltation {
             for mu in [0.15, 0.7] {
                 let surface = Surface { mu, e: 0.6, law };
                 let exact = machine.$saltation(&q, &u, &surface).expect("an outcome");
-                assert_eq!(exact.obstacle, None);
+                assert_eq!(exact.non_smoothness, None);
                 let through = |x: SVector<f64, N>| {
                     let gap = |t: f64| machine.$gap(&split(&flow(&x, t)).0).expect("regular") - surface_gap;
                     let (mut t0, mut t1) = (0.0, 1e-4);
@@ -172,16 +172,16 @@ fn saltation_of_generated_modules() {
 
 /// A collision without slip has no derivative, and the module says so.
 #[test]
-fn modules_name_the_obstacle() {
+fn modules_name_the_non_smoothness() {
     use hodograph_models::free_box_corner::{Coordinates, FreeBoxCorner, Speeds};
     let machine = FreeBoxCorner::<f64>::default();
     let q = Coordinates::default();
     let u = Speeds { u1: 0.0, u2: 0.0, u3: -1.0, u4: 0.0, u5: 0.0, u6: 0.0 };
     let surface = Surface { mu: 0.4, e: 0.5, law: Law::Poisson };
     let derivative = machine.collide_corner_derivative(&q, &u, &surface).expect("an outcome");
-    assert_eq!(derivative.outcome.obstacle, Some(Obstacle::NoSlip));
+    assert_eq!(derivative.outcome.non_smoothness, Some(NonSmoothness::NoSlip));
     let saltation = machine.saltation_corner(&q, &u, &surface).expect("an outcome");
-    assert_eq!(saltation.obstacle, Some(Obstacle::NoSlip));
+    assert_eq!(saltation.non_smoothness, Some(NonSmoothness::NoSlip));
     // Bodies that part do not collide.
     let parting = machine.saltation_corner(&q, &Speeds { u3: 1.0, ..u }, &surface);
     assert_eq!(parting.expect_err("no collision").kind(), "not_approaching");

@@ -51,7 +51,7 @@ impl Emitter<'_> {
                 /// speeds after by the coefficient of restitution
                 pub by_restitution: #krate::nalgebra::SVector<T, #p>,
                 /// impulse and velocity of separation by velocity of approach, reduced matrix, mu and e, all along the contact basis (normal,
-                /// first, second); `outcome.obstacle` names why there is no derivative, if there is none
+                /// first, second); `outcome.non_smoothness` names why there is no derivative, if there is none
                 pub outcome: #krate::ImpactDerivative<T>,
             }
         }
@@ -86,7 +86,7 @@ impl Emitter<'_> {
         let name = ident(&format!("{}_derivative", self.contact_method("collide", contact)));
         let docs = docs(&format!(
             "Solves the collision at {} and differentiates its outcome.\n\n# Errors\n\n\
-             Where the state is singular, or the collision has no outcome. Where the outcome has no derivative, `outcome.obstacle` says why.",
+             Where the state is singular, or the collision has no outcome. Where the outcome has no derivative, `outcome.non_smoothness` says why.",
             self.contact_words(contact)
         ));
         let mut arguments = self.arguments(&quantities);
@@ -179,7 +179,7 @@ impl Emitter<'_> {
         let docs = docs(&format!(
             "The saltation matrix of the collision at {}: to first order, deviation after = matrix * deviation before, of {} (in this order) \
              at the same time, for trajectories that meet the surface a little earlier or later.\n\n# Errors\n\n\
-             Where the state is singular, or the collision has no outcome. Where there is no derivative, `obstacle` says why.",
+             Where the state is singular, or the collision has no outcome. Where there is no derivative, `non_smoothness` says why.",
             self.contact_words(contact),
             states.join(", ")
         ));

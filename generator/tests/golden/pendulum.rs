@@ -365,7 +365,7 @@ pub mod pendulum {
         /// speeds after by the coefficient of restitution
         pub by_restitution: ::hodograph::nalgebra::SVector<T, 1>,
         /// impulse and velocity of separation by velocity of approach, reduced matrix, mu and e, all along the contact basis (normal,
-        /// first, second); `outcome.obstacle` names why there is no derivative, if there is none
+        /// first, second); `outcome.non_smoothness` names why there is no derivative, if there is none
         pub outcome: ::hodograph::ImpactDerivative<T>,
     }
     impl<T: ::hodograph::Scalar> Pendulum<T> {

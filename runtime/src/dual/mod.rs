@@ -47,7 +47,7 @@ impl<T: Scalar, const N: usize> Real for Dual<T, N> {
         Self::fixed(nalgebra::convert(value))
     }
     #[inline]
-    fn plain(self) -> Self {
+    fn primal(self) -> Self {
         Self::fixed(self.value)
     }
     #[inline]

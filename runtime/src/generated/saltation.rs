@@ -70,7 +70,7 @@ pub fn salted<T: Scalar, const N: usize>(
     outcome: &ImpactDerivative<T>,
 ) -> Result<Saltation<T, N>, CollisionError<T>> {
     match saltation(reset, before, after, gap) {
-        Some(matrix) => Ok(Saltation { matrix, obstacle: outcome.obstacle }),
+        Some(matrix) => Ok(Saltation { matrix, non_smoothness: outcome.non_smoothness }),
         None => Err(ImpactError::NotApproaching { normal_velocity: gap.dot(before) }.into()),
     }
 }

@@ -3,7 +3,9 @@
 use nalgebra::{Vector2, Vector3};
 
 use super::{MethodError, law::Ending};
-use crate::{Impact, Moment, Motion, Path, Phases, ReducedMatrix, Sensitivity, Surface, phases::after_slip};
+use crate::{
+    Impact, Motion, Path, Phases, ReducedMatrix, Sensitivity, Snapshot, Surface, phases::after_slip,
+};
 
 /// Places in a [`State`].
 pub(super) const PHI: usize = 0;
@@ -170,9 +172,9 @@ impl Problem {
         let after = after_slip(path);
         let compression = |state: State| {
             let slides = ending.slip_end.is_none_or(|end| state[I_N] < end[I_N]) && self.slip > 0.0;
-            self.moment(&state, if slides { Motion::Sliding } else { after })
+            self.snapshot(&state, if slides { Motion::Sliding } else { after })
         };
-        let Moment { impulse, velocity, contact_work, normal_work, .. } = self.moment(end, after);
+        let Snapshot { impulse, velocity, contact_work, normal_work, .. } = self.snapshot(end, after);
         Impact {
             impulse,
             velocity,
@@ -184,7 +186,7 @@ impl Problem {
                 compression_end: ending.first.map(compression),
                 last_compression_end: ending.latest.map(compression),
                 slip_end: ending.slip_end.map(|state| {
-                    let mut moment = self.moment(&state, after);
+                    let mut moment = self.snapshot(&state, after);
                     (moment.velocity.y, moment.velocity.z) = (0.0, 0.0);
                     moment
                 }),
@@ -193,10 +195,10 @@ impl Problem {
         }
     }
 
-    fn moment(&self, at: &State, motion: Motion) -> Moment<f64> {
+    fn snapshot(&self, at: &State, motion: Motion) -> Snapshot<f64> {
         let (sin, cos) = at[PHI].sin_cos();
         let scale = self.speed / self.nn;
-        Moment {
+        Snapshot {
             impulse: Vector3::new(at[I_N], at[I_T], at[I_S]) * scale,
             velocity: Vector3::new(at[V_N], at[S] * cos, at[S] * sin) * self.speed,
             contact_work: at[WORK] * scale * self.speed,

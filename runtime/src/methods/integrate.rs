@@ -278,7 +278,7 @@ impl Walk<'_> {
     }
 }
 
-/// The place in (0, width] where a height rises through zero, and the state there: Newton's method inside a bracket.
+/// The point in (0, width] where a height rises through zero, and the state there: Newton's method inside a bracket.
 fn locate(
     state: impl Fn(f64) -> State,
     (from, width): (&State, f64),

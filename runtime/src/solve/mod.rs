@@ -1,25 +1,24 @@
 //! The exact solver: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
 
-mod bend;
-mod fixed;
-mod flow;
+mod event;
+mod event_location;
+mod gauss16;
+mod gauss4;
+mod grazing;
+mod invariant_directions;
 mod lanes;
-mod ledger;
-mod nodes;
-mod panel;
-mod search;
-mod short;
+mod perturbation;
+mod restitution;
 mod sliding;
-mod sought;
-mod tail;
+mod sliding_arc;
+mod stop_series;
 mod terminal;
-mod turns;
-mod zero;
 
 use nalgebra::{Vector2, Vector3};
 
 pub(crate) use self::{
-    ledger::{Ledger, Line, State},
+    event::Event,
+    restitution::{LinearArc, Restitution, State},
     sliding::{Slide, slide, straight},
     terminal::{Contact, Terminal},
 };
@@ -53,17 +52,17 @@ pub(crate) fn solve_real<T: Real>(
     surface: &Surface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     check(matrix, approach, surface)?;
-    collide(matrix, approach, surface, Ledger::new(surface.law, surface.e), slide)
+    collide(matrix, approach, surface, Restitution::new(surface.law, surface.e), slide)
 }
 
-/// Solves a collision whose input is checked, with a new ledger and any way of following the sliding arc.
+/// Solves a collision whose input is checked, with a new restitution and any way of following the sliding arc.
 #[inline(always)]
 pub(crate) fn collide<T: Real>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
     surface: &Surface<T>,
-    mut ledger: Ledger<T>,
-    slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Ledger<T>) -> Slide<T>,
+    mut restitution: Restitution<T>,
+    slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Restitution<T>) -> Slide<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     let speed = -approach.x;
     let contact = contact(matrix, surface.mu);
@@ -75,23 +74,23 @@ pub(crate) fn collide<T: Real>(
     let mut ended = None;
     let (mut stops, mut endless) = (false, false);
     if slips {
-        match slide(&contact, tangential, slip, &mut ledger) {
+        match slide(&contact, tangential, slip, &mut restitution) {
             Slide::Ended(end, velocity) => ended = Some((end, velocity, Path::Sliding)),
             Slide::Stopped(stopped) => {
-                ledger.turns.moved(stopped.velocity);
+                restitution.grazing.moved(stopped.velocity);
                 (state, stops) = (stopped, true);
             }
             Slide::Endless(stopped) => (state, endless) = (stopped, true),
         }
     }
     if ended.is_none() && !endless {
-        ended = after_slip(&contact, &mut state, slips, &mut ledger, &mut sensitivity);
+        ended = after_slip(&contact, &mut state, slips, &mut restitution, &mut sensitivity);
     }
     let Some((end, velocity, path)) = ended else {
         return Err(ImpactError::Wedged { normal_velocity: state.velocity * speed, law: surface.law });
     };
     let slides = path == Path::Sliding && !stops;
-    sensitivity.ended(&contact, &mut ledger, &end, slides.then_some(&velocity));
+    sensitivity.ended(&contact, &mut restitution, &end, slides.then_some(&velocity));
     let slip_end = stops.then_some(state);
     let scale = speed / matrix.nn;
     let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
@@ -114,8 +113,8 @@ pub(crate) fn collide<T: Real>(
         contact_work: impulse.dot(&(separation + approach)) * constant(0.5),
         normal_work,
         path,
-        compressions: ledger.compressions,
-        phases: phases(&Units { approach, scale, speed, contact }, &ledger, slip_end, path),
+        compressions: restitution.compressions,
+        phases: phases(&Units { approach, scale, speed, contact }, &restitution, slip_end, path),
         sensitivity,
     })
 }
@@ -133,7 +132,7 @@ fn after_slip<T: Real>(
     contact: &Contact<T>,
     state: &mut State<T>,
     slips: bool,
-    ledger: &mut Ledger<T>,
+    restitution: &mut Restitution<T>,
     sensitivity: &mut Sensitivity,
 ) -> Option<(State<T>, Vector2<T>, Path)> {
     let eps = T::default_epsilon();
@@ -141,11 +140,11 @@ fn after_slip<T: Real>(
     // Where slip and normal velocity stop together, rounding must not tell them apart: most of all where little moves the contact afterwards,
     // or where compression has just ended.
     let scale = T::one() + state.normal * (T::one() + contact.mu * length(&contact.b));
-    let again = ledger.compressions > 0 && state.velocity < T::zero();
+    let again = restitution.compressions > 0 && state.velocity < T::zero();
     let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
     if slips && state.velocity.abs() <= few * eps * scale {
         state.velocity = T::zero();
-        if ledger.compressions == 0 && ledger.compressed(state) {
+        if restitution.compressions == 0 && restitution.compressed(state) {
             return Some((*state, Vector2::zeros(), Path::Sliding));
         }
     }
@@ -156,8 +155,8 @@ fn after_slip<T: Real>(
         (false, true) => Path::Sticking,
         (false, false) => Path::Renewal,
     };
-    match ledger.follow_line(state, rate, &push, None) {
-        Line::Ended { impulse, velocity, work } => {
+    match restitution.follow_linear(state, rate, &push, None) {
+        LinearArc::Ended { impulse, velocity, work } => {
             let end = State {
                 normal: state.normal + impulse,
                 tangential: state.tangential - push * impulse,

@@ -2,11 +2,11 @@
 
 use nalgebra::Vector2;
 
-use crate::{scalar::Real as Scalar, scalar::constant, scalar::larger, scalar::length};
+use crate::{scalar::Real, scalar::constant, scalar::larger, scalar::length};
 
 /// The tangential part of a contact, in units where m_nn = 1: b = (m_nt, m_ns) and T.
 #[derive(Clone, Copy)]
-pub(crate) struct Contact<T: Scalar> {
+pub(crate) struct Contact<T: Real> {
     pub mu: T,
     pub b: Vector2<T>,
     pub tt: T,
@@ -14,7 +14,7 @@ pub(crate) struct Contact<T: Scalar> {
     pub ss: T,
 }
 
-impl<T: Scalar> Contact<T> {
+impl<T: Real> Contact<T> {
     /// b - mu T d: the rate of the tangential velocity while sliding along d.
     #[inline]
     pub fn slip_rate(&self, d: &Vector2<T>) -> Vector2<T> {
@@ -120,7 +120,7 @@ impl<T: Scalar> Contact<T> {
 
 /// What the contact does once it has stopped slipping, per I_n.
 #[derive(Clone, Copy)]
-pub(crate) struct Terminal<T: Scalar> {
+pub(crate) struct Terminal<T: Real> {
     pub sticks: bool,
     /// The opposite of the tangential impulse.
     pub push: Vector2<T>,
@@ -131,7 +131,7 @@ pub(crate) struct Terminal<T: Scalar> {
     pub mu_c: T,
 }
 
-impl<T: Scalar> Terminal<T> {
+impl<T: Real> Terminal<T> {
     /// Sticking (45) if mu >= mu_c, else renewal (46).
     #[inline]
     pub fn of(contact: &Contact<T>) -> Self {

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Ledger, Slide, State, straight},
+    solve::{Contact, Restitution, Slide, State, straight},
 };
 
 /// (v_2 / v_1)^2 up to which slip is expanded about the direction of v_1.
@@ -30,9 +30,14 @@ impl Shape for Balanced {
     }
 
     #[inline]
-    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T> {
         let (axis, values) = principal(c);
-        decay(c, from, speed, axis, values, ledger)
+        decay(c, from, speed, axis, values, restitution)
     }
 }
 
@@ -64,17 +69,20 @@ pub(super) fn decay<T: Real>(
     speed: T,
     axis: Vector2<T>,
     [greater, lesser]: [T; 2],
-    ledger: &mut Ledger<T>,
+    restitution: &mut Restitution<T>,
 ) -> Slide<T> {
     let (first, second) = (axis.dot(&from), axis.x * from.y - axis.y * from.x);
     let (fast, slow) = (c.mu * greater, c.mu * lesser);
     let difference = fast - slow;
     let turns = (difference * first * second).abs() > T::default_epsilon() * fast * speed * speed;
     if !turns || stays(first, second) {
-        return straight(c, from / speed, speed, State::approach(), ledger);
+        return straight(c, from / speed, speed, State::approach(), restitution);
     }
     let begin = State::approach();
-    follow(Decay { mu: c.mu, axis, begin, start: [first, second], rates: [fast, slow], difference }, ledger)
+    follow(
+        Decay { mu: c.mu, axis, begin, start: [first, second], rates: [fast, slow], difference },
+        restitution,
+    )
 }
 
 /// The arc; xi = (1 - e^(-nu sigma)) / nu, in which I_n soon becomes linear.
@@ -120,7 +128,7 @@ impl<T: Real> Decay<T> {
             return self.far(first, second, sigma);
         }
         // Where the one expansion gives way to the other: nothing depends on it.
-        let change = ((near / square).ln() / (self.difference + self.difference)).plain();
+        let change = ((near / square).ln() / (self.difference + self.difference)).primal();
         match sigma {
             Some(sigma) if sigma <= change => self.near(sigma),
             _ => {

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use crate::{
     Law,
     scalar::{Real, constant, length},
-    solve::{Ledger, Slide, State},
+    solve::{Event, Restitution, Slide, State},
 };
 
 /// How often a step that leads nowhere yet is doubled.
@@ -50,39 +50,12 @@ enum Piece<T: Real> {
     Compressed(Point<T>),
 }
 
-/// What a search looks for: a quantity less its target.
-#[derive(Clone, Copy)]
-enum Sought<T> {
-    Velocity(T),
-    Impulse(T),
-    Work(T),
-}
-
-impl<T: Real> Sought<T> {
-    fn of(&self, point: &Point<T>) -> T {
-        match *self {
-            Self::Velocity(target) => point.state.velocity - target,
-            Self::Impulse(target) => point.state.normal - target,
-            Self::Work(target) => point.since - target,
-        }
-    }
-
-    /// Its derivative by xi.
-    fn slope(&self, point: &Point<T>) -> T {
-        match self {
-            Self::Velocity(_) => point.rate * point.slope,
-            Self::Impulse(_) => point.rate,
-            Self::Work(_) => point.rate * point.state.velocity,
-        }
-    }
-}
-
 /// Follows a course until the law ends the collision or slip stops.
-pub(super) fn follow<T: Real>(mut course: impl Course<T>, ledger: &mut Ledger<T>) -> Slide<T> {
+pub(super) fn follow<T: Real>(mut course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
     let mut state = State::approach();
     // f changes sign once at most.
     for _ in 0..3 {
-        match along(&course, ledger) {
+        match along(&course, restitution) {
             Followed::Over(slide) => return slide,
             Followed::Compressed(point) => {
                 course = course.from(&point);
@@ -100,27 +73,27 @@ enum Followed<T: Real> {
     Compressed(Point<T>),
 }
 
-fn along<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -> Followed<T> {
+fn along<T: Real>(course: &impl Course<T>, restitution: &mut Restitution<T>) -> Followed<T> {
     let mut from = (T::zero(), course.at(T::zero()));
     let stop = course.stop();
     let turn = course.turn().filter(|xi| *xi > T::zero() && stop.is_none_or(|(end, ..)| *xi < end));
     let ended = |end: Point<T>| Followed::Over(Slide::Ended(end.state, end.slip));
     if let Some(xi) = turn {
         let to = (xi, course.at(xi));
-        match piece(course, ledger, from, (to.0, to.1.state, to.1.since)) {
+        match piece(course, restitution, from, (to.0, to.1.state, to.1.since)) {
             Piece::Ended(end) => return ended(end),
             Piece::Compressed(point) => return Followed::Compressed(point),
             Piece::Passed => {}
         }
-        ledger.turns.moved(to.1.state.velocity);
+        restitution.grazing.moved(to.1.state.velocity);
         from = to;
     }
     if let Some((xi, state, since)) = stop {
-        return match piece(course, ledger, from, (xi, state, since)) {
+        return match piece(course, restitution, from, (xi, state, since)) {
             Piece::Ended(end) => ended(end),
             Piece::Compressed(point) => Followed::Compressed(point),
             Piece::Passed => {
-                ledger.since(&state, since);
+                restitution.since(&state, since);
                 Followed::Over(Slide::Stopped(state))
             }
         };
@@ -133,7 +106,7 @@ fn along<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -> Followed<T
         if !to.1.state.normal.is_finite() {
             break;
         }
-        match piece(course, ledger, from, (xi, to.1.state, to.1.since)) {
+        match piece(course, restitution, from, (xi, to.1.state, to.1.since)) {
             Piece::Ended(end) => return ended(end),
             Piece::Compressed(point) => return Followed::Compressed(point),
             Piece::Passed => {}
@@ -147,33 +120,33 @@ fn along<T: Real>(course: &impl Course<T>, ledger: &mut Ledger<T>) -> Followed<T
 /// What the law does between two points, between which v_n is monotone.
 fn piece<T: Real>(
     course: &impl Course<T>,
-    ledger: &mut Ledger<T>,
+    restitution: &mut Restitution<T>,
     from: (T, Point<T>),
     to: (T, State<T>, T),
 ) -> Piece<T> {
     let zero = T::zero();
-    let law = ledger.law();
+    let law = restitution.law();
     let (mut from, mut to) = (from, to);
     // Stronge's law waits for work since compression ended, which may be too little to be seen in the whole.
-    let works = law == Law::Stronge && ledger.compressions > 0 && ledger.stop.is_none();
+    let works = law == Law::Stronge && restitution.compressions > 0 && restitution.stop.is_none();
     let passes = if works && from.1.state.velocity >= zero {
-        to.1.velocity >= zero && to.2 < ledger.wanted
+        to.1.velocity >= zero && to.2 < restitution.wanted
     } else {
-        ledger.passes(&from.1.state, &to.1)
+        restitution.passes(&from.1.state, &to.1)
     };
     if passes {
         return Piece::Passed;
     }
-    if let Some(stop) = ledger.stop {
-        return Piece::Ended(find(course, &Sought::Impulse(stop), T::one(), &from, to.0).1);
+    if let Some(stop) = restitution.stop {
+        return Piece::Ended(find(course, &Event::Impulse(stop), T::one(), &from, to.0).1);
     }
     if from.1.state.velocity < zero {
-        if law == Law::Newton && ledger.target > zero && !ledger.thorough {
+        if law == Law::Newton && restitution.target > zero && !restitution.thorough {
             // Newton's law need not know where compression ends.
-            ledger.compressed_somewhere();
+            restitution.compressed_somewhere();
         } else {
-            from = find(course, &Sought::Velocity(zero), T::one(), &from, to.0);
-            if ledger.compressed(&from.1.state) {
+            from = find(course, &Event::Velocity(zero), T::one(), &from, to.0);
+            if restitution.compressed(&from.1.state) {
                 return Piece::Ended(from.1);
             }
             from.1.state.velocity = zero;
@@ -182,56 +155,52 @@ fn piece<T: Real>(
             }
         }
     } else if to.1.velocity < zero {
-        let (xi, point) = find(course, &Sought::Velocity(zero), -T::one(), &from, to.0);
+        let (xi, point) = find(course, &Event::Velocity(zero), -T::one(), &from, to.0);
         to = (xi, point.state, point.since);
-        ledger.falls(&to.1);
+        restitution.falls(&to.1);
     }
-    let target = ledger.target;
-    let reached = if works { to.2 >= ledger.wanted } else { ledger.watched(&to.1) >= target };
-    if !reached || (law == Law::Newton && ledger.watched(&from.1.state) >= target) {
+    let target = restitution.target;
+    let reached = if works { to.2 >= restitution.wanted } else { restitution.watched(&to.1) >= target };
+    if !reached || (law == Law::Newton && restitution.watched(&from.1.state) >= target) {
         return Piece::Passed;
     }
-    let sought = match law {
-        Law::Newton => Sought::Velocity(target),
-        Law::Poisson => Sought::Impulse(target),
-        Law::Stronge => Sought::Work(ledger.wanted),
-    };
-    Piece::Ended(find(course, &sought, T::one(), &from, to.0).1)
+    Piece::Ended(find(course, &Event::end(restitution), T::one(), &from, to.0).1)
 }
 
-/// The point between `from` and `hi` where what is sought vanishes, rising (`sign` = 1) or falling (-1): Newton's method inside a bracket.
+/// The event between `from` and `hi`, where its residual rises (`sign` = 1) or falls (-1) through zero: Newton's method inside a bracket.
 fn find<T: Real>(
     course: &impl Course<T>,
-    sought: &Sought<T>,
+    event: &Event<T>,
     sign: T,
     (from, begin): &(T, Point<T>),
     hi: T,
 ) -> (T, Point<T>) {
     let half = constant::<T>(0.5);
     let (mut lo, mut hi) = (*from, hi);
-    let y = sought.of(begin);
-    let slope = sought.slope(begin);
+    let residual = |point: &Point<T>| event.residual(&point.state, point.since);
+    let slope = |point: &Point<T>| point.rate * event.by_impulse(point.state.velocity, point.slope);
+    let y = residual(begin);
     // Work begins to grow like a square after compression.
     let v = begin.state.velocity;
-    let guess = match sought {
-        Sought::Work(_) => {
+    let guess = match event {
+        Event::Work(_) => {
             let square = v * v - (y + y) * begin.slope;
             let after = if square > T::zero() { square.sqrt() } else { T::zero() };
             lo - (y + y) / ((v + after) * begin.rate)
         }
-        _ => lo - y / slope,
+        _ => lo - y / slope(begin),
     };
     let mut xi = if guess > lo && guess < hi { guess } else { (lo + hi) * half };
     let small = constant::<T>(4.0) * T::default_epsilon();
     for _ in 0..STEPS {
         let point = course.at(xi);
-        let y = sought.of(&point);
+        let y = residual(&point);
         if y * sign < T::zero() {
             lo = xi;
         } else {
             hi = xi;
         }
-        let step = -y / sought.slope(&point);
+        let step = -y / slope(&point);
         let next = xi + step;
         let done = step.abs() <= small * xi;
         xi = if next >= lo && next <= hi { next } else { (lo + hi) * half };
@@ -241,9 +210,9 @@ fn find<T: Real>(
     }
     if T::refined() {
         // A derivative is one step of Newton's behind its value.
-        let plain = xi.plain();
+        let plain = xi.primal();
         let point = course.at(plain);
-        xi = plain - sought.of(&point) / sought.slope(&point);
+        xi = plain - residual(&point) / slope(&point);
     }
     (xi, course.at(xi))
 }

@@ -6,7 +6,7 @@ use super::{Diagonal, Shape, balanced::decay};
 use crate::{
     ReducedMatrix, Surface,
     scalar::Real,
-    solve::{Contact, Ledger, Slide},
+    solve::{Contact, Restitution, Slide},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -17,12 +17,17 @@ impl Shape for Diagonal {
     }
 
     #[inline]
-    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T> {
         let (one, zero) = (T::one(), T::zero());
         if c.tt >= c.ss {
-            decay(c, from, speed, Vector2::new(one, zero), [c.tt, c.ss], ledger)
+            decay(c, from, speed, Vector2::new(one, zero), [c.tt, c.ss], restitution)
         } else {
-            decay(c, from, speed, Vector2::new(zero, one), [c.ss, c.tt], ledger)
+            decay(c, from, speed, Vector2::new(zero, one), [c.ss, c.tt], restitution)
         }
     }
 }

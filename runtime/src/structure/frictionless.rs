@@ -6,7 +6,7 @@ use super::{Frictionless, Shape};
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Ledger, Line, Slide, State, straight},
+    solve::{Contact, LinearArc, Restitution, Slide, State, straight},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -17,16 +17,21 @@ impl Shape for Frictionless {
     }
 
     #[inline(always)]
-    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T> {
         let d = from / speed;
         let across = c.b.y * d.x - c.b.x * d.y;
         // Slip can only pass through zero where it is along b.
         if across.abs() <= constant::<T>(0.25) * T::default_epsilon() * length(&c.b) {
-            return straight(c, d, speed, State::approach(), ledger);
+            return straight(c, d, speed, State::approach(), restitution);
         }
         let start = State::approach();
-        match ledger.follow_line(&start, T::one(), &Vector2::zeros(), None) {
-            Line::Ended { impulse, velocity, work } => Slide::Ended(
+        match restitution.follow_linear(&start, T::one(), &Vector2::zeros(), None) {
+            LinearArc::Ended { impulse, velocity, work } => Slide::Ended(
                 State { normal: impulse, tangential: Vector2::zeros(), velocity, work },
                 from + c.b * impulse,
             ),

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Ledger, Slide, State, straight},
+    solve::{Contact, Restitution, Slide, State, straight},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -24,13 +24,18 @@ impl Shape for Isotropic {
     }
 
     #[inline]
-    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T> {
         let d = from / speed;
         let beta = length(&c.b);
         let across = d.x * c.b.y - d.y * c.b.x;
         let noise = constant::<T>(4.0) * T::default_epsilon() * (beta + c.mu * (c.tt + c.ss));
         if across.abs() <= noise {
-            return straight(c, d, speed, State::approach(), ledger);
+            return straight(c, d, speed, State::approach(), restitution);
         }
         let axis = c.b / beta;
         let kappa = c.mu * c.tt;
@@ -45,7 +50,7 @@ impl Shape for Isotropic {
             sizes,
             gains: [T::one() - c.mu * beta, T::one() + c.mu * beta],
         };
-        follow(arc, ledger)
+        follow(arc, restitution)
     }
 }
 
@@ -141,7 +146,7 @@ impl<T: Real> Course<T> for Arc<T> {
         let [p, m] = self.rates;
         let [size_p, size_m] = self.sizes;
         let ratio = -b * size_m / (a * size_p);
-        (a < T::zero() && ratio > T::one()).then(|| decayed(p, ratio.plain().ln() / (m - p)))
+        (a < T::zero() && ratio > T::one()).then(|| decayed(p, ratio.primal().ln() / (m - p)))
     }
 }
 

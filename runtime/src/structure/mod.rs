@@ -21,7 +21,7 @@ pub(crate) use self::implementation::Shape;
 use crate::{
     Impact, ImpactError, ReducedMatrix, Scalar, Surface,
     scalar::Real,
-    solve::{Contact, Ledger, Slide, check, collide, slide},
+    solve::{Contact, Restitution, Slide, check, collide, slide},
 };
 
 /// A structure of the reduced matrix and the approach: one of the marker types of this module.
@@ -39,8 +39,13 @@ mod implementation {
         /// Follows the sliding arc.
         #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
         #[inline(always)]
-        fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
-            slide(c, from, speed, ledger)
+        fn slide<T: Real>(
+            c: &Contact<T>,
+            from: Vector2<T>,
+            speed: T,
+            restitution: &mut Restitution<T>,
+        ) -> Slide<T> {
+            slide(c, from, speed, restitution)
         }
     }
 }
@@ -91,5 +96,5 @@ pub fn solve_structured<S: Structure, T: Scalar>(
     let (mut matrix, mut approach, mut surface) = (*matrix, *approach, *surface);
     S::impose(&mut matrix, &mut approach, &mut surface);
     check(&matrix, &approach, &surface)?;
-    collide(&matrix, &approach, &surface, Ledger::new(surface.law, surface.e), S::slide)
+    collide(&matrix, &approach, &surface, Restitution::new(surface.law, surface.e), S::slide)
 }

@@ -6,7 +6,7 @@ use super::{Planar, Shape};
 use crate::{
     ReducedMatrix, Surface,
     scalar::Real,
-    solve::{Contact, Ledger, Slide, State, straight},
+    solve::{Contact, Restitution, Slide, State, straight},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -17,7 +17,12 @@ impl Shape for Planar {
     }
 
     #[inline(always)]
-    fn slide<T: Real>(c: &Contact<T>, from: Vector2<T>, speed: T, ledger: &mut Ledger<T>) -> Slide<T> {
-        straight(c, from / speed, speed, State::approach(), ledger)
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T> {
+        straight(c, from / speed, speed, State::approach(), restitution)
     }
 }

@@ -20,9 +20,9 @@ impl Moment {
     }
 }
 
-impl From<hodograph::Moment<f64>> for Moment {
-    fn from(moment: hodograph::Moment<f64>) -> Self {
-        Moment { impulse: moment.impulse.x, velocity: moment.velocity.into() }
+impl From<hodograph::Snapshot<f64>> for Moment {
+    fn from(snapshot: hodograph::Snapshot<f64>) -> Self {
+        Moment { impulse: snapshot.impulse.x, velocity: snapshot.velocity.into() }
     }
 }
 

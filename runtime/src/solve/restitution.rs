@@ -1,16 +1,16 @@
-//! What a collision has accumulated, and when a law ends it.
+//! The three laws of restitution: where each ends the collision, in units where m_nn = 1 and v_n1 = -1.
 
 use nalgebra::Vector2;
 
-use super::{terminal::Contact, turns::Turns};
-use crate::{Law, scalar::Real as Scalar, scalar::constant, scalar::larger};
+use super::{grazing::Grazing, terminal::Contact};
+use crate::{Law, scalar::Real, scalar::constant, scalar::larger};
 
-/// Slip over |v_n1| (times mu if that is above one) beyond which the work would lose digits in the balance of energy.
+/// Slip over |v_n1| (times mu if that is above one) beyond which the balance of energy would lose digits of the work.
 const FAST: f64 = 32.0;
 
-/// The quantities that grow along a collision, in units where m_nn = 1 and v_n1 = -1.
+/// Impulses, normal velocity and normal work at one point of a collision.
 #[derive(Clone, Copy)]
-pub(crate) struct State<T: Scalar> {
+pub(crate) struct State<T: Real> {
     /// Normal impulse I_n.
     pub normal: T,
     /// Tangential impulse (I_t, I_s).
@@ -21,7 +21,7 @@ pub(crate) struct State<T: Scalar> {
     pub work: T,
 }
 
-impl<T: Scalar> State<T> {
+impl<T: Real> State<T> {
     #[inline]
     pub fn approach() -> Self {
         Self { normal: T::zero(), tangential: Vector2::zeros(), velocity: -T::one(), work: T::zero() }
@@ -30,30 +30,31 @@ impl<T: Scalar> State<T> {
 
 /// The law, and where it ends restitution. Compression ends at each upward zero of v_n.
 #[derive(Clone, Copy)]
-pub(crate) struct Ledger<T: Scalar> {
+pub(crate) struct Restitution<T: Real> {
     law: Law,
     e: T,
     /// v_n, I_n or the normal work at which restitution ends, whichever the law speaks of.
     pub target: T,
     least_work: T,
-    /// Work at the end of the latest compression, and what the law wants from there: small numbers that would lose their digits in the whole.
+    /// Normal work at the end of the latest compression.
     ended: T,
+    /// Normal work from there to the end of restitution (Stronge): kept apart, because as a part of the whole it would lose digits.
     pub wanted: T,
-    /// What rounding took from the work since then.
+    /// Normal work since then less the difference of the totals, which is what rounding took from it.
     lost: T,
     pub compressions: u32,
-    /// Where the first and the latest compression ended, if that was looked at.
+    /// Where the first and the latest compression ended, if that was located.
     pub first: Option<State<T>>,
     pub latest: Option<State<T>>,
-    /// Looks for the end of compression even where the law need not know it.
+    /// Locates the end of compression even where the law does not need it.
     pub thorough: bool,
-    /// Ends at this normal impulse, and not where a law does.
+    /// Ends the arc at this normal impulse, whatever the law.
     pub stop: Option<T>,
-    /// What v_n has turned at.
-    pub turns: Turns<T>,
+    /// The turning points of v_n.
+    pub grazing: Grazing<T>,
 }
 
-impl<T: Scalar> Ledger<T> {
+impl<T: Real> Restitution<T> {
     #[inline]
     pub fn new(law: Law, e: T) -> Self {
         Self {
@@ -69,24 +70,24 @@ impl<T: Scalar> Ledger<T> {
             latest: None,
             thorough: false,
             stop: None,
-            turns: Turns::new(if law == Law::Newton { e } else { T::zero() }),
+            grazing: Grazing::new(if law == Law::Newton { e } else { T::zero() }),
         }
     }
 
-    /// A ledger that ends the arc at a normal impulse.
+    /// No law: the arc ends at a normal impulse.
     #[inline]
     pub fn until(normal: T) -> Self {
         Self { stop: Some(normal), ..Self::new(Law::Poisson, T::one()) }
     }
 
-    /// Compression ends somewhere on this piece, and nobody needs to know where.
+    /// Compression ends somewhere on this stretch, and the place is not needed.
     #[inline]
     pub fn compressed_somewhere(&mut self) {
         self.compressions += 1;
         self.latest = None;
     }
 
-    /// Compression ends here: v_n = 0 and rising. True if restitution ends with it.
+    /// Compression ends here: v_n = 0 and rising. True if the collision ends with it (e = 0).
     #[inline]
     pub fn compressed(&mut self, at: &State<T>) -> bool {
         let (normal, work) = (at.normal, at.work);
@@ -112,7 +113,7 @@ impl<T: Scalar> Ledger<T> {
         self.e <= T::zero()
     }
 
-    /// The work since the end of the latest compression is known better than as a part of the whole: it is `since` at `at`.
+    /// Records the normal work `since` the end of the latest compression at `at`, which is more exact than the difference of the totals.
     #[inline]
     pub fn since(&mut self, at: &State<T>, since: T) {
         if self.law == Law::Stronge && self.compressions > 0 {
@@ -120,7 +121,7 @@ impl<T: Scalar> Ledger<T> {
         }
     }
 
-    /// Whether the law waits for so little work that the balance of energy would lose it.
+    /// Whether restitution needs so little work that the balance of energy would lose it.
     #[inline]
     pub fn delicate(&self) -> bool {
         self.law == Law::Stronge
@@ -128,13 +129,13 @@ impl<T: Scalar> Ledger<T> {
             && self.wanted < -constant::<T>(0.05) * self.least_work
     }
 
-    /// The work that the law still wants (Stronge).
+    /// The normal work that restitution still needs (Stronge).
     #[inline]
     fn missing(&self, work: T) -> T {
         larger(self.wanted - ((work - self.ended) + self.lost), T::zero())
     }
 
-    /// v_n falls through zero here: Poisson's or Stronge's law ends the collision before, or only after another compression.
+    /// v_n falls through zero here: Poisson's or Stronge's law ends the collision before this point, or only after another compression.
     #[inline]
     pub fn falls(&mut self, at: &State<T>) {
         let size = match self.law {
@@ -142,7 +143,7 @@ impl<T: Scalar> Ledger<T> {
             Law::Poisson => self.target,
             Law::Stronge => self.least_work,
         };
-        self.turns.missed((self.target - self.watched(at)).abs() / size.abs());
+        self.grazing.missed((self.target - self.watched(at)).abs() / size.abs());
     }
 
     #[inline]
@@ -166,7 +167,7 @@ impl<T: Scalar> Ledger<T> {
         }
     }
 
-    /// Goes from one state to a later one, between which v_n is monotone, if that needs no look at what lies between.
+    /// Whether no event lies between a state and a later one, if v_n is monotone between them; counts a compression that ends there.
     #[inline]
     pub fn passes(&mut self, from: &State<T>, to: &State<T>) -> bool {
         let zero = T::zero();
@@ -189,36 +190,42 @@ impl<T: Scalar> Ledger<T> {
     /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`), against friction with
     /// the impulse `push` per I_n.
     #[inline]
-    pub fn follow_line(&mut self, from: &State<T>, rate: T, push: &Vector2<T>, length: Option<T>) -> Line<T> {
+    pub fn follow_linear(
+        &mut self,
+        from: &State<T>,
+        rate: T,
+        push: &Vector2<T>,
+        length: Option<T>,
+    ) -> LinearArc<T> {
         let (mut impulse, mut velocity, mut work) = (T::zero(), from.velocity, from.work);
         let half = constant::<T>(0.5);
         let within = |d: T| length.is_none_or(|l| d <= l);
         if let Some(stop) = self.stop {
             impulse = larger(stop - from.normal, T::zero());
             if !within(impulse) {
-                return Line::on(length);
+                return LinearArc::on(length);
             }
             velocity += rate * impulse;
             work += (from.velocity + velocity) * impulse * half;
-            return Line::Ended { impulse, velocity, work };
+            return LinearArc::Ended { impulse, velocity, work };
         }
         if velocity < T::zero() {
             let to_rest = -velocity / rate;
             if rate <= T::zero() || !within(to_rest) {
-                return Line::on(length);
+                return LinearArc::on(length);
             }
             impulse = to_rest;
             work += velocity * to_rest * half;
             velocity = T::zero();
             let tangential = from.tangential - push * impulse;
             if self.compressed(&State { normal: from.normal + impulse, tangential, velocity, work }) {
-                return Line::Ended { impulse, velocity, work };
+                return LinearArc::Ended { impulse, velocity, work };
             }
         }
         let (more, end) = match self.law {
             Law::Newton => {
                 if rate <= T::zero() {
-                    return Line::on(length);
+                    return LinearArc::on(length);
                 }
                 (larger((self.target - velocity) / rate, T::zero()), self.target)
             }
@@ -230,7 +237,7 @@ impl<T: Scalar> Ledger<T> {
                 let missing = self.missing(work);
                 let square = velocity * velocity + (missing + missing) * rate;
                 if square < T::zero() || (square <= T::zero() && missing > T::zero()) {
-                    return Line::on(length);
+                    return LinearArc::on(length);
                 }
                 if missing <= T::zero() {
                     (T::zero(), velocity)
@@ -241,15 +248,15 @@ impl<T: Scalar> Ledger<T> {
             }
         };
         if end < T::zero() || !within(impulse + more) {
-            return Line::on(length);
+            return LinearArc::on(length);
         }
         work += (velocity + end) * more * half;
-        Line::Ended { impulse: impulse + more, velocity: end, work }
+        LinearArc::Ended { impulse: impulse + more, velocity: end, work }
     }
 }
 
-/// What became of a linear arc.
-pub(crate) enum Line<T> {
+/// How a linear arc ends.
+pub(crate) enum LinearArc<T> {
     /// The law ended the collision after this impulse.
     Ended {
         /// I_n since the beginning of the arc.
@@ -259,13 +266,13 @@ pub(crate) enum Line<T> {
         /// Normal work since the collision began.
         work: T,
     },
-    /// The arc came to its own end first, after this impulse.
+    /// The arc came to its end first, after this impulse.
     Passed(T),
-    /// The arc has no end, and the law none either.
+    /// The arc has no end, and the law does not end it.
     Endless,
 }
 
-impl<T> Line<T> {
+impl<T> LinearArc<T> {
     #[inline]
     fn on(length: Option<T>) -> Self {
         match length {

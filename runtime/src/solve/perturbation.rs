@@ -1,9 +1,9 @@
-//! How a straight hodograph bends: where slip begins beside a direction that stays, and when the inputs of one that begins there change.
+//! How a straight hodograph rate_changes: where slip begins beside a direction that stays, and when the inputs of one that begins there change.
 
 use nalgebra::Vector2;
 
 use super::{
-    ledger::{Ledger, Line, State},
+    restitution::{LinearArc, Restitution, State},
     sliding::Slide,
     terminal::Contact,
 };
@@ -12,9 +12,9 @@ use crate::scalar::{Real, constant, larger};
 /// The integral over I_n of the deviation of phi from a zero of h, where h is `turn` = 0 up to its derivatives.
 ///
 /// To first order phi' = h + h' phi along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'.
-/// `impulse` is I_n since the beginning, or nothing if slip stops.
+/// `impulse` is I_n since the beginning, or `None` for all I_n until slip stops.
 #[inline]
-pub(super) fn bend<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
+pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
     let across = Vector2::new(-d.y, d.x);
     let rate = c.slip_rate(d);
     let (g, turn) = (rate.dot(d), rate.dot(&across));
@@ -36,13 +36,13 @@ pub(super) fn bend<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Op
         let y = k * tau;
         if y.abs() <= small { tau * (one + y * half) } else { y.exp_m1() / k }
     };
-    // Where h' vanishes too, a neighbour is as good.
+    // Where h' vanishes too, a small value gives the limit.
     let slope = sum - g;
     let slope = if (slope * tau).abs() <= small { small / tau } else { slope };
     turn * slip * (grown(slope + g) - ratio) / slope
 }
 
-/// The arc from a direction where h hardly differs from zero, to first order in the angle by which slip turns; nothing if that is not exact.
+/// The arc from a direction where h is nearly zero, to first order in the angle by which slip turns; `None` where first order is not exact.
 ///
 /// Where two zeros of h are about to merge there, the quadratic q of the exact arc is lost to rounding.
 ///
@@ -50,18 +50,18 @@ pub(super) fn bend<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Op
 /// compression, and from there to the end, the arc is followed along its mean direction, so that both are right where they are needed.
 #[cold]
 #[inline(never)]
-pub(super) fn bent<T: Real>(
+pub(super) fn perturbed<T: Real>(
     c: &Contact<T>,
     d: &Vector2<T>,
     slip: T,
-    ledger: &mut Ledger<T>,
+    restitution: &mut Restitution<T>,
 ) -> Option<Slide<T>> {
     let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
     let across = Vector2::new(-d.y, d.x);
     let pull = Vector2::new(c.tt * across.x + c.ts * across.y, c.ts * across.x + c.ss * across.y);
     let rate = c.slip_rate(d);
     let g = rate.dot(d);
-    // An angle that grows faster than slip stops needs more than first order; a zero that is left so fast is no part of a pair.
+    // First order is not enough for an angle that grows faster than slip stops. A zero with so steep an h' has no second one close by.
     let slope = -c.mu * pull.dot(&across) - g;
     let size = c.b.x.abs() + c.b.y.abs() + c.mu * (c.tt + c.ss);
     if slope > constant::<T>(0.25) * g.abs() && slope > constant::<T>(1e-3) * size {
@@ -71,29 +71,26 @@ pub(super) fn bent<T: Real>(
     if f.abs() <= constant::<T>(1024.0) * T::default_epsilon() * c.size() {
         return None;
     }
-    let angle = |impulse: T| bend(c, d, slip, Some(impulse));
+    let angle = |impulse: T| deviation(c, d, slip, Some(impulse));
     let stop = (g < zero).then(|| -slip / g);
-    // What remains from a state on, were there no bend.
-    let remains = |mut ledger: Ledger<T>, state: &State<T>, stop: Option<T>| match ledger.follow_line(
-        state,
-        f,
-        &(*d * c.mu),
-        stop,
-    ) {
-        Line::Ended { impulse, .. } | Line::Passed(impulse) => Some(impulse),
-        Line::Endless => None,
+    // The impulse that remains from a state on if the direction is taken as fixed.
+    let remains = |mut restitution: Restitution<T>, state: &State<T>, stop: Option<T>| match restitution
+        .follow_linear(state, f, &(*d * c.mu), stop)
+    {
+        LinearArc::Ended { impulse, .. } | LinearArc::Passed(impulse) => Some(impulse),
+        LinearArc::Endless => None,
     };
     let mut state = State::approach();
-    let whole = remains(*ledger, &state, stop)?;
-    // A large angle needs more than first order, too.
+    let whole = remains(*restitution, &state, stop)?;
+    // Nor is it enough for a large angle.
     let mut mean = (angle(whole) / whole).abs();
-    // Slip may stop, and where it does depends on B too.
+    // Where slip stops depends on B, too.
     let mut last = zero;
     let stop = stop.map(|stop| {
         if whole < stop * half {
             return stop;
         }
-        last = bend(c, d, slip, None);
+        last = deviation(c, d, slip, None);
         mean = larger(mean, (last / stop).abs());
         stop + c.mu * d.dot(&pull) * last / g
     });
@@ -106,7 +103,7 @@ pub(super) fn bent<T: Real>(
     }
     let tangential = |impulse: T, angle: T| -(*d * impulse + across * angle) * c.mu;
     let left = |impulse: T, angle: T| *d * slip + rate * impulse - pull * (c.mu * angle);
-    // What the chord of v_n leaves out of the work: the integral of B by Boole's rule, with points that crowd where slip may stop.
+    // The work that the chord of v_n over I_n leaves out: the integral of B by Boole's rule, with points that crowd where slip may stop.
     let bow = |from: T, length: T| {
         let part = |y: f64| (one - constant(y)) * angle(from + length * constant(y * (2.0 - y)));
         let sum = (part(0.25) + part(0.75)) * constant(32.0)
@@ -116,44 +113,44 @@ pub(super) fn bent<T: Real>(
         -c.mu * c.b.dot(&across) * length * (sum * constant(1.0 / 45.0) - chord)
     };
     let (mut from, mut spent) = (zero, zero);
-    if ledger.stop.is_none() && f > zero && one / f <= whole {
+    if restitution.stop.is_none() && f > zero && one / f <= whole {
         let mean = angle(one / f) * f;
         let along = *d + across * mean;
         from = one / c.normal_rate(&along);
         spent = mean * from;
         let work = bow(zero, from) - from * half;
         state = State { normal: from, tangential: tangential(from, spent), velocity: zero, work };
-        if ledger.compressed(&state) {
+        if restitution.compressed(&state) {
             return Some(Slide::Ended(state, left(from, spent)));
         }
     }
     let stop = stop.map(|stop| stop - from);
-    let more = remains(*ledger, &state, stop)?;
-    // Over a short way B is rounding more than a change, and leaves nothing out.
+    let more = remains(*restitution, &state, stop)?;
+    // Over a short way the change of B is rounding, and the chord is exact.
     let short = whole * constant(1.0 / 1024.0);
     let bow = if more > short { bow(from, more) } else { zero };
     let span = larger(more, short);
     let mean = (angle(from + span) - angle(from)) / span;
     let along = *d + across * mean;
-    ledger.since(&state, bow);
+    restitution.since(&state, bow);
     let f = c.normal_rate(&along);
-    Some(match ledger.follow_line(&state, f, &(along * c.mu), stop) {
-        Line::Ended { impulse, velocity, work } => {
+    Some(match restitution.follow_linear(&state, f, &(along * c.mu), stop) {
+        LinearArc::Ended { impulse, velocity, work } => {
             let (normal, spent) = (from + impulse, spent + mean * impulse);
             let work = work + bow;
             let state = State { normal, tangential: tangential(normal, spent), velocity, work };
             Slide::Ended(state, left(normal, spent))
         }
-        Line::Passed(impulse) => {
+        LinearArc::Passed(impulse) => {
             let velocity = state.velocity + f * impulse;
             let done = (state.velocity + velocity) * impulse * half + bow;
             let (normal, work) = (from + impulse, state.work + done);
             let stopped = State { normal, tangential: tangential(normal, last), velocity, work };
             if from > zero {
-                ledger.since(&stopped, done);
+                restitution.since(&stopped, done);
             }
             Slide::Stopped(stopped)
         }
-        Line::Endless => Slide::Endless(state),
+        LinearArc::Endless => Slide::Endless(state),
     })
 }

@@ -5,10 +5,12 @@
 //!
 //! The loops are plain ones over short arrays, so that the compiler turns each into a few instructions on vectors.
 
+mod tables;
+
+use self::tables::{END, EVEN, HALF, NODES, ODD, WEIGHTS};
 use super::{
-    flow::{Flow, Place},
     lanes::exp,
-    nodes::{END, EVEN, HALF, NODES, ODD, WEIGHTS},
+    sliding_arc::{ArcPoint, SlidingArc},
 };
 use crate::scalar::{Real, constant, fma};
 
@@ -61,7 +63,7 @@ impl<T: Real> Panel<T> {
     }
 }
 
-impl<T: Real> Flow<T> {
+impl<T: Real> SlidingArc<T> {
     /// Fills a panel about w = `middle`. `s` is the parameter of the map.
     #[inline(never)]
     fn survey(&self, [middle, unit]: [T; 2], s: T, panel: &mut Panel<T>) {
@@ -104,7 +106,7 @@ impl<T: Real> Flow<T> {
 
     /// The point that lies `length` further in lambda, but for the work.
     #[inline(never)]
-    pub fn step(&self, from: &Place<T>, length: T, panel: &mut Panel<T>, to: &mut Place<T>) {
+    pub fn step(&self, from: &ArcPoint<T>, length: T, panel: &mut Panel<T>, to: &mut ArcPoint<T>) {
         let one = T::one();
         // s = tanh(length / 32)
         let y = length * constant(1.0 / 32.0);
@@ -139,7 +141,7 @@ impl<T: Real> Flow<T> {
 
     /// The work of the normal impulse on the stretch that was stepped over last, from the balance of energy and the work of friction.
     #[inline]
-    pub fn balance(&self, from: &Place<T>, to: &Place<T>, panel: &Panel<T>) -> T {
+    pub fn balance(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &Panel<T>) -> T {
         let slips = self.slip(from) + self.slip(to);
         fma(
             constant::<T>(0.5),
@@ -151,7 +153,7 @@ impl<T: Real> Flow<T> {
 
     /// The same work by integrating v_n over I_n: exact where it is small beside the energies.
     #[inline(never)]
-    pub fn direct(&self, from: &Place<T>, to: &Place<T>, panel: &mut Panel<T>) -> T {
+    pub fn direct(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &mut Panel<T>) -> T {
         let [f0, f1, f2] = about(self.f, panel.middle, T::one() / panel.middle);
         let Panel { w, e, grown, rate, log, central, .. } = panel;
         let halves =

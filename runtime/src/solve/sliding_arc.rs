@@ -10,10 +10,9 @@
 use nalgebra::Vector2;
 
 use super::{
-    fixed::neighbours,
-    ledger::State,
+    invariant_directions::{Near, Zero, halved, neighbours, over, times},
+    restitution::State,
     terminal::Contact,
-    zero::{Near, Zero, halved, over, times},
 };
 use crate::scalar::{Real, constant, fma, larger, smaller};
 
@@ -21,7 +20,7 @@ use crate::scalar::{Real, constant, fma, larger, smaller};
 pub(super) type Integrals<T> = [T; 3];
 
 /// The coefficients of an arc.
-pub(super) struct Flow<T: Real> {
+pub(super) struct SlidingArc<T: Real> {
     pub mu: T,
     /// a^2, 2 a b and b^2: slip over sigma is this quadratic in w.
     pub slip: [Vector2<T>; 3],
@@ -49,12 +48,12 @@ pub(super) struct Flow<T: Real> {
     /// The inverse of the zeros' mean modulus.
     scale: T,
     /// Whether f may change sign.
-    folds: bool,
+    may_turn: bool,
 }
 
 /// A point of the arc.
 #[derive(Clone, Copy)]
-pub(super) struct Place<T: Real> {
+pub(super) struct ArcPoint<T: Real> {
     pub state: State<T>,
     /// Normal work since the latest compression ended: a small number that keeps its digits.
     pub since: T,
@@ -81,14 +80,14 @@ pub(super) struct Rates<T> {
 }
 
 /// How the rates change: of ln sigma (the second derivative of the growth), ln(sigma e / q), ln e and ln F.
-pub(super) struct Bends<T> {
+pub(super) struct RateChanges<T> {
     pub growth: T,
     pub weight: T,
     pub shape: T,
     pub turn: T,
 }
 
-impl<T: Real> Flow<T> {
+impl<T: Real> SlidingArc<T> {
     /// The arc through the direction `d`, where h is not zero, and its parameter there.
     #[inline]
     pub fn through(c: &Contact<T>, d: &Vector2<T>) -> (Self, T) {
@@ -101,7 +100,7 @@ impl<T: Real> Flow<T> {
         let ahead = Vector2::new(one, zero);
         let h = b.y - nu.y;
         let rough =
-            neighbours(&b.map(T::plain), &nu.map(T::plain), &ahead, h.plain()).map(|v| v.map(T::plain));
+            neighbours(&b.map(T::primal), &nu.map(T::primal), &ahead, h.primal()).map(|v| v.map(T::primal));
         let noise = T::default_epsilon() * (mean + b.x.abs() + b.y.abs());
         let near =
             Near { h: [h, four * nu.x - two * b.x, six * nu.y, -four * nu.x - two * b.x, -b.y - nu.y] };
@@ -131,14 +130,14 @@ impl<T: Real> Flow<T> {
         let product = times(&a, &z);
         let q1 = six * over(&over(&nu, &product), &product).y * sin;
         let cross = over(&b, &product).x;
-        let mean_root = (q0 * q2).sqrt().plain();
-        let lean = -(q1 * half).plain() / mean_root;
-        let modulus = (q0 / q2).sqrt().plain();
+        let mean_root = (q0 * q2).sqrt().primal();
+        let lean = -(q1 * half).primal() / mean_root;
+        let modulus = (q0 / q2).sqrt().primal();
         let factor = if lean < -one { (lean * lean - one).sqrt() - lean } else { one };
         let f = [one - c.mu * over(&b, &u).x, two * (cos - c.mu * cross), one - c.mu * over(&b, &s).x];
         let k = [g_u, cos * (g_u + g_s) - q1, g_s - q2 - q2];
         let slip = [times(&u, d), times(&product, d) * two, times(&s, d)];
-        let flow = Self {
+        let arc = Self {
             mu: c.mu,
             slip,
             rub: slip.map(|x| x * -c.mu),
@@ -149,13 +148,13 @@ impl<T: Real> Flow<T> {
             f,
             size: c.size(),
             bend: (sin + sin).abs(),
-            outer: (modulus * factor).plain(),
-            angle: angle(lean).plain(),
-            spread: if factor > one { rough_ln(factor).plain() } else { zero },
-            scale: (one / modulus).plain(),
-            folds: folds(&f),
+            outer: (modulus * factor).primal(),
+            angle: angle(lean).primal(),
+            spread: if factor > one { rough_ln(factor).primal() } else { zero },
+            scale: (one / modulus).primal(),
+            may_turn: may_turn(&f),
         };
-        (flow, start)
+        (arc, start)
     }
 
     /// e.
@@ -166,23 +165,23 @@ impl<T: Real> Flow<T> {
 
     /// Whether |h| is at most this.
     #[inline(always)]
-    pub fn turns_less(&self, place: &Place<T>, rates: &Rates<T>, than: T) -> bool {
-        self.bend * place.w <= than * rates.inverse * rates.e * rates.e
+    pub fn turns_slower(&self, point: &ArcPoint<T>, rates: &Rates<T>, than: T) -> bool {
+        self.bend * point.w <= than * rates.inverse * rates.e * rates.e
     }
 
     /// q / e, without derivatives.
     #[inline(always)]
-    pub fn lag(&self, w: T) -> T {
+    pub fn q_over_e(&self, w: T) -> T {
         let [q0, q1, q2] = self.q;
-        (fma(fma(q2, w, q1), w, q0) / self.e(w)).plain()
+        (fma(fma(q2, w, q1), w, q0) / self.e(w)).primal()
     }
 
     /// Tangential velocity.
     #[inline(always)]
-    pub fn slip(&self, place: &Place<T>) -> Vector2<T> {
+    pub fn slip(&self, point: &ArcPoint<T>) -> Vector2<T> {
         let [a, ab, b] = &self.slip;
-        let w = place.w;
-        Vector2::new(fma(fma(b.x, w, ab.x), w, a.x), fma(fma(b.y, w, ab.y), w, a.y)) * place.sigma
+        let w = point.w;
+        Vector2::new(fma(fma(b.x, w, ab.x), w, a.x), fma(fma(b.y, w, ab.y), w, a.y)) * point.sigma
     }
 
     /// g at the stable end: the rate of slip there.
@@ -193,8 +192,8 @@ impl<T: Real> Flow<T> {
 
     /// All rates at a point.
     #[inline]
-    pub fn rates(&self, place: &Place<T>) -> Rates<T> {
-        let w = place.w;
+    pub fn rates(&self, point: &ArcPoint<T>) -> Rates<T> {
+        let w = point.w;
         let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
         let steep = |p1: T, p2: T| fma(p2 + p2, w, p1) * w;
         let e = self.e(w);
@@ -206,7 +205,7 @@ impl<T: Real> Flow<T> {
         Rates {
             e,
             inverse,
-            impulse: place.sigma * e * e * inverse,
+            impulse: point.sigma * e * e * inverse,
             slope: fall / e,
             growth,
             weight: growth + shape - pole,
@@ -218,15 +217,15 @@ impl<T: Real> Flow<T> {
 
     /// How the rates change at a point.
     #[inline]
-    pub fn bends(&self, place: &Place<T>, rates: &Rates<T>) -> Bends<T> {
-        let w = place.w;
+    pub fn rate_changes(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> RateChanges<T> {
+        let w = point.w;
         let first = |p1: T, p2: T| fma(p2 + p2, w, p1) * w;
         let second = |p1: T, p2: T| fma(p2 * constant(4.0), w, p1) * w;
         let ([_, q1, q2], [_, k1, k2], [_, f1, f2]) = (self.q, self.k, self.f);
         let inverse = rates.inverse;
         let (pole, rising) = (first(q1, q2) * inverse, second(q1, q2) * inverse);
         let shape = second(self.middle, T::one()) / rates.e - rates.shape * rates.shape;
-        Bends {
+        RateChanges {
             growth: second(k1, k2) * inverse - (rates.change + rates.change) * pole - rates.growth * rising,
             weight: rates.change + shape - (rising - pole * pole),
             shape,
@@ -236,8 +235,8 @@ impl<T: Real> Flow<T> {
 
     /// How far in lambda a point lies beyond the zeros of q, at least; negative before them.
     #[inline(always)]
-    pub fn beyond(&self, place: &Place<T>) -> T {
-        rough_ln(place.w.plain() * self.scale)
+    pub fn beyond(&self, point: &ArcPoint<T>) -> T {
+        rough_ln(point.w.primal() * self.scale)
     }
 
     /// How far in lambda one quadrature may reach from here.
@@ -245,7 +244,7 @@ impl<T: Real> Flow<T> {
     /// With all zeros of q outside an ellipse whose foci are the ends, and a constant rate of growth, the error is about
     /// e^(c (rho + 1 / rho - 2) / 2) rho^(-2 n), where rho is the sum of the semi-axes and c half of the rate times the length.
     #[inline]
-    pub fn reach(&self, place: &Place<T>, rates: &Rates<T>) -> T {
+    pub fn reach(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
         // rho + 1 / rho with an error of 1e-15 but for growth.
         const SUM: f64 = 3.28;
         // Here the map of the nodes comes as near to its own poles.
@@ -254,22 +253,22 @@ impl<T: Real> Flow<T> {
             let away = (d * d + self.angle * self.angle).sqrt();
             (constant::<T>(2.0 * SUM) * away + constant::<T>(4.0) * d) * constant(1.0 / (SUM * SUM - 4.0))
         };
-        let before = self.beyond(place);
+        let before = self.beyond(point);
         let mut poles = to(before - self.spread);
         if self.spread > T::zero() {
             poles = smaller(poles, to(before + self.spread));
         }
         let poles = smaller(poles, constant(0.5 * MOST));
         let one = T::one();
-        let mut rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).plain();
-        let slip = place.sigma * rates.e;
+        let mut rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).primal();
+        let slip = point.sigma * rates.e;
         let works = slip > constant(0.06) || (slip > constant(1e-3) && poles * rate > constant(12.0));
         if works {
             // The work goes with slip times the impulse.
-            rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().plain());
+            rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().primal());
         }
         // Growth that changes shows zeros of q with large powers; there the distance must be greater.
-        let bent = (rates.change.abs().plain() * constant(0.06)).sqrt();
+        let bent = (rates.change.abs().primal() * constant(0.06)).sqrt();
         let limited = |rate: T| {
             // How much growth shortens it: a fit.
             let c = poles * rate;
@@ -279,26 +278,26 @@ impl<T: Real> Flow<T> {
         };
         let both = limited(rate);
         let both = both + both;
-        if self.central[2].abs().plain() <= (rate + rate) * self.q[2].plain() {
-            return both.plain();
+        if self.central[2].abs().primal() <= (rate + rate) * self.q[2].primal() {
+            return both.primal();
         }
         let both = both * constant(0.5);
         // About the growth at the far end, where it may be steeper. Where it rises it rises on beyond.
-        let near = (rates.growth + one).abs().plain();
+        let near = (rates.growth + one).abs().primal();
         let far = |both: T| {
             let part = both * constant(0.125);
             let w = (one + part) / (one - part);
             let w = w * w;
             let w = w * w;
-            let w = place.w * w * w;
+            let w = point.w * w * w;
             let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
-            let far = (poly(self.central) / poly(self.q)).abs().plain();
+            let far = (poly(self.central) / poly(self.q)).abs().primal();
             let far = far + larger(far - near, T::zero());
             if works { far + far } else { far }
         };
         let steepest = far(both);
         if steepest <= rate + rate {
-            return (both + both).plain();
+            return (both + both).primal();
         }
         // Shorter, and then as long again as the growth at that end allows.
         let (mut least, mut most) = (smaller(both, limited(steepest)), both);
@@ -311,23 +310,23 @@ impl<T: Real> Flow<T> {
                 (least, most) = (larger(least, allowed), middle);
             }
         }
-        (least + least).plain()
+        (least + least).primal()
     }
 
     /// Whether v_n rises from here, and the length in lambda after which f changes sign, if it does.
     #[inline]
-    pub fn fold(&self, place: &Place<T>, rates: &Rates<T>) -> (bool, Option<T>) {
-        if !self.folds {
+    pub fn turning_point(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> (bool, Option<T>) {
+        if !self.may_turn {
             return (rates.slope > T::zero(), None);
         }
         let [_, f1, f2] = self.f;
         let zero = T::zero();
         // F(w (1 + x)) = c + b x + a x^2
-        let w = place.w;
-        let mut c = (rates.slope * rates.e).plain();
+        let w = point.w;
+        let mut c = (rates.slope * rates.e).primal();
         let tiny = constant::<T>(64.0) * T::default_epsilon();
-        let a = (f2 * w * w).plain();
-        let b = (f1 * w).plain() + a + a;
+        let a = (f2 * w * w).primal();
+        let b = (f1 * w).primal() + a + a;
         let mut rising = c > zero;
         // A zero at the beginning is behind, as well as f can be known.
         if c.abs() <= tiny * self.size * rates.e {
@@ -336,12 +335,12 @@ impl<T: Real> Flow<T> {
         }
         let mut best = None;
         for x in super::quadratic(a, b, c) {
-            let x = x.plain();
+            let x = x.primal();
             if x > tiny && best.is_none_or(|y| x < y) {
                 best = Some(x);
             }
         }
-        (rising, best.map(|x| (T::one() + x).ln().plain()))
+        (rising, best.map(|x| (T::one() + x).ln().primal()))
     }
 
     /// Adds integrals to a state, but for the work.
@@ -356,16 +355,16 @@ impl<T: Real> Flow<T> {
     }
 }
 
-impl<T: Real> Place<T> {
+impl<T: Real> ArcPoint<T> {
     /// Goes a tiny step of lambda further: the error is of third order.
     #[inline]
-    pub fn touch(&mut self, flow: &Flow<T>, rates: &Rates<T>, step: T) {
+    pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {
         let (one, half) = (T::one(), constant::<T>(0.5));
         let first = self.sigma * rates.e * rates.inverse * step;
         let bent = |extra: T| one + (rates.weight + extra) * step * half;
         let second = first * self.w;
         let from = self.state;
-        flow.add(
+        arc.add(
             [first * bent(T::zero()), second * bent(one), second * self.w * bent(one + one)],
             &mut self.state,
         );
@@ -379,20 +378,23 @@ impl<T: Real> Place<T> {
 
     /// Goes a small step of lambda further: the error is of fourth order.
     #[inline(never)]
-    pub fn nudge(&mut self, flow: &Flow<T>, rates: &Rates<T>, bends: &Bends<T>, step: T) {
+    pub fn third_order_step(
+        &mut self,
+        arc: &SlidingArc<T>,
+        rates: &Rates<T>,
+        rate_changes: &RateChanges<T>,
+        step: T,
+    ) {
         let (one, half, third) = (T::one(), constant::<T>(0.5), constant::<T>(1.0 / 3.0));
         let w = self.w;
         let first = self.sigma * rates.e * rates.inverse * step;
         let bent = |extra: T| {
             let rate = rates.weight + extra;
-            one + step * half * (rate + step * third * (rate * rate + bends.weight))
+            one + step * half * (rate + step * third * (rate * rate + rate_changes.weight))
         };
         let second = first * w;
         let from = self.state;
-        flow.add(
-            [first * bent(T::zero()), second * bent(one), second * w * bent(one + one)],
-            &mut self.state,
-        );
+        arc.add([first * bent(T::zero()), second * bent(one), second * w * bent(one + one)], &mut self.state);
         // The trapezoid, and the bend of v_n over I_n.
         let pushed = self.state.normal - from.normal;
         let bow = rates.slope * (rates.turn - rates.shape) * step * pushed * constant(1.0 / 6.0);
@@ -400,7 +402,7 @@ impl<T: Real> Place<T> {
         self.state.work += done;
         self.since += done;
         let (g, change) = (rates.growth, rates.change);
-        let cubed = g * (g * g + constant::<T>(3.0) * change) + bends.growth;
+        let cubed = g * (g * g + constant::<T>(3.0) * change) + rate_changes.growth;
         self.sigma *= one + step * (g + step * half * (g * g + change + step * third * cubed));
         self.w *= one + step * (one + step * half * (one + step * third));
     }
@@ -408,7 +410,7 @@ impl<T: Real> Place<T> {
 
 /// Whether a quadratic has zeros at positive w.
 #[inline]
-fn folds<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
+fn may_turn<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
     let zero = T::zero();
     let apart = (*f0 <= zero) != (*f2 <= zero);
     let up = *f0 > zero && *f2 > zero;

@@ -3,8 +3,8 @@
 //! The same integrals as on a whole stretch, but for a length of a few hundredths, where four nodes are exact.
 
 use super::{
-    flow::{Flow, Place},
     lanes::{Lanes, exp},
+    sliding_arc::{ArcPoint, SlidingArc},
 };
 use crate::scalar::{Real, constant, fma};
 
@@ -33,30 +33,30 @@ struct Nodes<T> {
     sums: [Lanes<T>; 4],
 }
 
-impl<T: Real> Flow<T> {
+impl<T: Real> SlidingArc<T> {
     /// Goes further by `length` in lambda (or back, if it is negative).
     #[inline(never)]
-    pub fn short_step(&self, place: &mut Place<T>, length: T) {
+    pub fn short_step(&self, point: &mut ArcPoint<T>, length: T) {
         let any = [length; 4];
         let mut nodes = Nodes { w: any, rate: any, value: any, e: any, log: any, sums: [any; 4] };
-        let scale = length * place.sigma;
-        let grown = self.approach(place, length, &mut nodes);
+        let scale = length * point.sigma;
+        let grown = self.approach(point, length, &mut nodes);
         let [first, second, third, _] = nodes.sums.map(sum);
-        let from = place.state;
-        self.add([first * scale, second * scale, third * scale], &mut place.state);
+        let from = point.state;
+        self.add([first * scale, second * scale, third * scale], &mut point.state);
         // v_n less its value at the beginning, over I_n.
         let pushed = self.push(&mut nodes);
-        let done = fma(from.velocity, place.state.normal - from.normal, scale * scale * pushed);
-        place.state.work += done;
-        place.since += done;
+        let done = fma(from.velocity, point.state.normal - from.normal, scale * scale * pushed);
+        point.state.work += done;
+        point.since += done;
         let [sigma, w, ..] = exp([grown, length, length, length]);
-        place.sigma *= sigma;
-        place.w *= w;
+        point.sigma *= sigma;
+        point.w *= w;
     }
 
     /// Fills the nodes; returns the growth of ln sigma.
     #[inline(never)]
-    fn approach(&self, from: &Place<T>, length: T, nodes: &mut Nodes<T>) -> T {
+    fn approach(&self, from: &ArcPoint<T>, length: T, nodes: &mut Nodes<T>) -> T {
         let ([q0, q1, q2], [k0, k1, k2]) = (self.q, self.k);
         let (one, middle) = (T::one(), self.middle);
         let Nodes { w, rate, value, e, log, sums } = nodes;
@@ -138,14 +138,14 @@ mod tests {
         for mu in [0.3, 0.6, 1.1, 1.6, 3.0] {
             let contact = contact(&matrix, mu);
             let slip = Vector2::new(1.063, 0.2);
-            let (flow, w) = Flow::through(&contact, &slip.normalize());
-            let from = Place { state: State::approach(), since: 0.0, w, sigma: slip.norm() / flow.e(w) };
-            let rates = flow.rates(&from);
+            let (arc, w) = SlidingArc::through(&contact, &slip.normalize());
+            let from = ArcPoint { state: State::approach(), since: 0.0, w, sigma: slip.norm() / arc.e(w) };
+            let rates = arc.rates(&from);
             let error = |step: f64| {
                 let (mut a, mut b) = (from, from);
-                flow.short_step(&mut a, step);
-                b.nudge(&flow, &rates, &flow.bends(&from, &rates), step);
-                let of = |p: &Place<f64>| {
+                arc.short_step(&mut a, step);
+                b.third_order_step(&arc, &rates, &arc.rate_changes(&from, &rates), step);
+                let of = |p: &ArcPoint<f64>| {
                     let s = &p.state;
                     [s.normal, s.tangential.x, s.tangential.y, s.velocity, s.work, p.w, p.sigma]
                 };

@@ -7,8 +7,8 @@
 use core::cell::Cell;
 
 use super::{
-    flow::{Flow, Place},
-    ledger::State,
+    restitution::State,
+    sliding_arc::{ArcPoint, SlidingArc},
 };
 use crate::scalar::{Real, constant, fma, larger};
 
@@ -27,18 +27,18 @@ struct Taps<T> {
     slope: [Row<T>; 3],
 }
 
-impl<T: Real> Flow<T> {
+impl<T: Real> SlidingArc<T> {
     /// Whether the series converges quickly from here, for so much of all slip.
     #[inline]
-    pub fn settles(&self, place: &Place<T>, share: T) -> bool {
-        let ratio = place.w / self.outer;
+    pub fn settles(&self, point: &ArcPoint<T>, share: T) -> bool {
+        let ratio = point.w / self.outer;
         if ratio <= constant(1.3) {
             return false;
         }
         let [q0, q1, q2] = self.q;
         let [k0, k1, _] = self.k;
         // The terms must fall from the beginning, too: steep powers of the distance to the zeros of q make them rise first.
-        let u = T::one() / place.w;
+        let u = T::one() / point.w;
         let (last, fall) = (-self.last_rate(), q2 - self.last_rate());
         let rise = larger(((k1 + q1 + q1).abs() + (k0 + q0 + q0).abs() * u) * u - fall, T::zero());
         // After 64 terms nothing may be left.
@@ -54,9 +54,9 @@ impl<T: Real> Flow<T> {
 
     /// The state where slip stops (g < 0 at the stable end), and the normal work since compression ended.
     #[inline(never)]
-    pub fn stop(&self, place: &Place<T>) -> (State<T>, T) {
+    pub fn stop(&self, point: &ArcPoint<T>) -> (State<T>, T) {
         let (zero, one, three) = (T::zero(), T::one(), constant::<T>(3.0));
-        let u = one / place.w;
+        let u = one / point.w;
         let (uu, middle) = (u * u, self.middle * u);
         let [q0, q1, q2] = self.q;
         let [k0, k1, _] = self.k;
@@ -85,9 +85,9 @@ impl<T: Real> Flow<T> {
         let mut rows = [[zero; 4]; BLOCK + 2];
         let mut total = [zero; 4];
         let eps = T::default_epsilon();
-        let tau = place.sigma * place.w * place.w;
-        let before = place.state.normal / tau;
-        let worked = place.state.work.abs() / (tau * tau * self.mu);
+        let tau = point.sigma * point.w * point.w;
+        let before = point.state.normal / tau;
+        let worked = point.state.work.abs() / (tau * tau * self.mu);
         for _ in 0..BLOCKS {
             block(&mut rows, &mut sources, &mut taps, &mut total);
             let [[a, b, c, d], [a1, b1, c1, d1], ..] = rows;
@@ -99,17 +99,17 @@ impl<T: Real> Flow<T> {
             }
         }
         let [third, second, first, rubbed] = total;
-        let from = &place.state;
+        let from = &point.state;
         let mut state = *from;
         self.add([first * tau, second * tau, third * tau], &mut state);
         let done = fma(
             constant::<T>(0.5),
             (from.velocity + state.velocity) * (state.normal - from.normal)
-                + self.slip(place).dot(&(state.tangential - from.tangential)),
+                + self.slip(point).dot(&(state.tangential - from.tangential)),
             self.mu * tau * tau * rubbed,
         );
         state.work += done;
-        (state, place.since + done)
+        (state, point.since + done)
     }
 }
 

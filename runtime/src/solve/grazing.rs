@@ -1,10 +1,10 @@
-//! Where v_n turned during a collision: outcomes jump where a turning point only just reaches what ends compression or restitution.
+//! Grazing: how near v_n turned to a value that ends compression or restitution. Where a turning point just reaches that value the outcome jumps.
 
 use crate::scalar::Real;
 
 /// The turning points of v_n so far, in units where v_n1 = -1.
 #[derive(Clone, Copy)]
-pub(crate) struct Turns<T> {
+pub(crate) struct Grazing<T> {
     rising: bool,
     last: T,
     target: T,
@@ -12,8 +12,8 @@ pub(crate) struct Turns<T> {
     pub nearest: T,
 }
 
-impl<T: Real> Turns<T> {
-    /// None yet. `target` is Newton's, or zero.
+impl<T: Real> Grazing<T> {
+    /// No turning point yet. `target` is that of Newton's law, or zero.
     #[inline]
     pub fn new(target: T) -> Self {
         Self { rising: true, last: -T::one(), target, nearest: T::one() }
@@ -33,7 +33,7 @@ impl<T: Real> Turns<T> {
         self.missed(to_target);
     }
 
-    /// Something ended, or did not, by this relative distance.
+    /// An event took place, or did not, by this relative distance.
     #[inline]
     pub fn missed(&mut self, distance: T) {
         if distance < self.nearest {

@@ -1,0 +1,227 @@
+//! Events of a sliding arc: a quantity reaches a target. Where the event is expected, and the next step towards it.
+
+use super::{
+    restitution::{Restitution, State},
+    sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc, rough_ln},
+};
+use crate::{Law, scalar::Real, scalar::constant, scalar::larger, scalar::smaller};
+
+/// An event: v_n, I_n or the normal work since compression ended reaches a target.
+#[derive(Clone, Copy)]
+pub(crate) enum Event<T> {
+    Velocity(T),
+    Impulse(T),
+    Work(T),
+}
+
+impl<T: Real> Event<T> {
+    /// The event that ends restitution under the law, once compression has ended.
+    #[inline]
+    pub fn end(restitution: &Restitution<T>) -> Self {
+        match restitution.law() {
+            Law::Newton => Self::Velocity(restitution.target),
+            Law::Poisson => Self::Impulse(restitution.target),
+            Law::Stronge => Self::Work(restitution.wanted),
+        }
+    }
+
+    /// The quantity less its target, where `since` is the normal work since compression ended.
+    #[inline(always)]
+    pub fn residual(&self, state: &State<T>, since: T) -> T {
+        match *self {
+            Self::Velocity(target) => state.velocity - target,
+            Self::Impulse(target) => state.normal - target,
+            Self::Work(target) => since - target,
+        }
+    }
+
+    /// The derivative of the quantity by I_n, where f = dv_n/dI_n.
+    #[inline(always)]
+    pub fn by_impulse(&self, velocity: T, f: T) -> T {
+        match self {
+            Self::Velocity(_) => f,
+            Self::Impulse(_) => T::one(),
+            Self::Work(_) => velocity,
+        }
+    }
+
+    /// The residual at a point of the sliding arc.
+    #[inline(always)]
+    pub(super) fn at(&self, point: &ArcPoint<T>) -> T {
+        self.residual(&point.state, point.since)
+    }
+
+    /// Its derivative by lambda, and that of the derivative's logarithm.
+    #[inline(always)]
+    fn slope(&self, state: &State<T>, rates: &Rates<T>) -> (T, T) {
+        let Rates { impulse, slope, weight, shape, turn, .. } = *rates;
+        let curvature = match self {
+            Self::Velocity(_) => weight + turn,
+            Self::Impulse(_) => weight + shape,
+            Self::Work(_) => weight + shape + impulse * slope / state.velocity,
+        };
+        (impulse * self.by_impulse(state.velocity, slope), curvature)
+    }
+
+    /// The normal impulse until the event, if f changes in proportion to it; not positive if that never comes.
+    #[inline]
+    fn impulse(&self, point: &ArcPoint<T>, slope: T, bend: T) -> T {
+        let zero = T::zero();
+        let missing = -self.at(point);
+        let v = match self {
+            Self::Impulse(_) => return missing,
+            // v_n rises from zero, about, to where the work is done.
+            Self::Work(_) => {
+                let v = point.state.velocity;
+                let square = v * v + (missing + missing) * slope;
+                if square <= zero {
+                    return zero;
+                }
+                let after = square.sqrt();
+                let first = (missing + missing) / (v + after);
+                return first * (T::one() - bend * first * constant(1.0 / 6.0) / slope);
+            }
+            Self::Velocity(_) => missing,
+        };
+        let square = slope * slope + (v + v) * bend;
+        if square <= zero { zero } else { (v + v) / (slope + square.sqrt()) }
+    }
+
+    /// About where the event is: slip changes by the square of I_n at most, and the length is the integral of (q / e) / s over I_n.
+    #[inline]
+    pub(super) fn guess(&self, arc: &SlidingArc<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
+        let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
+        let slip = point.sigma * rates.e;
+        // q / e, g, and the changes of f and g with I_n.
+        let lag = slip / rates.impulse;
+        let rate = rates.growth + rates.shape;
+        let pole = rate - rates.weight;
+        let g = rate * lag;
+        let per = one / rates.impulse;
+        let bend = rates.slope * (rates.turn - rates.shape) * per;
+        let impulse = self.impulse(point, rates.slope, bend).primal();
+        if impulse <= zero {
+            return -one;
+        }
+        let ratio = (impulse * g / slip).primal();
+        if ratio <= constant(-1.5) {
+            // Slip stops long before.
+            return -one;
+        }
+        let far = point.w > arc.outer + arc.outer;
+        let mean = if far {
+            // Slip has yet to come to the rate of the end.
+            let last = arc.last_rate();
+            let late = last / arc.q[2] - rate;
+            last / (one + larger(late, zero) * half)
+        } else {
+            let RateChanges { shape, .. } = arc.rate_changes(point, rates);
+            let pull = (rates.change + shape + rate * (pole - rates.shape)) * lag * per;
+            g + pull * impulse * half
+        };
+        let ratio = larger((impulse * mean / slip).primal(), constant(-0.97));
+        let part =
+            if ratio.abs() <= constant(1e-3) { one - ratio * half } else { rough_ln_1p(ratio) / ratio };
+        let part = part * impulse / slip.primal();
+        let (w, first) = (point.w.primal(), lag.primal());
+        let mut length = first * part;
+        for _ in 0..if far { 1 } else { 2 } {
+            let z = smaller(length, constant(4.0)) * constant(0.125);
+            let z = (one + z) / (one - z);
+            let z = z * z;
+            length = (first + arc.q_over_e(w * z * z)) * half * part;
+        }
+        length
+    }
+}
+
+/// The step from a point to an event close by.
+pub(super) struct Correction<T> {
+    pub step: T,
+    /// The step over the length on which the integrands change.
+    pub size: T,
+    /// The derivative of the residual by lambda, and the size of the derivative of its logarithm.
+    slope: T,
+    curvature: T,
+}
+
+impl<T: Real> Correction<T> {
+    #[inline]
+    pub fn new(event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> Self {
+        let (one, half) = (T::one(), constant::<T>(0.5));
+        let (slope, bend) = event.slope(&point.state, rates);
+        let newton = -event.at(point) / slope;
+        let bent = newton * bend;
+        let step = if bent.abs() <= half {
+            newton / (one + bent * half)
+        } else if bent > half {
+            square(newton, bent)
+        } else if bent > constant(-0.999) {
+            newton * rough_ln_1p(bent) / bent
+        } else {
+            newton
+        };
+        let bend = bend.primal().abs();
+        let rate = larger((rates.weight + rates.shape).primal().abs(), bend);
+        let size = step.primal().abs() * larger(rate, half);
+        Self { step, slope, curvature: bend, size }
+    }
+
+    /// The errors of steps of third and of fourth order, about.
+    #[inline]
+    pub fn errors(&self, event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> (T, T) {
+        let length = self.step.primal().abs();
+        let steepest =
+            larger(larger(T::one(), self.curvature), larger(rates.growth.abs(), rates.weight.abs()).primal());
+        let steep = length * steepest;
+        // Halley's step misses by its third power.
+        let missed = self.slope.primal().abs() * length;
+        let square = steep * steep * constant(1.0 / 24.0);
+        let moved = (point.sigma * rates.e).primal() * steep + rates.impulse.primal().abs() * length;
+        let rough = (moved + missed) * square * constant(4.0);
+        (rough, if let Event::Work(_) = event { rough } else { moved * steep * square })
+    }
+
+    /// The step with an error of fourth order.
+    #[inline]
+    pub fn refined(
+        &self,
+        event: &Event<T>,
+        point: &ArcPoint<T>,
+        rates: &Rates<T>,
+        rate_changes: &RateChanges<T>,
+    ) -> T {
+        let change = match event {
+            Event::Velocity(_) => rate_changes.turn,
+            Event::Impulse(_) => rate_changes.shape,
+            Event::Work(_) => return self.step,
+        };
+        let (slope, bend) = event.slope(&point.state, rates);
+        let newton = -event.at(point) / slope;
+        let mut step = self.step;
+        for _ in 0..2 {
+            let curve = bend + (bend * bend + rate_changes.weight + change) * step * constant(1.0 / 3.0);
+            step = newton / (T::one() + curve * step * constant(0.5));
+        }
+        step
+    }
+}
+
+/// The step to the zero of the parabola: Newton's step, and that times the derivative of the derivative's logarithm.
+#[inline]
+fn square<T: Real>(newton: T, bent: T) -> T {
+    let one = T::one();
+    let under = larger(one + bent + bent, T::zero());
+    (newton + newton) / (one + under.sqrt())
+}
+
+/// ln(1 + x), to a per cent or so between -0.999 and 1000, which is what a guess needs.
+#[inline]
+fn rough_ln_1p<T: Real>(x: T) -> T {
+    let y = T::one() + x;
+    if x < constant(-0.85) || x > constant(8.0) {
+        constant::<T>(4.0) * rough_ln(y.sqrt().sqrt())
+    } else {
+        rough_ln(y)
+    }
+}
