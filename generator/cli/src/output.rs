@@ -1,6 +1,7 @@
-//! Standard output, to which nothing but results goes.
+//! Standard output, to which nothing but results goes, and files, which are written whole or not at all.
 
 use std::io::{self, Write};
+use std::path::Path;
 
 use crate::stop::{Outcome, Stop};
 
@@ -10,8 +11,17 @@ use crate::stop::{Outcome, Stop};
 ///
 /// [`Stop::ReaderGone`] where the other end of the pipe is closed.
 pub fn text(text: &str) -> Outcome {
+    bytes(text.as_bytes())
+}
+
+/// Writes bytes and flushes them.
+///
+/// # Errors
+///
+/// As [`text`].
+pub fn bytes(bytes: &[u8]) -> Outcome {
     let mut stdout = io::stdout().lock();
-    stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
+    stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|error| match error.kind() {
         io::ErrorKind::BrokenPipe => Stop::ReaderGone,
         _ => Stop::Fault(format!("cannot write to standard output: {error}")),
     })
@@ -35,4 +45,36 @@ pub fn json(value: &impl serde::Serialize) -> Outcome {
     let line_of =
         serde_json::to_string(value).map_err(|error| Stop::Fault(format!("cannot write JSON: {error}")))?;
     line(&line_of)
+}
+
+/// Writes a file, whole or not at all: beside its place first, and moved there when it is complete.
+///
+/// # Errors
+///
+/// The file cannot be written: then what was there before is there still.
+pub fn file(path: &Path, bytes: &[u8]) -> Outcome {
+    written(path, bytes).map_err(|error| Stop::unwritable(path, &error))
+}
+
+fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    // What a link points to is written, not the link; a device or pipe has no place beside it.
+    let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+    if std::fs::metadata(&place).is_ok_and(|data| !data.is_file() && !data.is_dir()) {
+        return std::fs::OpenOptions::new().write(true).open(&place)?.write_all(bytes);
+    }
+    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".hodograph");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As a new file of the user: the mask of the process applies.
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    if let Ok(data) = std::fs::metadata(&place) {
+        file.as_file().set_permissions(data.permissions())?;
+    }
+    file.persist(&place).map(drop).map_err(|error| error.error)
 }

@@ -6,21 +6,80 @@ use common::{hodograph, model, number};
 use serde_json::{Value, json};
 
 #[test]
-fn plots_have_a_curve_and_three_marks_for_each_friction() {
+fn plots_have_a_curve_and_marks_for_each_friction_and_say_what_they_are() {
     let call = ["plot", &model("two_sleds"), "--mu", "0.6,1.1,1.6", "--e", "0.8"];
     let run = hodograph(&call, "");
     assert_eq!(run.code, 0, "{}", run.stderr);
-    assert!(run.stdout.starts_with("<svg") && run.stdout.trim_end().ends_with("</svg>"));
-    // Three panels, three frictions: a circle for Newton in each.
-    assert_eq!(run.stdout.matches("<circle").count(), 9);
-    for text in ["mu = 0.6", "mu = 1.6", "TwoSleds, BcAc, e = 0.8"] {
-        assert!(run.stdout.contains(text), "{text}");
+    let document = roxmltree::Document::parse(&run.stdout).expect("SVG is XML");
+    let all = |name: &str| {
+        document
+            .descendants()
+            .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", name)))
+            .collect::<Vec<_>>()
+    };
+    let texts: Vec<String> = all("text")
+        .iter()
+        .map(|node| {
+            node.descendants().filter_map(|part| part.is_text().then(|| part.text()).flatten()).collect()
+        })
+        .collect();
+    for text in [
+        "TwoSleds, BcAc, e = 0.8",
+        "vt [m/s]",
+        "vs [m/s]",
+        "vn [m/s]",
+        "In [N\u{b7}s]",
+        "\u{3bc} = 0.6",
+        "\u{3bc} = 1.6",
+        "approach",
+        "end by Newton's law",
+        "end by Poisson's law",
+        "end by Stronge's law",
+    ] {
+        assert!(texts.iter().any(|known| known == text), "{text} is not in {texts:?}");
     }
+    // In three panels: three approaches and three ends by Newton's law. One of each stands in the legend.
+    assert_eq!(all("circle").len(), 2 * 9 + 2);
+    // Curves are not steps from pixel to pixel: the longest has corners between them.
+    let longest =
+        all("path").into_iter().filter_map(|node| node.attribute("d")).max_by_key(|path| path.len()).unwrap();
+    let places: Vec<f64> = longest
+        .split(['M', 'L', ' '])
+        .filter(|number| !number.is_empty())
+        .map(|number| number.parse().unwrap())
+        .collect();
+    assert!(
+        places.len() > 200
+            && places.iter().filter(|place| place.fract() != 0.0).count() > 9 * places.len() / 10,
+        "{longest}"
+    );
+}
+
+#[test]
+fn the_name_or_the_option_decides_the_format_of_a_plot() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("one.svg").display().to_string();
     let case = json!({"m": [0.25, -0.125, 0, 0.5, 0, 0.5], "v": [-1, 0.5, 0]}).to_string();
-    assert_eq!(hodograph(&["plot", "--mu", "0.5", "--e", "1", "--output", &path], &case).code, 0);
-    assert!(std::fs::read_to_string(&path).unwrap().contains("</svg>"));
+    let plot = |name: &str, more: &[&str]| {
+        let path = folder.path().join(name);
+        let call = ["plot", "--mu", "0.5", "--e", "1", "--output", path.to_str().unwrap()];
+        let run = hodograph(&[&call, more].concat(), &case);
+        (run.code, run.stderr, std::fs::read(&path).unwrap_or_default())
+    };
+    let picture = plot("one.png", &[]);
+    assert_eq!((picture.0, &picture.2[..8]), (0, &b"\x89PNG\r\n\x1a\n"[..]), "{}", picture.1);
+    assert_eq!(plot("other.PNG", &[]).2, picture.2);
+    assert_eq!(plot("one.svg", &["--format", "png"]).2, picture.2);
+    assert!(plot("two.svg", &[]).2.starts_with(b"<svg"));
+    assert!(plot("plain", &[]).2.starts_with(b"<svg"));
+    let refused = plot("one.jpg", &[]);
+    assert_eq!((refused.0, refused.2.len()), (2, 0));
+    assert!(refused.1.contains("SVG or PNG, not as `jpg`"), "{}", refused.1);
+    // Nothing is left beside what was written, and what stood there stays if nothing can be written.
+    let mut names: Vec<_> =
+        std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["one.png", "one.svg", "other.PNG", "plain", "two.svg"]);
+    assert_eq!(plot("missing/one.svg", &[]).0, 1);
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `hodograph plot`: the course of collisions as a drawing.
 
+use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use hodograph::ReducedMatrix;
@@ -11,16 +12,18 @@ use crate::evaluate::contact::{self, Contact};
 use crate::json::{Fields, Json};
 use crate::model;
 use crate::output;
-use crate::plot::figure::svg;
+use crate::plot::collision::figure;
+use crate::plot::figure::Format;
 use crate::plot::trace::{Trace, trace};
 use crate::stop::{Outcome, Stop};
 
-/// Draw the course of a collision (SVG): the hodograph v_s over v_t, and v_n and s over I_n, as in Fig. 3 of the paper
+/// Draw the course of a collision: the hodograph v_s over v_t, and v_n and the slip s over I_n, as in Fig. 3 of the paper
 ///
 ///   hodograph plot models/two_sleds.mech --mu 0.6,1.1,1.6 --e 0.8 --output sleds.svg
 ///   echo '{"m":[..],"v":[..]}' | hodograph plot --mu 0.6 --e 0.8 > one.svg
 ///
-/// A circle marks where Newton's law ends the collision, a cross Poisson's, a square Stronge's.
+/// Arrowheads show the direction of a curve, a dot its beginning; a circle marks where Newton's law ends the collision, a cross
+/// Poisson's, a square Stronge's. The file's name decides the format: .svg or .png.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -47,6 +50,9 @@ pub struct Arguments {
     /// where to write [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
+    /// the format [default: as the file's name ends, else svg]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     #[command(flatten)]
     limits: Limits,
 }
@@ -57,6 +63,10 @@ pub struct Arguments {
 ///
 /// An error object for what is wrong with the collision.
 pub fn run(arguments: &Arguments) -> Outcome {
+    let format = Format::of(arguments.format, arguments.output.as_deref())?;
+    if format == Format::Png && arguments.output.is_none() && std::io::stdout().is_terminal() {
+        return Err(Stop::Call("a picture is not for a terminal: give --output FILE.png".to_owned()));
+    }
     let (title, matrix, velocity) = collision(arguments)?;
     let traces: Vec<Trace> =
         arguments.mu.iter().map(|&mu| trace(&matrix, velocity, mu, arguments.e)).collect();
@@ -66,10 +76,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if traces.iter().all(|trace| trace.moments.is_empty()) {
         return Err(Stop::Fault("there is nothing to draw: no collision has an outcome".to_owned()));
     }
-    let text = svg(&title, &traces).map_err(|error| Stop::Fault(format!("cannot draw: {error}")))?;
+    let figure = figure(&title, &traces);
     match &arguments.output {
-        Some(path) => std::fs::write(path, text).map_err(|error| Stop::unwritable(path, &error)),
-        None => output::text(&text),
+        Some(path) => figure.save(path, format),
+        None => output::bytes(&figure.bytes(format)?),
     }
 }
 

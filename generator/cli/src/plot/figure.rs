@@ -1,116 +1,210 @@
-//! Draws hodographs: v_s over v_t, v_n and s over I_n.
+//! What a figure shows.
+//!
+//! ```ignore
+//! let mut panel = Panel::new(Axis::new(Label::symbol("t", ""), "s"), Axis::new(Label::words("gap"), "m"));
+//! panel.series.push(Series::new("tip", 0, times.zip(gaps).collect()));
+//! Figure::new("Pendulum").panel(panel).save(path, Format::of(None, Some(path))?)?;
+//! ```
 
-use std::ops::Range;
+use std::path::Path;
 
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use clap::ValueEnum;
 
-use super::trace::{Moment, Trace};
+use super::label::Label;
+use super::{layout, png, svg};
+use crate::output;
+use crate::stop::{Outcome, Stop};
 
-/// Width of a panel and height, in pixels.
-const PANEL: (u32, u32) = (420, 420);
-/// Colours that can be told apart by all readers and in print.
-const COLOURS: [RGBColor; 6] = [
-    RGBColor(0, 90, 160),
-    RGBColor(200, 80, 0),
-    RGBColor(0, 130, 90),
-    RGBColor(150, 50, 130),
-    RGBColor(110, 110, 110),
-    RGBColor(160, 130, 0),
-];
-
-type Reason = Box<dyn std::error::Error>;
-
-/// The drawing as SVG.
-///
-/// # Errors
-///
-/// What the plotting library says.
-pub fn svg(title: &str, traces: &[Trace]) -> Result<String, Reason> {
-    let mut text = String::new();
-    {
-        let area = SVGBackend::with_string(&mut text, (3 * PANEL.0, PANEL.1 + 40)).into_drawing_area();
-        area.fill(&WHITE)?;
-        let area = area.titled(title, ("sans-serif", 18))?;
-        let panels = area.split_evenly((1, 3));
-        let hodograph = |moment: &Moment| (moment.velocity[1], moment.velocity[2]);
-        panel(&panels[0], traces, "hodograph: v_s over v_t [m/s]", true, hodograph)?;
-        let normal = |moment: &Moment| (moment.impulse, moment.velocity[0]);
-        panel(&panels[1], traces, "v_n [m/s] over I_n [N s]", false, normal)?;
-        let slip = |moment: &Moment| (moment.impulse, moment.slip());
-        panel(&panels[2], traces, "s [m/s] over I_n [N s]", false, slip)?;
-        area.present()?;
-    }
-    Ok(text)
+/// Panels under a title.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// in plain words
+    pub title: String,
+    /// row by row
+    pub panels: Vec<Panel>,
+    /// panels side by side
+    pub columns: usize,
+    /// width and height of a panel, pixels
+    pub panel_size: [f64; 2],
+    /// where the legend stands
+    pub legend: Legend,
 }
 
-fn panel(
-    area: &DrawingArea<SVGBackend, Shift>,
-    traces: &[Trace],
-    title: &str,
-    same_scale: bool,
-    pick: impl Fn(&Moment) -> (f64, f64),
-) -> Result<(), Reason> {
-    let points = || traces.iter().flat_map(|trace| &trace.moments).map(&pick);
-    let (mut x, mut y) = (spread(points().map(|point| point.0)), spread(points().map(|point| point.1)));
-    if same_scale {
-        let widest = (x.end - x.start).max(y.end - y.start);
-        x = widened(x, widest);
-        y = widened(y, widest);
-    }
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, ("sans-serif", 15))
-        .margin(10)
-        .x_label_area_size(35)
-        .y_label_area_size(50)
-        .build_cartesian_2d(x.clone(), y.clone())?;
-    chart.configure_mesh().light_line_style(WHITE).x_labels(6).y_labels(6).draw()?;
-    let faint = BLACK.mix(0.4);
-    for line in [[(x.start, 0.0), (x.end, 0.0)], [(0.0, y.start), (0.0, y.end)]] {
-        if line
-            .iter()
-            .all(|point| x.start <= point.0 && point.0 <= x.end && y.start <= point.1 && point.1 <= y.end)
-        {
-            chart.draw_series([PathElement::new(line.to_vec(), faint)])?;
+/// Where the legend stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Legend {
+    /// one for all panels, below them; what has the same label in several panels stands there once
+    Below,
+    /// one for each panel, on its right
+    Beside,
+}
+
+/// Curves and marks over two axes.
+#[derive(Clone, Debug)]
+pub struct Panel {
+    /// above the panel; may be empty
+    pub title: Label,
+    /// to the right
+    pub x: Axis,
+    /// upwards
+    pub y: Axis,
+    /// a unit is as long upwards as to the right
+    pub equal: bool,
+    /// in the order of drawing
+    pub series: Vec<Series>,
+    /// drawn over the series
+    pub marks: Vec<Mark>,
+}
+
+/// What an axis shows.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// the quantity
+    pub name: Label,
+    /// its unit; may be empty
+    pub unit: String,
+    /// the ends; `None`: those of the data, and a margin
+    pub range: Option<[f64; 2]>,
+}
+
+/// A curve.
+#[derive(Clone, Debug)]
+pub struct Series {
+    /// in the legend; empty: not there
+    pub label: Label,
+    /// which of the [`STYLES`](super::series::STYLES), counted on from the first again after the last
+    pub style: usize,
+    /// in units of the axes; a number that is not finite interrupts the curve
+    pub points: Vec<[f64; 2]>,
+    /// arrowheads show in which direction the curve is run through
+    pub directed: bool,
+}
+
+/// A place that is marked.
+#[derive(Clone, Debug)]
+pub struct Mark {
+    /// in the legend; empty: not there
+    pub label: Label,
+    /// its form
+    pub sign: Sign,
+    /// colour of this style; `None`: black
+    pub style: Option<usize>,
+    /// in units of the axes
+    pub at: [f64; 2],
+}
+
+/// The form of a mark.
+#[allow(dead_code)] // for figures over time
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// a filled circle
+    Dot,
+    /// a circle
+    Circle,
+    /// an oblique cross
+    Cross,
+    /// a square
+    Square,
+    /// a triangle
+    Triangle,
+    /// a filled square
+    Block,
+}
+
+impl Figure {
+    /// A figure of one column, legends beside its panels: quantities over time.
+    pub fn new(title: &str) -> Self {
+        Figure {
+            title: title.to_owned(),
+            panels: Vec::new(),
+            columns: 1,
+            panel_size: [760.0, 230.0],
+            legend: Legend::Beside,
         }
     }
-    for (trace, colour) in traces.iter().zip(COLOURS.iter().cycle()) {
-        let line = LineSeries::new(trace.moments.iter().map(&pick), colour.stroke_width(2));
-        chart
-            .draw_series(line)?
-            .label(format!("mu = {}", trace.mu))
-            .legend(|(x, y)| PathElement::new(vec![(x, y), (x + 16, y)], colour.stroke_width(2)));
-        let [newton, poisson, stronge] = trace.ends.map(|end| end.as_ref().map(&pick));
-        chart.draw_series(newton.map(|at| Circle::new(at, 5, colour.stroke_width(2))))?;
-        chart.draw_series(poisson.map(|at| Cross::new(at, 5, colour.stroke_width(2))))?;
-        chart
-            .draw_series(stronge.map(|at| {
-                EmptyElement::at(at) + Rectangle::new([(-5, -5), (5, 5)], colour.stroke_width(2))
-            }))?;
+
+    /// With a panel more.
+    pub fn panel(mut self, panel: Panel) -> Self {
+        self.panels.push(panel);
+        self
     }
-    if same_scale {
-        let labels = &mut chart.configure_series_labels();
-        let labels = labels.position(SeriesLabelPosition::UpperRight);
-        labels.background_style(WHITE.mix(0.8)).border_style(faint).draw()?;
+
+    /// The bytes of a file in a format.
+    ///
+    /// # Errors
+    ///
+    /// The figure is too large for a picture.
+    pub fn bytes(&self, format: Format) -> Outcome<Vec<u8>> {
+        let sheet = layout::draw(self).map_err(|error| Stop::Fault(format!("cannot draw: {error}")))?;
+        match format {
+            Format::Svg => Ok(svg::write(&sheet, &self.title, &self.description()).into_bytes()),
+            Format::Png => png::write(&sheet).map_err(|error| Stop::Fault(format!("cannot draw {error}"))),
+        }
     }
-    Ok(())
+
+    /// What the panels show, in words.
+    fn description(&self) -> String {
+        let panel = |panel: &Panel| format!("{} over {}", panel.y.name.plain(), panel.x.name.plain());
+        self.panels.iter().map(panel).collect::<Vec<_>>().join("; ")
+    }
+
+    /// Writes a file, whole or not at all.
+    ///
+    /// # Errors
+    ///
+    /// As [`bytes`](Self::bytes), or the file cannot be written.
+    pub fn save(&self, path: &Path, format: Format) -> Outcome {
+        output::file(path, &self.bytes(format)?)
+    }
 }
 
-/// The range of the numbers with a margin.
-fn spread(numbers: impl Iterator<Item = f64>) -> Range<f64> {
-    let (low, high) = numbers
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), number| (low.min(number), high.max(number)));
-    if low > high {
-        return -1.0..1.0;
+impl Panel {
+    /// An empty panel.
+    pub fn new(x: Axis, y: Axis) -> Self {
+        Panel { title: Label::default(), x, y, equal: false, series: Vec::new(), marks: Vec::new() }
     }
-    let margin = match high - low {
-        0.0 => high.abs().max(1e-300),
-        width => 0.08 * width,
-    };
-    low - margin..high + margin
 }
 
-fn widened(range: Range<f64>, width: f64) -> Range<f64> {
-    let more = (width - (range.end - range.start)) / 2.0;
-    range.start - more..range.end + more
+impl Axis {
+    /// An axis as long as its data.
+    pub fn new(name: impl Into<Label>, unit: &str) -> Self {
+        Axis { name: name.into(), unit: unit.to_owned(), range: None }
+    }
+}
+
+impl Series {
+    /// A curve without direction.
+    pub fn new(label: impl Into<Label>, style: usize, points: Vec<[f64; 2]>) -> Self {
+        Series { label: label.into(), style, points, directed: false }
+    }
+}
+
+/// The format of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// lines and letters, which can be magnified
+    Svg,
+    /// a picture of points
+    Png,
+}
+
+impl Format {
+    /// The format that is asked for, else the one a file's name ends with, else SVG.
+    ///
+    /// # Errors
+    ///
+    /// The name ends otherwise, and no format is asked for.
+    pub fn of(asked: Option<Format>, path: Option<&Path>) -> Outcome<Format> {
+        let ending = |path: &Path| path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        match (asked, path.map(ending)) {
+            (Some(format), _) => Ok(format),
+            (None, None | Some(None)) => Ok(Format::Svg),
+            (None, Some(Some(ending))) => Format::from_str(&ending, true).map_err(|_| {
+                Stop::Call(format!(
+                    "figures are written as SVG or PNG, not as `{ending}`: end the file's name with .svg or .png, \
+                     or give --format"
+                ))
+            }),
+        }
+    }
 }

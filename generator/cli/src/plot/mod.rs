@@ -1,4 +1,18 @@
-//! Hodographs as in Fig. 3 of the paper.
+//! Figures: panels with axes, curves, marks and a legend, written as SVG or PNG.
+//!
+//! [`figure`] says what is shown, [`layout`] where it stands. Drawing goes through the library `plotters` onto a [`canvas`] that keeps
+//! hundredths of a pixel, from which [`svg`] and [`png`] write files. [`collision`] is the figure of `hodograph plot`.
 
+mod canvas;
+pub mod collision;
 pub mod figure;
+mod font;
+pub mod label;
+mod layout;
+mod legend;
+mod png;
+mod series;
+mod svg;
+#[cfg(test)]
+mod tests;
 pub mod trace;

@@ -1,0 +1,53 @@
+//! The course of a collision, as in Fig. 3 of the paper: v_s over v_t, v_n and the speed of slip over I_n.
+
+use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};
+use super::label::Label;
+use super::trace::{Moment, Trace};
+use crate::surface::LAWS;
+
+/// The marks of where the laws end a collision, in the order of [`LAWS`].
+const SIGNS: [Sign; 3] = [Sign::Circle, Sign::Cross, Sign::Square];
+
+/// What a panel shows of a moment.
+type Pick = fn(&Moment) -> [f64; 2];
+
+/// The figure of collisions that differ in friction.
+pub fn figure(title: &str, traces: &[Trace]) -> Figure {
+    let velocity = |index: &str| Axis::new(Label::symbol("v", index), "m/s");
+    let impulse = || Axis::new(Label::symbol("I", "n"), "N\u{b7}s");
+    let slip = Axis::new(Label::words("speed of slip ").with("s", ""), "m/s");
+    let panels: [(&str, Panel, Pick); 3] = [
+        ("hodograph of slip", Panel::new(velocity("t"), velocity("s")), |moment| {
+            [moment.velocity[1], moment.velocity[2]]
+        }),
+        ("normal velocity", Panel::new(impulse(), velocity("n")), |moment| {
+            [moment.impulse, moment.velocity[0]]
+        }),
+        ("slip", Panel::new(impulse(), slip), |moment| [moment.impulse, moment.slip()]),
+    ];
+    let empty =
+        Figure { columns: 3, panel_size: [410.0, 400.0], legend: Legend::Below, ..Figure::new(title) };
+    panels.into_iter().fold(empty, |figure, (caption, mut panel, pick)| {
+        panel.equal = caption.starts_with("hodograph");
+        panel.title = Label::words(caption);
+        fill(&mut panel, traces, pick);
+        figure.panel(panel)
+    })
+}
+
+fn fill(panel: &mut Panel, traces: &[Trace], pick: Pick) {
+    for (index, trace) in traces.iter().enumerate() {
+        let Some(first) = trace.moments.first() else { continue };
+        let points = trace.moments.iter().map(pick).collect();
+        let label = Label::symbol("\u{3bc}", "").then(&format!(" = {}", trace.mu));
+        panel.series.push(Series { directed: true, ..Series::new(label, index, points) });
+        let start = Label::words("approach");
+        panel.marks.push(Mark { label: start, sign: Sign::Dot, style: None, at: pick(first) });
+        for ((sign, end), (law, _)) in SIGNS.into_iter().zip(&trace.ends).zip(LAWS) {
+            let (initial, rest) = law.split_at(1);
+            let label = Label::words(&format!("end by {}{rest}'s law", initial.to_uppercase()));
+            let mark = |end| Mark { label: label.clone(), sign, style: Some(index), at: pick(end) };
+            panel.marks.extend(end.as_ref().map(mark));
+        }
+    }
+}
