@@ -35,7 +35,7 @@ impl<T: Real> Zeros<T> {
 pub(super) fn zeros<T: Real>(p: &[T; 5]) -> Zeros<T> {
     let mut size = T::zero();
     for coefficient in p {
-        size += coefficient.abs().plain();
+        size += coefficient.abs().primal();
     }
     let mut found = Zeros::none();
     if size <= T::zero() {
@@ -76,7 +76,7 @@ fn derivative<T: Real>(p: &[T; 5], order: usize, x: T) -> T {
 /// The zero of a derivative between two places, between which it is monotone.
 fn between<T: Real>(p: &[T; 5], order: usize, low: T, high: T) -> Option<T> {
     let zero = T::zero();
-    let (mut low, mut high) = (low.plain(), high.plain());
+    let (mut low, mut high) = (low.primal(), high.primal());
     let rises = derivative(p, order, low) < zero;
     if (derivative(p, order, high) < zero) == rises {
         return None;

@@ -32,7 +32,7 @@ pub(super) struct Held<T: Real> {
 impl<T: Real> Closed<T> {
     /// From the contact's own numbers.
     pub fn new(m: &ReducedMatrix<T>, beta: &Vector3<T>, mu: T) -> Self {
-        let size = larger(larger(beta.x.abs(), beta.y.abs()), beta.z.abs()).plain();
+        let size = larger(larger(beta.x.abs(), beta.y.abs()), beta.z.abs()).primal();
         let unit = if size > T::zero() { size } else { T::one() };
         Self {
             mu,
