@@ -5,49 +5,10 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use crate::arithmetic::Arithmetic;
 use crate::arithmetic::DoubleDouble;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
-use crate::program::routine::Quantity;
-use crate::program::slice::Slice;
-use crate::program::{Guard, Program, VANISHING};
-
-/// The numbers from outside, each in the unit that the model declares, in file order.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Inputs {
-    /// all parameters, also those that are `fixed` (which are not read)
-    pub parameters: Vec<f64>,
-    /// time, s
-    pub time: f64,
-    /// coordinates
-    pub coordinates: Vec<f64>,
-    /// independent speeds
-    pub speeds: Vec<f64>,
-    /// named inputs
-    pub inputs: Vec<f64>,
-    /// derivatives of the independent speeds; only inverse dynamics reads them
-    pub accelerations: Vec<f64>,
-    /// direction of a linearisation: independent coordinates, independent speeds, named inputs; only the state tangent
-    /// reads it
-    pub tangent: Vec<f64>,
-}
-
-impl Inputs {
-    /// One of the numbers; what is not there is not a number.
-    pub fn get(&self, input: Input) -> f64 {
-        let (list, index) = match input {
-            Input::Time => return self.time,
-            Input::Parameter(index) => (&self.parameters, index),
-            Input::Coordinate(index) => (&self.coordinates, index),
-            Input::Speed(index) => (&self.speeds, index),
-            Input::Input(index) => (&self.inputs, index),
-            Input::Acceleration(index) => (&self.accelerations, index),
-            Input::Tangent(index) => (&self.tangent, index),
-        };
-        list.get(index as usize).copied().unwrap_or(f64::NAN)
-    }
-}
+use crate::program::{Guard, Inputs, Program, Quantity, Slice, VANISHING, operate};
 
 /// The numbers of a quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -111,35 +72,6 @@ impl std::error::Error for Failure {}
 pub struct Evaluator<'a> {
     program: &'a Program,
     stages: Vec<Stage>,
-}
-
-/// The result of an operation on earlier values; of a sine-cosine pair both, else the second is 0.
-pub(crate) fn operate<N: Arithmetic>(
-    operation: Operation,
-    inputs: &Inputs,
-    numbers: impl Fn(Value) -> (N, N),
-) -> (N, N) {
-    use Operation::*;
-    let of = |value: Value| numbers(value).0;
-    let number = match operation {
-        Constant(bits) => N::exactly(bits.get()),
-        Input(input) => N::exactly(inputs.get(input)),
-        Neg(a) => -of(a),
-        Add(a, b) => of(a) + of(b),
-        Sub(a, b) => of(a) - of(b),
-        Mul(a, b) => of(a) * of(b),
-        Div(a, b) => of(a) / of(b),
-        Recip(a) => N::exactly(1.0) / of(a),
-        MulAdd(a, b, c) => of(a).mul_add(of(b), of(c)),
-        MulSub(a, b, c) => of(a).mul_add(of(b), -of(c)),
-        NegMulAdd(a, b, c) => (-of(a)).mul_add(of(b), of(c)),
-        SinCos(a) => return of(a).sin_cos(),
-        Sine(a) => of(a),
-        Cosine(a) => numbers(a).1,
-        Call(function, a) => of(a).call(function),
-        Call2(function, a, b) => of(a).call2(function, of(b)),
-    };
-    (number, N::exactly(0.0))
 }
 
 impl<'a> Evaluator<'a> {

@@ -4,8 +4,8 @@ mod common;
 
 use common::Model;
 use hodograph_generator::arithmetic::Function;
+use hodograph_generator::program::Quantity;
 use hodograph_generator::program::operation::{Operation, Stage};
-use hodograph_generator::program::routine::Quantity;
 
 /// Inverse dynamics of the Stanford arm took Kane and Levinson 646 multiplications and 394 additions (1983, by hand).
 #[test]

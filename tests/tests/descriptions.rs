@@ -3,8 +3,8 @@
 mod common;
 
 use common::{Model, difference};
-use hodograph_generator::interpret::Inputs;
-use hodograph_generator::program::routine::{ContactQuantity as C, Quantity as Q};
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 
 /// The quaternion of three rotations about new axes x, y, z.
 fn quaternion(angles: [f64; 3]) -> [f64; 4] {

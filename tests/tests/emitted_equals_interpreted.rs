@@ -9,8 +9,8 @@ mod golden {
 use golden::pendulum::{Coordinates, Inputs, Parameters, Pendulum, Speeds};
 use hodograph::{Law, Surface};
 use hodograph_generator::artifact;
-use hodograph_generator::interpret::{self, Evaluator};
-use hodograph_generator::program::routine::{ContactQuantity, PointQuantity, Quantity};
+use hodograph_generator::interpret::Evaluator;
+use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
 
 #[test]
 fn the_same_bits() {
@@ -22,7 +22,7 @@ fn the_same_bits() {
         let (m, l, g) = (1.3, 0.7, 9.81);
         let pendulum = Pendulum::new(Parameters { m, l, g }).unwrap();
         let (q, u, inputs) = (Coordinates { q1: x }, Speeds { u1: 0.9 * x }, Inputs { tau: x.cos() });
-        let outside = interpret::Inputs {
+        let outside = hodograph_generator::program::Inputs {
             parameters: vec![m, l, g],
             coordinates: vec![q.q1],
             speeds: vec![u.u1],

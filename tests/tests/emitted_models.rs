@@ -6,8 +6,8 @@ use common::emitted::{Emitted, Hit, emitted};
 use common::random::samples;
 use common::{Model, models, root};
 use hodograph::{Law, Surface};
-use hodograph_generator::interpret::Inputs;
-use hodograph_generator::program::routine::{ContactQuantity as C, Quantity as Q};
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 
 #[test]
 fn every_model_has_its_module() {

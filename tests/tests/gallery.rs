@@ -6,7 +6,7 @@ mod common;
 
 use common::random::{Sample, samples};
 use common::{Model, models, root};
-use hodograph_generator::program::routine::{ContactQuantity as C, Quantity as Q};
+use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 use nalgebra::Matrix3;
 
 const BEGIN: &str = "<!-- table -->\n";

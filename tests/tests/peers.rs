@@ -5,8 +5,8 @@
 mod common;
 
 use common::{Model, difference, numbers};
-use hodograph_generator::interpret::Inputs;
-use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde_json::Value;
 
 #[allow(missing_docs)]

@@ -3,8 +3,8 @@
 mod common;
 
 use common::{Model, Reference, difference, number, numbers, references};
-use hodograph_generator::interpret::Inputs;
-use hodograph_generator::program::routine::{ContactQuantity as C, Quantity as Q};
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 use serde_json::Value;
 
 /// Compares one quantity and keeps what is too far off.

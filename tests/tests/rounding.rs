@@ -8,8 +8,8 @@ mod precise;
 
 use common::Model;
 use common::random::Random;
-use hodograph_generator::interpret::Inputs;
-use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::Quantity;
 use precise::{Precise, evaluate};
 
 /// Largest and mean error of the accelerations relative to the largest of them, at 500 states: angles between -pi and pi, everything else

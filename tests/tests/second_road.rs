@@ -5,9 +5,10 @@ mod common;
 
 use common::random::{Sample, samples};
 use common::{Model, models};
-use hodograph_generator::interpret::{Array, Inputs};
+use hodograph_generator::interpret::Array;
 use hodograph_generator::model::mechanism::LoadKind;
-use hodograph_generator::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
 use nalgebra::{DMatrix, DVector};
 
 /// Runs a check on every model at random states and reports all that fail.

@@ -7,11 +7,12 @@ use std::fmt::Write;
 use std::path::Path;
 
 use common::{ALL_JOINTS, hodograph};
-use hodograph_generator::interpret::{Evaluator, Inputs};
+use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::numeric::{self, State};
+use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
-use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::program::{ContactQuantity, Quantity};
 use hodograph_generator::source::Source;
 use hodograph_generator::{artifact, check::check};
 use nalgebra::{DMatrix, DVector};

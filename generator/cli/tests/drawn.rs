@@ -181,7 +181,7 @@ fn costs_are_a_table() {
     #[cfg(feature = "derive")]
     {
         let run = hodograph(&["explain", &model("rolling_disc"), "--cost", "--passes"], "");
-        assert!(run.stdout.contains("all, after pass fuse"), "{}{}", run.stdout, run.stderr);
+        assert!(run.stdout.contains("all, after pass contract"), "{}{}", run.stdout, run.stderr);
     }
 }
 

@@ -5,8 +5,8 @@ use std::fmt;
 use super::{Artifact, FORMAT, FUNCTIONS, is_binary};
 use crate::program::graph::Input;
 use crate::program::operation::{Bits, Operation, Value};
-use crate::program::routine::{Quantity, Structure};
 use crate::program::{Guard, Output, Program};
+use crate::program::{Quantity, Structure};
 
 /// Why a text is no derivation that this generator reads.
 #[derive(Clone, Debug, PartialEq, Eq)]

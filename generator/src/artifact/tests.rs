@@ -1,6 +1,6 @@
 use super::*;
 use crate::program::graph::{Graph, Input};
-use crate::program::routine::{Derived, Guard, Output, Quantity, Structure};
+use crate::program::{Derived, Guard, Output, Quantity, Structure};
 
 fn program() -> Program {
     let mut graph = Graph::new();
@@ -13,8 +13,8 @@ fn program() -> Program {
     let quotient = graph.div(product, cosine);
     let angle = graph.call(Function::Atan2, vec![quotient, m]);
     let outputs = vec![
-        Output { quantity: Quantity::Forcing, rows: 2, columns: 1, nodes: vec![quotient, angle] },
-        Output { quantity: Quantity::DependentSpeeds, rows: 0, columns: 1, nodes: vec![] },
+        Output { quantity: Quantity::Forcing, rows: 2, columns: 1, values: vec![quotient, angle] },
+        Output { quantity: Quantity::DependentSpeeds, rows: 0, columns: 1, values: vec![] },
     ];
     let guards = vec![Guard { value: cosine, scale: Some(m), message: "the arm\nis  stretched".into() }];
     Program::new(&Derived {

@@ -7,7 +7,7 @@ use super::Emitter;
 use super::methods::about;
 use super::values::local;
 use crate::program::Output;
-use crate::program::routine::{ContactQuantity, Quantity, Structure};
+use crate::program::{ContactQuantity, Quantity, Structure};
 
 /// What a collision needs of its contact, in any case.
 const NEEDED: [ContactQuantity; 6] = [

@@ -4,7 +4,7 @@ use crate::model::mechanism::Mechanism;
 use crate::program::Program;
 use crate::program::graph::Input;
 use crate::program::operation::Operation;
-use crate::program::routine::{ContactQuantity, PointQuantity, Quantity};
+use crate::program::{ContactQuantity, PointQuantity, Quantity};
 
 /// Checks that every input, contact, point and frame exists and that every quantity has its shape.
 pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {

@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
-use crate::program::routine::Quantity;
+use crate::program::Quantity;
 
 impl Emitter<'_> {
     /// Number of states and of named inputs.

@@ -7,7 +7,7 @@ use super::Emitter;
 use super::record::Record;
 use super::values::local;
 use crate::program::Output;
-use crate::program::routine::{PointQuantity, Quantity};
+use crate::program::{PointQuantity, Quantity};
 use crate::rust_names::{prose, snake_case};
 
 impl Emitter<'_> {
@@ -190,6 +190,6 @@ pub fn about(name: &str, docs: &str) -> String {
 }
 
 fn is_scalar(quantity: Quantity) -> bool {
-    use crate::program::routine::ContactQuantity::Gap;
+    use crate::program::ContactQuantity::Gap;
     matches!(quantity, Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::Contact(_, Gap))
 }

@@ -22,9 +22,9 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::model::mechanism::Mechanism;
+use crate::program::Quantity;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
-use crate::program::routine::Quantity;
 use crate::program::{Guard, Program};
 use crate::rust_names;
 use record::Record;

@@ -8,9 +8,9 @@ use quote::quote;
 use super::Emitter;
 use super::values::local;
 use crate::program::Guard;
+use crate::program::Quantity;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
-use crate::program::routine::Quantity;
 
 impl Emitter<'_> {
     /// The statements that compute quantities and check them; their values are local variables afterwards.
@@ -103,8 +103,7 @@ impl Emitter<'_> {
             tangent: quantities.iter().any(|quantity| {
                 matches!(
                     quantity,
-                    Quantity::StateTangent
-                        | Quantity::Contact(_, crate::program::routine::ContactQuantity::Tangent)
+                    Quantity::StateTangent | Quantity::Contact(_, crate::program::ContactQuantity::Tangent)
                 )
             }),
         }
@@ -112,7 +111,7 @@ impl Emitter<'_> {
 
     /// Does the quantity depend on speeds, by definition or in fact?
     fn takes_speeds(&self, quantity: Quantity) -> bool {
-        use crate::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
+        use crate::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
         let by_definition = match quantity {
             Q::MassMatrix
             | Q::PotentialEnergy

@@ -5,7 +5,7 @@ use quote::quote;
 
 use super::Emitter;
 use super::values::local;
-use crate::program::routine::{ContactQuantity, Quantity};
+use crate::program::{ContactQuantity, Quantity};
 use crate::rust_names::{docs, ident};
 
 /// What the derivative by the speeds needs of a contact.

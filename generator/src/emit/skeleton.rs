@@ -6,7 +6,7 @@ use quote::{format_ident, quote};
 use super::{Options, fits};
 use crate::model::mechanism::Mechanism;
 use crate::program::operation::{Bits, Operation, Value};
-use crate::program::routine::{ContactQuantity as C, PointQuantity as P, Quantity as Q, Structure};
+use crate::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q, Structure};
 use crate::program::{Output, Program};
 use crate::rust_names;
 

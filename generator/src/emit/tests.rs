@@ -7,9 +7,7 @@ use crate::arithmetic::Function;
 use crate::model::mechanism::*;
 use crate::number::Number;
 use crate::program::graph::{Graph, Input};
-use crate::program::routine::{
-    ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity as Q, Structure,
-};
+use crate::program::{ContactQuantity, Derived, Guard, Output, PointQuantity, Quantity as Q, Structure};
 use crate::span::Span;
 
 fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Variable {
@@ -111,7 +109,7 @@ fn derived() -> Derived {
     let inverse = g.power(mass, -1);
     let products = [(normal, normal), (normal, ls), (ls, ls)].map(|(a, b)| g.product([a, b, inverse]));
     let responses = [normal, ls].map(|a| g.product([a, inverse]));
-    let output = |quantity, rows, columns, nodes: Vec<_>| Output { quantity, rows, columns, nodes };
+    let output = |quantity, rows, columns, nodes: Vec<_>| Output { quantity, rows, columns, values: nodes };
     let contact = |quantity, rows, columns, nodes| output(Q::Contact(0, quantity), rows, columns, nodes);
     let outputs = vec![
         output(Q::CoordinateRates, 1, 1, vec![u]),

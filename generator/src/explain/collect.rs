@@ -9,7 +9,7 @@ use crate::arithmetic::Function;
 use crate::model::mechanism::{Mechanism, Variable};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
-use crate::program::routine::{ContactQuantity, PointQuantity, Quantity};
+use crate::program::{ContactQuantity, PointQuantity, Quantity};
 use crate::program::{Output, Program};
 
 /// An expression of more symbols than this is cut in two.

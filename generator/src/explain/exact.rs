@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::program::Program;
+use crate::program::Slice;
 use crate::program::operation::{Operation, Value};
-use crate::program::slice::Slice;
 
 /// The values of a slice that mean something in exact arithmetic, with the number of their uses.
 pub struct Exact {

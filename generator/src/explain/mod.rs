@@ -13,7 +13,7 @@ mod text;
 use crate::model::mechanism::Mechanism;
 use crate::program::Program;
 use crate::program::operation::Stage;
-use crate::program::routine::{ContactQuantity, Quantity};
+use crate::program::{ContactQuantity, Quantity};
 
 /// How equations are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

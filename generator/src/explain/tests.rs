@@ -4,7 +4,7 @@ use super::*;
 use crate::arithmetic::Function;
 use crate::model::mechanism::Mechanism;
 use crate::program::graph::{Graph, Input, Node};
-use crate::program::routine::{Derived, Output};
+use crate::program::{Derived, Output};
 
 fn rod() -> Mechanism {
     let text = "//! A rod.\nmechanism Rod;\nparameters { /// its mass\n m: kg = 1, l: m = 1, g: m/s^2 = 9.81 }\ninputs { tau: \
@@ -32,7 +32,7 @@ fn pendulum() -> (Mechanism, Program) {
     let speed = graph.power(u, 2);
     let half = graph.number(crate::number::Number::ratio(1, 2));
     let energy = graph.product([half, mass, speed]);
-    let one = |quantity, node| Output { quantity, rows: 1, columns: 1, nodes: vec![node] };
+    let one = |quantity, node| Output { quantity, rows: 1, columns: 1, values: vec![node] };
     let outputs = vec![
         one(Quantity::CoordinateRates, u),
         one(Quantity::MassMatrix, mass),
@@ -75,7 +75,7 @@ fn what_mends_the_rounding_of_angles_is_left_out() {
             .map(|input| graph.input(input));
         let angle = form(&mut graph, nodes);
         let nodes = [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![angle])).to_vec();
-        let outputs = vec![Output { quantity: Quantity::Forcing, rows: 2, columns: 1, nodes }];
+        let outputs = vec![Output { quantity: Quantity::Forcing, rows: 2, columns: 1, values: nodes }];
         let derived = Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] };
         let text = explain(&rod(), &Program::new(&derived), &[Quantity::Forcing], Format::Text);
         let equations =

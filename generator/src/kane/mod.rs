@@ -19,7 +19,7 @@ mod sums;
 use crate::algebra::{SessionError, exclusively};
 use crate::kinematics::{DeriveError, Kinematics};
 use crate::model::mechanism::Mechanism;
-use crate::program::routine::Derived;
+use crate::program::Derived;
 
 /// Why a mechanism could not be derived.
 #[derive(Clone, Debug, PartialEq, Eq)]

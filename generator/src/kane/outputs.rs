@@ -18,16 +18,16 @@ use crate::kinematics::solve::Solver;
 use crate::model::mechanism::{FrameId, Place, PointId};
 use crate::program::differentiate::differentiate;
 use crate::program::graph::{Graph, Input, Node};
-use crate::program::linear::{Factor, factorise};
-use crate::program::routine::{Derived, Guard, Output, PointQuantity, Quantity};
+use crate::program::ldl::{Factor, factorise};
+use crate::program::{Derived, Guard, Output, PointQuantity, Quantity};
 
 /// The graph under construction.
 struct Writer<'k, 'm> {
     k: &'k mut Kinematics<'m>,
     graph: Graph,
     export: Export,
-    outputs: Vec<Output>,
-    guards: Vec<Guard>,
+    outputs: Vec<Output<Node>>,
+    guards: Vec<Guard<Node>>,
     independent: Vec<usize>,
     dependent: Vec<usize>,
     lumps: BTreeMap<Seat, Lump>,
@@ -87,7 +87,7 @@ impl Writer<'_, '_> {
 
     fn put(&mut self, quantity: Quantity, rows: usize, columns: usize, nodes: Vec<Node>) {
         if !nodes.is_empty() {
-            self.outputs.push(Output { quantity, rows, columns, nodes });
+            self.outputs.push(Output { quantity, rows, columns, values: nodes });
         }
     }
 
@@ -335,10 +335,10 @@ impl Writer<'_, '_> {
         else {
             return;
         };
-        let independent = of_coordinates.nodes.iter().zip(&mechanism.coordinates);
+        let independent = of_coordinates.values.iter().zip(&mechanism.coordinates);
         let mut nodes: Vec<Node> =
             independent.filter(|(_, coordinate)| !coordinate.dependent).map(|(&node, _)| node).collect();
-        nodes.extend(&of_speeds.nodes);
+        nodes.extend(&of_speeds.values);
         let tangent = differentiate(&mut self.graph, &nodes, rates);
         self.put(Quantity::StateTangent, tangent.len(), 1, tangent);
     }

@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::interpret::Inputs;
 use crate::model::mechanism::{Mechanism, Orientation, Variable};
+use crate::program::Inputs;
 
 /// How many.
 const SAMPLES: u64 = 24;

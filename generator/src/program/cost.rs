@@ -3,9 +3,12 @@
 use std::fmt;
 use std::ops::AddAssign;
 
+use super::derivation::Derived;
+use super::lower::lower;
 use super::operation::{Operation, Stage};
-use super::routine::{Derived, Quantity};
-use super::{Program, lower, passes};
+use super::passes;
+use super::quantity::Quantity;
+use super::straight_line::Program;
 
 /// Numbers of operations. A fused multiply-add counts as a multiplication and an addition; a negation as nothing where it is
 /// one of a sum, else as an addition.
@@ -132,7 +135,7 @@ impl Program {
 /// What the passes do to a derivation, in their order; the first step is the derivation as it comes.
 pub fn trace(derived: &Derived) -> Vec<Step> {
     let step = |pass, program: &Program| Step { pass, cost: program.cost(&program.quantities()) };
-    let mut steps = vec![step("none", &lower::lower(derived))];
+    let mut steps = vec![step("none", &lower(derived))];
     passes::run(derived, |pass, program| steps.push(step(pass, &program())));
     steps
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::graph::{Graph, Input, Node, Value};
+use super::graph::{Graph, Input, Node, NodeKind};
 use crate::arithmetic::Function;
 
 /// The derivatives of `nodes` along the direction in which each input changes as `rates` says (others do not).
@@ -12,14 +12,14 @@ pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, N
     // Operands come before the nodes that use them: one pass in their order, without recursion.
     let mut derivatives: HashMap<Node, Node> = HashMap::new();
     for node in needed {
-        let derivative = match graph.value(node).clone() {
-            Value::Number(_) | Value::Pi => zero,
-            Value::Input(input) => rates.get(&input).copied().unwrap_or(zero),
-            Value::Sum(terms) => {
+        let derivative = match graph.kind(node).clone() {
+            NodeKind::Number(_) | NodeKind::Pi => zero,
+            NodeKind::Input(input) => rates.get(&input).copied().unwrap_or(zero),
+            NodeKind::Sum(terms) => {
                 let terms: Vec<Node> = terms.iter().map(|term| derivatives[term]).collect();
                 graph.sum(terms)
             }
-            Value::Product(factors) => {
+            NodeKind::Product(factors) => {
                 let mut terms = Vec::new();
                 for (at, factor) in factors.iter().enumerate() {
                     let derivative = derivatives[factor];
@@ -31,7 +31,7 @@ pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, N
                 }
                 graph.sum(terms)
             }
-            Value::Power(base, n) => {
+            NodeKind::Power(base, n) => {
                 let derivative = derivatives[&base];
                 if graph.is_zero(derivative) {
                     zero
@@ -40,7 +40,7 @@ pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, N
                     graph.product([n_node, rest, derivative])
                 }
             }
-            Value::Call(function, arguments) => {
+            NodeKind::Call(function, arguments) => {
                 let mut terms = Vec::new();
                 for (at, argument) in arguments.iter().enumerate() {
                     let derivative = derivatives[argument];
@@ -58,16 +58,16 @@ pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, N
 }
 
 fn reachable(graph: &Graph, nodes: &[Node]) -> Vec<Node> {
-    let mut seen = vec![false; graph.values().len()];
+    let mut seen = vec![false; graph.kinds().len()];
     let mut open = nodes.to_vec();
     while let Some(node) = open.pop() {
         if std::mem::replace(&mut seen[node.0 as usize], true) {
             continue;
         }
-        match graph.value(node) {
-            Value::Number(_) | Value::Pi | Value::Input(_) => {}
-            Value::Sum(parts) | Value::Product(parts) | Value::Call(_, parts) => open.extend(parts),
-            Value::Power(base, _) => open.push(*base),
+        match graph.kind(node) {
+            NodeKind::Number(_) | NodeKind::Pi | NodeKind::Input(_) => {}
+            NodeKind::Sum(parts) | NodeKind::Product(parts) | NodeKind::Call(_, parts) => open.extend(parts),
+            NodeKind::Power(base, _) => open.push(*base),
         }
     }
     (0..seen.len()).filter(|&i| seen[i]).map(|i| Node(i as u32)).collect()

@@ -1,4 +1,4 @@
-//! The value graph that a derivation builds: sums, products and functions, each once.
+//! The graph that a derivation builds: sums, products and functions, each once.
 //!
 //! Nodes refer only to earlier nodes, so the order of the nodes is an order of evaluation. Equal expressions are one node.
 
@@ -32,7 +32,7 @@ pub enum Input {
 
 /// What a node is.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Value {
+pub enum NodeKind {
     /// exact number
     Number(Number),
     /// pi
@@ -49,11 +49,22 @@ pub enum Value {
     Call(Function, Vec<Node>),
 }
 
+impl NodeKind {
+    /// The nodes that it refers to.
+    pub fn operands(&self) -> &[Node] {
+        match self {
+            NodeKind::Number(_) | NodeKind::Pi | NodeKind::Input(_) => &[],
+            NodeKind::Sum(nodes) | NodeKind::Product(nodes) | NodeKind::Call(_, nodes) => nodes,
+            NodeKind::Power(base, _) => std::slice::from_ref(base),
+        }
+    }
+}
+
 /// The graph.
 #[derive(Clone, Debug, Default)]
 pub struct Graph {
-    values: Vec<Value>,
-    known: HashMap<Value, Node>,
+    kinds: Vec<NodeKind>,
+    known: HashMap<NodeKind, Node>,
 }
 
 impl Graph {
@@ -62,48 +73,64 @@ impl Graph {
         Self::default()
     }
 
-    /// The values, in an order of evaluation.
-    pub fn values(&self) -> &[Value] {
-        &self.values
+    /// What the nodes are, in an order of evaluation.
+    pub fn kinds(&self) -> &[NodeKind] {
+        &self.kinds
     }
 
     /// What a node is.
-    pub fn value(&self, node: Node) -> &Value {
-        &self.values[node.0 as usize]
+    pub fn kind(&self, node: Node) -> &NodeKind {
+        &self.kinds[node.0 as usize]
+    }
+
+    /// Which nodes the roots need.
+    pub fn reachable(&self, roots: impl IntoIterator<Item = Node>) -> Vec<bool> {
+        let mut reachable = vec![false; self.kinds.len()];
+        for root in roots {
+            reachable[root.0 as usize] = true;
+        }
+        for (index, kind) in self.kinds.iter().enumerate().rev() {
+            if reachable[index] {
+                for operand in kind.operands() {
+                    reachable[operand.0 as usize] = true;
+                }
+            }
+        }
+        reachable
     }
 
     /// A node as it is: nothing is collected or flattened. Operands must be nodes of this graph. The passes use it to say which
     /// factors or terms belong together.
-    pub fn intern(&mut self, value: Value) -> Node {
+    pub fn intern(&mut self, value: NodeKind) -> Node {
         if let Some(&node) = self.known.get(&value) {
             return node;
         }
-        let node = Node(self.values.len() as u32);
-        self.values.push(value.clone());
+        let node = Node(self.kinds.len() as u32);
+        self.kinds.push(value.clone());
         self.known.insert(value, node);
         node
     }
 
     /// Operations that these nodes need, roughly: a rule for choosing between two ways to the same numbers.
     pub fn cost(&self, nodes: &[Node]) -> usize {
-        let mut seen = vec![false; self.values.len()];
+        let mut seen = vec![false; self.kinds.len()];
         let mut open = nodes.to_vec();
         let mut cost = 0;
         while let Some(node) = open.pop() {
             if std::mem::replace(&mut seen[node.0 as usize], true) {
                 continue;
             }
-            match self.value(node) {
-                Value::Number(_) | Value::Pi | Value::Input(_) => {}
-                Value::Sum(parts) | Value::Product(parts) => {
+            match self.kind(node) {
+                NodeKind::Number(_) | NodeKind::Pi | NodeKind::Input(_) => {}
+                NodeKind::Sum(parts) | NodeKind::Product(parts) => {
                     cost += parts.len() - 1;
                     open.extend(parts);
                 }
-                Value::Power(base, n) => {
+                NodeKind::Power(base, n) => {
                     cost += n.unsigned_abs() as usize;
                     open.push(*base);
                 }
-                Value::Call(_, parts) => {
+                NodeKind::Call(_, parts) => {
                     cost += 20;
                     open.extend(parts);
                 }
@@ -114,7 +141,7 @@ impl Graph {
 
     /// An exact number.
     pub fn number(&mut self, number: Number) -> Node {
-        self.intern(Value::Number(number))
+        self.intern(NodeKind::Number(number))
     }
 
     /// An integer.
@@ -124,18 +151,18 @@ impl Graph {
 
     /// pi.
     pub fn pi(&mut self) -> Node {
-        self.intern(Value::Pi)
+        self.intern(NodeKind::Pi)
     }
 
     /// A number from outside.
     pub fn input(&mut self, input: Input) -> Node {
-        self.intern(Value::Input(input))
+        self.intern(NodeKind::Input(input))
     }
 
     /// The number a node is, if it is one.
     pub fn as_number(&self, node: Node) -> Option<&Number> {
-        match self.value(node) {
-            Value::Number(number) => Some(number),
+        match self.kind(node) {
+            NodeKind::Number(number) => Some(number),
             _ => None,
         }
     }
@@ -150,8 +177,8 @@ impl Graph {
         let mut constant = Number::integer(0);
         let mut rest = Vec::new();
         for term in terms {
-            match self.value(term) {
-                Value::Number(number) => constant = Number(constant.0 + &number.0),
+            match self.kind(term) {
+                NodeKind::Number(number) => constant = Number(constant.0 + &number.0),
                 _ => rest.push(term),
             }
         }
@@ -160,7 +187,7 @@ impl Graph {
             rest.push(constant);
         }
         rest.sort_unstable();
-        if let [only] = rest[..] { only } else { self.intern(Value::Sum(rest)) }
+        if let [only] = rest[..] { only } else { self.intern(NodeKind::Sum(rest)) }
     }
 
     /// The product of `factors`, numbers collected, ones dropped; 0 if one of them is 0.
@@ -168,12 +195,12 @@ impl Graph {
         let mut constant = Number::integer(1);
         let mut rest = Vec::new();
         for factor in factors {
-            match self.value(factor) {
-                Value::Number(number) => constant = Number(constant.0 * &number.0),
-                Value::Product(inner) => {
+            match self.kind(factor) {
+                NodeKind::Number(number) => constant = Number(constant.0 * &number.0),
+                NodeKind::Product(inner) => {
                     for &factor in &inner.clone() {
-                        match self.value(factor) {
-                            Value::Number(number) => constant = Number(constant.0 * &number.0),
+                        match self.kind(factor) {
+                            NodeKind::Number(number) => constant = Number(constant.0 * &number.0),
                             _ => rest.push(factor),
                         }
                     }
@@ -189,7 +216,7 @@ impl Graph {
             let constant = self.number(constant);
             rest.insert(0, constant);
         }
-        if let [only] = rest[..] { only } else { self.intern(Value::Product(rest)) }
+        if let [only] = rest[..] { only } else { self.intern(NodeKind::Product(rest)) }
     }
 
     /// `-a`.
@@ -206,15 +233,15 @@ impl Graph {
 
     /// `a^n`.
     pub fn power(&mut self, a: Node, n: i32) -> Node {
-        match (n, self.value(a)) {
+        match (n, self.kind(a)) {
             (0, _) => self.integer(1),
             (1, _) => a,
-            (_, Value::Number(number)) if !(n < 0 && number.is_zero()) => {
+            (_, NodeKind::Number(number)) if !(n < 0 && number.is_zero()) => {
                 let number = Number(number.0.pow(n));
                 self.number(number)
             }
-            (_, &Value::Power(base, m)) if m.checked_mul(n).is_some() => self.power(base, m * n),
-            _ => self.intern(Value::Power(a, n)),
+            (_, &NodeKind::Power(base, m)) if m.checked_mul(n).is_some() => self.power(base, m * n),
+            _ => self.intern(NodeKind::Power(a, n)),
         }
     }
 
@@ -226,6 +253,6 @@ impl Graph {
 
     /// A function of one or two nodes.
     pub fn call(&mut self, function: Function, arguments: Vec<Node>) -> Node {
-        self.intern(Value::Call(function, arguments))
+        self.intern(NodeKind::Call(function, arguments))
     }
 }

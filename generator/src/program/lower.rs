@@ -9,10 +9,11 @@
 use std::collections::{HashMap, HashSet};
 
 use super::build::Builder;
-use super::graph::{Graph, Node, Value as Form};
+use super::derivation::Derived;
+use super::graph::{Graph, Node, NodeKind};
 use super::operation::{Operation, Stage, Value};
-use super::routine::Derived;
-use super::{Guard, Output, Program};
+use super::output::{Guard, Output};
+use super::straight_line::Program;
 use crate::arithmetic::Function;
 
 /// A value and whether its opposite is meant.
@@ -24,8 +25,8 @@ struct Signed {
 
 /// The program of a derivation whose graph has been through the passes.
 pub fn lower(derived: &Derived) -> Program {
-    let roots = derived.outputs.iter().flat_map(|output| output.nodes.iter().copied());
-    let reachable = reachable(&derived.graph, roots);
+    let roots = derived.outputs.iter().flat_map(|output| output.values.iter().copied());
+    let reachable = derived.graph.reachable(roots);
     let mut lowering = Lowering::new(&derived.graph);
     lowering.survey(&reachable);
     lowering.nodes(&reachable);
@@ -36,7 +37,7 @@ pub fn lower(derived: &Derived) -> Program {
             quantity: output.quantity,
             rows: output.rows,
             columns: output.columns,
-            values: output.nodes.iter().map(|&node| lowering.plain(node)).collect(),
+            values: output.values.iter().map(|&node| lowering.plain(node)).collect(),
         })
         .collect();
     let mut guards = Vec::new();
@@ -44,38 +45,13 @@ pub fn lower(derived: &Derived) -> Program {
         // A sign does not matter to a value that must not vanish.
         let value = lowering.signed(guard.value).value;
         let scale = guard.scale.map(|scale| {
-            let needed = self::reachable(&derived.graph, [scale]);
+            let needed = derived.graph.reachable([scale]);
             lowering.nodes(&needed);
             lowering.signed(scale).value
         });
         guards.push(Guard { value, scale, message: guard.message.clone() });
     }
     Program { operations: lowering.builder.finish(), outputs, guards, structures: derived.structures.clone() }
-}
-
-/// Which nodes the roots need.
-pub fn reachable(graph: &Graph, roots: impl IntoIterator<Item = Node>) -> Vec<bool> {
-    let mut reachable = vec![false; graph.values().len()];
-    for root in roots {
-        reachable[root.0 as usize] = true;
-    }
-    for index in (0..graph.values().len()).rev() {
-        if reachable[index] {
-            for operand in operands(&graph.values()[index]) {
-                reachable[operand.0 as usize] = true;
-            }
-        }
-    }
-    reachable
-}
-
-/// The nodes that a node refers to.
-pub fn operands(form: &Form) -> &[Node] {
-    match form {
-        Form::Number(_) | Form::Pi | Form::Input(_) => &[],
-        Form::Sum(nodes) | Form::Product(nodes) | Form::Call(_, nodes) => nodes,
-        Form::Power(base, _) => std::slice::from_ref(base),
-    }
 }
 
 struct Lowering<'a> {
@@ -95,7 +71,7 @@ impl<'a> Lowering<'a> {
         Lowering {
             graph,
             builder: Builder::default(),
-            lowered: vec![None; graph.values().len()],
+            lowered: vec![None; graph.kinds().len()],
             divisions: HashMap::new(),
             angles: HashSet::new(),
             lost: HashMap::new(),
@@ -105,17 +81,17 @@ impl<'a> Lowering<'a> {
     /// Counts what decides how a node is lowered.
     fn survey(&mut self, reachable: &[bool]) {
         let mut functions: HashMap<Node, (bool, bool)> = HashMap::new();
-        for (index, form) in self.graph.values().iter().enumerate() {
+        for (index, form) in self.graph.kinds().iter().enumerate() {
             if !reachable[index] {
                 continue;
             }
             match form {
-                Form::Call(Function::Sin, argument) => functions.entry(argument[0]).or_default().0 = true,
-                Form::Call(Function::Cos, argument) => functions.entry(argument[0]).or_default().1 = true,
-                Form::Power(..) => {}
+                NodeKind::Call(Function::Sin, argument) => functions.entry(argument[0]).or_default().0 = true,
+                NodeKind::Call(Function::Cos, argument) => functions.entry(argument[0]).or_default().1 = true,
+                NodeKind::Power(..) => {}
                 _ => {
-                    for &operand in operands(form) {
-                        if let &Form::Power(base, exponent) = self.graph.value(operand)
+                    for &operand in form.operands() {
+                        if let &NodeKind::Power(base, exponent) = self.graph.kind(operand)
                             && exponent < 0
                         {
                             *self.divisions.entry(base).or_default() += 1;
@@ -129,7 +105,7 @@ impl<'a> Lowering<'a> {
     }
 
     fn nodes(&mut self, reachable: &[bool]) {
-        for (index, form) in self.graph.values().iter().enumerate() {
+        for (index, form) in self.graph.kinds().iter().enumerate() {
             if reachable[index] && self.lowered[index].is_none() {
                 let signed = self.form(form);
                 self.lowered[index] = Some(signed);
@@ -153,18 +129,18 @@ impl<'a> Lowering<'a> {
         if signed.negative { self.builder.neg(signed.value) } else { signed.value }
     }
 
-    fn form(&mut self, form: &Form) -> Signed {
+    fn form(&mut self, form: &NodeKind) -> Signed {
         let positive = |value| Signed { value, negative: false };
         match form {
-            Form::Number(number) => {
+            NodeKind::Number(number) => {
                 Signed { value: self.builder.constant(number.to_f64().abs()), negative: number.is_negative() }
             }
-            Form::Pi => positive(self.builder.constant(std::f64::consts::PI)),
-            Form::Input(input) => positive(self.builder.push(Operation::Input(*input))),
-            Form::Sum(terms) => self.sum(terms),
-            Form::Product(factors) => self.product(factors),
-            &Form::Power(base, exponent) => self.power(base, exponent),
-            Form::Call(function, arguments) => self.call(*function, arguments),
+            NodeKind::Pi => positive(self.builder.constant(std::f64::consts::PI)),
+            NodeKind::Input(input) => positive(self.builder.push(Operation::Input(*input))),
+            NodeKind::Sum(terms) => self.sum(terms),
+            NodeKind::Product(factors) => self.product(factors),
+            &NodeKind::Power(base, exponent) => self.power(base, exponent),
+            NodeKind::Call(function, arguments) => self.call(*function, arguments),
         }
     }
 
@@ -214,8 +190,8 @@ impl<'a> Lowering<'a> {
         let mut numerators: Vec<Value> = Vec::new();
         let mut divisors: Vec<Value> = Vec::new();
         for &factor in factors {
-            let shared_divisor = match *self.graph.value(factor) {
-                Form::Power(base, exponent) if exponent < 0 => {
+            let shared_divisor = match *self.graph.kind(factor) {
+                NodeKind::Power(base, exponent) if exponent < 0 => {
                     let base_value = self.signed(base);
                     let once = self.divisions.get(&base).copied().unwrap_or(0) <= 1;
                     // A divisor that is known at construction is inverted there.
@@ -275,7 +251,7 @@ impl<'a> Lowering<'a> {
     /// What rounding takes from a sum, exactly (Knuth's two-sum), with what it took from its terms; `None` for anything but
     /// sums at run time. Follows [`Lowering::sum`], whose values it finds again.
     fn lost(&mut self, node: Node) -> Option<Value> {
-        let Form::Sum(terms) = self.graph.value(node) else { return None };
+        let NodeKind::Sum(terms) = self.graph.kind(node) else { return None };
         let result = self.signed(node);
         if self.builder.stage(result.value) <= Stage::Parameter {
             return None;
@@ -373,9 +349,10 @@ impl<'a> Lowering<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::interpret::{Evaluator, Inputs};
+    use crate::interpret::Evaluator;
+    use crate::program::Inputs;
+    use crate::program::Quantity;
     use crate::program::graph::Input;
-    use crate::program::routine::Quantity;
 
     /// Sine and cosine of signed sums of coordinates, in parts: `(a - b) - c`, and `-c + (a - b) - d`.
     fn angles() -> Derived {
@@ -389,7 +366,7 @@ mod tests {
         };
         let nodes = [second, third].map(|angle| calls(&mut graph, angle)).concat();
         let outputs =
-            vec![crate::program::routine::Output { quantity: Quantity::Forcing, rows: 4, columns: 1, nodes }];
+            vec![crate::program::Output { quantity: Quantity::Forcing, rows: 4, columns: 1, values: nodes }];
         Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] }
     }
 
@@ -430,7 +407,7 @@ mod tests {
         let angle = graph.input(Input::Coordinate(0));
         let nodes = vec![graph.call(Function::Sin, vec![angle]), graph.call(Function::Cos, vec![angle])];
         let outputs =
-            vec![crate::program::routine::Output { quantity: Quantity::Forcing, rows: 2, columns: 1, nodes }];
+            vec![crate::program::Output { quantity: Quantity::Forcing, rows: 2, columns: 1, values: nodes }];
         let program = lower(&Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] });
         assert_eq!(program.operations.len(), 4, "an input, a pair, and its two parts");
     }

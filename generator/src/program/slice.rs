@@ -1,8 +1,9 @@
 //! The part of a program that a routine needs, in an order that keeps few values alive.
 
 use super::operation::Value;
-use super::{Guard, Output, Program};
-use crate::program::routine::Quantity;
+use super::output::{Guard, Output};
+use super::quantity::Quantity;
+use super::straight_line::Program;
 
 /// What a set of quantities needs.
 #[derive(Clone, Debug)]

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hodograph_generator::artifact;
-use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::program::Quantity;
 
 use crate::tools::{Failure, Folders, output};
 

@@ -4,9 +4,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use hodograph_generator::arithmetic::Function;
 use hodograph_generator::program::Program;
+use hodograph_generator::program::Quantity;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::operation::{Operation, Value};
-use hodograph_generator::program::routine::Quantity;
 
 /// `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use hodograph_generator::program::Program;
 use hodograph_generator::program::cost::Count;
-use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::program::{ContactQuantity, Quantity};
 
 use crate::count::{CONSTRUCTION, Counts};
 use crate::derive::Derivation;

@@ -2,9 +2,9 @@
 
 use hodograph::nalgebra::SMatrix;
 use hodograph::{Path, Surface};
-use hodograph_generator::interpret::Inputs;
 use hodograph_generator::model::mechanism::Mechanism;
-use hodograph_generator::program::routine::{ContactQuantity, PointQuantity, Quantity};
+use hodograph_generator::program::Inputs;
+use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
 use hodograph_generator::rust_names::snake_case;
 
 /// An emitted module. Matrices are by rows.

@@ -8,10 +8,11 @@ use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact;
 use hodograph_generator::check::check;
-use hodograph_generator::interpret::{Array, Evaluator, Inputs};
+use hodograph_generator::interpret::{Array, Evaluator};
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
+use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
-use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::program::Quantity;
 use hodograph_generator::source::Source;
 use serde_json::Value;
 

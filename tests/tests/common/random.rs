@@ -1,8 +1,8 @@
 //! Random states of models, always the same ones.
 
-use hodograph_generator::interpret::Inputs;
 use hodograph_generator::model::mechanism::Orientation;
 use hodograph_generator::numeric::{self, Evaluation, State};
+use hodograph_generator::program::Inputs;
 
 use super::Model;
 

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use hodograph_generator::explain::{Format, explain, usual};
+use hodograph_generator::program::Quantity;
 use hodograph_generator::program::cost::{Cost, Count};
-use hodograph_generator::program::routine::Quantity;
 
 use crate::derivation::{self, Limits};
 use crate::evaluate::Machine;

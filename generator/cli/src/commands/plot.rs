@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use hodograph::ReducedMatrix;
-use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::program::Quantity;
 use hodograph_generator::reading;
 
 use crate::derivation::Limits;

@@ -8,7 +8,7 @@ use differential_equations::prelude::{
 };
 use hodograph::Surface;
 use hodograph_generator::model::mechanism::Orientation;
-use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde::Serialize;
 
 use crate::derivation::Limits;

@@ -1,7 +1,7 @@
 //! A collision of a model in a state.
 
 use hodograph::{ReducedMatrix, Surface};
-use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde::Serialize;
 
 use super::Machine;

@@ -1,7 +1,7 @@
 //! Closed loops: dependent coordinates that satisfy the configuration equations.
 
 use hodograph_generator::model::mechanism::{EquationSides, PointId, Vector};
-use hodograph_generator::program::routine::{PointQuantity, Quantity};
+use hodograph_generator::program::{PointQuantity, Quantity};
 use nalgebra::{DMatrix, DVector};
 
 use super::{Machine, listed};

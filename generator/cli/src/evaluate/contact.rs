@@ -1,6 +1,6 @@
 //! A contact along its own axes n, t, s: t along the slip of approach.
 
-use hodograph_generator::program::routine::ContactQuantity;
+use hodograph_generator::program::ContactQuantity;
 use nalgebra::Vector3;
 
 use super::Numbers;

@@ -5,10 +5,11 @@ pub mod complete;
 pub mod contact;
 pub mod report;
 
-use hodograph_generator::interpret::{self, Evaluator, Inputs};
+use hodograph_generator::interpret::{self, Evaluator};
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
+use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
-use hodograph_generator::program::routine::{ContactQuantity, Quantity};
+use hodograph_generator::program::{ContactQuantity, Quantity};
 
 use crate::json::state::State;
 use crate::json::{Failure, Kind};

@@ -1,6 +1,6 @@
 //! What `eval` writes.
 
-use hodograph_generator::program::routine::Quantity;
+use hodograph_generator::program::Quantity;
 use nalgebra::Vector3;
 use serde::ser::{Serialize, SerializeMap, Serializer};
 

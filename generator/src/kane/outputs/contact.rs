@@ -10,8 +10,8 @@ use crate::kane::forces::Wrenches;
 use crate::model::mechanism::Contact;
 use crate::program::differentiate::differentiate;
 use crate::program::graph::{Graph, Input, Node};
-use crate::program::linear::Factor;
-use crate::program::routine::{ContactQuantity, Quantity, Structure};
+use crate::program::ldl::Factor;
+use crate::program::{ContactQuantity, Quantity, Structure};
 
 /// Where the entries of a reduced matrix stand.
 const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
@@ -203,7 +203,7 @@ impl Writer<'_, '_> {
                 self.outputs
                     .iter()
                     .find(|output| output.quantity == quantity)
-                    .map(|output| output.nodes.clone())
+                    .map(|output| output.values.clone())
             };
             let needed =
                 [ContactQuantity::Velocity, ContactQuantity::Reduced, ContactQuantity::Response].map(found);
@@ -212,7 +212,7 @@ impl Writer<'_, '_> {
             let nodes = [velocity, reduced, response, gap].concat();
             let loops = self.outputs.iter().find(|output| output.quantity == Quantity::ConfigurationResidual);
             let watched =
-                [nodes.clone(), loops.map(|output| output.nodes.clone()).unwrap_or_default()].concat();
+                [nodes.clone(), loops.map(|output| output.values.clone()).unwrap_or_default()].concat();
             let clock = HashMap::from([(Input::Time, self.graph.integer(1))]);
             let by_time = differentiate(&mut self.graph, &watched, &clock);
             if by_time.iter().all(|&node| self.graph.is_zero(node)) {

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 
+use super::rewrite::{Survey, rebuild, rewrite};
 use super::terms::{coefficient, terms};
-use super::{Survey, rebuild, rewrite};
 use crate::number::Number;
-use crate::program::graph::{Graph, Node, Value};
-use crate::program::routine::Derived;
+use crate::program::derivation::Derived;
+use crate::program::graph::{Graph, Node, NodeKind};
 
 /// Collects like terms.
 pub fn collect(derived: &Derived) -> Derived {
     let survey = Survey::new(derived);
-    rewrite(derived, &survey, |graph, old, renamed| match derived.graph.value(old) {
-        Value::Sum(old_terms) => {
+    rewrite(derived, &survey, |graph, old, renamed| match derived.graph.kind(old) {
+        NodeKind::Sum(old_terms) => {
             let mut collected = Collected::default();
             for &old_term in old_terms {
                 let once = survey.is_used_once(old_term) && opens(&derived.graph, &survey, old_term);
@@ -26,9 +26,9 @@ pub fn collect(derived: &Derived) -> Derived {
 
 /// May the sum in a term be opened: is it used by this term alone?
 fn opens(graph: &Graph, survey: &Survey, term: Node) -> bool {
-    match graph.value(term) {
-        Value::Sum(_) => true,
-        Value::Product(factors) => match factors[..] {
+    match graph.kind(term) {
+        NodeKind::Sum(_) => true,
+        NodeKind::Product(factors) => match factors[..] {
             [number, sum] => {
                 graph.as_number(number).is_some_and(|number| Number(-number.0.clone()).is_one())
                     && survey.is_used_once(sum)
@@ -52,7 +52,7 @@ impl Collected {
             return self.constant(number);
         };
         let unit = number.is_one() || Number(-number.0.clone()).is_one();
-        if open && unit && matches!(graph.value(rest), Value::Sum(_)) {
+        if open && unit && matches!(graph.kind(rest), NodeKind::Sum(_)) {
             for inner in terms(graph, rest) {
                 let (coefficient, inner) = coefficient(graph, inner);
                 let product = Number(&number.0 * coefficient.0);
@@ -135,7 +135,7 @@ mod tests {
             vec![g.sub(product, same)]
         });
         let collected = collect(&derived);
-        assert!(collected.graph.is_zero(collected.outputs[0].nodes[0]));
+        assert!(collected.graph.is_zero(collected.outputs[0].values[0]));
     }
 
     #[test]

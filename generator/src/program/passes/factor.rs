@@ -5,19 +5,19 @@
 
 use std::collections::BTreeMap;
 
+use super::rewrite::{Survey, rebuild, rewrite, stage};
 use super::terms::factors;
-use super::{Survey, rebuild, rewrite, stage};
 use crate::number::Number;
-use crate::program::graph::{Graph, Node, Value};
+use crate::program::derivation::Derived;
+use crate::program::graph::{Graph, Node, NodeKind};
 use crate::program::operation::Stage;
-use crate::program::routine::Derived;
 
 /// Takes out common factors.
 pub fn factor(derived: &Derived) -> Derived {
     let survey = Survey::new(derived);
     let mut stages = Stages::default();
-    rewrite(derived, &survey, |graph, old, renamed| match derived.graph.value(old) {
-        Value::Sum(terms) if survey.stage(old) > Stage::Parameter => {
+    rewrite(derived, &survey, |graph, old, renamed| match derived.graph.kind(old) {
+        NodeKind::Sum(terms) if survey.stage(old) > Stage::Parameter => {
             let (owned, others): (Vec<Node>, Vec<Node>) =
                 terms.iter().partition(|&&term| survey.is_used_once(term));
             let owned =
@@ -35,7 +35,7 @@ struct Stages(Vec<Stage>);
 
 impl Stages {
     fn of(&mut self, graph: &Graph, node: Node) -> Stage {
-        for value in &graph.values()[self.0.len()..] {
+        for value in &graph.kinds()[self.0.len()..] {
             let stage = stage(value, |node| self.0[node.0 as usize]);
             self.0.push(stage);
         }
@@ -158,8 +158,8 @@ fn sum(graph: &mut Graph, stages: &mut Stages, mut owned: Vec<Term>, mut others:
             }
         }
         let node = product(graph, &taken);
-        match graph.value(node) {
-            Value::Sum(_) => others.push(node),
+        match graph.kind(node) {
+            NodeKind::Sum(_) => others.push(node),
             _ => owned.push(Term::new(graph, stages, node)),
         }
     }
@@ -233,9 +233,9 @@ mod tests {
             let products = [g.product([m1, l]), g.product([m2, l])];
             vec![g.sum(products)]
         });
-        let sum = |derived: &Derived| derived.graph.value(derived.outputs[0].nodes[0]).clone();
+        let sum = |derived: &Derived| derived.graph.kind(derived.outputs[0].values[0]).clone();
         assert!(
-            matches!((sum(&derived), sum(&factor(&derived))), (Value::Sum(a), Value::Sum(b)) if a.len() == b.len())
+            matches!((sum(&derived), sum(&factor(&derived))), (NodeKind::Sum(a), NodeKind::Sum(b)) if a.len() == b.len())
         );
     }
 

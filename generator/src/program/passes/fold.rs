@@ -2,12 +2,12 @@
 
 use num_rational::BigRational;
 
-use super::{Survey, rebuild, rewrite};
+use super::rewrite::{Survey, rebuild, rewrite};
 use crate::arithmetic::reproducible::{call, call2};
 use crate::number::Number;
-use crate::program::graph::{Graph, Node, Value};
+use crate::program::derivation::Derived;
+use crate::program::graph::{Graph, Node, NodeKind};
 use crate::program::operation::Stage;
-use crate::program::routine::Derived;
 
 /// Exact numbers longer than this many bits are rounded to doubles.
 const LONGEST: u64 = 512;
@@ -16,15 +16,15 @@ const LONGEST: u64 = 512;
 pub fn fold(derived: &Derived) -> Derived {
     let survey = Survey::new(derived);
     rewrite(derived, &survey, |graph, old, renamed| {
-        let value = derived.graph.value(old);
+        let value = derived.graph.kind(old);
         let node = rebuild(graph, value, renamed);
         if survey.stage(old) > Stage::Constant {
             return node;
         }
-        let number = match graph.value(node) {
-            Value::Pi => Some(std::f64::consts::PI),
-            Value::Number(number) if bits(number) > LONGEST => Some(number.to_f64()),
-            Value::Call(function, arguments) => match arguments[..] {
+        let number = match graph.kind(node) {
+            NodeKind::Pi => Some(std::f64::consts::PI),
+            NodeKind::Number(number) if bits(number) > LONGEST => Some(number.to_f64()),
+            NodeKind::Call(function, arguments) => match arguments[..] {
                 [a] => double(graph, a).map(|a| call(*function, a)),
                 [a, b] => double(graph, a).zip(double(graph, b)).map(|(a, b)| call2(*function, a, b)),
                 _ => None,
@@ -53,9 +53,9 @@ mod tests {
     use super::*;
     use crate::arithmetic::Function;
 
-    fn folded(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Vec<Value> {
+    fn folded(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Vec<NodeKind> {
         let folded = fold(&small(build));
-        folded.outputs[0].nodes.iter().map(|&node| folded.graph.value(node).clone()).collect()
+        folded.outputs[0].values.iter().map(|&node| folded.graph.kind(node).clone()).collect()
     }
 
     #[test]
@@ -66,7 +66,7 @@ mod tests {
             let sixth = g.number(Number::ratio(1, 6));
             vec![g.sum([third, sixth])]
         };
-        assert_eq!(folded(third), [Value::Number(Number::ratio(1, 2))]);
+        assert_eq!(folded(third), [NodeKind::Number(Number::ratio(1, 2))]);
     }
 
     #[test]
@@ -76,7 +76,7 @@ mod tests {
             let angle = g.product([pi, third]);
             vec![g.call(Function::Sin, vec![angle])]
         };
-        let [Value::Number(number)] = &folded(sine)[..] else { panic!("not folded") };
+        let [NodeKind::Number(number)] = &folded(sine)[..] else { panic!("not folded") };
         assert_eq!(number.to_f64(), call(Function::Sin, std::f64::consts::PI * (1.0 / 3.0)));
     }
 
@@ -86,7 +86,7 @@ mod tests {
             let minus = g.integer(-1);
             vec![g.call(Function::Sqrt, vec![minus])]
         };
-        assert!(matches!(folded(root)[..], [Value::Call(Function::Sqrt, _)]));
+        assert!(matches!(folded(root)[..], [NodeKind::Call(Function::Sqrt, _)]));
     }
 
     #[test]
@@ -95,7 +95,7 @@ mod tests {
             let third = g.number(Number::ratio(1, 3));
             vec![g.power(third, 400)]
         };
-        let [Value::Number(number)] = &folded(long)[..] else { panic!("no number") };
+        let [NodeKind::Number(number)] = &folded(long)[..] else { panic!("no number") };
         assert!(number.to_f64() > 0.0, "{number:?}");
         assert_eq!(BigRational::from_float(number.to_f64()).as_ref(), Some(&number.0));
     }

@@ -2,29 +2,26 @@
 //!
 //! A derivation is a graph until it is lowered to operations; the list says where.
 
+mod adjoint;
 mod collect;
+mod common_subexpressions;
+mod contract;
+mod dead_code;
 mod factor;
+mod flat_sums;
 mod fold;
-mod fuse;
-mod opened;
-mod order;
-mod pairs;
+mod frequent_pairs;
 mod prune;
-mod share;
-mod sweep;
+mod reassociate;
+mod rewrite;
 mod terms;
 #[cfg(test)]
 mod testing;
-mod weigh;
 
-use std::collections::HashMap;
-
-use super::Program;
-use super::graph::{Graph, Node, Value};
-use super::lower::{lower, operands, reachable};
-use super::operation::Stage;
-use super::routine::{Derived, Guard, Output};
-use crate::interpret::Inputs;
+use super::derivation::Derived;
+use super::inputs::Inputs;
+use super::lower::lower;
+use super::straight_line::Program;
 
 /// A pass.
 #[derive(Clone, Copy)]
@@ -49,12 +46,19 @@ pub const PASSES: [Pass; 9] = [
     Pass { name: "fold", work: Work::Graph(fold::fold) },
     Pass { name: "collect", work: Work::Graph(collect::collect) },
     Pass { name: "factor", work: Work::Graph(factor::factor) },
-    Pass { name: "share", work: Work::Graph(share::share) },
+    Pass { name: "common subexpressions", work: Work::Graph(common_subexpressions::share) },
     Pass { name: "lower", work: Work::Lower(lower) },
-    Pass { name: "fuse", work: Work::Operations(fuse::fuse) },
-    Pass { name: "sweep", work: Work::Operations(sweep::sweep) },
-    Pass { name: "order", work: Work::Weighed(order::order) },
+    Pass { name: "contract", work: Work::Operations(contract::contract) },
+    Pass { name: "dead code", work: Work::Operations(dead_code::remove) },
+    Pass { name: "reassociate", work: Work::Weighed(reassociate::reassociate) },
 ];
+
+impl Program {
+    /// The program of a derivation. The same derivation gives the same program.
+    pub fn new(derived: &Derived) -> Self {
+        run(derived, |_, _| {})
+    }
+}
 
 /// A derivation on its way through the passes.
 enum Form {
@@ -86,125 +90,6 @@ impl Form {
         match self {
             Form::Graph(derived) => lower(derived),
             Form::Operations(program) => program.clone(),
-        }
-    }
-}
-
-/// What passes look up about the nodes of a graph.
-pub struct Survey {
-    /// is the node needed?
-    pub reachable: Vec<bool>,
-    /// how many nodes and outputs refer to it
-    pub uses: Vec<u32>,
-    /// when it can be computed
-    pub stages: Vec<Stage>,
-}
-
-impl Survey {
-    /// Looks at a derivation.
-    pub fn new(derived: &Derived) -> Self {
-        let graph = &derived.graph;
-        let reachable = reachable(graph, roots(derived));
-        let mut uses = vec![0; graph.values().len()];
-        for root in roots(derived) {
-            uses[root.0 as usize] += 1;
-        }
-        let mut stages: Vec<Stage> = Vec::with_capacity(graph.values().len());
-        for (index, value) in graph.values().iter().enumerate() {
-            stages.push(stage(value, |node| stages[node.0 as usize]));
-            if reachable[index] {
-                for operand in operands(value) {
-                    uses[operand.0 as usize] += 1;
-                }
-            }
-        }
-        Survey { reachable, uses, stages }
-    }
-
-    /// When a node can be computed.
-    pub fn stage(&self, node: Node) -> Stage {
-        self.stages[node.0 as usize]
-    }
-
-    /// Is there exactly one that refers to the node?
-    pub fn is_used_once(&self, node: Node) -> bool {
-        self.uses[node.0 as usize] == 1
-    }
-}
-
-/// When a node can be computed.
-pub fn stage(value: &Value, mut of: impl FnMut(Node) -> Stage) -> Stage {
-    match value {
-        Value::Input(input) => Stage::of_input(*input),
-        _ => operands(value).iter().map(|&operand| of(operand)).max().unwrap_or(Stage::Constant),
-    }
-}
-
-/// All nodes that a derivation wants.
-pub fn roots(derived: &Derived) -> impl Iterator<Item = Node> {
-    let outputs = derived.outputs.iter().flat_map(|output| output.nodes.iter().copied());
-    outputs.chain(derived.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten())
-}
-
-/// A new graph, node by node: `form` makes the new node of an old one, whose operands are new already.
-pub fn rewrite(
-    derived: &Derived,
-    survey: &Survey,
-    mut form: impl FnMut(&mut Graph, Node, &Renamed) -> Node,
-) -> Derived {
-    let mut graph = Graph::new();
-    let mut renamed = Renamed { nodes: HashMap::new() };
-    for index in 0..derived.graph.values().len() {
-        if survey.reachable[index] {
-            let old = Node(index as u32);
-            let new = form(&mut graph, old, &renamed);
-            renamed.nodes.insert(old, new);
-        }
-    }
-    let outputs = derived.outputs.iter().map(|output| Output {
-        nodes: output.nodes.iter().map(|&node| renamed.of(node)).collect(),
-        ..output.clone()
-    });
-    let guards = derived.guards.iter().map(|guard| Guard {
-        value: renamed.of(guard.value),
-        scale: guard.scale.map(|scale| renamed.of(scale)),
-        message: guard.message.clone(),
-    });
-    let (outputs, guards) = (outputs.collect(), guards.collect());
-    let (structures, samples) = (derived.structures.clone(), derived.samples.clone());
-    Derived { graph, outputs, guards, structures, samples }
-}
-
-/// New nodes for old.
-pub struct Renamed {
-    nodes: HashMap<Node, Node>,
-}
-
-impl Renamed {
-    /// The new node of an old one.
-    pub fn of(&self, old: Node) -> Node {
-        // Operands come before their use, so they are there.
-        self.nodes.get(&old).copied().unwrap_or(old)
-    }
-
-    /// The new nodes of old ones.
-    pub fn all(&self, old: &[Node]) -> Vec<Node> {
-        old.iter().map(|&node| self.of(node)).collect()
-    }
-}
-
-/// The new node of an old one that is made as it was, through the simplifying constructors.
-pub fn rebuild(graph: &mut Graph, value: &Value, renamed: &Renamed) -> Node {
-    match value {
-        Value::Number(number) => graph.number(number.clone()),
-        Value::Pi => graph.pi(),
-        Value::Input(input) => graph.input(*input),
-        Value::Sum(terms) => graph.sum(renamed.all(terms)),
-        Value::Product(factors) => graph.product(renamed.all(factors)),
-        Value::Power(base, exponent) => graph.power(renamed.of(*base), *exponent),
-        Value::Call(function, arguments) => {
-            let arguments = renamed.all(arguments);
-            graph.call(*function, arguments)
         }
     }
 }

@@ -1,11 +1,11 @@
 //! Drops the guards that no output needs: what nobody computes need not be checked.
 
-use super::{Derived, reachable};
+use crate::program::derivation::Derived;
 
 /// Drops what nobody asks for.
 pub fn prune(derived: &Derived) -> Derived {
-    let wanted = derived.outputs.iter().flat_map(|output| output.nodes.iter().copied());
-    let reachable = reachable(&derived.graph, wanted);
+    let wanted = derived.outputs.iter().flat_map(|output| output.values.iter().copied());
+    let reachable = derived.graph.reachable(wanted);
     let mut pruned = derived.clone();
     pruned.guards.retain(|guard| reachable[guard.value.0 as usize]);
     pruned
@@ -13,9 +13,10 @@ pub fn prune(derived: &Derived) -> Derived {
 
 #[cfg(test)]
 mod tests {
+    use super::super::lower;
     use super::super::testing::{keeps_the_meaning, small, speeds};
-    use super::super::{Guard, lower};
     use super::*;
+    use crate::program::output::Guard;
 
     fn guarded() -> Derived {
         let mut spare = None;

@@ -1,13 +1,13 @@
 //! Terms of sums and factors of products, taken apart.
 
 use crate::number::Number;
-use crate::program::graph::{Graph, Node, Value};
+use crate::program::graph::{Graph, Node, NodeKind};
 
 /// A number times a node that is no number and has no number in front; `None`: the number alone.
 pub fn coefficient(graph: &mut Graph, node: Node) -> (Number, Option<Node>) {
-    match graph.value(node).clone() {
-        Value::Number(number) => (number, None),
-        Value::Product(factors) => match graph.as_number(factors[0]).cloned() {
+    match graph.kind(node).clone() {
+        NodeKind::Number(number) => (number, None),
+        NodeKind::Product(factors) => match graph.as_number(factors[0]).cloned() {
             Some(number) => {
                 let rest = graph.product(factors[1..].iter().copied());
                 (number, Some(rest))
@@ -20,8 +20,8 @@ pub fn coefficient(graph: &mut Graph, node: Node) -> (Number, Option<Node>) {
 
 /// The terms of a node: itself, if it is no sum.
 pub fn terms(graph: &Graph, node: Node) -> Vec<Node> {
-    match graph.value(node) {
-        Value::Sum(terms) => terms.clone(),
+    match graph.kind(node) {
+        NodeKind::Sum(terms) => terms.clone(),
         _ => vec![node],
     }
 }
@@ -30,15 +30,15 @@ pub fn terms(graph: &Graph, node: Node) -> Vec<Node> {
 pub fn factors(graph: &Graph, node: Node) -> (Number, Vec<Node>) {
     let mut number = Number::integer(1);
     let mut factors = Vec::new();
-    let listed = match graph.value(node) {
-        Value::Product(listed) => listed.clone(),
+    let listed = match graph.kind(node) {
+        NodeKind::Product(listed) => listed.clone(),
         _ => vec![node],
     };
     for factor in listed {
-        match graph.value(factor) {
-            Value::Number(coefficient) => number = Number(number.0 * &coefficient.0),
+        match graph.kind(factor) {
+            NodeKind::Number(coefficient) => number = Number(number.0 * &coefficient.0),
             // A high power is better squared repeatedly.
-            Value::Power(base, exponent @ 2..=3) => {
+            NodeKind::Power(base, exponent @ 2..=3) => {
                 factors.extend(std::iter::repeat_n(*base, *exponent as usize))
             }
             _ => factors.push(factor),

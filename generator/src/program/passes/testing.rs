@@ -2,18 +2,19 @@
 
 use super::lower;
 use crate::arithmetic::Function;
-use crate::interpret::{Evaluator, Inputs};
+use crate::interpret::Evaluator;
 use crate::number::Number;
-use crate::program::Program;
 use crate::program::graph::{Graph, Input, Node};
+use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Stage};
-use crate::program::routine::{Derived, Output, Quantity};
+use crate::program::straight_line::Program;
+use crate::program::{Derived, Output, Quantity};
 
 /// A derivation of some nodes.
 pub fn small(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Derived {
     let mut graph = Graph::new();
     let nodes = build(&mut graph);
-    let outputs = vec![Output { quantity: Quantity::Forcing, rows: nodes.len(), columns: 1, nodes }];
+    let outputs = vec![Output { quantity: Quantity::Forcing, rows: nodes.len(), columns: 1, values: nodes }];
     Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![inputs()] }
 }
 
@@ -53,7 +54,7 @@ pub fn random(seed: u64) -> Derived {
         nodes.push(node);
     }
     let nodes: Vec<Node> = nodes.iter().rev().take(12).copied().collect();
-    let outputs = vec![Output { quantity: Quantity::Forcing, rows: 12, columns: 1, nodes }];
+    let outputs = vec![Output { quantity: Quantity::Forcing, rows: 12, columns: 1, values: nodes }];
     Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![inputs()] }
 }
 

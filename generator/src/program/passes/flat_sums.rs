@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use super::weigh::Weighed;
-use crate::program::Program;
+use super::adjoint::Weighed;
 use crate::program::operation::{Bits, Operation, Stage, Value};
+use crate::program::straight_line::Program;
 
 /// A term with its sign.
 #[derive(Clone, Debug)]

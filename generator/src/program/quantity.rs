@@ -1,8 +1,101 @@
-//! Words for quantities and structures, as derivations and cost tables write them.
+//! What a program can compute, and how derivations and cost tables write it.
 
 use std::fmt;
 
-use super::routine::{ContactQuantity, PointQuantity, Quantity, Structure};
+/// A quantity that a program computes. Shapes: `p` independent speeds, `d` dependent speeds, `n` coordinates, `c` configuration
+/// equations (as many as dependent coordinates). Matrices are stored by rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    /// q' (n)
+    CoordinateRates,
+    /// dependent speeds (d)
+    DependentSpeeds,
+    /// M (p x p), all entries
+    MassMatrix,
+    /// forcing (p): M u' = forcing
+    Forcing,
+    /// u' of the independent speeds (p)
+    Accelerations,
+    /// u' of the dependent speeds (d)
+    DependentAccelerations,
+    /// generalized forces (p) that must be added to the loads for the given u' (inputs `Acceleration`): M u' - forcing
+    InverseDynamics,
+    /// derivative of the rates of the independent coordinates and of the accelerations along a direction (inputs
+    /// `Tangent`): a column of the linearised equations (number of independent coordinates + p)
+    StateTangent,
+    /// kinetic energy (1), J
+    KineticEnergy,
+    /// potential energy of gravity and springs (1), J
+    PotentialEnergy,
+    /// residual of the configuration equations (c)
+    ConfigurationResidual,
+    /// its derivatives with respect to the dependent coordinates (c x c)
+    ConfigurationJacobian,
+    /// residual of the velocity constraints with dependent speeds inserted (d), zero up to rounding
+    ConstraintResidual,
+    /// a quantity of a contact (index into `Mechanism::contacts`)
+    Contact(u32, ContactQuantity),
+    /// a quantity of a point (index into `Mechanism::points`)
+    Point(u32, PointQuantity),
+    /// components of the axes of a frame in N (3 x 3: columns are the frame's x, y, z; index into `Mechanism::frames`)
+    Orientation(u32),
+}
+
+/// Quantities of a contact. The contact basis is `normal`, `first`, `second`, right-handed (second = normal x first).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ContactQuantity {
+    /// n along N.x, N.y, N.z (3)
+    Normal,
+    /// first tangential axis along N.x, N.y, N.z (3)
+    First,
+    /// second tangential axis along N.x, N.y, N.z (3)
+    Second,
+    /// v^R in the contact basis (3)
+    Velocity,
+    /// rows: contact basis, columns: independent speeds (3 x p); the paper's V_n, V_t, V_s
+    PartialVelocities,
+    /// v_t^R in the contact basis (3)
+    Remainder,
+    /// reduced matrix V M^-1 V^T in the contact basis: nn, n1, n2, 11, 12, 22 (6)
+    Reduced,
+    /// change of the independent speeds per unit impulse, M^-1 V^T (p x 3)
+    Response,
+    /// change of the dependent speeds per unit impulse (d x 3)
+    DependentResponse,
+    /// gap (1), only where the model gives one
+    Gap,
+    /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
+    PrescribedWork,
+    /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is one) along a direction
+    /// (inputs `Tangent`), where none of them depends on time by itself
+    Tangent,
+}
+
+/// Quantities of a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum PointQuantity {
+    /// position from O along N.x, N.y, N.z (3)
+    Position,
+    /// velocity in N along N.x, N.y, N.z (3)
+    Velocity,
+    /// partial velocities along N.x, N.y, N.z (3 x p)
+    Jacobian,
+}
+
+/// The structure of a reduced matrix that its symbols show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Structure {
+    /// none
+    General,
+    /// n1 may be anything; n2 = 12 = 0 and no velocity along `second`: planar
+    Planar,
+    /// n1 = n2 = 0
+    Balanced,
+    /// n1 = n2 = 12 = 0
+    Diagonal,
+    /// 12 = 0 and 11 = 22
+    Isotropic,
+}
 
 /// Quantities of the whole mechanism.
 const WHOLE: [(Quantity, &str); 13] = [

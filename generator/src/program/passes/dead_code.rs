@@ -1,10 +1,11 @@
 //! Drops operations that nothing needs.
 
 use crate::program::operation::Value;
-use crate::program::{Guard, Output, Program};
+use crate::program::output::{Guard, Output};
+use crate::program::straight_line::Program;
 
 /// The same program without operations that nothing needs.
-pub fn sweep(program: &Program) -> Program {
+pub fn remove(program: &Program) -> Program {
     let mut needed = vec![false; program.operations.len()];
     let outputs = program.outputs.iter().flat_map(|output| output.values.iter().copied());
     for value in
@@ -57,7 +58,7 @@ mod tests {
         let [a, b] = [Value(0), Value(1)];
         program.operations.insert(2, Operation::Add(a, b));
         program.outputs[0].values = vec![Value(3)];
-        let swept = sweep(&program);
+        let swept = remove(&program);
         assert_eq!(operations(&swept), ["Mul"]);
         assert_eq!(swept.outputs[0].values, [Value(2)]);
     }
@@ -67,17 +68,17 @@ mod tests {
         let mut program = lower(&small(|g| vec![speeds(g)[0]]));
         program.operations.push(Operation::Neg(Value(0)));
         program.guards = vec![Guard { value: Value(1), scale: None, message: String::new() }];
-        assert_eq!(sweep(&program), program);
+        assert_eq!(remove(&program), program);
     }
 
     #[test]
     fn every_bit_stays() {
         for seed in 1..150 {
             let program = lower(&random(seed));
-            let swept = sweep(&program);
+            let swept = remove(&program);
             assert!(swept.operations.len() <= program.operations.len());
             assert_eq!(bits(&program), bits(&swept), "seed {seed}");
-            assert_eq!(sweep(&swept), swept, "seed {seed}: nothing is left to do");
+            assert_eq!(remove(&swept), swept, "seed {seed}: nothing is left to do");
         }
     }
 }

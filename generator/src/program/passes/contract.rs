@@ -2,11 +2,11 @@
 
 use std::collections::HashMap;
 
-use crate::program::Program;
 use crate::program::operation::{Operation, Stage, Value};
+use crate::program::straight_line::Program;
 
-/// Marks fused operations; the products that go into them are left for [`super::sweep`].
-pub fn fuse(program: &Program) -> Program {
+/// Marks fused operations; the products that go into them are left for [`super::dead_code`].
+pub fn contract(program: &Program) -> Program {
     let stages = program.stages();
     let mut uses: HashMap<Value, Uses> = HashMap::new();
     for operation in &program.operations {
@@ -58,12 +58,12 @@ struct Uses {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{agree, bits, operations, random, small, speeds};
-    use super::super::{lower, sweep::sweep};
+    use super::super::{dead_code::remove, lower};
     use super::*;
     use crate::arithmetic::FUSED;
 
-    fn fused(derived: &crate::program::routine::Derived) -> Vec<String> {
-        operations(&sweep(&fuse(&lower(derived))))
+    fn fused(derived: &crate::program::derivation::Derived) -> Vec<String> {
+        operations(&remove(&contract(&lower(derived))))
     }
 
     #[test]
@@ -122,7 +122,7 @@ mod tests {
     fn the_meaning_stays_and_without_the_instruction_every_bit() {
         for seed in 1..150 {
             let program = lower(&random(seed));
-            let fused = fuse(&program);
+            let fused = contract(&program);
             agree(&program, &fused, &format!("seed {seed}"));
             if !FUSED {
                 assert_eq!(bits(&program), bits(&fused), "seed {seed}");

@@ -4,19 +4,19 @@
 
 use std::collections::BTreeMap;
 
-use super::pairs::{Item, Pair, extract};
+use super::frequent_pairs::{Item, Pair, extract};
+use super::rewrite::{Renamed, Survey, rebuild, rewrite};
 use super::terms::factors;
-use super::{Renamed, Survey, rebuild, rewrite};
 use crate::number::Number;
-use crate::program::graph::{Graph, Node, Value};
+use crate::program::derivation::Derived;
+use crate::program::graph::{Graph, Node, NodeKind};
 use crate::program::operation::Stage;
-use crate::program::routine::Derived;
 
 /// Shares parts.
 pub fn share(derived: &Derived) -> Derived {
     let derived = separate_signs(derived);
     let survey = Survey::new(&derived);
-    let mut parts = Parts::new(derived.graph.values().len());
+    let mut parts = Parts::new(derived.graph.kinds().len());
     let products = parts.lists(&derived.graph, &survey, Kind::Product);
     let sums = parts.lists(&derived.graph, &survey, Kind::Sum);
     rewrite(&derived, &survey, |graph, old, renamed| {
@@ -31,8 +31,8 @@ pub fn share(derived: &Derived) -> Derived {
             let nodes = nodes.collect();
             join(graph, Kind::Sum, nodes)
         } else {
-            match derived.graph.value(old) {
-                Value::Product(factors) if is_sign(&derived.graph, factors) => {
+            match derived.graph.kind(old) {
+                NodeKind::Product(factors) if is_sign(&derived.graph, factors) => {
                     negative(graph, renamed.of(factors[1]))
                 }
                 value => rebuild(graph, value, renamed),
@@ -51,8 +51,8 @@ enum Kind {
 fn separate_signs(derived: &Derived) -> Derived {
     let survey = Survey::new(derived);
     rewrite(derived, &survey, |graph, old, renamed| {
-        let node = rebuild(graph, derived.graph.value(old), renamed);
-        let Value::Product(factors) = graph.value(node).clone() else { return node };
+        let node = rebuild(graph, derived.graph.kind(old), renamed);
+        let NodeKind::Product(factors) = graph.kind(node).clone() else { return node };
         match graph.as_number(factors[0]).cloned() {
             Some(number) if number.is_negative() => {
                 let magnitude = graph.number(Number(-number.0));
@@ -73,7 +73,7 @@ fn negative(graph: &mut Graph, node: Node) -> Node {
         return graph.neg(node);
     }
     let minus = graph.integer(-1);
-    graph.intern(Value::Product(vec![minus, node]))
+    graph.intern(NodeKind::Product(vec![minus, node]))
 }
 
 fn join(graph: &mut Graph, kind: Kind, mut nodes: Vec<Node>) -> Node {
@@ -81,7 +81,7 @@ fn join(graph: &mut Graph, kind: Kind, mut nodes: Vec<Node>) -> Node {
         return only;
     }
     nodes.sort_unstable();
-    graph.intern(if kind == Kind::Sum { Value::Sum(nodes) } else { Value::Product(nodes) })
+    graph.intern(if kind == Kind::Sum { NodeKind::Sum(nodes) } else { NodeKind::Product(nodes) })
 }
 
 /// Items beyond the nodes of the old graph, and the new nodes of those that are built.
@@ -127,16 +127,16 @@ impl Parts {
     fn lists(&mut self, graph: &Graph, survey: &Survey, kind: Kind) -> BTreeMap<Node, Vec<Item>> {
         let mut nodes = Vec::new();
         let mut lists = Vec::new();
-        for (index, value) in graph.values().iter().enumerate() {
+        for (index, value) in graph.kinds().iter().enumerate() {
             let node = Node(index as u32);
             if !survey.reachable[index] || survey.stage(node) <= Stage::Parameter {
                 continue;
             }
             let list = match (kind, value) {
-                (Kind::Product, Value::Product(factors)) if !is_sign(graph, factors) => {
+                (Kind::Product, NodeKind::Product(factors)) if !is_sign(graph, factors) => {
                     self.factors(graph, survey, node)
                 }
-                (Kind::Sum, Value::Sum(terms)) => self.terms(graph, survey, terms),
+                (Kind::Sum, NodeKind::Sum(terms)) => self.terms(graph, survey, terms),
                 _ => continue,
             };
             nodes.push(node);
@@ -163,8 +163,8 @@ impl Parts {
             terms.iter().partition(|&&term| survey.stage(term) <= Stage::Parameter);
         let mut items: Vec<Item> = late
             .iter()
-            .map(|&term| match graph.value(term) {
-                Value::Product(factors) if is_sign(graph, factors) => {
+            .map(|&term| match graph.kind(term) {
+                NodeKind::Product(factors) if is_sign(graph, factors) => {
                     Item { id: factors[1].0, negative: true }
                 }
                 _ => Item { id: term.0, negative: false },
@@ -196,7 +196,7 @@ impl Parts {
                 let second = self.build(graph, renamed, pair.second);
                 let second = if pair.opposite { negative(graph, second) } else { second };
                 if kind == Kind::Product && first == second {
-                    graph.intern(Value::Power(first, 2))
+                    graph.intern(NodeKind::Power(first, 2))
                 } else {
                     join(graph, kind, vec![first, second])
                 }

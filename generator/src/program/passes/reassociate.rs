@@ -4,13 +4,13 @@
 //! which its terms can be added with as few operations, the one is taken whose partial sums are smallest in the mean over the
 //! sample states, each state weighed by what an error there does to the answers: what cancels is brought together early.
 
-use super::opened::{Sum, Sums, Term, put_together};
-use super::sweep::sweep;
-use super::weigh::Weighed;
+use super::adjoint::Weighed;
+use super::dead_code;
+use super::flat_sums::{Sum, Sums, Term, put_together};
 use crate::arithmetic::DoubleDouble;
-use crate::interpret::Inputs;
-use crate::program::Program;
+use crate::program::inputs::Inputs;
 use crate::program::operation::{Stage, Value};
+use crate::program::straight_line::Program;
 
 /// Of so many terms all orders are compared; of more, the order is chosen from the end, term by term.
 const MOST: usize = 10;
@@ -24,7 +24,7 @@ const BETTER: f64 = 1.0 - 1e-6;
 const WORTH: f64 = 0.9;
 
 /// A swept program with the terms of its sums in the order that loses least at the sample states.
-pub fn order(program: &Program, states: &[Inputs]) -> Program {
+pub fn reassociate(program: &Program, states: &[Inputs]) -> Program {
     let states: Vec<Weighed> =
         (0..).zip(states).map(|(seed, state)| Weighed::new(program, state, seed)).collect();
     if states.is_empty() {
@@ -43,7 +43,7 @@ pub fn order(program: &Program, states: &[Inputs]) -> Program {
             plans[index] = Some(sum.in_order(index, &states));
         }
     }
-    sweep(&put_together(program, &plans))
+    dead_code::remove(&put_together(program, &plans))
 }
 
 impl Sum {
@@ -181,16 +181,16 @@ impl Sum {
 #[cfg(test)]
 mod tests {
     use super::super::testing::{agree, inputs, operations, random, small, speeds};
-    use super::super::{fuse::fuse, lower};
+    use super::super::{contract::contract, lower};
     use super::*;
     use crate::arithmetic::Function;
     use crate::interpret::Evaluator;
-    use crate::program::routine::{Derived, Quantity};
+    use crate::program::{Derived, Quantity};
 
     /// The program before the pass and after it, with these speeds as the only sample.
     fn both(derived: &Derived, speeds: [f64; 4]) -> [Program; 2] {
-        let before = sweep(&fuse(&lower(derived)));
-        let after = order(&before, &[Inputs { speeds: speeds.to_vec(), ..inputs() }]);
+        let before = dead_code::remove(&contract(&lower(derived)));
+        let after = reassociate(&before, &[Inputs { speeds: speeds.to_vec(), ..inputs() }]);
         [before, after]
     }
 
@@ -234,7 +234,7 @@ mod tests {
             [Mul(a, b), MulAdd(c, d, Value(4)), Mul(a, c), MulAdd(b, d, Value(6)), Add(Value(5), Value(7))];
         program.operations.extend(more);
         program.outputs[0].values = vec![Value(8)];
-        let after = order(&program, &[inputs()]);
+        let after = reassociate(&program, &[inputs()]);
         assert_eq!(operations(&after), ["Mul", "MulAdd", "MulAdd", "MulAdd"]);
         agree(&program, &after, "opened");
     }
@@ -278,9 +278,9 @@ mod tests {
             let angle = g.sum([a, b, c, root]);
             [Function::Sin, Function::Cos].map(|function| g.call(function, vec![angle])).to_vec()
         });
-        let before = sweep(&fuse(&lower(&derived)));
+        let before = dead_code::remove(&contract(&lower(&derived)));
         let states = [1.0, -1.0].map(|d| Inputs { speeds: vec![0.3, 0.1, 0.7, d], ..inputs() });
-        assert_eq!(order(&before, &states), before);
+        assert_eq!(reassociate(&before, &states), before);
     }
 
     #[test]
@@ -295,7 +295,7 @@ mod tests {
                 program.operations.push(if few { MulAdd(a, b, last) } else { Sub(a, last) });
             }
             program.outputs[0].values = vec![Value(length + 3)];
-            let ordered = order(&program, &[inputs()]);
+            let ordered = reassociate(&program, &[inputs()]);
             agree(&program, &ordered, "nested");
             assert!(!few || ordered != program);
         }
@@ -303,15 +303,15 @@ mod tests {
 
     #[test]
     fn without_samples_nothing_changes() {
-        let program = sweep(&fuse(&lower(&random(3))));
-        assert_eq!(order(&program, &[]), program);
+        let program = dead_code::remove(&contract(&lower(&random(3))));
+        assert_eq!(reassociate(&program, &[]), program);
     }
 
     #[test]
     fn the_meaning_stays_and_no_operation_is_added() {
         for seed in 1..150 {
-            let before = sweep(&fuse(&lower(&random(seed))));
-            let after = order(&before, &[inputs()]);
+            let before = dead_code::remove(&contract(&lower(&random(seed))));
+            let after = reassociate(&before, &[inputs()]);
             agree(&before, &after, &format!("seed {seed}"));
             assert!(after.operations.len() <= before.operations.len(), "seed {seed}");
         }

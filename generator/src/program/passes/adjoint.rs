@@ -2,9 +2,10 @@
 //! each of them (reverse differentiation), relative to the largest entry of an answer. All of it is the same on every machine.
 
 use crate::arithmetic::reproducible::Reproducible;
-use crate::interpret::{Inputs, operate};
-use crate::program::Program;
+use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Value};
+use crate::program::semantics::operate;
+use crate::program::straight_line::Program;
 
 /// Sums of answers with random signs that stand for all of them.
 const MIXTURES: u64 = 4;
@@ -160,11 +161,11 @@ mod tests {
         });
         let minus = g.integer(-1);
         let zero = g.sum([squares[0], squares[1], minus]);
-        let more = crate::program::routine::Output {
-            quantity: crate::program::routine::Quantity::KineticEnergy,
+        let more = crate::program::Output {
+            quantity: crate::program::Quantity::KineticEnergy,
             rows: 1,
             columns: 1,
-            nodes: vec![zero],
+            values: vec![zero],
         };
         derived.outputs.push(more);
         let (program, speeds) = (lower(&derived), vec![0.3, 0.0, 0.0, 0.0]);
@@ -186,7 +187,7 @@ mod tests {
             let second = g.product([cosine, d]);
             vec![g.sum([first, second])]
         });
-        let program = super::super::fuse::fuse(&lower(&derived));
+        let program = super::super::contract::contract(&lower(&derived));
         let at = |speeds: Vec<f64>| Weighed::new(&program, &Inputs { speeds, ..inputs() }, 1);
         let speeds = inputs().speeds;
         let there = at(speeds.clone());

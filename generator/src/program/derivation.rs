@@ -1,0 +1,21 @@
+//! What a derivation delivers: a graph, the quantities that its nodes make up, and what must not vanish.
+
+use super::graph::{Graph, Node};
+use super::inputs::Inputs;
+use super::output::{Guard, Output};
+use super::quantity::Structure;
+
+/// The result of deriving a mechanism.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    /// the nodes
+    pub graph: Graph,
+    /// what they are for
+    pub outputs: Vec<Output<Node>>,
+    /// what must not vanish
+    pub guards: Vec<Guard<Node>>,
+    /// per contact, in file order
+    pub structures: Vec<Structure>,
+    /// arbitrary states, at which passes weigh what rounding costs; none where it does not matter
+    pub samples: Vec<Inputs>,
+}

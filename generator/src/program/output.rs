@@ -1,0 +1,31 @@
+//! Quantities made of values, and values that must not vanish: nodes of a derivation, or values of a program.
+
+use super::operation::Value;
+use super::quantity::Quantity;
+
+/// A quantity and its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output<V = Value> {
+    /// what it is
+    pub quantity: Quantity,
+    /// number of rows
+    pub rows: usize,
+    /// number of columns
+    pub columns: usize,
+    /// rows * columns values, by rows
+    pub values: Vec<V>,
+}
+
+/// A value that must not vanish: whoever uses it is told when it does.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guard<V = Value> {
+    /// the value
+    pub value: V,
+    /// what it is compared with: it counts as zero where |value| <= [`VANISHING`] |scale|; `None`: where it is exactly zero or not finite
+    pub scale: Option<V>,
+    /// what is wrong when it vanishes, for instance `the constraints cannot be solved for u2, u3`
+    pub message: String,
+}
+
+/// A value counts as zero where it is at most this times its scale: 2^-40.
+pub const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;

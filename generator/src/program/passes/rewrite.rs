@@ -1,0 +1,127 @@
+//! What passes on the graph share: facts about its nodes, and how a new graph is made of an old one.
+
+use std::collections::HashMap;
+
+use crate::program::derivation::Derived;
+use crate::program::graph::{Graph, Node, NodeKind};
+use crate::program::operation::Stage;
+use crate::program::output::{Guard, Output};
+
+/// What passes look up about the nodes of a graph.
+pub struct Survey {
+    /// is the node needed?
+    pub reachable: Vec<bool>,
+    /// how many nodes and outputs refer to it
+    pub uses: Vec<u32>,
+    /// when it can be computed
+    pub stages: Vec<Stage>,
+}
+
+impl Survey {
+    /// Looks at a derivation.
+    pub fn new(derived: &Derived) -> Self {
+        let graph = &derived.graph;
+        let reachable = graph.reachable(roots(derived));
+        let mut uses = vec![0; graph.kinds().len()];
+        for root in roots(derived) {
+            uses[root.0 as usize] += 1;
+        }
+        let mut stages: Vec<Stage> = Vec::with_capacity(graph.kinds().len());
+        for (index, value) in graph.kinds().iter().enumerate() {
+            stages.push(stage(value, |node| stages[node.0 as usize]));
+            if reachable[index] {
+                for operand in value.operands() {
+                    uses[operand.0 as usize] += 1;
+                }
+            }
+        }
+        Survey { reachable, uses, stages }
+    }
+
+    /// When a node can be computed.
+    pub fn stage(&self, node: Node) -> Stage {
+        self.stages[node.0 as usize]
+    }
+
+    /// Is there exactly one that refers to the node?
+    pub fn is_used_once(&self, node: Node) -> bool {
+        self.uses[node.0 as usize] == 1
+    }
+}
+
+/// When a node can be computed.
+pub fn stage(value: &NodeKind, mut of: impl FnMut(Node) -> Stage) -> Stage {
+    match value {
+        NodeKind::Input(input) => Stage::of_input(*input),
+        _ => value.operands().iter().map(|&operand| of(operand)).max().unwrap_or(Stage::Constant),
+    }
+}
+
+/// All nodes that a derivation wants.
+pub fn roots(derived: &Derived) -> impl Iterator<Item = Node> {
+    let outputs = derived.outputs.iter().flat_map(|output| output.values.iter().copied());
+    outputs.chain(derived.guards.iter().flat_map(|guard| [Some(guard.value), guard.scale]).flatten())
+}
+
+/// A new graph, node by node: `form` makes the new node of an old one, whose operands are new already.
+pub fn rewrite(
+    derived: &Derived,
+    survey: &Survey,
+    mut form: impl FnMut(&mut Graph, Node, &Renamed) -> Node,
+) -> Derived {
+    let mut graph = Graph::new();
+    let mut renamed = Renamed { nodes: HashMap::new() };
+    for index in 0..derived.graph.kinds().len() {
+        if survey.reachable[index] {
+            let old = Node(index as u32);
+            let new = form(&mut graph, old, &renamed);
+            renamed.nodes.insert(old, new);
+        }
+    }
+    let outputs = derived.outputs.iter().map(|output| Output {
+        values: output.values.iter().map(|&node| renamed.of(node)).collect(),
+        ..output.clone()
+    });
+    let guards = derived.guards.iter().map(|guard| Guard {
+        value: renamed.of(guard.value),
+        scale: guard.scale.map(|scale| renamed.of(scale)),
+        message: guard.message.clone(),
+    });
+    let (outputs, guards) = (outputs.collect(), guards.collect());
+    let (structures, samples) = (derived.structures.clone(), derived.samples.clone());
+    Derived { graph, outputs, guards, structures, samples }
+}
+
+/// New nodes for old.
+pub struct Renamed {
+    nodes: HashMap<Node, Node>,
+}
+
+impl Renamed {
+    /// The new node of an old one.
+    pub fn of(&self, old: Node) -> Node {
+        // Operands come before their use, so they are there.
+        self.nodes.get(&old).copied().unwrap_or(old)
+    }
+
+    /// The new nodes of old ones.
+    pub fn all(&self, old: &[Node]) -> Vec<Node> {
+        old.iter().map(|&node| self.of(node)).collect()
+    }
+}
+
+/// The new node of an old one that is made as it was, through the simplifying constructors.
+pub fn rebuild(graph: &mut Graph, value: &NodeKind, renamed: &Renamed) -> Node {
+    match value {
+        NodeKind::Number(number) => graph.number(number.clone()),
+        NodeKind::Pi => graph.pi(),
+        NodeKind::Input(input) => graph.input(*input),
+        NodeKind::Sum(terms) => graph.sum(renamed.all(terms)),
+        NodeKind::Product(factors) => graph.product(renamed.all(factors)),
+        NodeKind::Power(base, exponent) => graph.power(renamed.of(*base), *exponent),
+        NodeKind::Call(function, arguments) => {
+            let arguments = renamed.all(arguments);
+            graph.call(*function, arguments)
+        }
+    }
+}
