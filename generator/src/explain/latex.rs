@@ -106,14 +106,14 @@ fn term(term: &Term, needed: Rank) -> String {
             format!("\\frac{{{}}}{{{}}}", self::term(a, Rank::Sum), self::term(b, Rank::Sum))
         }
         Term::Power(base, n) => match &**base {
-            Term::Call(function @ ("sin" | "cos" | "tan"), arguments) => {
+            Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh"), arguments) => {
                 format!("\\{function}^{{{n}}} {}", self::term(&arguments[0], Rank::Atom))
             }
             base => format!("{}^{{{n}}}", self::term(base, Rank::Atom)),
         },
         Term::Call("sqrt", arguments) => format!("\\sqrt{{{}}}", self::term(&arguments[0], Rank::Sum)),
         Term::Call("abs", arguments) => format!("\\left|{}\\right|", self::term(&arguments[0], Rank::Sum)),
-        Term::Call(function @ ("sin" | "cos" | "tan" | "log"), arguments) => {
+        Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "log"), arguments) => {
             format!("\\{function} {}", self::term(&arguments[0], Rank::Atom))
         }
         Term::Call(function, arguments) => {
