@@ -209,7 +209,7 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
                 wrenches.force(k, *a, &vectors::scale(&tension.neg(), &along));
                 wrenches.force(k, *b, &vectors::scale(&tension, &along));
             }
-            LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping } => {
+            LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping, .. } => {
                 let axis = k.vector(axis);
                 let (angle, rest) = (k.scalar(angle), k.scalar(rest));
                 let (stiffness, damping) = (k.scalar(stiffness), k.scalar(damping));

@@ -358,6 +358,15 @@ impl<'m> Evaluator<'m> {
         }
     }
 
+    /// Velocity in N of a point as a place, whatever matter is there: the rate of its position.
+    pub fn rate_of_position(&self, point: PointId) -> Result<Triple, Failure> {
+        let rate = self.position(point)?.map(HyperDual::rate);
+        match self.root(point) {
+            PointId::O => Ok(rate),
+            root => Ok(add(self.velocity(root)?, rate)),
+        }
+    }
+
     /// Is the position of both known from the same point?
     pub fn same_root(&self, a: PointId, b: PointId) -> bool {
         self.root(a) == self.root(b)
