@@ -94,7 +94,7 @@ fn plots_of_nothing_are_refused() {
 
 #[test]
 fn equations_are_written_in_three_ways() {
-    for (format, part) in [("text", "M[1,2] = "), ("latex", "\\begin{align*}"), ("html", "<math>")] {
+    for (format, part) in [("text", "M[1,2] = "), ("latex", "\\begin{align*}"), ("html", "<math display")] {
         let run = hodograph(&["explain", &model("rolling_disc"), "--format", format], "");
         assert_eq!(run.code, 0, "{}", run.stderr);
         assert!(run.stdout.contains(part), "{format}");

@@ -91,9 +91,20 @@ pub fn times(a: Term, b: Term) -> Term {
             None => factors.push(factor),
         }
     }
-    factors.sort_by_key(|factor| !matches!(factor, Term::Number(_)));
+    factors.sort_by_key(place);
     let product = product(factors);
     if minus_a == minus_b { product } else { neg(product) }
+}
+
+/// The place of a factor: a function stands last, for what follows its argument could be taken for part of it.
+fn place(factor: &Term) -> u8 {
+    match factor {
+        Term::Number(_) => 0,
+        Term::Power(base, _) => place(base).max(1),
+        Term::Sum(_) | Term::Neg(_) => 2,
+        Term::Call(..) => 3,
+        _ => 1,
+    }
 }
 
 /// Base and exponent.

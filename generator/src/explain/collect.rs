@@ -4,13 +4,14 @@ use std::collections::HashMap;
 
 use super::arithmetic::{ZERO, neg, quotient, sum, times};
 use super::exact::Exact;
+use super::headings::{heading, lefts, matrix};
+use super::symbols::Symbols;
 use super::{Document, Entry, Equation, Left, Section, Term, stage_title};
 use crate::arithmetic::Function;
 use crate::model::mechanism::{Mechanism, Variable};
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
-use crate::program::{ContactQuantity, PointQuantity, Quantity};
-use crate::program::{Output, Program};
+use crate::program::{Output, Program, Quantity};
 
 /// An expression of more symbols than this is cut in two.
 const LONGEST: usize = 24;
@@ -42,13 +43,22 @@ pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
     }
     let intermediate = intermediate.into_iter().filter(|(_, list)| !list.is_empty());
     let mut sections: Vec<Section> = intermediate
-        .map(|(stage, equations)| Section { title: stage_title(stage).to_owned(), equations })
+        .map(|(stage, equations)| Section {
+            group: "Intermediate symbols".to_owned(),
+            title: stage_title(stage).to_owned(),
+            unit: String::new(),
+            symbol: "",
+            matrix: Vec::new(),
+            equations,
+        })
         .collect();
     sections.extend(slice.outputs.iter().map(|output| reader.section(output)));
+    let names = names(mechanism);
     Document {
         title: mechanism.name.clone(),
         docs: mechanism.docs.clone(),
-        names: names(mechanism),
+        symbols: Symbols::new(names.iter().flat_map(|(_, list)| list).map(|entry| entry.name.as_str())),
+        names,
         sections,
     }
 }
@@ -82,7 +92,7 @@ fn is_short(term: &Term) -> bool {
 }
 
 /// Number of symbols.
-fn size(term: &Term) -> usize {
+pub fn size(term: &Term) -> usize {
     match term {
         Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => 1,
         Term::Neg(a) | Term::Power(a, _) => size(a),
@@ -151,89 +161,17 @@ impl Reader<'_> {
     }
 
     fn section(&self, output: &Output) -> Section {
-        let (title, symbol) = self.heading(output.quantity);
-        let (independent, dependent): (Vec<&Variable>, Vec<&Variable>) =
-            self.mechanism.speeds.iter().partition(|speed| !speed.dependent);
-        let own =
-            |list: Vec<&Variable>, rate: bool| list.iter().map(|q| Left::Of(q.name.clone(), rate)).collect();
-        let lefts: Vec<Left> = match output.quantity {
-            Quantity::CoordinateRates => own(self.mechanism.coordinates.iter().collect(), true),
-            Quantity::DependentSpeeds => own(dependent, false),
-            Quantity::Accelerations => own(independent, true),
-            Quantity::DependentAccelerations => own(dependent, true),
-            _ => {
-                let several = |count: usize, index: usize| (count > 1).then_some(index + 1);
-                (0..output.rows * output.columns)
-                    .map(|place| (place / output.columns.max(1), place % output.columns.max(1)))
-                    .map(|(row, column)| {
-                        Left::Entry(
-                            symbol.clone(),
-                            several(output.rows, row),
-                            several(output.columns, column),
-                        )
-                    })
-                    .collect()
-            }
-        };
+        let heading = heading(self.mechanism, output.quantity);
+        let lefts = lefts(self.mechanism, output, heading.symbol);
         let rights = output.values.iter().map(|&value| self.of(value));
-        let equations = lefts.into_iter().zip(rights).map(|(left, right)| Equation { left, right }).collect();
-        Section { title, equations }
-    }
-
-    /// The heading of a quantity, and the symbol for its entries.
-    fn heading(&self, quantity: Quantity) -> (String, String) {
-        let plain = |title: &str, symbol: &str| (title.to_owned(), symbol.to_owned());
-        match quantity {
-            Quantity::CoordinateRates => plain("Rates of the coordinates", "q"),
-            Quantity::DependentSpeeds => plain("Dependent speeds", "u"),
-            Quantity::MassMatrix => plain("Mass matrix", "M"),
-            Quantity::Forcing => plain("Forcing: M du/dt = F", "F"),
-            Quantity::Accelerations => plain("Accelerations", "a"),
-            Quantity::DependentAccelerations => plain("Rates of the dependent speeds", "a"),
-            Quantity::InverseDynamics => plain("Inverse dynamics", "Q"),
-            Quantity::StateTangent => plain("Linearised rates", "l"),
-            Quantity::KineticEnergy => plain("Kinetic energy", "K"),
-            Quantity::PotentialEnergy => plain("Potential energy", "W"),
-            Quantity::ConfigurationResidual => plain("Configuration equations", "c"),
-            Quantity::ConfigurationJacobian => plain("Their derivatives by the dependent coordinates", "J"),
-            Quantity::ConstraintResidual => plain("Velocity constraints", "r"),
-            Quantity::Contact(index, quantity) => {
-                let contact =
-                    self.mechanism.contacts.get(index as usize).map_or("?", |contact| &contact.name);
-                let (what, symbol) = contact_heading(quantity);
-                (format!("Contact {contact}: {what}"), symbol.to_owned())
-            }
-            Quantity::Point(index, quantity) => {
-                let point = self.mechanism.points.get(index as usize).map_or("?", |point| &point.name);
-                let (what, symbol) = match quantity {
-                    PointQuantity::Position => ("position along N.x, N.y, N.z", "p"),
-                    PointQuantity::Velocity => ("velocity along N.x, N.y, N.z", "v"),
-                    PointQuantity::Jacobian => ("partial velocities", "V"),
-                };
-                (format!("Point {point}: {what}"), symbol.to_owned())
-            }
-            Quantity::Orientation(index) => {
-                let frame = self.mechanism.frames.get(index as usize).map_or("?", |frame| &frame.name);
-                (format!("Frame {frame}: its axes in N"), "R".to_owned())
-            }
+        Section {
+            group: heading.group,
+            title: heading.title.to_owned(),
+            unit: heading.unit.to_owned(),
+            symbol: heading.symbol,
+            matrix: matrix(output),
+            equations: lefts.into_iter().zip(rights).map(|(left, right)| Equation { left, right }).collect(),
         }
-    }
-}
-
-fn contact_heading(quantity: ContactQuantity) -> (&'static str, &'static str) {
-    match quantity {
-        ContactQuantity::Normal => ("normal along N.x, N.y, N.z", "n"),
-        ContactQuantity::First => ("first tangential axis along N.x, N.y, N.z", "t"),
-        ContactQuantity::Second => ("second tangential axis along N.x, N.y, N.z", "s"),
-        ContactQuantity::Velocity => ("relative velocity along n, t, s", "v"),
-        ContactQuantity::PartialVelocities => ("partial velocities: rows n, t, s", "V"),
-        ContactQuantity::Remainder => ("velocity that depends on no speed, along n, t, s", "r"),
-        ContactQuantity::Reduced => ("reduced matrix: nn, nt, ns, tt, ts, ss", "m"),
-        ContactQuantity::Response => ("change of the speeds per unit impulse", "R"),
-        ContactQuantity::DependentResponse => ("change of the dependent speeds per unit impulse", "D"),
-        ContactQuantity::Gap => ("gap", "d"),
-        ContactQuantity::PrescribedWork => ("work of prescribed motion per unit impulse", "w"),
-        ContactQuantity::Tangent => ("derivatives of velocity, reduced matrix, response and gap", "l"),
     }
 }
 
@@ -249,9 +187,6 @@ fn function_name(function: Function) -> &'static str {
         Function::Sqrt => "sqrt",
         Function::Exp => "exp",
         Function::Log => "log",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
         Function::Abs => "abs",
         Function::Sign => "sign",
         Function::Min => "min",

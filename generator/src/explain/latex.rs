@@ -1,35 +1,37 @@
 //! Equations as a LaTeX document.
 
-use super::{Document, Left, Rank, Term, decimal};
+use super::symbols::{Form, Symbol, form, greek_name, unit};
+use super::{Document, Equation, Left, Place, Rank, Section, Term};
+
+/// A line of an equation holds summands of so many symbols.
+const LINE: usize = 14;
+
+const HEAD: &str = "\\documentclass[a4paper]{article}\n\\usepackage[T1]{fontenc}\n\\usepackage{textcomp}\n\\usepackage{amsmath}\n\
+                    \\usepackage[margin=2cm]{geometry}\n\\allowdisplaybreaks\n\\setcounter{MaxMatrixCols}{60}\n\\setlength{\\parindent}{0pt}\n\
+                    \\begin{document}\n";
 
 pub fn write(document: &Document) -> String {
-    let mut out = "\\documentclass{article}\n\\usepackage{amsmath}\n\\usepackage[margin=2cm]{geometry}\n\
-                   \\allowdisplaybreaks\n\\begin{document}\n"
-        .to_owned();
+    let mut out = HEAD.to_owned();
     out += &format!("\\section*{{{}}}\n{}\n", plain(&document.title), plain(&document.docs));
+    let writer = Writer { document };
     for (title, entries) in &document.names {
         out += &format!("\\subsection*{{{title}}}\n\\begin{{description}}\n");
         for entry in entries {
-            out +=
-                &format!("\\item[${}$] [{}] {}\n", name(&entry.name), plain(&entry.unit), plain(&entry.docs));
+            let unit = unit(&entry.unit);
+            let unit = if unit.is_empty() { "1" } else { unit.as_str() };
+            let name = writer.name(&entry.name);
+            out += &format!("\\item[${name}$] {{[}}{}{{]}} {}\n", plain(unit), plain(&entry.docs));
         }
         out += "\\end{description}\n";
     }
     for section in &document.sections {
-        out += &format!("\\subsection*{{{}}}\n", plain(&section.title));
-        let lines: Vec<String> = section
-            .equations
-            .iter()
-            .map(|equation| format!("{} &= {}", left(&equation.left), term(&equation.right, Rank::Sum)))
-            .collect();
-        if !lines.is_empty() {
-            out += &format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
-        }
+        out += &format!("\\subsection*{{{}}}\n", plain(&section.line()));
+        out += &writer.section(section);
     }
     out + "\\end{document}\n"
 }
 
-/// Text with what LaTeX would take for its own.
+/// Text with what LaTeX would take for its own, and with letters that its fonts lack named by their numbers.
 fn plain(text: &str) -> String {
     let mut out = String::new();
     for letter in text.chars() {
@@ -38,88 +40,200 @@ fn plain(text: &str) -> String {
             '~' => out.push_str("\\textasciitilde{}"),
             '^' => out.push_str("\\textasciicircum{}"),
             '#' | '$' | '%' | '&' | '_' | '{' | '}' => out.extend(['\\', letter]),
-            _ => out.push(letter),
+            '"' => out.push_str("\\textquotedbl{}"),
+            '·' => out.push_str("\\textperiodcentered{}"),
+            '−' => out.push_str("$-$"),
+            '⁻' => out.push_str("$^{-}$"),
+            '⁰' => out.push_str("$^{0}$"),
+            '¹' => out.push_str("$^{1}$"),
+            '²' => out.push_str("$^{2}$"),
+            '³' => out.push_str("$^{3}$"),
+            '⁴'..='⁹' => out.push_str(&format!("$^{{{}}}$", letter as u32 - '⁰' as u32)),
+            '\n'
+            | ' '..='~'
+            | '\u{a1}'..='\u{ac}'
+            | '\u{ae}'..='\u{17e}'
+            | '\u{2018}'..='\u{201d}'
+            | '–'
+            | '—' => out.push(letter),
+            _ => match greek_name(letter) {
+                Some(name) => out.push_str(&format!("$\\{name}$")),
+                None if letter.is_control() => {}
+                None => out.push_str(&format!("U+{:04X}", letter as u32)),
+            },
         }
     }
     out
 }
 
-const GREEK: [&str; 30] = [
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "lambda", "mu",
-    "nu", "xi", "rho", "sigma", "tau", "upsilon", "phi", "chi", "psi", "omega", "Gamma", "Delta", "Theta",
-    "Lambda", "Sigma", "Phi", "Psi", "Omega",
-];
-
-/// `q1` is q with the index 1, `gamma` a Greek letter, `m_arm` m with the index arm.
-fn name(text: &str) -> String {
-    let digits = text.trim_start_matches(|c: char| c.is_alphabetic());
-    let (head, index) = match text.split_once('_') {
-        Some((head, index)) if !head.is_empty() && !index.is_empty() => (head, index),
-        _ if digits.len() < text.len() => (&text[..text.len() - digits.len()], digits),
-        _ => (text, ""),
-    };
-    let head = match head {
-        _ if GREEK.contains(&head) => format!("\\{head}"),
-        _ if head.chars().count() == 1 => plain(head),
-        _ => format!("\\mathrm{{{}}}", plain(head)),
-    };
-    if index.is_empty() { head } else { format!("{head}_{{\\mathrm{{{}}}}}", plain(index)) }
-}
-
-fn left(left: &Left) -> String {
-    match left {
-        Left::Z(index) => format!("z_{{{index}}}"),
-        Left::Of(text, false) => name(text),
-        Left::Of(text, true) => format!("\\tfrac{{d}}{{dt}} {}", name(text)),
-        Left::Entry(symbol, Some(row), Some(column)) => format!("{symbol}_{{{row},{column}}}"),
-        Left::Entry(symbol, Some(index), None) | Left::Entry(symbol, None, Some(index)) => {
-            format!("{symbol}_{{{index}}}")
-        }
-        Left::Entry(symbol, None, None) => symbol.clone(),
+/// A letter or word in a formula.
+fn letters(text: &str) -> String {
+    let mut rest = text;
+    let mut out = String::new();
+    while let Some((name, letter)) =
+        rest.chars().next().and_then(|letter| Some((greek_name(letter)?, letter)))
+    {
+        out += &format!("\\{name}{{}}");
+        rest = &rest[letter.len_utf8()..];
+    }
+    match rest.chars().count() {
+        0 => out,
+        1 if rest.is_ascii() => format!("{out}{}", plain(rest)),
+        1.. => format!("{out}\\mathrm{{{}}}", text_in_formula(rest)),
     }
 }
 
-fn term(term: &Term, needed: Rank) -> String {
-    let text = match term {
-        Term::Number(number) => {
-            decimal(*number).replace('e', " \\cdot 10^{")
-                + if decimal(*number).contains('e') { "}" } else { "" }
-        }
-        Term::Name(text) if text == "time" => "t".to_owned(),
-        Term::Name(text) => name(text),
-        Term::Rate(text) => format!("\\dot{{{}}}", name(text)),
-        Term::Z(index) => format!("z_{{{index}}}"),
-        Term::Neg(inner) => format!("-{}", self::term(inner, Rank::Product)),
-        Term::Sum(terms) => {
-            let mut out = String::new();
-            for (index, part) in terms.iter().enumerate() {
-                let (minus, part) = part.unsigned();
-                out += if minus { "-" } else { ["", "+"][usize::from(index > 0)] };
-                out += &self::term(&part, Rank::Product);
-            }
-            out
-        }
-        Term::Product(factors) => {
-            factors.iter().map(|factor| self::term(factor, Rank::Product)).collect::<Vec<_>>().join(" \\, ")
-        }
-        Term::Quotient(a, b) => {
-            format!("\\frac{{{}}}{{{}}}", self::term(a, Rank::Sum), self::term(b, Rank::Sum))
-        }
-        Term::Power(base, n) => match &**base {
-            Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh"), arguments) => {
-                format!("\\{function}^{{{n}}} {}", self::term(&arguments[0], Rank::Atom))
-            }
-            base => format!("{}^{{{n}}}", self::term(base, Rank::Atom)),
-        },
-        Term::Call("sqrt", arguments) => format!("\\sqrt{{{}}}", self::term(&arguments[0], Rank::Sum)),
-        Term::Call("abs", arguments) => format!("\\left|{}\\right|", self::term(&arguments[0], Rank::Sum)),
-        Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "log"), arguments) => {
-            format!("\\{function} {}", self::term(&arguments[0], Rank::Atom))
-        }
-        Term::Call(function, arguments) => {
-            let arguments: Vec<String> = arguments.iter().map(|term| self::term(term, Rank::Sum)).collect();
-            format!("\\operatorname{{{function}}}\\left({}\\right)", arguments.join(", "))
-        }
+fn text_in_formula(text: &str) -> String {
+    if text.is_ascii() { plain(text) } else { format!("\\text{{{}}}", plain(text)) }
+}
+
+fn with_index(base: &str, index: &str) -> String {
+    if index.is_empty() {
+        return base.to_owned();
+    }
+    let part = |part: &str| match part.chars().count() {
+        1 if part.is_ascii() => plain(part),
+        _ if part.bytes().all(|digit| digit.is_ascii_digit()) => part.to_owned(),
+        _ => format!("\\mathrm{{{}}}", text_in_formula(part)),
     };
-    if term.rank() < needed { format!("\\left({text}\\right)") } else { text }
+    format!("{base}_{{{}}}", index.split(',').map(part).collect::<Vec<_>>().join(","))
+}
+
+fn symbol(symbol: &Symbol) -> String {
+    with_index(&letters(&symbol.head), &symbol.index)
+}
+
+fn rate(symbol: &Symbol) -> String {
+    with_index(&format!("\\dot{{{}}}", letters(&symbol.head)), &symbol.index)
+}
+
+fn number(number: f64) -> String {
+    let sign = if number < 0.0 { "-" } else { "" };
+    match form(number.abs()) {
+        Form::Decimal(text) => format!("{sign}{text}"),
+        Form::Ratio(a, b) => format!("{sign}\\tfrac{{{a}}}{{{b}}}"),
+        Form::Power(mantissa, exponent) if mantissa == "1" => format!("{sign}10^{{{exponent}}}"),
+        Form::Power(mantissa, exponent) => format!("{sign}{mantissa} \\cdot 10^{{{exponent}}}"),
+    }
+}
+
+struct Writer<'a> {
+    document: &'a Document,
+}
+
+impl Writer<'_> {
+    fn name(&self, name: &str) -> String {
+        symbol(&self.document.symbols.of(name))
+    }
+
+    fn z(&self, index: usize) -> String {
+        with_index(&letters(self.document.symbols.letter), &index.to_string())
+    }
+
+    fn left(&self, left: &Left) -> String {
+        match left {
+            Left::Z(index) => self.z(*index),
+            Left::Of(name, false) => self.name(name),
+            Left::Of(name, true) => rate(&self.document.symbols.of(name)),
+            Left::Entry(symbol, indices) => with_index(symbol, &indices.join(",")),
+        }
+    }
+
+    fn section(&self, section: &Section) -> String {
+        let (places, below) = section.laid_out();
+        let mut out = String::new();
+        if !places.is_empty() {
+            let cell = |place: &Place<'_>| match place {
+                Place::Term(term) => self.term(term, Rank::Sum),
+                Place::Symbol(left) => self.left(left),
+            };
+            let rows = places.iter().map(|row| row.iter().map(cell).collect::<Vec<_>>().join(" & "));
+            let rows = rows.collect::<Vec<_>>().join(" \\\\\n");
+            out += &format!("\\[\n{} = \\begin{{bmatrix}}\n{rows}\n\\end{{bmatrix}}\n\\]\n", section.symbol);
+        }
+        let lines: Vec<String> = below.into_iter().map(|equation| self.equation(equation)).collect();
+        if !lines.is_empty() {
+            out += &format!("\\begin{{align*}}\n{}\n\\end{{align*}}\n", lines.join(" \\\\\n"));
+        }
+        out
+    }
+
+    /// An equation, a long sum in several lines.
+    fn equation(&self, equation: &Equation) -> String {
+        let mut out = format!("{} &= ", self.left(&equation.left));
+        let Term::Sum(terms) = &equation.right else {
+            return format!("{out}{}", self.term(&equation.right, Rank::Sum));
+        };
+        let mut used = 0;
+        for (index, part) in terms.iter().enumerate() {
+            let size = super::collect::size(part);
+            if index > 0 && used + size > LINE {
+                out += " \\\\\n&\\quad {} ";
+                used = 0;
+            }
+            used += size;
+            out += &self.summand(index, part);
+        }
+        out
+    }
+
+    fn summand(&self, index: usize, part: &Term) -> String {
+        let (minus, part) = part.unsigned();
+        let sign = if minus { "-" } else { ["", "+"][usize::from(index > 0)] };
+        format!("{sign}{}", self.term(&part, Rank::Product))
+    }
+
+    fn term(&self, term: &Term, needed: Rank) -> String {
+        let text = match term {
+            Term::Number(value) => number(*value),
+            Term::Name(name) => self.name(name),
+            Term::Rate(name) => rate(&self.document.symbols.of(name)),
+            Term::Z(index) => self.z(*index),
+            Term::Neg(inner) => format!("-{}", self.term(inner, Rank::Product)),
+            Term::Sum(terms) => {
+                terms.iter().enumerate().map(|(index, part)| self.summand(index, part)).collect()
+            }
+            Term::Product(factors) => factors
+                .iter()
+                .map(|factor| self.term(factor, Rank::Product))
+                .collect::<Vec<_>>()
+                .join(" \\, "),
+            Term::Quotient(a, b) => {
+                format!("\\frac{{{}}}{{{}}}", self.term(a, Rank::Sum), self.term(b, Rank::Sum))
+            }
+            Term::Power(base, n) => self.power(base, *n),
+            Term::Call("sqrt", arguments) => format!("\\sqrt{{{}}}", self.term(&arguments[0], Rank::Sum)),
+            Term::Call("abs", arguments) => {
+                format!("\\left|{}\\right|", self.term(&arguments[0], Rank::Sum))
+            }
+            Term::Call(function @ ("sin" | "cos" | "tan" | "log"), arguments) => {
+                let function = if *function == "log" { "ln" } else { function };
+                format!("\\{function} {}", self.argument(&arguments[0]))
+            }
+            Term::Call(function, arguments) => {
+                let arguments: Vec<String> =
+                    arguments.iter().map(|term| self.term(term, Rank::Sum)).collect();
+                format!("\\operatorname{{{function}}}\\left({}\\right)", arguments.join(", "))
+            }
+        };
+        if term.rank() < needed { format!("\\left({text}\\right)") } else { text }
+    }
+
+    /// The argument of a sine: a symbol by itself, anything else in brackets.
+    fn argument(&self, term: &Term) -> String {
+        match term {
+            Term::Name(_) | Term::Z(_) | Term::Rate(_) => self.term(term, Rank::Atom),
+            _ => format!("\\left({}\\right)", self.term(term, Rank::Sum)),
+        }
+    }
+
+    fn power(&self, base: &Term, n: u32) -> String {
+        match base {
+            Term::Call(function @ ("sin" | "cos" | "tan"), arguments) => {
+                format!("\\{function}^{{{n}}} {}", self.argument(&arguments[0]))
+            }
+            Term::Name(_) | Term::Z(_) => format!("{{{}}}^{{{n}}}", self.term(base, Rank::Atom)),
+            _ => format!("\\left({}\\right)^{{{n}}}", self.term(base, Rank::Sum)),
+        }
+    }
 }

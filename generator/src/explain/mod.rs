@@ -6,8 +6,10 @@
 mod arithmetic;
 mod collect;
 mod exact;
+mod headings;
 mod html;
 mod latex;
+pub mod symbols;
 mod text;
 
 use crate::model::mechanism::Mechanism;
@@ -126,8 +128,8 @@ struct Equation {
 enum Left {
     /// an intermediate symbol
     Z(usize),
-    /// an entry of a quantity: its symbol, and a row and column where it has more than one
-    Entry(String, Option<usize>, Option<usize>),
+    /// an entry of a quantity: its symbol, and its indices where it has more than one entry
+    Entry(&'static str, Vec<String>),
     /// a quantity that belongs to a name of the model, such as a rate
     Of(String, bool),
 }
@@ -135,8 +137,79 @@ enum Left {
 /// Equations under a heading.
 #[derive(Clone, Debug)]
 struct Section {
+    /// what it belongs to, such as a contact; may be empty
+    group: String,
     title: String,
+    /// may be empty
+    unit: String,
+    /// of the whole quantity; empty for intermediate symbols
+    symbol: &'static str,
+    /// which equations stand in which row of a matrix; empty for what is no matrix
+    matrix: Vec<Vec<usize>>,
     equations: Vec<Equation>,
+}
+
+/// An entry of a matrix with more symbols than this is written below it.
+const SHORT: usize = 4;
+
+impl Section {
+    /// The heading in one line.
+    fn line(&self) -> String {
+        match self.symbol.is_empty() || self.group.is_empty() {
+            true => self.title.clone(),
+            false => format!("{}: {}", self.group, self.title),
+        }
+    }
+
+    /// Where the equations form a matrix that is worth showing: for each place the term that stands there, or else the equation
+    /// that is to be written below; and the equations to be written.
+    fn laid_out(&self) -> (Vec<Vec<Place<'_>>>, Vec<&Equation>) {
+        let is_short =
+            |equation: &Equation| collect::size(&equation.right) <= SHORT && is_flat(&equation.right);
+        let vector = self.matrix.iter().all(|row| row.len() == 1);
+        if self.matrix.is_empty() || (vector && !self.equations.iter().all(is_short)) {
+            return (Vec::new(), self.equations.iter().collect());
+        }
+        let mut below: Vec<usize> = Vec::new();
+        let mut places = Vec::new();
+        for (row, line) in self.matrix.iter().enumerate() {
+            let mut cells = Vec::new();
+            for (column, &index) in line.iter().enumerate() {
+                let equation = &self.equations[index];
+                if is_short(equation) {
+                    cells.push(Place::Term(&equation.right));
+                    continue;
+                }
+                // In a symmetric matrix the entry is that of the mirror place.
+                let mirror = self.matrix.get(column).and_then(|line| line.get(row)).copied();
+                let index =
+                    mirror.filter(|&mirror| column < row && self.equations[mirror].right == equation.right);
+                let index = index.unwrap_or(line[column]);
+                if !below.contains(&index) {
+                    below.push(index);
+                }
+                cells.push(Place::Symbol(&self.equations[index].left));
+            }
+            places.push(cells);
+        }
+        (places, below.into_iter().map(|index| &self.equations[index]).collect())
+    }
+}
+
+/// Has no part that is higher than a line?
+fn is_flat(term: &Term) -> bool {
+    match term {
+        Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => true,
+        Term::Neg(term) | Term::Power(term, _) => is_flat(term),
+        Term::Sum(terms) | Term::Product(terms) | Term::Call(_, terms) => terms.iter().all(is_flat),
+        Term::Quotient(..) => false,
+    }
+}
+
+/// What stands at a place of a matrix.
+enum Place<'a> {
+    Term(&'a Term),
+    Symbol(&'a Left),
 }
 
 /// A name of the model and what it stands for.
@@ -152,6 +225,7 @@ struct Entry {
 struct Document {
     title: String,
     docs: String,
+    symbols: symbols::Symbols,
     names: Vec<(&'static str, Vec<Entry>)>,
     sections: Vec<Section>,
 }
@@ -164,12 +238,6 @@ fn stage_title(stage: Stage) -> &'static str {
         Stage::Configuration => "From the configuration",
         Stage::Velocity => "From the speeds and loads",
     }
-}
-
-/// The shortest decimal that reads back exactly, without a trailing `.0`.
-fn decimal(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 #[cfg(test)]

@@ -211,7 +211,7 @@ impl Lowering<'_> {
             self.arguments_expected(operation, "four coordinates, the scalar part first", value);
             return None;
         }
-        let (mut coordinates, mut unread) = (Vec::new(), false);
+        let mut coordinates = Vec::new();
         for argument in arguments {
             match self.as_coordinate(argument) {
                 Some(coordinate) => {
@@ -223,9 +223,7 @@ impl Lowering<'_> {
                         );
                         return None;
                     }
-                    let unit = self.coordinates[coordinate.0].unit.clone();
-                    unread |= unit.is_none();
-                    if let Some(unit) = unit {
+                    if let Some(unit) = self.coordinates[coordinate.0].unit.clone() {
                         let provenance = Provenance::of(Symbol::Coordinate(coordinate.0));
                         if unit.is_si() && unit.dimension.is_none() {
                             self.agreement(provenance);
@@ -251,7 +249,7 @@ impl Lowering<'_> {
                 }
             }
         }
-        let coordinates: [_; 4] = coordinates.try_into().ok().filter(|_| !unread)?;
+        let coordinates: [_; 4] = coordinates.try_into().ok()?;
         Some((Orientation::Quaternion(coordinates), Traits { moves: true, ..Traits::default() }))
     }
 

@@ -51,10 +51,9 @@ enum Key {
 impl Lowering<'_> {
     /// Adds `d(q..)/dt = u..` for the coordinates of whose rates no equation speaks.
     pub(super) fn default_rates(&mut self) {
-        // with mistakes in the motion, what is missing may only be hidden; a cycle would not end
+        // with mistakes around, what is missing may only be hidden; a cycle would not end
         let hides = |d: &Diagnostic| d.hides_meaning() && d.code != codes::DIMENSION;
-        let unclear = self.balances.incomplete || self.diagnostics.iter().any(hides);
-        if unclear && !self.readable.motion {
+        if self.balances.incomplete || self.diagnostics.iter().any(hides) {
             return;
         }
         let mut walk = Walk { mechanism: &self.out, known: HashMap::new() };
