@@ -128,7 +128,8 @@ impl<'a> Evaluator<'a> {
     fn check(&self, guard: &Guard, numbers: &[(f64, f64)]) -> Result<(), Failure> {
         let value = numbers[guard.value.index()].0;
         let bound = guard.scale.map_or(0.0, |scale| VANISHING * numbers[scale.index()].0.abs());
-        if value.abs() > bound {
+        // a divisor that overflows is large, and what it divides is 0
+        if value.abs() > bound || value.is_infinite() {
             Ok(())
         } else if value.is_finite() && bound.is_finite() {
             let coordinates = self.coordinates_of(guard.value);

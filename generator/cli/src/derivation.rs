@@ -6,12 +6,13 @@ use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use hodograph_generator::artifact::{self, Artifact};
+use hodograph_generator::artifact::{self, Artifact, place};
 use hodograph_generator::program::Program;
 use hodograph_generator::reading;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::model::Model;
+use crate::evaluate::Machine;
+use crate::model::{self, Model};
 use crate::stop::{Outcome, Stop};
 
 /// Name of the hidden command that the child process runs.
@@ -50,6 +51,36 @@ pub fn find(path: &Path, model: &Model) -> Found {
         Ok(_) => Found::Stale("it was derived from another text of the model".to_owned()),
         Err(error) => Found::Stale(error.to_string()),
     }
+}
+
+/// A model with its equations: the derivation beside it if that is fresh, else one made now and not kept.
+///
+/// # Errors
+///
+/// As [`model::load`] and [`derive()`].
+pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
+    let model = model::load(path)?;
+    let kept = place::beside(path);
+    let program = match find(&kept, &model) {
+        Found::Fresh(program) => *program,
+        Found::Absent => {
+            eprintln!(
+                "note: {} is not there: deriving in memory; `hodograph derive {}` keeps the result",
+                kept.display(),
+                path.display()
+            );
+            derive(&model, limits)?.0
+        }
+        Found::Stale(why) => {
+            eprintln!(
+                "note: {} is stale ({why}): deriving in memory; `hodograph derive {}` renews it",
+                kept.display(),
+                path.display()
+            );
+            derive(&model, limits)?.0
+        }
+    };
+    Ok(Machine { mechanism: model.mechanism, program })
 }
 
 /// Derives a model: the program, and the text in which it is kept.

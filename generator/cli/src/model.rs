@@ -2,15 +2,12 @@
 
 use std::path::Path;
 
-use hodograph_generator::artifact::place;
 use hodograph_generator::check::check;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
-use crate::derivation::{self, Found, Limits};
-use crate::evaluate::Machine;
 use crate::stop::{Outcome, Stop};
 
 /// A state has at most so many bytes.
@@ -47,36 +44,6 @@ pub fn checked(source: Source) -> Outcome<Model> {
     eprint!("{}", render(&found.diagnostics, &source));
     let mechanism = found.mechanism.ok_or(Stop::Said)?;
     Ok(Model { source, mechanism })
-}
-
-/// A model with its equations: the derivation beside it if that is fresh, else one made now and not kept.
-///
-/// # Errors
-///
-/// As [`load`] and [`derivation::derive`].
-pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
-    let model = load(path)?;
-    let kept = place::beside(path);
-    let program = match derivation::find(&kept, &model) {
-        Found::Fresh(program) => *program,
-        Found::Absent => {
-            eprintln!(
-                "note: {} is not there: deriving in memory; `hodograph derive {}` keeps the result",
-                kept.display(),
-                path.display()
-            );
-            derivation::derive(&model, limits)?.0
-        }
-        Found::Stale(why) => {
-            eprintln!(
-                "note: {} is stale ({why}): deriving in memory; `hodograph derive {}` renews it",
-                kept.display(),
-                path.display()
-            );
-            derivation::derive(&model, limits)?.0
-        }
-    };
-    Ok(Machine { mechanism: model.mechanism, program })
 }
 
 /// The text of a state: of a file, of standard input (`-`), or the argument itself where it is an object.

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::path::Path;
+use std::process::ExitCode;
 
 use crate::stop::{Outcome, Stop};
 
@@ -77,4 +78,24 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
         file.as_file().set_permissions(data.permissions())?;
     }
     file.persist(&place).map(drop).map_err(|error| error.error)
+}
+
+/// Says why a command stopped, and gives the exit code.
+pub fn report(stop: Stop) -> ExitCode {
+    match stop {
+        Stop::Call(message) => {
+            eprintln!("error: {message}");
+            ExitCode::from(2)
+        }
+        Stop::Fault(message) => {
+            eprintln!("error: {message}");
+            ExitCode::from(1)
+        }
+        Stop::Object(failure) => {
+            let _ = line(&failure.to_line());
+            ExitCode::from(1)
+        }
+        Stop::Said => ExitCode::from(1),
+        Stop::ReaderGone => ExitCode::SUCCESS,
+    }
 }

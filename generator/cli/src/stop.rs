@@ -1,7 +1,6 @@
 //! How a command ends when it does not end well.
 
 use std::fmt;
-use std::process::ExitCode;
 
 use crate::json::Failure;
 
@@ -24,26 +23,6 @@ pub enum Stop {
 pub type Outcome<T = ()> = Result<T, Stop>;
 
 impl Stop {
-    /// Says it, and gives the exit code.
-    pub fn report(self) -> ExitCode {
-        match self {
-            Stop::Call(message) => {
-                eprintln!("error: {message}");
-                ExitCode::from(2)
-            }
-            Stop::Fault(message) => {
-                eprintln!("error: {message}");
-                ExitCode::from(1)
-            }
-            Stop::Object(failure) => {
-                let _ = crate::output::line(&failure.to_line());
-                ExitCode::from(1)
-            }
-            Stop::Said => ExitCode::from(1),
-            Stop::ReaderGone => ExitCode::SUCCESS,
-        }
-    }
-
     /// A file that cannot be read.
     pub fn unreadable(path: &std::path::Path, error: &std::io::Error) -> Self {
         Stop::Call(format!("cannot read {}: {error}", path.display()))

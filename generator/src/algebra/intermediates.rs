@@ -173,14 +173,16 @@ impl Intermediates {
                     let cosine = self.call(Cos, vec![argument.clone()]);
                     return sine.div(&cosine);
                 }
-                Abs if negative => return self.call(Abs, vec![argument.neg()]),
-                Asin | Atan if negative => return self.call(function, vec![argument.neg()]).neg(),
+                Abs | Cosh if negative => return self.call(function, vec![argument.neg()]),
+                Asin | Atan | Sinh | Tanh if negative => {
+                    return self.call(function, vec![argument.neg()]).neg();
+                }
                 _ => {}
             }
             if argument.is_zero() {
                 match function {
-                    Asin | Atan | Sqrt | Abs => return Expr::zero(),
-                    Exp => return Expr::one(),
+                    Asin | Atan | Sqrt | Abs | Sinh | Tanh => return Expr::zero(),
+                    Exp | Cosh => return Expr::one(),
                     _ => {}
                 }
             }
@@ -287,6 +289,9 @@ impl Intermediates {
             Sqrt => Expr::number(&Number::ratio(1, 2)).div(&value),
             Exp => value,
             Log => a.pow(-1),
+            Sinh => self.call(Cosh, vec![a]),
+            Cosh => self.call(Sinh, vec![a]),
+            Tanh => Expr::one().sub(&value.mul(&value)),
             Abs => self.call(Sign, vec![a]),
             Sign => Expr::zero(),
             Min | Max => {
@@ -329,7 +334,7 @@ impl Intermediates {
         use Function::*;
         let bound = match self.meanings[symbol as usize].clone() {
             Meaning::Named(value) => self.bound(&value),
-            Meaning::Call(Sin | Cos | Sign, _) => Expr::one(),
+            Meaning::Call(Sin | Cos | Sign | Tanh, _) => Expr::one(),
             Meaning::Pi => Expr::symbol(symbol),
             _ => self.call(Abs, vec![Expr::symbol(symbol)]),
         };

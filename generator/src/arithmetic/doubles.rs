@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use hodograph_arithmetic::{mul_add, trigonometry};
+use hodograph_arithmetic::{hyperbolic, mul_add, trigonometry};
 
 use super::function::Function;
 
@@ -57,6 +57,9 @@ pub fn call(function: Function, a: f64) -> f64 {
         Function::Sqrt => a.sqrt(),
         Function::Exp => a.exp(),
         Function::Log => a.ln(),
+        Function::Sinh => hyperbolic::sinh(a),
+        Function::Cosh => hyperbolic::cosh(a),
+        Function::Tanh => hyperbolic::tanh(a),
         Function::Abs => a.abs(),
         Function::Sign => {
             if a >= 0.0 {

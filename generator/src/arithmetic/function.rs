@@ -14,6 +14,9 @@ pub enum Function {
     Sqrt,
     Exp,
     Log,
+    Sinh,
+    Cosh,
+    Tanh,
     Abs,
     /// 1 if the argument is not negative, else -1
     Sign,

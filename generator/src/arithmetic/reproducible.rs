@@ -71,6 +71,29 @@ impl Reproducible {
         (even + odd) * Self::exactly(2f64.powi(times as i32))
     }
 
+    fn hyperbolic(self, function: Function) -> Self {
+        let half = Self::exactly(0.5);
+        let size = self.rounded().abs();
+        // sinh and cosh: near 0 the series, which cancels nothing, and far from it the larger exponential alone
+        let (cosh, sinh) = if size <= 0.7 {
+            self.series(false)
+        } else if size <= 100.0 {
+            let (up, down) = (self.exp(), (-self).exp());
+            ((up + down) * half, (up - down) * half)
+        } else {
+            let sign = Self::exactly(1f64.copysign(self.rounded()));
+            // half of it first: the whole may be infinite
+            let up = (self * sign - Self::parts(std::f64::consts::LN_2, 2.3190468138462996e-17)).exp();
+            (up, up * sign)
+        };
+        match function {
+            Function::Sinh => sinh,
+            Function::Cosh => cosh,
+            _ if size > 100.0 => Self::exactly(1f64.copysign(self.rounded())),
+            _ => sinh / cosh,
+        }
+    }
+
     /// The system's logarithm, improved by a step of Newton's method.
     fn log(self) -> Self {
         let near = Self::exactly(self.rounded().ln());
@@ -139,6 +162,7 @@ impl Arithmetic for Reproducible {
             Function::Atan => self.angle(Self::exactly(1.0)),
             Function::Exp => self.exp(),
             Function::Log => self.log(),
+            Function::Sinh | Function::Cosh | Function::Tanh => self.hyperbolic(function),
             Function::Sqrt | Function::Abs => Reproducible(self.0.call(function)),
             Function::Sign => Self::exactly(doubles::call(function, self.rounded())),
             Function::Atan2 | Function::Min | Function::Max => Self::exactly(f64::NAN),
@@ -213,6 +237,10 @@ mod tests {
             vanishes(s - (of(3.0) * s1 - of(4.0) * s1 * s1 * s1), &name);
             vanishes(of(x).exp() * of(-x).exp() - one, &name);
             vanishes(of(x).exp().log() - of(x), &name);
+            let [sinh, cosh, tanh] = [Sinh, Cosh, Tanh].map(|function| of(x).call(function));
+            vanishes(cosh * cosh - sinh * sinh - one, &name);
+            vanishes(cosh + sinh - of(x).exp(), &name);
+            vanishes(tanh * cosh - sinh, &name);
             vanishes(of(x).call(Tan).call(Atan) - of(x), &name);
             vanishes(s1.call2(Atan2, c1) - of(x), &name);
             vanishes(s1.call(Asin).sin_cos().0 - s1, &name);
@@ -222,7 +250,7 @@ mod tests {
 
     #[test]
     fn functions_are_those_of_the_system_but_for_its_last_digit() {
-        for function in [Sin, Cos, Tan, Asin, Acos, Atan, Sqrt, Exp, Log, Abs, Sign] {
+        for function in [Sin, Cos, Tan, Asin, Acos, Atan, Sqrt, Exp, Log, Sinh, Cosh, Tanh, Abs, Sign] {
             for x in
                 [0.0, 1e-300, 0.3, 1.0, -0.7, 2.5, -40.0, 699.0, 1e4, 1e9, 1e300, f64::INFINITY, f64::NAN]
             {

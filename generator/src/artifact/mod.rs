@@ -45,7 +45,7 @@ pub struct Artifact {
 }
 
 /// Words for functions.
-const FUNCTIONS: [(Function, &str); 14] = [
+const FUNCTIONS: [(Function, &str); 17] = [
     (Function::Sin, "sin"),
     (Function::Cos, "cos"),
     (Function::Tan, "tan"),
@@ -56,6 +56,9 @@ const FUNCTIONS: [(Function, &str); 14] = [
     (Function::Sqrt, "sqrt"),
     (Function::Exp, "exp"),
     (Function::Log, "log"),
+    (Function::Sinh, "sinh"),
+    (Function::Cosh, "cosh"),
+    (Function::Tanh, "tanh"),
     (Function::Abs, "abs"),
     (Function::Sign, "sign"),
     (Function::Min, "min"),

@@ -1,8 +1,16 @@
 //! Reads a model and checks it as a whole: counts of equations and unknowns, and what shows only in numbers.
 
+mod bodies;
 mod body_points;
+mod contacts;
 mod counts;
+mod gaps;
+mod loads;
+mod loops;
+mod motion;
 mod physics;
+mod states;
+mod unit_vectors;
 mod vector_constraints;
 
 use crate::diagnostics::{Diagnostic, Severity};
@@ -11,6 +19,7 @@ use crate::source::Source;
 use crate::span::Span;
 use crate::syntax;
 
+pub use bodies::{Impossible, impossible_bodies};
 pub use vector_constraints::dependent_components;
 
 /// What was found in a model.
@@ -38,27 +47,28 @@ pub fn check(source: &Source) -> Checked {
     let (tree, diagnostics) = syntax::parse(&tokens);
     // without a name nothing else could be read
     let unread = tree.name.is_none() && tree.sections.is_empty();
-    let (mechanism, mut diagnostics) = if let Some(error) = model::too_many(&tree) {
+    let (mut mechanism, mut diagnostics) = if let Some(error) = model::too_many(&tree) {
         (None, diagnostics.into_iter().chain([error]).collect())
     } else if unread {
         (None, diagnostics)
     } else {
-        let (mechanism, diagnostics) = model::lower(&tree, diagnostics);
-        (Some(mechanism), diagnostics)
+        let (mechanism, readable, diagnostics) = model::lower(&tree, diagnostics);
+        (Some((mechanism, readable)), diagnostics)
     };
-    // what follows looks at the mechanism as a whole, so it must be whole
-    let unclear = |list: &[Diagnostic]| list.iter().any(Diagnostic::hides_meaning);
-    if let Some(mechanism) = mechanism.as_ref().filter(|_| !unclear(&diagnostics)) {
-        diagnostics.extend(counts::counts(mechanism));
-        if !unclear(&diagnostics) {
-            let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
-            diagnostics.extend(physics::physics(mechanism, name));
+    // what could not be read stands in for something else, so only what rests on none of it is looked at
+    if let Some((mechanism, readable)) = &mut mechanism {
+        if readable.motion {
+            let counts = counts::counts(mechanism);
+            readable.motion = counts.is_empty();
+            diagnostics.extend(counts);
         }
+        let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
+        diagnostics.extend(physics::physics(mechanism, readable, name));
     }
     // one mistake at a place: what else is found there follows from it
     let mut places = std::collections::HashSet::new();
     diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
     diagnostics.sort_by_key(|d| (d.primary.span, d.code));
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
-    Checked { mechanism: mechanism.filter(|_| !failed), diagnostics }
+    Checked { mechanism: mechanism.map(|(mechanism, _)| mechanism).filter(|_| !failed), diagnostics }
 }

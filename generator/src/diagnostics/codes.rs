@@ -98,4 +98,10 @@ codes! {
     UNCHECKED = "W004", "a mechanism too large to be looked at in numbers";
     NOT_CLOSED = "W005", "a loop that does not close";
     NEVER_APPROACHES = "W006", "a contact that only slides";
+    GAP_RATE = "W007", "a gap that does not belong to its contact";
+    CONTACT_POINT = "W008", "a contact point that is no point of its body";
+    BEGINS_INSIDE = "W009", "a start inside what is struck";
+    LOAD_POINT = "W010", "a load on a place where a body is meant";
+    TORSION_ANGLE = "W011", "a torsion spring whose angle is not that of its axis";
+    NO_EFFECT = "W012", "a load that does nothing";
 }

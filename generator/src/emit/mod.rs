@@ -5,16 +5,16 @@
 //! runtime's own crate or at `::core`; it has no panics, no loops over data and no `std`.
 
 mod angles;
+mod conformance;
 mod construct;
 mod contacts;
-mod fits;
 mod linearisation;
 mod methods;
 mod record;
 mod routine;
 mod saltation;
-mod skeleton;
 mod split;
+mod stub;
 mod validation;
 mod values;
 
@@ -29,7 +29,7 @@ use crate::program::{Guard, Program};
 use crate::rust_names;
 use record::Record;
 
-pub use skeleton::{skeleton, stub};
+pub use stub::{skeleton, stub};
 
 /// How a module is emitted.
 #[derive(Clone, Debug)]
@@ -54,7 +54,7 @@ fn module_in_parts(
     options: &Options,
     longest: usize,
 ) -> Result<TokenStream, String> {
-    fits::fits(mechanism, program)?;
+    conformance::fits(mechanism, program)?;
     let emitter = Emitter { longest, ..Emitter::new(mechanism, program, &options.krate) };
     let krate = &options.krate;
     let module = rust_names::ident(&options.module);

@@ -77,8 +77,11 @@ fn mechanism() -> Mechanism {
             body: Some(BodyId(0)),
             against: Against::Fixed,
             normal: Vector::Zero,
+            point_span: span,
+            against_span: span,
             normal_span: span,
             gap: None,
+            gap_span: span,
             span,
         }],
     }

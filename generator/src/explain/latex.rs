@@ -206,7 +206,7 @@ impl Writer<'_> {
             Term::Call("abs", arguments) => {
                 format!("\\left|{}\\right|", self.term(&arguments[0], Rank::Sum))
             }
-            Term::Call(function @ ("sin" | "cos" | "tan" | "log"), arguments) => {
+            Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "log"), arguments) => {
                 let function = if *function == "log" { "ln" } else { function };
                 format!("\\{function} {}", self.argument(&arguments[0]))
             }
@@ -229,7 +229,7 @@ impl Writer<'_> {
 
     fn power(&self, base: &Term, n: u32) -> String {
         match base {
-            Term::Call(function @ ("sin" | "cos" | "tan"), arguments) => {
+            Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh"), arguments) => {
                 format!("\\{function}^{{{n}}} {}", self.argument(&arguments[0]))
             }
             Term::Name(_) | Term::Z(_) => format!("{{{}}}^{{{n}}}", self.term(base, Rank::Atom)),

@@ -84,7 +84,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: LOAD,
-        text: "Loads are `gravity: g`, `force on P: F`, `force on P from Q: F`, `torque on B: T`, `torque on B from A: T`, `spring P to Q: { .. }` and `torsion B from A about v: { .. }`.",
+        text: "A load and its opposite act on two different things. Loads are `gravity: g`, `force on P: F`, `force on P from Q: F`, `torque on B: T`, `torque on B from A: T`, `spring P to Q: { .. }` and `torsion B from A about v: { .. }`.",
         wrong: Some("loads { gravity: -g*N.y; force P: m*g*N.x; }"),
         right: Some("loads { gravity: -g*N.y; force on P: m*g*N.x; }"),
     },
@@ -172,7 +172,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: CONTACT,
-        text: "What is struck is a point (`against: Q` or `against: Q of Body`), the material point of a body that coincides with P (`against: Body`), or a surface with a velocity (`against: velocity v`). Left out, it is a point fixed in N.",
+        text: "What is struck is a point (`against: Q` or `against: Q of Body`), the material point of a body that coincides with P (`against: Body`), a point of a frame that carries no body (`against: Frame`, turning about O, or `against: Frame about Q`), or a surface with a velocity (`against: velocity v`). Left out, it is a point fixed in N. Two points of one body never meet.",
         wrong: Some("contacts { tip { point: P of Rod, against: N, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },

@@ -58,7 +58,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: FUNCTION,
-        text: "The functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, abs, sign, min, max, pow, dot, cross, norm, unit, position, velocity and angular_velocity.",
+        text: "The functions are sin, cos, tan, asin, acos, atan, atan2, sqrt, exp, log, sinh, cosh, tanh, abs, sign, min, max, pow, dot, cross, norm, unit, position, velocity and angular_velocity.",
         wrong: Some("frames { B = N.rotate(z, arctan(q1)); }"),
         right: Some("frames { B = N.rotate(z, atan(q1)); }"),
     },

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::AxesId;
-use crate::kinematics::linear::{self, LinearVector, Triple};
+use crate::kinematics::linear_forms::{self, LinearVector, Triple};
 use crate::kinematics::{Arm, Mixed};
 use crate::model::mechanism::{FrameId, PointId};
 
@@ -50,20 +50,20 @@ impl Accelerations {
         let mut sum = k.change_of(&form.rest);
         for (&slot, partial) in &form.terms {
             let change = k.change_of(partial);
-            sum = linear::add(&sum, &linear::scale(&k.speed(slot), &change));
-            sum = linear::add(&sum, &linear::scale(&self.speeds[slot], partial));
+            sum = linear_forms::add(&sum, &linear_forms::scale(&k.speed(slot), &change));
+            sum = linear_forms::add(&sum, &linear_forms::scale(&self.speeds[slot], partial));
         }
         let value = k.vector_value(form);
-        let value = linear::name(&mut k.z, value);
+        let value = linear_forms::name(&mut k.z, value);
         let turning = owner_velocity(k, axes);
-        linear::add(&sum, &linear::cross(&turning, &value))
+        linear_forms::add(&sum, &linear_forms::cross(&turning, &value))
     }
 
     /// Angular acceleration of a frame in N, in its home axes.
     pub fn angular(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
         let frame = k.turning(frame);
         if frame == FrameId::N || self.apart {
-            return linear::zero();
+            return linear_forms::zero();
         }
         if let Some(known) = self.angular.get(&frame) {
             return known.clone();
@@ -73,7 +73,7 @@ impl Accelerations {
         let of_base = self.angular(k, base);
         let of_base = k.tree.convert(&mut k.z, &of_base, k.frames[base.0].home, motion.home);
         let own = self.own_angular(k, frame);
-        let value = linear::name(&mut k.z, linear::add(&of_base, &own));
+        let value = linear_forms::name(&mut k.z, linear_forms::add(&of_base, &own));
         self.angular.insert(frame, value.clone());
         value
     }
@@ -82,24 +82,24 @@ impl Accelerations {
     pub fn own_angular(&self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
         let motion = k.frames[frame.0].clone();
         let own = self.derivative(k, &motion.relative, motion.home);
-        linear::name(&mut k.z, own)
+        linear_forms::name(&mut k.z, own)
     }
 
     /// Acceleration of a point in N (and of the ground), in its home axes.
     pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
         if self.apart {
-            return linear::zero();
+            return linear_forms::zero();
         }
         if let Some(known) = self.linear.get(&point) {
             return known.clone();
         }
         let motion = k.points[point.0].clone();
-        let of_base = motion.base.map_or_else(linear::zero, |base| {
+        let of_base = motion.base.map_or_else(linear_forms::zero, |base| {
             let value = self.point(k, base);
             k.tree.convert(&mut k.z, &value, k.points[base.0].home, motion.home)
         });
-        let sum = linear::add(&of_base, &self.own_point(k, point));
-        let value = linear::name(&mut k.z, sum);
+        let sum = linear_forms::add(&of_base, &self.own_point(k, point));
+        let value = linear_forms::name(&mut k.z, sum);
         self.linear.insert(point, value.clone());
         value
     }
@@ -108,7 +108,7 @@ impl Accelerations {
     pub fn own_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
         let motion = k.points[point.0].clone();
         let mut sum = match motion.base {
-            Some(_) => linear::zero(),
+            Some(_) => linear_forms::zero(),
             None => {
                 let ground = self.ground.clone();
                 k.express(&ground, motion.home)
@@ -116,15 +116,15 @@ impl Accelerations {
         };
         for arm in &motion.arms {
             let part = self.arm(k, arm);
-            let part = linear::name(&mut k.z, part);
-            sum = linear::add(&sum, &k.tree.convert(&mut k.z, &part, arm.axes, motion.home));
+            let part = linear_forms::name(&mut k.z, part);
+            sum = linear_forms::add(&sum, &k.tree.convert(&mut k.z, &part, arm.axes, motion.home));
         }
         for (axes, relative) in &motion.relative {
             let part = self.derivative(k, relative, *axes);
-            let part = linear::name(&mut k.z, part);
-            sum = linear::add(&sum, &k.tree.convert(&mut k.z, &part, *axes, motion.home));
+            let part = linear_forms::name(&mut k.z, part);
+            sum = linear_forms::add(&sum, &k.tree.convert(&mut k.z, &part, *axes, motion.home));
         }
-        linear::name(&mut k.z, sum)
+        linear_forms::name(&mut k.z, sum)
     }
 
     /// Derivative in N of `w x r`, along the arm's axes.
@@ -132,18 +132,18 @@ impl Accelerations {
         let home = k.frames[arm.frame.0].home;
         let change = k.change_of(&arm.arm);
         let owner = k.turning(k.tree.owner(arm.axes));
-        if arm.axes == home && owner == arm.frame && linear::is_zero(&change) {
+        if arm.axes == home && owner == arm.frame && linear_forms::is_zero(&change) {
             let rows = self.turning_matrix(k, arm.frame);
-            return std::array::from_fn(|i| linear::dot(&rows[i], &arm.arm));
+            return std::array::from_fn(|i| linear_forms::dot(&rows[i], &arm.arm));
         }
         let w = k.angular_velocity(arm.frame);
         let w = k.tree.convert(&mut k.z, &w, home, arm.axes);
         let alpha = self.angular(k, arm.frame);
         let alpha = k.tree.convert(&mut k.z, &alpha, home, arm.axes);
         let turning = owner_velocity(k, arm.axes);
-        let rate = linear::add(&change, &linear::cross(&turning, &arm.arm));
-        let rate = linear::name(&mut k.z, rate);
-        linear::add(&linear::cross(&alpha, &arm.arm), &linear::cross(&w, &rate))
+        let rate = linear_forms::add(&change, &linear_forms::cross(&turning, &arm.arm));
+        let rate = linear_forms::name(&mut k.z, rate);
+        linear_forms::add(&linear_forms::cross(&alpha, &arm.arm), &linear_forms::cross(&w, &rate))
     }
 
     /// Rows of `[alpha]x + w w' - w.w 1`, which turns an arm fixed in the frame into its part of an acceleration.

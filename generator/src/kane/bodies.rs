@@ -3,7 +3,7 @@
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, ENTRIES, Symmetric};
-use crate::kinematics::linear;
+use crate::kinematics::linear_forms;
 use crate::model::mechanism::Body;
 
 /// The central inertia of a body and its axes; `None` for a particle.
@@ -18,7 +18,7 @@ pub fn central_inertia(k: &mut Kinematics<'_>, body: &Body) -> Option<(Symmetric
         let mass = k.scalar(&body.mass);
         let r = k.position(body.centre, about);
         let r = k.express(&r, axes);
-        let square = linear::dot(&r, &r);
+        let square = linear_forms::dot(&r, &r);
         for (at, (i, j)) in ENTRIES.into_iter().enumerate() {
             let product = r[i].mul(&r[j]);
             let part = if i == j { square.sub(&product) } else { product.neg() };

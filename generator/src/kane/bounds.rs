@@ -7,12 +7,12 @@
 
 use std::collections::BTreeMap;
 
-use super::lumps::{Lump, Seat};
-use super::order::{self, Node};
+use super::base_parameters::{Lump, Seat};
+use super::elimination_order::{self, Node};
 use super::sums::sum_scalar;
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
-use crate::kinematics::linear::{LinearVector, Triple};
+use crate::kinematics::linear_forms::{LinearVector, Triple};
 use crate::model::mechanism::FrameId;
 
 /// A magnitude: of a velocity, or of a speed.
@@ -47,7 +47,7 @@ pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>) -> Vec<Exp
     }
     let points: Vec<_> = lumps.keys().filter_map(|seat| seat.1).collect();
     let frames: Vec<_> = lumps.keys().map(|seat| seat.0).filter(|&frame| frame != FrameId::N).collect();
-    let order = order::elimination_order(k, &points, &frames);
+    let order = elimination_order::elimination_order(k, &points, &frames);
     let relations: Vec<_> = order.iter().map(|&node| relation(k, node)).collect();
     for (at, &node) in order.iter().enumerate() {
         let later = |slot| relations[at + 1..].iter().any(|relation| relation.contains_key(&Speed(slot)));

@@ -6,7 +6,7 @@ use super::forces::Wrenches;
 use crate::algebra::Expr;
 use crate::arithmetic::Function;
 use crate::kinematics::axes::{AxesId, AxesTree, unit};
-use crate::kinematics::linear::{self, LinearVector, Triple};
+use crate::kinematics::linear_forms::{self, LinearVector, Triple};
 use crate::kinematics::{Kinematics, vectors};
 use crate::model::mechanism::{Against, Body, BodyId, Contact, FrameId, PointId, Vector};
 
@@ -42,11 +42,11 @@ pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact) -> ContactForms 
         let form = relative.dot(&along[i]).map(|c| k.z.simplify(c));
         form.terms.into_iter().map(|(slot, c)| (slot, k.z.name(c))).collect()
     });
-    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear::dot(&relative.rest, &along[i])));
+    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear_forms::dot(&relative.rest, &along[i])));
     let planar = partials[2].is_empty() && remainder[2].is_zero();
     let forces = unit_forces(k, contact, axes, &along);
     let basis = along.map(|v| {
-        let v = linear::name(&mut k.z, v);
+        let v = linear_forms::name(&mut k.z, v);
         k.tree.convert(&mut k.z, &v, axes, AxesTree::N)
     });
     let gap = contact.gap.as_ref().map(|gap| k.scalar(gap));
@@ -95,10 +95,10 @@ fn relative_velocity(k: &mut Kinematics<'_>, contact: &Contact, axes: AxesId) ->
         Some(struck) => {
             let of_point = velocity(k, &striking, axes);
             let of_struck = velocity(k, &struck, axes);
-            of_point.add(&of_struck.map(|p| linear::scale(&Expr::integer(-1), p)))
+            of_point.add(&of_struck.map(|p| linear_forms::scale(&Expr::integer(-1), p)))
         }
     };
-    difference.map(|p| linear::name(&mut k.z, p.clone()))
+    difference.map(|p| linear_forms::name(&mut k.z, p.clone()))
 }
 
 fn velocity(k: &mut Kinematics<'_>, of: &Mover<'_>, axes: AxesId) -> LinearVector {
@@ -124,7 +124,7 @@ fn unit_forces(
     let (striking, struck) = movers(k, contact);
     let mut wrenches = [Wrenches::default(), Wrenches::default(), Wrenches::default()];
     for (wrenches, along) in wrenches.iter_mut().zip(along) {
-        let against = linear::scale(&Expr::integer(-1), along);
+        let against = linear_forms::scale(&Expr::integer(-1), along);
         for (mover, force) in [(Some(&striking), along), (struck.as_ref(), &against)] {
             match mover {
                 None => {}
@@ -134,7 +134,7 @@ fn unit_forces(
                     wrenches.force(k, centre, &vectors::mixed(axes, force.clone()));
                     let arm = k.position(point, centre);
                     let arm = k.express(&arm, axes);
-                    let torque = linear::name(&mut k.z, linear::cross(&arm, force));
+                    let torque = linear_forms::name(&mut k.z, linear_forms::cross(&arm, force));
                     wrenches.torque(k, frame, &vectors::mixed(axes, torque));
                 }
             }
@@ -148,7 +148,7 @@ fn without_dependent(k: &mut Kinematics<'_>, form: &LinearVector) -> LinearVecto
     let dependent = k.dependent.clone();
     form.substitute(|slot| dependent.get(&slot).cloned()).map(|p| {
         let simple = p.clone().map(|c| k.z.simplify(&c));
-        linear::name(&mut k.z, simple)
+        linear_forms::name(&mut k.z, simple)
     })
 }
 
@@ -162,7 +162,7 @@ fn tangents(k: &mut Kinematics<'_>, normal: &Triple, relative: &LinearVector) ->
     match second {
         Some(i) => {
             let second = unit(i);
-            let first = linear::cross(&second, normal);
+            let first = linear_forms::cross(&second, normal);
             (first, second)
         }
         None => {
@@ -174,7 +174,7 @@ fn tangents(k: &mut Kinematics<'_>, normal: &Triple, relative: &LinearVector) ->
             let b = k.z.name(x.mul(y).mul(&a));
             let first = [Expr::one().add(&sign.mul(x).mul(x).mul(&a)), sign.mul(&b), sign.mul(x).neg()];
             let second = [b, sign.add(&y.mul(y).mul(&a)), y.neg()];
-            (linear::name(&mut k.z, first), linear::name(&mut k.z, second))
+            (linear_forms::name(&mut k.z, first), linear_forms::name(&mut k.z, second))
         }
     }
 }

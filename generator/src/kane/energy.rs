@@ -3,7 +3,7 @@
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::entry;
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::model::mechanism::{FrameId, LoadKind, PointId};
 use crate::number::Number;
 
@@ -18,7 +18,7 @@ pub fn kinetic_energy(k: &mut Kinematics<'_>) -> Expr {
         let mass = k.scalar(&body.mass);
         let mass = k.z.name(mass);
         let (_, v) = k.velocity_value(body.centre);
-        let square = k.z.name(linear::dot(&v, &v));
+        let square = k.z.name(linear_forms::dot(&v, &v));
         sum = sum.add(&mass.mul(&square));
         let Some(frame) = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N)
         else {
@@ -29,10 +29,10 @@ pub fn kinetic_energy(k: &mut Kinematics<'_>) -> Expr {
             let w = k.angular_velocity(frame);
             let w = k.tree.convert(&mut k.z, &w, home, axes);
             let momentum: Triple = std::array::from_fn(|i| {
-                linear::dot(&std::array::from_fn(|j| inertia[entry(i, j)].clone()), &w)
+                linear_forms::dot(&std::array::from_fn(|j| inertia[entry(i, j)].clone()), &w)
             });
-            let momentum = linear::name(&mut k.z, momentum);
-            sum = sum.add(&k.z.name(linear::dot(&w, &momentum)));
+            let momentum = linear_forms::name(&mut k.z, momentum);
+            sum = sum.add(&k.z.name(linear_forms::dot(&w, &momentum)));
         }
     }
     half().mul(&sum)

@@ -7,11 +7,11 @@
 use std::collections::BTreeMap;
 
 use super::accelerations::Accelerations;
-use super::lumps::{Lump, Seat, gathered};
-use super::order::{self, Node};
+use super::base_parameters::{Lump, Seat, gathered};
+use super::elimination_order::{self, Node};
 use crate::algebra::{Expr, Intermediates};
 use crate::kinematics::axes::{Symmetric, entry};
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::kinematics::vectors;
 use crate::kinematics::{Kinematics, Mixed};
 use crate::model::mechanism::{FrameId, LoadKind, PointId};
@@ -32,7 +32,7 @@ impl Wrenches {
     pub fn force(&mut self, k: &mut Kinematics<'_>, on: PointId, force: &Mixed) {
         let home = k.points[on.0].home;
         let force = k.express(force, home);
-        let sum = self.forces.get(&on).map_or_else(|| force.clone(), |have| linear::add(have, &force));
+        let sum = self.forces.get(&on).map_or_else(|| force.clone(), |have| linear_forms::add(have, &force));
         self.forces.insert(on, sum);
     }
 
@@ -44,7 +44,8 @@ impl Wrenches {
         }
         let home = k.frames[on.0].home;
         let torque = k.express(torque, home);
-        let sum = self.torques.get(&on).map_or_else(|| torque.clone(), |have| linear::add(have, &torque));
+        let sum =
+            self.torques.get(&on).map_or_else(|| torque.clone(), |have| linear_forms::add(have, &torque));
         self.torques.insert(on, sum);
     }
 }
@@ -64,7 +65,7 @@ impl Wrenches {
                 }
                 let along = k.express(torque, motion.home);
                 for (&slot, a) in &motion.relative.terms {
-                    let work = linear::dot(a, &along).mul(&Expr::integer(sign));
+                    let work = linear_forms::dot(a, &along).mul(&Expr::integer(sign));
                     let sum =
                         self.generalized.get(&slot).map_or_else(|| work.clone(), |have| have.add(&work));
                     self.generalized.insert(slot, sum);
@@ -83,7 +84,7 @@ pub fn gravity(k: &mut Kinematics<'_>) -> Mixed {
             sum = vectors::add(&sum, &g);
         }
     }
-    sum.into_iter().map(|(axes, v)| (axes, linear::name(&mut k.z, v))).collect()
+    sum.into_iter().map(|(axes, v)| (axes, linear_forms::name(&mut k.z, v))).collect()
 }
 
 /// The acceleration of the ground that acts as gravity does.
@@ -115,17 +116,17 @@ pub fn wrenches(
         }
         let rows = accelerations.turning_matrix(k, frame);
         if let Some(point) = point {
-            let turning: Triple = std::array::from_fn(|i| linear::dot(&rows[i], &lump.moment));
-            let turning = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &turning));
+            let turning: Triple = std::array::from_fn(|i| linear_forms::dot(&rows[i], &lump.moment));
+            let turning = linear_forms::name(&mut k.z, linear_forms::scale(&Expr::integer(-1), &turning));
             wrenches.force(k, point, &vectors::mixed(home, turning));
             wrenches.force(k, point, &vectors::scale(&lump.mass.neg(), &a));
         }
-        let a = if linear::is_zero(&lump.moment) { linear::zero() } else { k.express(&a, home) };
+        let a = if linear_forms::is_zero(&lump.moment) { linear_forms::zero() } else { k.express(&a, home) };
         let alpha = accelerations.angular(k, frame);
         let w = k.angular_velocity(frame);
         let moment = inertia_moment(&mut k.z, &rows, &alpha, &w, &lump.second);
-        let moment = linear::add(&moment, &linear::cross(&lump.moment, &a));
-        let moment = linear::name(&mut k.z, linear::scale(&Expr::integer(-1), &moment));
+        let moment = linear_forms::add(&moment, &linear_forms::cross(&lump.moment, &a));
+        let moment = linear_forms::name(&mut k.z, linear_forms::scale(&Expr::integer(-1), &moment));
         wrenches.torque(k, frame, &vectors::mixed(home, moment));
     }
     k.within("a load".to_string(), |k| apply_loads(k, &mut wrenches));
@@ -194,7 +195,7 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
                 k.guard(&distance, "the ends of a spring coincide");
                 let along = vectors::scale(&distance.pow(-1), &r);
                 let along: Mixed =
-                    along.into_iter().map(|(axes, v)| (axes, linear::name(&mut k.z, v))).collect();
+                    along.into_iter().map(|(axes, v)| (axes, linear_forms::name(&mut k.z, v))).collect();
                 let (stiffness, length, damping) = (k.scalar(stiffness), k.scalar(length), k.scalar(damping));
                 let mut tension = stiffness.mul(&distance.sub(&length));
                 if !damping.is_zero() {
@@ -209,7 +210,7 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
                 wrenches.force(k, *a, &vectors::scale(&tension.neg(), &along));
                 wrenches.force(k, *b, &vectors::scale(&tension, &along));
             }
-            LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping } => {
+            LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping, .. } => {
                 let axis = k.vector(axis);
                 let (angle, rest) = (k.scalar(angle), k.scalar(rest));
                 let (stiffness, damping) = (k.scalar(stiffness), k.scalar(damping));
@@ -237,33 +238,33 @@ fn pass_back(k: &mut Kinematics<'_>, mut wrenches: Wrenches) -> Vec<Expr> {
     }
     let points: Vec<_> = wrenches.forces.keys().copied().collect();
     let frames: Vec<_> = wrenches.torques.keys().copied().collect();
-    for node in order::elimination_order(k, &points, &frames) {
+    for node in elimination_order::elimination_order(k, &points, &frames) {
         match node {
             Node::Frame(frame) => {
                 let Some(torque) = wrenches.torques.remove(&frame) else { continue };
                 let motion = k.frames[frame.0].clone();
-                let torque = linear::name(&mut k.z, torque);
+                let torque = linear_forms::name(&mut k.z, torque);
                 for (&slot, a) in &motion.relative.terms {
-                    result[slot] = result[slot].add(&linear::dot(a, &torque));
+                    result[slot] = result[slot].add(&linear_forms::dot(a, &torque));
                 }
                 wrenches.torque(k, motion.base, &vectors::mixed(motion.home, torque));
             }
             Node::Point(point) => {
                 let Some(force) = wrenches.forces.remove(&point) else { continue };
                 let motion = k.points[point.0].clone();
-                let force = linear::name(&mut k.z, force);
+                let force = linear_forms::name(&mut k.z, force);
                 let along = vectors::mixed(motion.home, force.clone());
                 for arm in &motion.arms {
                     let home = k.frames[arm.frame.0].home;
                     let r = k.tree.convert(&mut k.z, &arm.arm, arm.axes, home);
                     let force = k.express(&along, home);
-                    let moment = linear::cross(&r, &force);
+                    let moment = linear_forms::cross(&r, &force);
                     wrenches.torque(k, arm.frame, &vectors::mixed(home, moment));
                 }
                 for (axes, relative) in &motion.relative {
                     for (&slot, b) in &relative.terms {
                         let b = k.tree.convert(&mut k.z, b, *axes, motion.home);
-                        result[slot] = result[slot].add(&linear::dot(&b, &force));
+                        result[slot] = result[slot].add(&linear_forms::dot(&b, &force));
                     }
                 }
                 if let Some(base) = motion.base {

@@ -7,14 +7,14 @@
 
 use std::collections::BTreeMap;
 
-use super::lumps::{Lump, Seat};
+use super::base_parameters::{Lump, Seat};
 use super::matrix::{Matrix, both_halves, full, name_matrix, times, transposed, turn_rows};
 use super::products::Products;
 use super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple, take_by_first, take_by_second};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{ENTRIES, Symmetric};
-use crate::kinematics::linear::{self, LinearVector, Triple};
+use crate::kinematics::linear_forms::{self, LinearVector, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
 /// Coefficients of the quadratic form
@@ -54,11 +54,11 @@ pub fn full_mass_matrix(
             }
         }
     }
-    let order = super::order::elimination_order(k, &points, &frames);
+    let order = super::elimination_order::elimination_order(k, &points, &frames);
     for node in order {
         match node {
-            super::order::Node::Frame(frame) => form.eliminate_frame(k, frame),
-            super::order::Node::Point(point) => form.eliminate_point(k, point),
+            super::elimination_order::Node::Frame(frame) => form.eliminate_frame(k, frame),
+            super::elimination_order::Node::Point(point) => form.eliminate_point(k, point),
         }
     }
     let mut tidy = |value: Expr| {
@@ -71,7 +71,7 @@ pub fn full_mass_matrix(
 /// Partial velocities of a relation, the remainder under the slot after the last speed.
 fn slots(k: &Kinematics<'_>, form: &LinearVector) -> Vec<(usize, Triple)> {
     let mut all: Vec<_> = form.terms.iter().map(|(&slot, p)| (slot, p.clone())).collect();
-    if !linear::is_zero(&form.rest) {
+    if !linear_forms::is_zero(&form.rest) {
         all.push((k.speeds.len(), form.rest.clone()));
     }
     all
@@ -79,7 +79,7 @@ fn slots(k: &Kinematics<'_>, form: &LinearVector) -> Vec<(usize, Triple)> {
 
 /// `r.s 1 - r s'`, symmetrised.
 fn spread(r: &Triple, s: &Triple) -> Symmetric {
-    let d = linear::dot(r, s);
+    let d = linear_forms::dot(r, s);
     let half = Expr::number(&crate::number::Number::ratio(1, 2));
     ENTRIES.map(|(i, j)| {
         let product = r[i].mul(&s[j]).add(&r[j].mul(&s[i])).mul(&half);
@@ -89,7 +89,7 @@ fn spread(r: &Triple, s: &Triple) -> Symmetric {
 
 /// `[r]x' C [s]x` for C = 1: the matrix of `(w x r).(w' x s)`.
 fn skew_product(r: &Triple, s: &Triple) -> Matrix {
-    let d = linear::dot(r, s);
+    let d = linear_forms::dot(r, s);
     std::array::from_fn(|i| {
         std::array::from_fn(|j| {
             let product = s[i].mul(&r[j]);
@@ -101,7 +101,7 @@ fn skew_product(r: &Triple, s: &Triple) -> Matrix {
 impl Form {
     /// Adds `w_f . X . w_g`, rows of X along f's home axes, columns along g's.
     fn add_coupling(&mut self, k: &mut Kinematics<'_>, f: FrameId, g: FrameId, x: Matrix) {
-        if f == FrameId::N || g == FrameId::N || x.iter().all(linear::is_zero) {
+        if f == FrameId::N || g == FrameId::N || x.iter().all(linear_forms::is_zero) {
             return;
         }
         if f == g {
@@ -121,14 +121,14 @@ impl Form {
         let partials = slots(k, &motion.relative);
 
         for (point, moment) in take_by_second(&mut self.moment, frame) {
-            let moment = linear::name(&mut k.z, moment);
+            let moment = linear_forms::name(&mut k.z, moment);
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &moment, home, base_home);
                 sum_triple(&mut self.moment, (point, base), &turned);
             }
             let at = k.points[point.0].home;
             for (slot, a) in &partials {
-                let product = linear::name(&mut k.z, linear::cross(a, &moment));
+                let product = linear_forms::name(&mut k.z, linear_forms::cross(a, &moment));
                 let turned = k.tree.convert(&mut k.z, &product, home, at);
                 sum_triple(&mut self.momentum, (point, *slot), &turned);
             }
@@ -136,7 +136,7 @@ impl Form {
         if let Some(inertia) = self.inertia.remove(&frame) {
             let inertia = inertia.map(|c| k.z.name(c));
             for (i, (slot, a)) in partials.iter().enumerate() {
-                let column = linear::name(&mut k.z, times(&full(&inertia), a));
+                let column = linear_forms::name(&mut k.z, times(&full(&inertia), a));
                 if base != FrameId::N {
                     let turned = k.tree.convert(&mut k.z, &column, home, base_home);
                     sum_triple(&mut self.angular, (base, *slot), &turned);
@@ -154,7 +154,7 @@ impl Form {
             let (other, x) = if f == frame { (g, x) } else { (f, transposed(&x)) };
             let x = name_matrix(k, x);
             for (slot, a) in &partials {
-                let row = linear::name(&mut k.z, times(&transposed(&x), a));
+                let row = linear_forms::name(&mut k.z, times(&transposed(&x), a));
                 sum_triple(&mut self.angular, (other, *slot), &row);
             }
             if base != FrameId::N {
@@ -163,7 +163,7 @@ impl Form {
             }
         }
         for (slot, h) in take_by_first(&mut self.angular, frame) {
-            let h = linear::name(&mut k.z, h);
+            let h = linear_forms::name(&mut k.z, h);
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &h, home, base_home);
                 sum_triple(&mut self.angular, (base, slot), &turned);
@@ -195,7 +195,7 @@ impl Form {
                     sum_triple(&mut all, slot, &turned);
                 }
             }
-            all.into_iter().map(|(slot, b)| (slot, linear::name(&mut k.z, b))).collect()
+            all.into_iter().map(|(slot, b)| (slot, linear_forms::name(&mut k.z, b))).collect()
         };
 
         if let Some(mass) = self.mass.remove(&point) {
@@ -204,7 +204,7 @@ impl Form {
                 sum_scalar(&mut self.mass, base, &mass);
             }
             for (i, (frame, arm)) in arms.iter().enumerate() {
-                let moment = linear::name(&mut k.z, linear::scale(&mass, arm));
+                let moment = linear_forms::name(&mut k.z, linear_forms::scale(&mass, arm));
                 if let Some(base) = base {
                     sum_triple(&mut self.moment, (base, *frame), &moment);
                 }
@@ -216,7 +216,7 @@ impl Form {
                 self.arm_times_partials(k, *frame, &moment, &partials, home);
             }
             for (i, (slot, b)) in partials.iter().enumerate() {
-                let momentum = linear::name(&mut k.z, linear::scale(&mass, b));
+                let momentum = linear_forms::name(&mut k.z, linear_forms::scale(&mass, b));
                 if let (Some(base), Some(to)) = (base, base_home) {
                     let turned = k.tree.convert(&mut k.z, &momentum, home, to);
                     sum_triple(&mut self.momentum, (base, *slot), &turned);
@@ -225,7 +225,7 @@ impl Form {
             }
         }
         for (frame, moment) in take_by_first(&mut self.moment, point) {
-            let moment = linear::name(&mut k.z, moment);
+            let moment = linear_forms::name(&mut k.z, moment);
             if let Some(base) = base {
                 sum_triple(&mut self.moment, (base, frame), &moment);
             }
@@ -241,7 +241,7 @@ impl Form {
             self.arm_times_partials(k, frame, &moment, &partials, home);
         }
         for (slot, p) in take_by_first(&mut self.momentum, point) {
-            let p = linear::name(&mut k.z, p);
+            let p = linear_forms::name(&mut k.z, p);
             if let (Some(base), Some(to)) = (base, base_home) {
                 let turned = k.tree.convert(&mut k.z, &p, home, to);
                 sum_triple(&mut self.momentum, (base, slot), &turned);
@@ -249,7 +249,7 @@ impl Form {
             for (frame, arm) in &arms {
                 let to = k.frames[frame.0].home;
                 let turned = k.tree.convert(&mut k.z, &p, home, to);
-                sum_triple(&mut self.angular, (*frame, slot), &linear::cross(arm, &turned));
+                sum_triple(&mut self.angular, (*frame, slot), &linear_forms::cross(arm, &turned));
             }
             self.matrix.add_products(slot, &p, &partials);
         }
@@ -282,7 +282,7 @@ impl Form {
         let home = k.frames[frame.0].home;
         for (slot, b) in partials {
             let turned = k.tree.convert(&mut k.z, b, axes, home);
-            sum_triple(&mut self.angular, (frame, *slot), &linear::cross(moment, &turned));
+            sum_triple(&mut self.angular, (frame, *slot), &linear_forms::cross(moment, &turned));
         }
     }
 }

@@ -3,7 +3,7 @@
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, ENTRIES, Symmetric, entry};
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 
 /// Rows along the home axes of the first of two velocities, columns along those of the second.
 pub type Matrix = [Triple; 3];
@@ -29,7 +29,7 @@ pub fn turn_rows(k: &mut Kinematics<'_>, m: &Matrix, from: AxesId, to: AxesId) -
 
 /// `m v`.
 pub fn times(m: &Matrix, v: &Triple) -> Triple {
-    std::array::from_fn(|i| linear::dot(&m[i], v))
+    std::array::from_fn(|i| linear_forms::dot(&m[i], v))
 }
 
 /// `-[r]x`: the matrix that takes w to w x r.
@@ -54,5 +54,5 @@ pub fn both_halves(m: &Matrix) -> Symmetric {
 
 /// Gives every entry a name.
 pub fn name_matrix(k: &mut Kinematics<'_>, m: Matrix) -> Matrix {
-    m.map(|row| linear::name(&mut k.z, row))
+    m.map(|row| linear_forms::name(&mut k.z, row))
 }

@@ -2,15 +2,15 @@
 
 pub mod accelerations;
 pub mod articulated;
+pub mod base_parameters;
 pub mod bodies;
 mod bounds;
 pub mod contacts;
+pub mod elimination_order;
 pub mod energy;
 pub mod forces;
 pub mod inertia;
-pub mod lumps;
 mod matrix;
-pub mod order;
 mod outputs;
 mod products;
 mod samples;

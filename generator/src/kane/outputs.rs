@@ -6,14 +6,14 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::accelerations::Accelerations;
 use super::articulated::Articulated;
+use super::base_parameters::{self, Lump, Masses, Seat};
 use super::contacts::{ContactForms, point_jacobian};
 use super::forces::{self, Wrenches};
-use super::lumps::{self, Lump, Masses, Seat};
 use super::{bounds, energy, inertia};
 use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesTree, unit};
-use crate::kinematics::linear::LinearScalar;
+use crate::kinematics::linear_forms::LinearScalar;
 use crate::kinematics::solve::Solver;
 use crate::model::mechanism::{FrameId, Place, PointId};
 use crate::program::differentiate::differentiate;
@@ -43,7 +43,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     for (slot, speed) in k.mechanism.speeds.iter().enumerate() {
         if speed.dependent { dependent.push(slot) } else { independent.push(slot) }
     }
-    let lumps = lumps::lumps(k, Masses::Handed);
+    let lumps = base_parameters::lumps(k, Masses::Handed);
     let mut writer = Writer {
         k,
         graph: Graph::new(),
@@ -208,7 +208,7 @@ impl Writer<'_, '_> {
     /// Sets up articulated inertias for all forces of the mechanism and its contacts, where it permits; the forces.
     fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
         let mut apart = self.apart();
-        let lumps = lumps::lumps(self.k, Masses::Kept);
+        let lumps = base_parameters::lumps(self.k, Masses::Kept);
         let acting = forces::wrenches(self.k, &lumps, &mut apart);
         let all = || contacts.iter().flat_map(|forms| forms.forces.iter().flatten()).chain([&acting]);
         let points = all().flat_map(|wrenches| wrenches.forces.keys().copied()).collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::sums::sum_scalar;
 use crate::algebra::Expr;
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 
 /// The symmetric matrix M of `1/2 sum M u_r u_s`, by slots `(r, s)` with `r <= s`.
 #[derive(Default)]
@@ -27,7 +27,7 @@ impl Products {
     /// Adds `u_slot` times the products of a momentum with these partial velocities.
     pub fn add_products(&mut self, slot: usize, momentum: &Triple, partials: &[(usize, Triple)]) {
         for (other, b) in partials {
-            self.add_product(*other, slot, &linear::dot(b, momentum));
+            self.add_product(*other, slot, &linear_forms::dot(b, momentum));
         }
     }
 
@@ -36,7 +36,7 @@ impl Products {
     pub fn add_square(&mut self, partials: &[(usize, Triple)], momentum: &Triple) {
         let Some(((slot, own), before)) = partials.split_last() else { return };
         self.add_products(*slot, momentum, before);
-        self.add(*slot, *slot, &linear::dot(own, momentum));
+        self.add(*slot, *slot, &linear_forms::dot(own, momentum));
     }
 
     /// Takes out the entry of a slot on the diagonal.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::algebra::Expr;
 use crate::kinematics::axes::Symmetric;
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 
 /// Adds to a number.
 pub fn sum_scalar<K: Ord>(map: &mut BTreeMap<K, Expr>, key: K, value: &Expr) {
@@ -14,20 +14,20 @@ pub fn sum_scalar<K: Ord>(map: &mut BTreeMap<K, Expr>, key: K, value: &Expr) {
 
 /// Adds to a vector; zeros make no entry.
 pub fn sum_triple<K: Ord>(map: &mut BTreeMap<K, Triple>, key: K, value: &Triple) {
-    if linear::is_zero(value) {
+    if linear_forms::is_zero(value) {
         return;
     }
-    let sum = map.get(&key).map_or_else(|| value.clone(), |have| linear::add(have, value));
+    let sum = map.get(&key).map_or_else(|| value.clone(), |have| linear_forms::add(have, value));
     map.insert(key, sum);
 }
 
 /// Adds to a matrix by rows; zeros make no entry.
 pub fn sum_matrix<K: Ord>(map: &mut BTreeMap<K, [Triple; 3]>, key: K, value: &[Triple; 3]) {
-    if value.iter().all(linear::is_zero) {
+    if value.iter().all(linear_forms::is_zero) {
         return;
     }
     let sum = match map.get(&key) {
-        Some(have) => std::array::from_fn(|i| linear::add(&have[i], &value[i])),
+        Some(have) => std::array::from_fn(|i| linear_forms::add(&have[i], &value[i])),
         None => value.clone(),
     };
     map.insert(key, sum);

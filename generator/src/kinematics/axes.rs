@@ -1,6 +1,6 @@
 //! Sets of axes and how vectors pass from one to another, one rotation at a time.
 
-use super::linear::{Triple, cross, dot, name, scale, zero};
+use super::linear_forms::{Triple, cross, dot, name, scale, zero};
 use crate::algebra::{Expr, Intermediates};
 use crate::arithmetic::Function;
 use crate::model::mechanism::{Axis, FrameId};
@@ -111,7 +111,7 @@ impl AxesTree {
             return std::array::from_fn(|j| {
                 let along = up(turn, &unit(j));
                 let parts = (0..3).map(|i| scale(&along[i], &known[i]));
-                let sum = parts.fold(zero(), |sum, part| super::linear::add(&sum, &part));
+                let sum = parts.fold(zero(), |sum, part| super::linear_forms::add(&sum, &part));
                 name(z, sum)
             });
         }
@@ -122,18 +122,18 @@ impl AxesTree {
 
     /// As `convert`, by the matrix between the axes where that is shared by many vectors on a long way.
     pub fn convert_far(&self, z: &mut Intermediates, v: &Triple, from: AxesId, to: AxesId) -> Triple {
-        if self.distance(from, to) < 2 || super::linear::is_zero(v) {
+        if self.distance(from, to) < 2 || super::linear_forms::is_zero(v) {
             return self.convert(z, v, from, to);
         }
         let columns = self.columns(z, from, to);
         let parts = (0..3).map(|i| scale(&v[i], &columns[i]));
-        let sum = parts.fold(zero(), |sum, part| super::linear::add(&sum, &part));
+        let sum = parts.fold(zero(), |sum, part| super::linear_forms::add(&sum, &part));
         name(z, sum)
     }
 
     /// The same vector along other axes, its components named on the way.
     pub fn convert(&self, z: &mut Intermediates, v: &Triple, from: AxesId, to: AxesId) -> Triple {
-        if from == to || super::linear::is_zero(v) {
+        if from == to || super::linear_forms::is_zero(v) {
             return v.clone();
         }
         self.way(from, to)

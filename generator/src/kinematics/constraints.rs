@@ -1,6 +1,6 @@
 //! Velocity constraints: the dependent speeds as forms in the independent ones, and how both change.
 
-use super::linear::LinearScalar;
+use super::linear_forms::LinearScalar;
 use super::solve::{SolveError, Solver};
 use super::{DeriveError, Kinematics};
 use crate::algebra::Expr;

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use super::Kinematics;
 use super::axes::{AxesId, AxesTree};
-use super::linear::{LinearScalar, LinearVector};
+use super::linear_forms::{LinearScalar, LinearVector};
 use crate::algebra::{Expr, Intermediates, Sample};
 use crate::model::mechanism::{
     DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Variable, Vector,
@@ -161,7 +161,7 @@ impl Kinematics<'_> {
 impl LinearVector {
     /// Product with an expression free of the unknowns.
     fn scale(&self, k: &Expr) -> Self {
-        self.map(|p| super::linear::scale(k, p))
+        self.map(|p| super::linear_forms::scale(k, p))
     }
 }
 

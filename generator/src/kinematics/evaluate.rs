@@ -1,6 +1,6 @@
 //! Expressions of the model as algebra: as values, and as forms linear in the speeds.
 
-use super::linear::{self, LinearScalar, LinearVector};
+use super::linear_forms::{self, LinearScalar, LinearVector};
 use super::vectors::{add, add_linear, constant, mixed, scale, scale_linear};
 use super::{Kinematics, Mixed, MixedLinear};
 use crate::algebra::{Expr, View};
@@ -270,9 +270,9 @@ impl Kinematics<'_> {
                 let axes = self.meeting(a.keys().copied(), b.keys().copied());
                 let (a, b) = (self.express_linear(&a, axes), self.express_linear(&b, axes));
                 let product = if b.terms.is_empty() {
-                    a.map(|p| linear::cross(p, &b.rest))
+                    a.map(|p| linear_forms::cross(p, &b.rest))
                 } else {
-                    b.map(|p| linear::cross(&a.rest, p))
+                    b.map(|p| linear_forms::cross(&a.rest, p))
                 };
                 if product.is_zero() { MixedLinear::new() } else { [(axes, product)].into() }
             }

@@ -1,7 +1,7 @@
 //! Frames: their axes, and their angular velocities relative to their parents.
 
 use super::axes::{self, AxesId, AxesTree, Turn};
-use super::linear::{self, LinearScalar, LinearVector, Triple};
+use super::linear_forms::{self, LinearScalar, LinearVector, Triple};
 use super::{DeriveError, Kinematics, MixedLinear};
 use crate::algebra::Expr;
 use crate::diagnostics::codes;
@@ -178,7 +178,7 @@ impl Kinematics<'_> {
             Orientation::About { axis, angle } => {
                 let axis: Triple = std::array::from_fn(|i| self.scalar(&axis[i]));
                 let angle = self.scalar(angle);
-                let axis = linear::name(&mut self.z, axis);
+                let axis = linear_forms::name(&mut self.z, axis);
                 let turn = axes::about(&mut self.z, &axis, &angle);
                 self.turned(parent_axes, turn, id)
             }
@@ -271,7 +271,7 @@ impl Kinematics<'_> {
             }
             Orientation::About { axis, angle } => {
                 let axis: Triple = std::array::from_fn(|i| self.scalar(&axis[i]));
-                let axis = linear::name(&mut self.z, axis);
+                let axis = linear_forms::name(&mut self.z, axis);
                 for component in &axis {
                     if !self.rate_of(component).is_zero() {
                         return Err(DeriveError {

@@ -10,7 +10,7 @@ pub mod constraints;
 pub mod equations;
 pub mod evaluate;
 pub mod frames;
-pub mod linear;
+pub mod linear_forms;
 pub mod motion;
 pub mod points;
 pub mod rates;
@@ -26,7 +26,7 @@ use crate::program::graph::Input;
 use crate::span::Span;
 
 use axes::{AxesId, AxesTree};
-use linear::{LinearScalar, LinearVector, Triple};
+use linear_forms::{LinearScalar, LinearVector, Triple};
 
 /// What stops a derivation: a property of the model that only the derivation can see.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -227,7 +227,7 @@ impl<'m> Kinematics<'m> {
     /// The value of a vector form in the speeds.
     pub fn vector_value(&self, form: &LinearVector) -> Triple {
         form.terms.iter().fold(form.rest.clone(), |sum, (&slot, p)| {
-            linear::add(&sum, &linear::scale(&self.speed(slot), p))
+            linear_forms::add(&sum, &linear_forms::scale(&self.speed(slot), p))
         })
     }
 
@@ -278,7 +278,7 @@ impl<'m> Kinematics<'m> {
     /// How components free of speeds change with time, the axes held.
     pub fn change_of(&mut self, v: &Triple) -> Triple {
         let rates = std::array::from_fn(|i| self.change(&v[i]));
-        linear::name(&mut self.z, rates)
+        linear_forms::name(&mut self.z, rates)
     }
 
     /// Does some work on behalf of a named part of the model, which messages about divisors then name.

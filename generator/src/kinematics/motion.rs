@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::axes::{AxesId, AxesTree, Turn};
-use super::linear::{self, LinearVector, Triple};
+use super::linear_forms::{self, LinearVector, Triple};
 use super::vectors::{add_linear, scale_linear};
 use super::{Arm, DeriveError, FrameMotion, Kinematics, MixedLinear, PointMotion};
 use crate::algebra::Expr;
@@ -207,8 +207,9 @@ impl Kinematics<'_> {
             let motion = self.points[id.0].clone();
             for arm in &motion.arms {
                 let turned = self.tree.convert_far(&mut self.z, &arm.arm, arm.axes, axes);
-                let total =
-                    carried.get(&arm.frame).map_or_else(|| turned.clone(), |have| linear::add(have, &turned));
+                let total = carried
+                    .get(&arm.frame)
+                    .map_or_else(|| turned.clone(), |have| linear_forms::add(have, &turned));
                 carried.insert(arm.frame, total);
             }
             for (from, relative) in &motion.relative {
@@ -225,7 +226,7 @@ impl Kinematics<'_> {
     fn tidy(&mut self, form: &LinearVector) -> LinearVector {
         form.map(|p| {
             let simple = p.clone().map(|c| self.z.simplify(&c));
-            linear::name(&mut self.z, simple)
+            linear_forms::name(&mut self.z, simple)
         })
     }
 
@@ -239,13 +240,14 @@ impl Kinematics<'_> {
                 (0..open.len()).max_by_key(|&i| (self.ancestry(open[i]).len(), open[i])).unwrap_or(0);
             let frame = open.swap_remove(deepest);
             let Some(arm) = carried.remove(&frame) else { continue };
-            let arm = linear::name(&mut self.z, arm);
+            let arm = linear_forms::name(&mut self.z, arm);
             let motion = self.frames[frame.0].clone();
             let relative = motion.relative.map(|p| self.tree.convert_far(&mut self.z, p, motion.home, axes));
-            sum = sum.add(&relative.map(|w| linear::cross(w, &arm)));
+            sum = sum.add(&relative.map(|w| linear_forms::cross(w, &arm)));
             if motion.base != FrameId::N {
-                let total =
-                    carried.get(&motion.base).map_or_else(|| arm.clone(), |have| linear::add(have, &arm));
+                let total = carried
+                    .get(&motion.base)
+                    .map_or_else(|| arm.clone(), |have| linear_forms::add(have, &arm));
                 carried.insert(motion.base, total);
                 if !open.contains(&motion.base) {
                     open.push(motion.base);
@@ -267,7 +269,7 @@ impl Kinematics<'_> {
         let arm = self.position(point, centre);
         let arm = self.express(&arm, axes);
         let turning = self.turning(frame);
-        if turning == FrameId::N || linear::is_zero(&arm) {
+        if turning == FrameId::N || linear_forms::is_zero(&arm) {
             return base;
         }
         let part = self.turning_parts([(turning, arm)].into(), axes);
@@ -277,7 +279,7 @@ impl Kinematics<'_> {
     /// Value of a frame's angular velocity in N, in its home axes.
     pub fn angular_velocity(&mut self, frame: FrameId) -> Triple {
         if frame == FrameId::N {
-            return linear::zero();
+            return linear_forms::zero();
         }
         if let Some(known) = self.angular_values.get(&frame) {
             return known.clone();
@@ -287,7 +289,7 @@ impl Kinematics<'_> {
         let base_home = self.frames[motion.base.0].home;
         let base = self.tree.convert(&mut self.z, &base, base_home, motion.home);
         let own = self.vector_value(&motion.relative);
-        let value = linear::name(&mut self.z, linear::add(&base, &own));
+        let value = linear_forms::name(&mut self.z, linear_forms::add(&base, &own));
         self.angular_values.insert(frame, value.clone());
         value
     }
@@ -301,7 +303,7 @@ impl Kinematics<'_> {
         let form = self.linear_angular_velocity(of, in_frame);
         let form = self.express_linear(&form, home);
         let value = self.vector_value(&form);
-        (home, linear::name(&mut self.z, value))
+        (home, linear_forms::name(&mut self.z, value))
     }
 
     /// Value of a point's velocity in N, in its home axes.
@@ -310,23 +312,23 @@ impl Kinematics<'_> {
             return known.clone();
         }
         let motion = self.points[point.0].clone();
-        let mut sum = linear::zero();
+        let mut sum = linear_forms::zero();
         if let Some(base) = motion.base {
             let (from, value) = self.velocity_value(base);
-            sum = linear::add(&sum, &self.tree.convert(&mut self.z, &value, from, motion.home));
+            sum = linear_forms::add(&sum, &self.tree.convert(&mut self.z, &value, from, motion.home));
         }
         for arm in &motion.arms {
             let frame_home = self.frames[arm.frame.0].home;
             let w = self.angular_velocity(arm.frame);
             let w = self.tree.convert(&mut self.z, &w, frame_home, arm.axes);
-            let part = linear::name(&mut self.z, linear::cross(&w, &arm.arm));
-            sum = linear::add(&sum, &self.tree.convert(&mut self.z, &part, arm.axes, motion.home));
+            let part = linear_forms::name(&mut self.z, linear_forms::cross(&w, &arm.arm));
+            sum = linear_forms::add(&sum, &self.tree.convert(&mut self.z, &part, arm.axes, motion.home));
         }
         for (axes, relative) in &motion.relative {
             let value = self.vector_value(relative);
-            sum = linear::add(&sum, &self.tree.convert(&mut self.z, &value, *axes, motion.home));
+            sum = linear_forms::add(&sum, &self.tree.convert(&mut self.z, &value, *axes, motion.home));
         }
-        let value = (motion.home, linear::name(&mut self.z, sum));
+        let value = (motion.home, linear_forms::name(&mut self.z, sum));
         self.velocity_values.insert(point, value.clone());
         value
     }

@@ -1,6 +1,6 @@
 //! Points: positions, and velocities while the kinematical equations are being set up.
 
-use super::linear::{self, LinearVector};
+use super::linear_forms::{self, LinearVector};
 use super::vectors::{add, add_linear, scale};
 use super::{Kinematics, Mixed, MixedLinear};
 use crate::algebra::Expr;
@@ -56,7 +56,7 @@ impl Kinematics<'_> {
             Place::Offset { by, .. } | Place::Material { by, .. } => {
                 let place = format!("the position of point `{}`", mechanism.points[point.0].name);
                 let step = self.within(place, |k| k.vector(by));
-                step.into_iter().map(|(axes, v)| (axes, linear::name(&mut self.z, v))).collect()
+                step.into_iter().map(|(axes, v)| (axes, linear_forms::name(&mut self.z, v))).collect()
             }
             Place::Origin | Place::Velocity(_) => Mixed::new(),
         }
@@ -74,7 +74,7 @@ impl Kinematics<'_> {
             let owner = self.tree.owner(axes);
             let turning = self.derived_angular_velocity(owner);
             let turning = self.express_linear(&turning, axes);
-            rate = rate.add(&turning.map(|w| linear::cross(w, components)));
+            rate = rate.add(&turning.map(|w| linear_forms::cross(w, components)));
             if !rate.is_zero() {
                 sum = add_linear(&sum, &[(axes, rate)].into());
             }
@@ -125,7 +125,7 @@ impl Kinematics<'_> {
                 let mut sum = self.derived_velocity(*from);
                 for (axes, arm) in step {
                     let turning = self.express_linear(&turning, axes);
-                    let part = turning.map(|w| linear::cross(w, &arm));
+                    let part = turning.map(|w| linear_forms::cross(w, &arm));
                     if !part.is_zero() {
                         sum = add_linear(&sum, &[(axes, part)].into());
                     }

@@ -1,6 +1,6 @@
 //! Kinematical equations: from what the model says of the generalized speeds to the rates of the coordinates.
 
-use super::linear::LinearScalar;
+use super::linear_forms::LinearScalar;
 use super::solve::{SolveError, Solver};
 use super::vectors::{add_linear, scale_linear};
 use super::{DeriveError, Kinematics, MixedLinear};

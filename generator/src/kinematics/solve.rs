@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::equations::vanishes;
-use super::linear::LinearScalar;
+use super::linear_forms::LinearScalar;
 use crate::algebra::{Expr, Intermediates, Sample};
 
 /// Largest block that is solved in closed form.

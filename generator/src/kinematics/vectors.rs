@@ -1,20 +1,20 @@
 //! Vectors given along several sets of axes at once.
 
-use super::linear::{self, LinearScalar, LinearVector, Triple};
+use super::linear_forms::{self, LinearScalar, LinearVector, Triple};
 use super::{AxesId, Kinematics, Mixed, MixedLinear};
 use crate::algebra::Expr;
 
 /// A vector along one set of axes.
 pub fn mixed(axes: AxesId, v: Triple) -> Mixed {
-    if linear::is_zero(&v) { Mixed::new() } else { Mixed::from([(axes, v)]) }
+    if linear_forms::is_zero(&v) { Mixed::new() } else { Mixed::from([(axes, v)]) }
 }
 
 /// Sum.
 pub fn add(a: &Mixed, b: &Mixed) -> Mixed {
     let mut sum = a.clone();
     for (&axes, v) in b {
-        let total = sum.get(&axes).map_or_else(|| v.clone(), |have| linear::add(have, v));
-        if linear::is_zero(&total) {
+        let total = sum.get(&axes).map_or_else(|| v.clone(), |have| linear_forms::add(have, v));
+        if linear_forms::is_zero(&total) {
             sum.remove(&axes);
         } else {
             sum.insert(axes, total);
@@ -28,7 +28,7 @@ pub fn scale(k: &Expr, v: &Mixed) -> Mixed {
     if k.is_zero() {
         return Mixed::new();
     }
-    v.iter().map(|(&axes, v)| (axes, linear::scale(k, v))).collect()
+    v.iter().map(|(&axes, v)| (axes, linear_forms::scale(k, v))).collect()
 }
 
 /// Sum of linear forms.
@@ -47,7 +47,7 @@ pub fn add_linear(a: &MixedLinear, b: &MixedLinear) -> MixedLinear {
 
 /// `k v` for a linear form.
 pub fn scale_linear(k: &Expr, v: &MixedLinear) -> MixedLinear {
-    let scaled = v.iter().map(|(&axes, v)| (axes, v.map(|p| linear::scale(k, p))));
+    let scaled = v.iter().map(|(&axes, v)| (axes, v.map(|p| linear_forms::scale(k, p))));
     scaled.filter(|(_, v)| !v.is_zero()).collect()
 }
 
@@ -63,12 +63,12 @@ fn entries(v: &Triple) -> usize {
 impl Kinematics<'_> {
     /// The vector along one set of axes.
     pub fn express(&mut self, v: &Mixed, axes: AxesId) -> Triple {
-        let mut sum = linear::zero();
+        let mut sum = linear_forms::zero();
         for (&from, part) in v {
             let part = self.tree.convert(&mut self.z, part, from, axes);
-            sum = linear::add(&sum, &part);
+            sum = linear_forms::add(&sum, &part);
         }
-        if v.len() > 1 { linear::name(&mut self.z, sum) } else { sum }
+        if v.len() > 1 { linear_forms::name(&mut self.z, sum) } else { sum }
     }
 
     /// The linear form along one set of axes.
@@ -99,10 +99,10 @@ impl Kinematics<'_> {
             for (&axes_b, part_b) in b {
                 let term = if entries(part_a) <= entries(part_b) {
                     let turned = self.tree.convert(&mut self.z, part_a, axes_a, axes_b);
-                    linear::dot(&turned, part_b)
+                    linear_forms::dot(&turned, part_b)
                 } else {
                     let turned = self.tree.convert(&mut self.z, part_b, axes_b, axes_a);
-                    linear::dot(&turned, part_a)
+                    linear_forms::dot(&turned, part_a)
                 };
                 sum = sum.add(&term);
             }
@@ -127,8 +127,8 @@ impl Kinematics<'_> {
         }
         let axes = self.meeting(a.keys().copied(), b.keys().copied());
         let (a, b) = (self.express(a, axes), self.express(b, axes));
-        let product = linear::cross(&a, &b);
-        mixed(axes, linear::name(&mut self.z, product))
+        let product = linear_forms::cross(&a, &b);
+        mixed(axes, linear_forms::name(&mut self.z, product))
     }
 
     /// `|v|`.

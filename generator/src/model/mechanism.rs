@@ -281,6 +281,8 @@ pub struct Inertia {
 pub struct Load {
     /// what it is
     pub kind: LoadKind,
+    /// where the points or frames are named on which it acts, in the order of its kind
+    pub ends: Vec<Span>,
     /// where it is declared
     pub span: Span,
 }
@@ -331,6 +333,8 @@ pub enum LoadKind {
         axis: Vector,
         /// rad
         angle: Scalar,
+        /// where the angle is stated
+        angle_span: Span,
         /// rad
         rest: Scalar,
         /// N m/rad
@@ -373,10 +377,16 @@ pub struct Contact {
     pub against: Against,
     /// unit vector n from what is struck to what strikes
     pub normal: Vector,
+    /// where the point is named
+    pub point_span: Span,
+    /// where it is said what is struck; else where the contact is declared
+    pub against_span: Span,
     /// where the normal is stated
     pub normal_span: Span,
     /// distance, m
     pub gap: Option<Scalar>,
+    /// where the gap is stated; else where the contact is declared
+    pub gap_span: Span,
     /// where it is declared
     pub span: Span,
 }

@@ -5,12 +5,14 @@ mod lower;
 pub mod mechanism;
 mod names;
 mod provenance;
+mod readable;
 mod typed;
 
 use crate::diagnostics::{Diagnostic, codes};
 use crate::syntax::tree::Tree;
 
 pub use lower::lower;
+pub use readable::Readable;
 
 /// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with their cube.
 pub const MOST_SPEEDS: usize = 64;

@@ -2,111 +2,23 @@
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;
-use super::motion::{Instant, Maps};
 use super::state::{ContactEvaluation, Evaluation, Failure, State};
+use super::views::{Vector3, Views, accelerations, cross3, dot3, values};
 use crate::model::mechanism::*;
-
-type Vector3 = [f64; 3];
-
-fn values(v: Triple) -> Vector3 {
-    v.map(|c| c.re)
-}
-
-fn accelerations(v: Triple) -> Vector3 {
-    v.map(|c| c.e2)
-}
-
-fn dot3(a: Vector3, b: Vector3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn sub3(a: Vector3, b: Vector3) -> Vector3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross3(a: Vector3, b: Vector3) -> Vector3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
 
 fn apply3(m: &[Vector3; 3], v: Vector3) -> Vector3 {
     m.map(|row| dot3(row, v))
 }
 
-/// The state seen from all sides: as it is, per unit of each speed, and as it goes on.
-struct Views<'m> {
-    /// as it is
-    now: Evaluator<'m>,
-    /// with all independent speeds 0
-    rest: Evaluator<'m>,
-    /// with one independent speed 1, the others 0
-    units: Vec<Evaluator<'m>>,
-    /// as it is, with e2 the rate of everything while the independent speeds stay
-    onward: Evaluator<'m>,
-}
-
-impl Views<'_> {
-    /// Partial velocities: what each unit of speed adds.
-    fn partials<'v>(
-        &'v self,
-        of: impl Fn(&Evaluator<'v>) -> Result<Triple, Failure>,
-    ) -> Result<Vec<Vector3>, Failure>
-    where
-        Self: 'v,
-    {
-        let rest = values(of(&self.rest)?);
-        self.units.iter().map(|unit| Ok(sub3(values(of(unit)?), rest))).collect()
-    }
-}
-
 /// Everything at a state.
 pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
-    let at = |time: HyperDual, coordinates: Vec<HyperDual>| Instant { m, state, time, coordinates };
-    let still = at(
-        HyperDual::constant(state.time),
-        state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect(),
-    );
-    let maps = still.maps()?;
-    let view = |maps: &Maps, independent: &[HyperDual]| {
-        let speeds = maps.speeds(independent);
-        (maps.rates(&speeds), speeds)
-    };
-    let independent: Vec<HyperDual> = state.speeds.iter().map(|u| HyperDual::constant(*u)).collect();
-    let p = independent.len();
-    let (rates, speeds) = view(&maps, &independent);
-    let onward = at(
-        HyperDual { re: state.time, e2: 1.0, ..HyperDual::ZERO },
-        state
-            .coordinates
-            .iter()
-            .zip(&rates)
-            .map(|(q, r)| HyperDual { re: *q, e2: r.re, ..HyperDual::ZERO })
-            .collect(),
-    );
-    let onward_maps = onward.maps()?;
-    let (onward_rates, onward_speeds) = view(&onward_maps, &independent);
-    let evaluator_at = |w: &[HyperDual]| {
-        let (rates, speeds) = view(&maps, w);
-        still.evaluator(&rates, speeds)
-    };
-    let mut unit = vec![HyperDual::ZERO; p];
-    let rest = evaluator_at(&unit);
-    let mut units = Vec::new();
-    for r in 0..p {
-        unit[r] = HyperDual::ONE;
-        units.push(evaluator_at(&unit));
-        unit[r] = HyperDual::ZERO;
-    }
-    let views = Views {
-        now: still.evaluator(&rates, speeds.clone()),
-        rest,
-        units,
-        onward: onward.evaluator(&onward_rates, onward_speeds.clone()),
-    };
+    let views = Views::at(m, state)?;
+    let p = views.units.len();
     let mut out = Evaluation {
         mass_matrix: vec![vec![0.0; p]; p],
         forcing: vec![0.0; p],
-        rates: rates.iter().map(|r| r.re).collect(),
-        speeds: speeds.iter().map(|u| u.re).collect(),
+        rates: views.rates.clone(),
+        speeds: views.speeds.clone(),
         kinetic_energy: 0.0,
         power: 0.0,
         contacts: Vec::new(),
@@ -115,7 +27,7 @@ pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
         orientations: Vec::new(),
         angular_velocities: Vec::new(),
         configuration: Vec::new(),
-        dependent_accelerations: onward_speeds[p.min(onward_speeds.len())..].iter().map(|u| u.e2).collect(),
+        dependent_accelerations: views.dependent_accelerations.clone(),
     };
     for body in &m.bodies {
         add_body(&views, body, &mut out)?;
@@ -249,7 +161,7 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
             add_force(views, *a, pull, out)?;
             add_force(views, *b, pull.map(|c| -c), out)?;
         }
-        LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping } => {
+        LoadKind::Torsion { on, from, axis, angle, rest, stiffness, damping, .. } => {
             let axis = values(now.vector(axis, level)?);
             let angle = now.scalar(angle, Level::Geometry)?;
             let [rest, k, c] = [rest, stiffness, damping].map(|s| now.scalar(s, level));

@@ -167,6 +167,9 @@ impl<'m> Evaluator<'m> {
                     Function::Sqrt => a.sqrt(),
                     Function::Exp => a.exp(),
                     Function::Log => a.ln(),
+                    Function::Sinh => a.sinh(),
+                    Function::Cosh => a.cosh(),
+                    Function::Tanh => a.tanh(),
                     Function::Abs => a.abs(),
                     Function::Sign => HyperDual::constant(if a.re < 0.0 { -1.0 } else { 1.0 }),
                     Function::Atan2 => a.atan2(self.scalar(&arguments[1], level)?),
@@ -352,6 +355,15 @@ impl<'m> Evaluator<'m> {
                 let arm = self.vector(by, Level::Geometry)?.map(HyperDual::still);
                 Ok(add(self.velocity(*from)?, cross(self.angular_velocity(*frame)?, arm)))
             }
+        }
+    }
+
+    /// Velocity in N of a point as a place, whatever matter is there: the rate of its position.
+    pub fn rate_of_position(&self, point: PointId) -> Result<Triple, Failure> {
+        let rate = self.position(point)?.map(HyperDual::rate);
+        match self.root(point) {
+            PointId::O => Ok(rate),
+            root => Ok(add(self.velocity(root)?, rate)),
         }
     }
 

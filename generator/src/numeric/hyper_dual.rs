@@ -122,6 +122,26 @@ impl HyperDual {
         self.chain(self.re.ln(), 1.0 / self.re, -1.0 / (self.re * self.re))
     }
 
+    /// hyperbolic sine
+    pub fn sinh(self) -> Self {
+        let (s, c) = (self.re.sinh(), self.re.cosh());
+        self.chain(s, c, s)
+    }
+
+    /// hyperbolic cosine
+    pub fn cosh(self) -> Self {
+        let (s, c) = (self.re.sinh(), self.re.cosh());
+        self.chain(c, s, c)
+    }
+
+    /// hyperbolic tangent
+    pub fn tanh(self) -> Self {
+        let t = self.re.tanh();
+        // 1 - t^2 would have no digits left where t is nearly 1
+        let d = self.re.cosh().powi(-2);
+        self.chain(t, d, -2.0 * t * d)
+    }
+
     /// size
     pub fn abs(self) -> Self {
         if self.re < 0.0 { -self } else { self }
@@ -257,7 +277,7 @@ mod tests {
     #[test]
     fn derivatives() {
         type Function = fn(HyperDual) -> HyperDual;
-        let functions: [Function; 12] = [
+        let functions: [Function; 15] = [
             HyperDual::sin,
             HyperDual::cos,
             HyperDual::tan,
@@ -267,6 +287,9 @@ mod tests {
             HyperDual::sqrt,
             HyperDual::exp,
             HyperDual::ln,
+            HyperDual::sinh,
+            HyperDual::cosh,
+            HyperDual::tanh,
             |x| x.power(3.0) / (x + HyperDual::constant(2.0)),
             |x| x.power(-1.5),
             |x| x.atan2(HyperDual::constant(0.3) - x),

@@ -10,12 +10,16 @@ mod dynamics;
 mod evaluator;
 pub mod hyper_dual;
 mod linear_system;
+mod loops;
 mod motion;
 mod state;
+pub mod views;
 
 pub use assembly::assemble;
 pub use dynamics::{central_inertia, evaluate};
 pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};
+pub use loops::held_together;
 pub use motion::{constraint_coefficients, constraint_rank};
 pub use state::{ContactEvaluation, Evaluation, Failure, State};
+pub use views::Views;

@@ -115,6 +115,12 @@ fn slope(graph: &mut Graph, node: Node, function: Function, arguments: &[Node], 
         }
         Exp => node,
         Log => graph.power(a, -1),
+        Sinh => graph.call(Cosh, vec![a]),
+        Cosh => graph.call(Sinh, vec![a]),
+        Tanh => {
+            let square = square(graph, node);
+            graph.sub(one, square)
+        }
         Abs => graph.call(Sign, vec![a]),
         Sign => graph.integer(0),
         Min | Max => {

@@ -333,10 +333,15 @@ impl<'a> Lowering<'a> {
                 let sine = function == Function::Sin;
                 (self.builder.sin_cos(sine, argument.value), sine && argument.negative)
             }
-            Function::Cos | Function::Abs => (self.builder.call(function, argument.value), false),
-            Function::Sin | Function::Tan | Function::Asin | Function::Atan => {
-                (self.builder.call(function, argument.value), argument.negative)
+            Function::Cos | Function::Cosh | Function::Abs => {
+                (self.builder.call(function, argument.value), false)
             }
+            Function::Sin
+            | Function::Tan
+            | Function::Asin
+            | Function::Atan
+            | Function::Sinh
+            | Function::Tanh => (self.builder.call(function, argument.value), argument.negative),
             _ => {
                 let argument = self.apply(argument);
                 (self.builder.call(function, argument), false)

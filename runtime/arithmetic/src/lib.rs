@@ -2,6 +2,7 @@
 //!
 //! * [`mul_add`]: a * b + c with one rounding where the target has the instruction,
 //! * [`trigonometry`]: sine and cosine of a double, the same on every machine,
+//! * [`hyperbolic`]: hyperbolic functions of a double, likewise,
 //! * [`DoubleDouble`]: numbers of twice the digits.
 //!
 //! No part of Hodograph's interface: versions may differ in any way.
@@ -14,6 +15,7 @@ extern crate std;
 
 mod double_double;
 mod fused;
+pub mod hyperbolic;
 pub mod trigonometry;
 
 pub use double_double::{Component, DoubleDouble};

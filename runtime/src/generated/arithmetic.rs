@@ -2,7 +2,7 @@
 
 use core::any::TypeId;
 
-use hodograph_arithmetic::{FUSED, trigonometry};
+use hodograph_arithmetic::{FUSED, hyperbolic, trigonometry};
 use nalgebra::{ComplexField, convert};
 
 use crate::Scalar;
@@ -94,6 +94,30 @@ functions! {
     log => ln,
     /// Magnitude.
     abs => abs,
+}
+
+macro_rules! hyperbolic_functions {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(
+        $(#[$doc])*
+        #[inline]
+        pub fn $name<T: Scalar>(a: T) -> T {
+            // known at compile time, as for sine and cosine
+            if TypeId::of::<T>() == TypeId::of::<f64>() {
+                convert(hyperbolic::$name(a.to_subset_unchecked()))
+            } else {
+                a.$name()
+            }
+        }
+    )*};
+}
+
+hyperbolic_functions! {
+    /// Hyperbolic sine; that of doubles is our own, the same everywhere.
+    sinh,
+    /// Hyperbolic cosine, likewise.
+    cosh,
+    /// Hyperbolic tangent, likewise.
+    tanh,
 }
 
 /// Angle of (b, a).

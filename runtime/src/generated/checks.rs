@@ -10,7 +10,14 @@ const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
 #[inline(always)]
 pub fn vanishes_beside<T: Scalar>(value: T, scale: T) -> bool {
     let above = value.abs() > number::<T>(VANISHING) * scale.abs();
-    !above
+    !above && !is_infinite(value)
+}
+
+/// A divisor that overflows is large, and what it divides is 0: that is asked only where the scale is infinite too.
+#[cold]
+#[inline(never)]
+fn is_infinite<T: Scalar>(value: T) -> bool {
+    value.abs() > T::zero() && !value.is_finite()
 }
 
 /// Is a value zero, or not a number?

@@ -150,6 +150,12 @@ of_the_nearest! {
     exp(a),
     /// Natural logarithm of the nearest number.
     log(a),
+    /// Hyperbolic sine of the nearest number.
+    sinh(a),
+    /// Hyperbolic cosine of the nearest number.
+    cosh(a),
+    /// Hyperbolic tangent of the nearest number.
+    tanh(a),
     /// 1 if the nearest number is not negative, else -1.
     sign(a),
 }

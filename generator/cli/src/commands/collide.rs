@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::derivation::Limits;
+use crate::derivation::{self, Limits};
 use crate::evaluate::collision::collide;
 use crate::model;
 use crate::output;
@@ -37,7 +37,7 @@ pub struct Arguments {
 ///
 /// An error object for what is wrong with the state or the collision.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let machine = model::machine(&arguments.model, &arguments.limits)?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
     let surface = arguments.surface.surface()?;
     let index = machine.contact(arguments.contact.as_deref())?;

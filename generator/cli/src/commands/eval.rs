@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::derivation::Limits;
+use crate::derivation::{self, Limits};
 use crate::evaluate::report::report;
 use crate::model;
 use crate::output;
@@ -32,7 +32,7 @@ pub struct Arguments {
 ///
 /// An error object for what is wrong with the state.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let machine = model::machine(&arguments.model, &arguments.limits)?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
     let state = machine.state(text.as_deref())?;
     output::json(&report(&machine, &state)?)

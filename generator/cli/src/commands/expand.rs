@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use hodograph_generator::emit;
 use hodograph_generator::rust_names::snake_case;
 
-use crate::derivation::Limits;
-use crate::model;
+use crate::derivation::{self, Limits};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
@@ -25,7 +24,7 @@ pub struct Arguments {
 ///
 /// The model has errors or cannot be derived.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let machine = model::machine(&arguments.model, &arguments.limits)?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let options = emit::Options {
         krate: "::hodograph".parse().unwrap_or_default(),
         module: snake_case(&machine.mechanism.name),

@@ -51,7 +51,7 @@ enum Style {
 ///
 /// The model has errors, cannot be derived, or has no such quantity.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let machine = model::machine(&arguments.model, &arguments.limits)?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let program = &machine.program;
     let known: Vec<String> = program.outputs.iter().map(|output| output.quantity.to_string()).collect();
     let mut quantities = Vec::new();

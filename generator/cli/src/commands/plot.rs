@@ -7,7 +7,7 @@ use hodograph::ReducedMatrix;
 use hodograph_generator::program::Quantity;
 use hodograph_generator::reading;
 
-use crate::derivation::Limits;
+use crate::derivation::{self, Limits};
 use crate::evaluate::contact::{self, Contact};
 use crate::json::{Fields, Json};
 use crate::model;
@@ -100,7 +100,7 @@ fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64
         let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
         return Ok((format!("e = {e}"), matrix.into(), velocity));
     };
-    let machine = model::machine(path, &arguments.limits)?;
+    let machine = derivation::machine(path, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
     let index = machine.contact(arguments.contact.as_deref())?;
     let state = machine.state(text.as_deref())?;

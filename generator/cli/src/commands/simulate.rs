@@ -11,7 +11,7 @@ use hodograph_generator::model::mechanism::Orientation;
 use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde::Serialize;
 
-use crate::derivation::Limits;
+use crate::derivation::{self, Limits};
 use crate::evaluate::collision::{Collision, collide};
 use crate::evaluate::report::{Named, named};
 use crate::evaluate::{Machine, complete};
@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if !(until.is_finite() && step.is_finite() && step > 0.0 && arguments.tolerance > 0.0) {
         return Err(Stop::Call("--step and --tolerance must be positive and --until finite".to_owned()));
     }
-    let machine = model::machine(&arguments.model, &arguments.limits)?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
     let surface = arguments.surface.surface()?;
     let mut state = machine.state(text.as_deref())?;

@@ -198,7 +198,7 @@ impl Writer<'_> {
     fn power(&self, base: &Term, n: u32) -> String {
         let exponent = format!("<mn>{n}</mn>");
         match base {
-            Term::Call(function @ ("sin" | "cos" | "tan"), arguments) => {
+            Term::Call(function @ ("sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh"), arguments) => {
                 self.call(function, arguments, &exponent)
             }
             // What ends in a bracket, an index or a bar bears an exponent; a fraction or product does not.
@@ -235,7 +235,7 @@ impl Writer<'_> {
                     _ => format!("<msup><mi>{name}</mi>{exponent}</msup>"),
                 };
                 let simple = matches!(arguments, [Term::Name(_) | Term::Z(_) | Term::Rate(_)])
-                    && matches!(function, "sin" | "cos" | "tan" | "log");
+                    && matches!(function, "sin" | "cos" | "tan" | "sinh" | "cosh" | "tanh" | "log");
                 match simple {
                     true => format!("<mrow>{name}<mo rspace=\"0.16em\">&#x2061;</mo>{}</mrow>", all[0]),
                     false => {

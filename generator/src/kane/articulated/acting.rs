@@ -8,7 +8,7 @@ use super::Eliminated;
 use super::relation::PointRelation;
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
 /// What acts on velocities that are still to be inserted.
@@ -25,9 +25,9 @@ impl Acting {
     /// Leaves a torque's work on the `u'` of its frame's relation.
     pub fn split_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
         let Some(torque) = self.torque.get_mut(&frame) else { return };
-        *torque = linear::name(&mut k.z, torque.clone());
+        *torque = linear_forms::name(&mut k.z, torque.clone());
         for (slot, a) in &k.frames[frame.0].relative.terms {
-            sum_scalar(&mut self.loads, *slot, &linear::dot(a, torque));
+            sum_scalar(&mut self.loads, *slot, &linear_forms::dot(a, torque));
         }
     }
 
@@ -37,7 +37,7 @@ impl Acting {
         let motion = &k.frames[frame.0];
         let (home, base) = (motion.home, k.turning(motion.base));
         if base != FrameId::N {
-            let torque = linear::name(&mut k.z, torque);
+            let torque = linear_forms::name(&mut k.z, torque);
             let turned = k.tree.convert(&mut k.z, &torque, home, k.frames[base.0].home);
             sum_triple(&mut self.torque, base, &turned);
         }
@@ -46,9 +46,9 @@ impl Acting {
     /// Leaves a force's work on the `u'` of its point's relation; `None` if more than one frame carries the point.
     pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let Some(force) = self.force.get_mut(&point) else { return Some(()) };
-        *force = linear::name(&mut k.z, force.clone());
+        *force = linear_forms::name(&mut k.z, force.clone());
         for (slot, b) in PointRelation::of(k, point)?.partials {
-            sum_scalar(&mut self.loads, slot, &linear::dot(&b, force));
+            sum_scalar(&mut self.loads, slot, &linear_forms::dot(&b, force));
         }
         Some(())
     }
@@ -57,7 +57,7 @@ impl Acting {
     pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let Some(force) = self.force.remove(&point) else { return Some(()) };
         let PointRelation { home, base, arm, .. } = PointRelation::of(k, point)?;
-        let force = linear::name(&mut k.z, force);
+        let force = linear_forms::name(&mut k.z, force);
         if let Some((frame, arm)) = &arm {
             sum_triple(&mut self.torque, *frame, &times(&transposed(arm), &force));
         }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::super::lumps::{Lump, Seat};
+use super::super::base_parameters::{Lump, Seat};
 use super::super::matrix::{
     Matrix, arm_matrix, both_halves, column, full, name_matrix, times, transposed, turn_rows,
 };
@@ -14,7 +14,7 @@ use super::{Eliminated, Node};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, ENTRIES, Smaller, Symmetric, is_isotropic};
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
 /// Coefficients of the quadratic form
@@ -49,7 +49,7 @@ pub struct OfPoint {
 impl OfFrame {
     /// The forces that an angular acceleration of the frame by itself takes.
     pub fn resist(&self, acting: &mut Acting, frame: FrameId, alpha: &Triple) {
-        let against = linear::scale(&Expr::integer(-1), alpha);
+        let against = linear_forms::scale(&Expr::integer(-1), alpha);
         if let Some(inertia) = &self.inertia {
             sum_triple(&mut acting.torque, frame, &times(&full(inertia), &against));
         }
@@ -57,7 +57,7 @@ impl OfFrame {
             sum_triple(&mut acting.force, *point, &times(moment, &against));
         }
         for (slot, h) in &self.angular {
-            sum_scalar(&mut acting.loads, *slot, &linear::dot(h, &against));
+            sum_scalar(&mut acting.loads, *slot, &linear_forms::dot(h, &against));
         }
     }
 }
@@ -65,7 +65,7 @@ impl OfFrame {
 impl OfPoint {
     /// The forces that an acceleration of the point by itself takes.
     pub fn resist(&self, acting: &mut Acting, point: PointId, a: &Triple) {
-        let against = linear::scale(&Expr::integer(-1), a);
+        let against = linear_forms::scale(&Expr::integer(-1), a);
         if let Some(mass) = &self.mass {
             sum_triple(&mut acting.force, point, &times(&full(mass), &against));
         }
@@ -73,7 +73,7 @@ impl OfPoint {
             sum_triple(&mut acting.torque, *frame, &times(&transposed(moment), &against));
         }
         for (slot, p) in &self.momenta {
-            sum_scalar(&mut acting.loads, *slot, &linear::dot(p, &against));
+            sum_scalar(&mut acting.loads, *slot, &linear_forms::dot(p, &against));
         }
     }
 }
@@ -115,14 +115,14 @@ fn split<K: Ord + Copy>(
     momenta: &mut BTreeMap<(K, usize), Triple>,
 ) {
     for (slot, momentum) in take_by_first(momenta, key) {
-        let momentum = linear::name(&mut k.z, momentum);
+        let momentum = linear_forms::name(&mut k.z, momentum);
         matrix.add_products(slot, &momentum, partials);
         momenta.insert((key, slot), momentum);
     }
     let Some(inertia) = inertia.get_mut(&key) else { return };
     *inertia = inertia.clone().map(|c| k.z.name(c));
     for (i, (slot, partial)) in partials.iter().enumerate() {
-        let momentum = linear::name(&mut k.z, times(&full(inertia), partial));
+        let momentum = linear_forms::name(&mut k.z, times(&full(inertia), partial));
         matrix.add_square(&partials[..=i], &momentum);
         sum_triple(momenta, (key, *slot), &momentum);
     }
@@ -188,7 +188,7 @@ impl Form {
             stood.inertia = Some(inertia);
         }
         for (slot, h) in take_by_first(&mut self.angular, frame) {
-            let h = linear::name(&mut k.z, h);
+            let h = linear_forms::name(&mut k.z, h);
             if base != FrameId::N {
                 let turned = k.tree.convert(&mut k.z, &h, home, base_home);
                 sum_triple(&mut self.angular, (base, slot), &turned);
@@ -226,7 +226,7 @@ impl Form {
             if let Some((frame, arm)) = &arm {
                 let product: Matrix = std::array::from_fn(|j| times(&rows, &column(arm, j)));
                 let product = name_matrix(k, transposed(&product)); // mass * arm
-                let own = ENTRIES.map(|(i, j)| linear::dot(&column(arm, i), &column(&product, j)));
+                let own = ENTRIES.map(|(i, j)| linear_forms::dot(&column(arm, i), &column(&product, j)));
                 sum_symmetric(&mut self.inertia, *frame, &own);
                 if let Some((base, to)) = base {
                     let turned = turn_rows(k, &product, home, to);
@@ -252,7 +252,7 @@ impl Form {
             stood.moments.push((frame, moment));
         }
         for (slot, p) in take_by_first(&mut self.momentum, point) {
-            let p = linear::name(&mut k.z, p);
+            let p = linear_forms::name(&mut k.z, p);
             if let Some((frame, arm)) = &arm {
                 sum_triple(&mut self.angular, (*frame, slot), &times(&transposed(arm), &p));
             }
@@ -286,7 +286,8 @@ impl Form {
         let others: Vec<(usize, Expr)> =
             self.matrix.take(slot).into_iter().map(|(other, m)| (other, k.z.name(m))).collect();
         let minus = reciprocal.neg();
-        let scale = |k: &mut Kinematics<'_>, v: &Triple| linear::name(&mut k.z, linear::scale(&minus, v));
+        let scale =
+            |k: &mut Kinematics<'_>, v: &Triple| linear_forms::name(&mut k.z, linear_forms::scale(&minus, v));
         if let Some((point, p)) = &momentum {
             let scaled = scale(k, p);
             sum_symmetric(&mut self.mass, *point, &square(p, &scaled));
@@ -297,14 +298,14 @@ impl Form {
                 sum_matrix(&mut self.moment, (*point, *frame), &product);
             }
             for (other, m) in &others {
-                sum_triple(&mut self.momentum, (*point, *other), &linear::scale(m, &scaled));
+                sum_triple(&mut self.momentum, (*point, *other), &linear_forms::scale(m, &scaled));
             }
         }
         if let Some((frame, h)) = &angular {
             let scaled = scale(k, h);
             sum_symmetric(&mut self.inertia, *frame, &square(h, &scaled));
             for (other, m) in &others {
-                sum_triple(&mut self.angular, (*frame, *other), &linear::scale(m, &scaled));
+                sum_triple(&mut self.angular, (*frame, *other), &linear_forms::scale(m, &scaled));
             }
         }
         for (i, (r, m)) in others.iter().enumerate() {
@@ -326,8 +327,8 @@ fn taken<K: Ord + Copy>(
 ) -> Option<Option<(K, Triple)>> {
     let mut found = None;
     for (key, v) in take_by_second(map, slot) {
-        let v = linear::name(&mut k.z, v);
-        if !linear::is_zero(&v) && found.replace((key, v)).is_some() {
+        let v = linear_forms::name(&mut k.z, v);
+        if !linear_forms::is_zero(&v) && found.replace((key, v)).is_some() {
             return None;
         }
     }

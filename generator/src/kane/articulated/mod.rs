@@ -16,11 +16,11 @@ mod relation;
 use std::collections::BTreeMap;
 
 use super::accelerations::Accelerations;
+use super::base_parameters::{Lump, Seat};
+use super::elimination_order::{self, Node};
 use super::forces::Wrenches;
-use super::lumps::{Lump, Seat};
-use super::order::{self, Node};
 use crate::algebra::Expr;
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::kinematics::{Kinematics, vectors};
 use crate::model::mechanism::{FrameId, PointId};
 use acting::Acting;
@@ -69,7 +69,7 @@ impl Articulated {
         let mut form = Form::new(k, lumps);
         points.extend(lumps.keys().filter_map(|seat| seat.1));
         frames.extend(lumps.keys().map(|seat| seat.0).filter(|&frame| frame != FrameId::N));
-        let order = order::elimination_order(k, &points, &frames);
+        let order = elimination_order::elimination_order(k, &points, &frames);
         let mut last: BTreeMap<usize, usize> = BTreeMap::new();
         for (at, node) in order.iter().enumerate() {
             last.extend(slots(k, node).into_iter().map(|slot| (slot, at)));
@@ -181,7 +181,7 @@ impl Articulated {
             if let Some((point, p)) = &step.momentum {
                 let carried = step.split == Node::Point(*point);
                 let da = if carried { outward.carried_point(k, *point) } else { outward.point(k, *point) };
-                sum = sum.sub(&linear::dot(p, &da));
+                sum = sum.sub(&linear_forms::dot(p, &da));
             }
             // What is about the hinge's axis is divided by the pivot that it is multiplied by: it stays aside.
             let mut aside: Vec<(FrameId, usize, Expr)> = Vec::new();
@@ -268,23 +268,23 @@ impl Outward<'_> {
         let of_base = self.frame(k, base);
         let mut sum = k.tree.convert(&mut k.z, &of_base, k.frames[base.0].home, home);
         if let Some(apart) = &self.apart {
-            sum = linear::add(&sum, &apart.own_angular(k, frame));
+            sum = linear_forms::add(&sum, &apart.own_angular(k, frame));
         }
-        let value = linear::name(&mut k.z, sum);
+        let value = linear_forms::name(&mut k.z, sum);
         self.carried_frames.insert(frame, value.clone());
         value
     }
 
     fn frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> Triple {
         if frame == FrameId::N {
-            return linear::zero();
+            return linear_forms::zero();
         }
         if let Some(known) = self.frames.get(&frame) {
             return known.clone();
         }
         let mut sum = self.carried_frame(k, frame);
         for (&slot, a) in &k.frames[frame.0].relative.terms {
-            sum = linear::add(&sum, &linear::scale(&self.known(slot), a));
+            sum = linear_forms::add(&sum, &linear_forms::scale(&self.known(slot), a));
         }
         let terms = &k.frames[frame.0].relative.terms;
         for (axis, component) in sum.iter_mut().enumerate() {
@@ -297,7 +297,7 @@ impl Outward<'_> {
                 *component = a[axis].mul(total);
             }
         }
-        let value = linear::name(&mut k.z, sum);
+        let value = linear_forms::name(&mut k.z, sum);
         self.frames.insert(frame, value.clone());
         value
     }
@@ -313,20 +313,20 @@ impl Outward<'_> {
                 let value = self.point(k, base);
                 k.tree.convert(&mut k.z, &value, k.points[base.0].home, motion.home)
             }
-            None => linear::zero(),
+            None => linear_forms::zero(),
         };
         for arm in &motion.arms {
             let home = k.frames[arm.frame.0].home;
             let dalpha = self.frame(k, arm.frame);
             let r = k.tree.convert(&mut k.z, &arm.arm, arm.axes, home);
-            let part = vectors::mixed(home, linear::cross(&dalpha, &r));
+            let part = vectors::mixed(home, linear_forms::cross(&dalpha, &r));
             let part = k.express(&part, motion.home);
-            sum = linear::add(&sum, &part);
+            sum = linear_forms::add(&sum, &part);
         }
         if let Some(apart) = &mut self.apart {
-            sum = linear::add(&sum, &apart.own_point(k, point));
+            sum = linear_forms::add(&sum, &apart.own_point(k, point));
         }
-        let value = linear::name(&mut k.z, sum);
+        let value = linear_forms::name(&mut k.z, sum);
         self.carried_points.insert(point, value.clone());
         value
     }
@@ -340,10 +340,10 @@ impl Outward<'_> {
         for (axes, relative) in &motion.relative {
             for (&slot, b) in &relative.terms {
                 let turned = k.tree.convert(&mut k.z, b, *axes, motion.home);
-                sum = linear::add(&sum, &linear::scale(&self.known(slot), &turned));
+                sum = linear_forms::add(&sum, &linear_forms::scale(&self.known(slot), &turned));
             }
         }
-        let value = linear::name(&mut k.z, sum);
+        let value = linear_forms::name(&mut k.z, sum);
         self.points.insert(point, value.clone());
         value
     }

@@ -6,7 +6,7 @@ use super::super::matrix::{Matrix, arm_matrix, turn_rows};
 use super::super::sums::sum_triple;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::AxesId;
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
 /// `da = da_base + dalpha x r + sum b u'`, along the home axes of the point.
@@ -31,11 +31,11 @@ impl PointRelation {
         }
         let arm = motion.arms.first().map(|first| first.frame).map(|frame| {
             let from = k.frames[frame.0].home;
-            let total = motion.arms.iter().fold(linear::zero(), |sum, arm| {
+            let total = motion.arms.iter().fold(linear_forms::zero(), |sum, arm| {
                 let turned = k.tree.convert(&mut k.z, &arm.arm, arm.axes, from);
-                linear::add(&sum, &turned)
+                linear_forms::add(&sum, &turned)
             });
-            let r = linear::name(&mut k.z, total);
+            let r = linear_forms::name(&mut k.z, total);
             (frame, turn_rows(k, &arm_matrix(&r), from, home))
         });
         let mut partials: BTreeMap<usize, Triple> = BTreeMap::new();

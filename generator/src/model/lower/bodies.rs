@@ -13,10 +13,14 @@ impl Lowering<'_> {
     pub(super) fn bodies(&mut self) {
         let tree = self.tree;
         for record in &tree.bodies {
-            self.body(record);
+            let before = self.mistakes();
+            let read = self.body(record).is_some();
+            self.readable.bodies.push(read && self.mistakes() == before);
         }
         for record in &tree.particles {
-            self.particle(record);
+            let before = self.mistakes();
+            let read = self.particle(record).is_some();
+            self.readable.bodies.push(read && self.mistakes() == before);
         }
         let no_body = tree.bodies.is_empty() && tree.particles.is_empty();
         let no_speed = tree.speeds.is_empty();
@@ -147,7 +151,14 @@ impl Lowering<'_> {
         }
     }
 
-    fn mass(&mut self, expr: &Expr) -> Option<Scalar> {
+    fn mass(&mut self, field: Option<&Field>) -> Option<Scalar> {
+        let before = self.mistakes();
+        let mass = field.and_then(|field| self.mass_of(&field.value));
+        self.readable.masses.push(mass.is_some() && self.mistakes() == before);
+        mass
+    }
+
+    fn mass_of(&mut self, expr: &Expr) -> Option<Scalar> {
         let (scalar, typed) = self.scalar_like(expr, Dimension::of(0, 1, 0), "a mass")?;
         self.need_free_of_speeds(&typed, "a mass");
         if typed.traits.moves || typed.traits.time || typed.traits.input.is_some() {
@@ -161,7 +172,8 @@ impl Lowering<'_> {
         Some(scalar)
     }
 
-    fn body(&mut self, record: &Record) {
+    /// A body; `None` if a part of it could not be read.
+    fn body(&mut self, record: &Record) -> Option<()> {
         let [frame, centre, mass, inertia] = self.record(
             "a body",
             &record.name,
@@ -177,9 +189,17 @@ impl Lowering<'_> {
         let centre =
             centre.and_then(|field| self.name_in(field, "a point")).and_then(|name| self.point_named(&name));
         let mass_span = mass.map_or(record.name.span, |field| field.value.span);
-        let mass = mass.and_then(|field| self.mass(&field.value));
+        let mass = self.mass(mass);
         let inertia = inertia.and_then(|field| self.inertia(field, frame));
         let zero = || Scalar::Number(Number::integer(0));
+        let point_read = |point: PointId| !self.points[point.0].broken;
+        let frame_read = |frame: FrameId| !self.frames[frame.0].broken;
+        let read = frame.is_some_and(frame_read)
+            && centre.is_some_and(point_read)
+            && mass.is_some()
+            && inertia
+                .as_ref()
+                .is_some_and(|inertia| frame_read(inertia.frame) && inertia.about.is_none_or(point_read));
         self.out.bodies.push(Body {
             name: record.name.text.clone(),
             docs: record.docs.clone(),
@@ -190,6 +210,7 @@ impl Lowering<'_> {
             inertia,
             span: record.name.span,
         });
+        read.then_some(())
     }
 
     /// A frame, not a body.
@@ -204,7 +225,8 @@ impl Lowering<'_> {
         }
     }
 
-    fn particle(&mut self, record: &Record) {
+    /// A particle; `None` if a part of it could not be read.
+    fn particle(&mut self, record: &Record) -> Option<()> {
         let known = ["point", "mass"];
         let [point, mass] = self.record("a particle", &record.name, &record.fields, known, &known);
         for field in [point, mass].into_iter().flatten() {
@@ -213,7 +235,8 @@ impl Lowering<'_> {
         let point =
             point.and_then(|field| self.name_in(field, "a point")).and_then(|name| self.point_named(&name));
         let mass_span = mass.map_or(record.name.span, |field| field.value.span);
-        let mass = mass.and_then(|field| self.mass(&field.value));
+        let mass = self.mass(mass);
+        let read = point.is_some_and(|point| !self.points[point.0].broken) && mass.is_some();
         self.out.bodies.push(Body {
             name: record.name.text.clone(),
             docs: record.docs.clone(),
@@ -224,6 +247,7 @@ impl Lowering<'_> {
             inertia: None,
             span: record.name.span,
         });
+        read.then_some(())
     }
 
     fn inertia(&mut self, field: &Field, body_frame: Option<FrameId>) -> Option<Inertia> {

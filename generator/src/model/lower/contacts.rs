@@ -1,6 +1,6 @@
 //! Contacts, and what is never used.
 
-use super::super::mechanism::{Against, BodyId, Contact, PointId, Vector};
+use super::super::mechanism::{Against, BodyId, Contact, FrameId, PointId, Vector};
 use super::super::names::Symbol;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
@@ -11,22 +11,28 @@ impl Lowering<'_> {
     pub(super) fn contacts(&mut self) {
         let tree = self.tree;
         for record in &tree.contacts {
-            self.contact(record);
+            let before = self.mistakes();
+            let read = self.contact(record).is_some();
+            self.readable.contacts.push(read && self.mistakes() == before);
         }
     }
 
-    fn contact(&mut self, record: &Record) {
+    /// A contact; `None` if a part of it could not be read.
+    fn contact(&mut self, record: &Record) -> Option<()> {
         let known = ["point", "against", "normal", "gap"];
         let [point, against, normal, gap] =
             self.record("a contact", &record.name, &record.fields, known, &["point", "normal"]);
         let mut body = None;
+        let [point_span, against_span] =
+            [point, against].map(|field| field.map_or(record.name.span, |field| field.value.span));
         let point = point.and_then(|field| {
             self.notes(field, &["of"]);
             body = self.note(field, "of").and_then(|name| self.body_named(name));
             self.name_in(field, "a point").and_then(|name| self.point_named(&name))
         });
-        let against = against.map_or(Some(Against::Fixed), |field| self.against(field));
-        let normal_span = normal.map_or(record.name.span, |field| field.value.span);
+        let against = against.map_or(Some(Against::Fixed), |field| self.against(field, point));
+        let span_of = |field: Option<&Field>| field.map_or(record.name.span, |field| field.value.span);
+        let [normal_span, gap_span] = [normal, gap].map(span_of);
         let normal = normal.and_then(|field| {
             self.notes(field, &[]);
             let typed = self.expression(&field.value);
@@ -57,6 +63,8 @@ impl Lowering<'_> {
         if let (Some(p), Some(Against::Body(b))) = (point, &against) {
             self.coincident(p, *b, record);
         }
+        let gap_read = gap.as_ref().is_none_or(Option::is_some);
+        let read = point.is_some() && against.is_some() && normal.is_some() && gap_read;
         self.out.contacts.push(Contact {
             name: record.name.text.clone(),
             docs: record.docs.clone(),
@@ -64,10 +72,14 @@ impl Lowering<'_> {
             body,
             against: against.unwrap_or(Against::Fixed),
             normal: normal.unwrap_or(Vector::Zero),
+            point_span,
+            against_span,
             normal_span,
             gap: gap.flatten(),
+            gap_span,
             span: record.name.span,
         });
+        read.then_some(())
     }
 
     /// The material point of a body that coincides with P is known only if both positions are.
@@ -86,8 +98,9 @@ impl Lowering<'_> {
         self.report(error);
     }
 
-    fn against(&mut self, field: &Field) -> Option<Against> {
-        self.notes(field, &["velocity", "of"]);
+    fn against(&mut self, field: &Field, point: Option<PointId>) -> Option<Against> {
+        self.notes(field, &["velocity", "of", "about"]);
+        let about = self.note(field, "about").cloned();
         let of = self.note(field, "of").map(|name| self.body_named(name));
         let by_velocity = field.notes.iter().any(|note| note.word.text == "velocity");
         let speed = Dimension::of(1, 0, -1);
@@ -125,7 +138,16 @@ impl Lowering<'_> {
             return None;
         };
         let name = Name { text: text.clone(), span: field.value.span };
-        match self.resolve(&name, |s| matches!(s, Symbol::Point(_) | Symbol::Body(_)))? {
+        let symbol = self.resolve(&name, |s| matches!(s, Symbol::Point(_) | Symbol::Body(_)))?;
+        if let (Symbol::Frame(1..), None) = (symbol, &of) {
+            return self.against_frame(symbol, &name, about, point);
+        }
+        if let Some(about) = about {
+            let message = "only a frame is struck `about` a point";
+            self.report(Diagnostic::new(codes::CONTACT, about.span, message).help("remove `about`"));
+            return None;
+        }
+        match symbol {
             Symbol::Point(p) => match of {
                 None => Some(Against::Point(PointId(p), None)),
                 Some(body) => Some(Against::Point(PointId(p), Some(body?))),
@@ -150,6 +172,57 @@ impl Lowering<'_> {
                 None
             }
         }
+    }
+
+    /// The point of a frame that coincides with P: of its body if it has one, else of the frame itself, which turns about O or the
+    /// point that is named.
+    fn against_frame(
+        &mut self,
+        symbol: Symbol,
+        name: &Name,
+        about: Option<Name>,
+        point: Option<PointId>,
+    ) -> Option<Against> {
+        let Symbol::Frame(frame) = symbol else { return None };
+        let pivot = match &about {
+            Some(about) => self.point_named(about)?,
+            None => PointId::O,
+        };
+        let of = FrameId(frame);
+        if self.frames[frame].broken {
+            return None;
+        }
+        let bodies: Vec<usize> =
+            (0..self.out.bodies.len()).filter(|b| self.out.bodies[*b].frame == Some(of)).collect();
+        match (&bodies[..], &about) {
+            ([body], None) => return Some(Against::Body(BodyId(*body))),
+            ([_, _, ..], None) => {
+                let message = format!("several bodies have the frame `{}`", name.text);
+                let error = Diagnostic::new(codes::CONTACT, name.span, message);
+                self.report(error.help("name the body that is struck"));
+                return None;
+            }
+            _ => {}
+        }
+        let point = point?;
+        let (a, b) = (self.points[point.0].root, self.points[pivot.0].root);
+        if a != b {
+            let unknown = if a != 0 { a } else { b };
+            let (called, place) = (self.out.points[unknown].name.clone(), self.out.points[unknown].span);
+            let message = format!("which point of `{}` is struck is not known", name.text);
+            let error = Diagnostic::new(codes::NO_POSITION, name.span, message)
+                .related(place, format!("`{called}` is given by its velocity only"))
+                .help("state its position, or name the point that is struck");
+            self.report(error);
+            return None;
+        }
+        let turning = Vector::AngularVelocity { of, in_frame: FrameId::N };
+        let arm = Vector::Position { of: point, from: pivot };
+        let turned = Vector::Cross(Box::new(turning), Box::new(arm));
+        Some(Against::Velocity(match pivot {
+            PointId::O => turned,
+            pivot => Vector::Add(vec![Vector::Velocity(pivot), turned]),
+        }))
     }
 
     /// Warns of what is declared and never used.

@@ -11,6 +11,7 @@ use crate::syntax::tree::{self, ExprKind};
 impl Lowering<'_> {
     pub(super) fn equations(&mut self) {
         let tree = self.tree;
+        let before = self.mistakes();
         let kinematics = self.section(&tree.kinematics, "a kinematical equation", true);
         self.out.kinematics = kinematics;
         let motion = self.balances.incomplete;
@@ -19,7 +20,11 @@ impl Lowering<'_> {
         let configuration = self.section(&tree.configuration, "a configuration equation", false);
         self.out.configuration = configuration;
         self.balances.incomplete = motion;
+        let stated = tree.kinematics.len() + tree.constraints.len() + tree.configuration.len();
+        let read = self.out.kinematics.len() + self.out.constraints.len() + self.out.configuration.len();
+        self.readable.motion &= read == stated && self.mistakes() == before;
         self.default_rates();
+        self.readable.motion &= self.mistakes() == before;
     }
 
     fn section(&mut self, equations: &[tree::Equation], what: &str, linear: bool) -> Vec<Equation> {

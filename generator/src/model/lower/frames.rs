@@ -211,7 +211,7 @@ impl Lowering<'_> {
             self.arguments_expected(operation, "four coordinates, the scalar part first", value);
             return None;
         }
-        let mut coordinates = Vec::new();
+        let (mut coordinates, mut unread) = (Vec::new(), false);
         for argument in arguments {
             match self.as_coordinate(argument) {
                 Some(coordinate) => {
@@ -223,7 +223,9 @@ impl Lowering<'_> {
                         );
                         return None;
                     }
-                    if let Some(unit) = self.coordinates[coordinate.0].unit.clone() {
+                    let unit = self.coordinates[coordinate.0].unit.clone();
+                    unread |= unit.is_none();
+                    if let Some(unit) = unit {
                         let provenance = Provenance::of(Symbol::Coordinate(coordinate.0));
                         if unit.is_si() && unit.dimension.is_none() {
                             self.agreement(provenance);
@@ -249,7 +251,7 @@ impl Lowering<'_> {
                 }
             }
         }
-        let coordinates: [_; 4] = coordinates.try_into().ok()?;
+        let coordinates: [_; 4] = coordinates.try_into().ok().filter(|_| !unread)?;
         Some((Orientation::Quaternion(coordinates), Traits { moves: true, ..Traits::default() }))
     }
 

@@ -6,6 +6,7 @@ use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::number::Number;
+use crate::span::Span;
 use crate::syntax::tree::{self, Expr, Field, Name};
 use crate::{suggest, vocabulary};
 
@@ -42,7 +43,11 @@ impl Lowering<'_> {
                 }
             };
             if let Some(kind) = kind {
-                self.out.loads.push(Load { kind, span: load.span });
+                let end =
+                    |word: &&str| load.ends.iter().find(|(w, _)| w.as_ref().map_or("", |w| &w.text) == *word);
+                let ends =
+                    ["on", "", "from", "to"].iter().filter_map(end).map(|(_, name)| name.span).collect();
+                self.out.loads.push(Load { kind, ends, span: load.span });
             }
         }
     }
@@ -83,6 +88,16 @@ impl Lowering<'_> {
         load.value.as_ref()
     }
 
+    /// A load and its opposite on the same thing do nothing.
+    fn on_itself(&mut self, load: &tree::Load, what: &str, form: &str) {
+        let places: Vec<Span> = load.ends.iter().map(|(_, name)| name.span).collect();
+        let (Some(first), Some(last)) = (places.first(), places.last()) else { return };
+        let error = Diagnostic::new(codes::LOAD, *last, format!("{what} does nothing"))
+            .related(*first, "it acts here")
+            .help(format!("name two different ones: `{form}`; without `from` there is no opposite"));
+        self.report(error);
+    }
+
     fn vector_load(
         &mut self,
         expr: &Expr,
@@ -117,6 +132,9 @@ impl Lowering<'_> {
             None => None,
             Some(point) => Some(point?),
         };
+        if on.is_some() && from == on {
+            self.on_itself(load, "a force on a point from itself", "force on P from Q: F*N.x;");
+        }
         Some(LoadKind::Force { on: on?, from, force: force? })
     }
 
@@ -131,6 +149,9 @@ impl Lowering<'_> {
             None => None,
             Some(frame) => Some(frame?),
         };
+        if on.is_some() && from == on {
+            self.on_itself(load, "a torque on a body from itself", "torque on B from A: tau*N.z;");
+        }
         Some(LoadKind::Torque { on: on?, from, torque: torque? })
     }
 
@@ -209,6 +230,7 @@ impl Lowering<'_> {
         let owner = Self::owner(load);
         let [angle, rest, stiffness, damping] =
             self.record("a torsion spring", &owner, &load.fields, known, &["angle"]);
+        let angle_span = angle.map(|field| field.value.span);
         let angle = match angle {
             None => None,
             Some(field) => {
@@ -228,11 +250,16 @@ impl Lowering<'_> {
             None => None,
             Some(frame) => Some(frame?),
         };
+        if on.is_some() && from == on {
+            self.on_itself(load, "a torsion spring from a body to itself", form);
+        }
+        let angle_span = angle_span.unwrap_or(load.span);
         Some(LoadKind::Torsion {
             on: on?,
             from,
             axis: vector?,
             angle: angle?,
+            angle_span,
             rest: rest?,
             stiffness: stiffness?,
             damping: damping?,

@@ -20,16 +20,17 @@ use super::dependency_order::{Item, Stated, order};
 use super::mechanism::*;
 use super::names::{Names, Symbol};
 use super::provenance::Provenance;
+use super::readable::Readable;
 use super::typed::{Traits, Typed, TypedValue};
 use crate::diagnostics::{Code, Diagnostic, Label, codes};
 use crate::span::Span;
-use crate::syntax::tree::{ExprKind, Name, Tree};
+use crate::syntax::tree::{Declaration, ExprKind, Name, Tree};
 use crate::syntax::units::{self, Unit};
 use crate::vocabulary;
 use balances::Balances;
 
-/// Lowers a tree. The mechanism is complete only if no error was reported.
-pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagnostic>) {
+/// Lowers a tree. The mechanism is complete only if no error was reported; what of it can be relied on otherwise is said beside it.
+pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable, Vec<Diagnostic>) {
     let mut diagnostics = diagnostics;
     if let Some(error) = tree.name.as_ref().and_then(super::names::reserved) {
         diagnostics.push(error);
@@ -52,6 +53,12 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagn
             Item::Velocity(i) => lowering.velocity(i),
         }
     }
+    let frames = lowering.frames.iter().map(|frame| !frame.broken).collect();
+    let value = |(source, read): (&Declaration, &Variable)| source.value.is_none() || read.value.is_some();
+    let initial_values =
+        !tree.incomplete && tree.coordinates.iter().zip(&lowering.out.coordinates).all(value);
+    let motion = lowering.mistakes() == 0;
+    lowering.readable = Readable { motion, initial_values, frames, ..Readable::default() };
     // what is wrong with these does not touch the motion
     let motion = lowering.balances.incomplete;
     lowering.bodies();
@@ -62,7 +69,7 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Vec<Diagn
     lowering.gather();
     lowering.copied();
     lowering.unused();
-    (lowering.out, lowering.diagnostics)
+    (lowering.out, lowering.readable, lowering.diagnostics)
 }
 
 /// So many unknown names are compared with the declared ones.
@@ -134,6 +141,8 @@ pub(super) struct Lowering<'a> {
     pub constant_only: bool,
     /// what is found out about dimensions
     pub(in crate::model::lower) balances: Balances,
+    /// what of the mechanism could be read
+    pub readable: Readable,
 }
 
 impl<'a> Lowering<'a> {
@@ -172,7 +181,13 @@ impl<'a> Lowering<'a> {
             points: vec![PointFacts::default(); tree.points.len() + 1],
             constant_only: false,
             balances: Balances::default(),
+            readable: Readable::default(),
         }
+    }
+
+    /// How many mistakes there are so far that leave the meaning of something open: what adds one is not to be relied on.
+    pub fn mistakes(&self) -> usize {
+        self.diagnostics.iter().filter(|diagnostic| diagnostic.hides_meaning()).count()
     }
 
     pub fn report(&mut self, diagnostic: Diagnostic) {
@@ -275,8 +290,14 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Items of a cycle: nothing more is said of them.
-    fn give_up(&mut self, _item: Item) {}
+    /// Items of a cycle: nothing more is said of them, or of what rests on them.
+    fn give_up(&mut self, item: Item) {
+        match item {
+            Item::Orientation(i) => self.frames[i].broken = true,
+            Item::Position(i) => self.points[i].broken = true,
+            Item::Definition(_) | Item::AngularVelocity(_) | Item::Velocity(_) => {}
+        }
+    }
 
     /// The value of a definition.
     fn definition(&mut self, i: usize) {

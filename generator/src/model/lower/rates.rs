@@ -51,9 +51,10 @@ enum Key {
 impl Lowering<'_> {
     /// Adds `d(q..)/dt = u..` for the coordinates of whose rates no equation speaks.
     pub(super) fn default_rates(&mut self) {
-        // with mistakes around, what is missing may only be hidden; a cycle would not end
+        // with mistakes in the motion, what is missing may only be hidden; a cycle would not end
         let hides = |d: &Diagnostic| d.hides_meaning() && d.code != codes::DIMENSION;
-        if self.balances.incomplete || self.diagnostics.iter().any(hides) {
+        let unclear = self.balances.incomplete || self.diagnostics.iter().any(hides);
+        if unclear && !self.readable.motion {
             return;
         }
         let mut walk = Walk { mechanism: &self.out, known: HashMap::new() };

@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::{Options, fits};
+use super::{Options, conformance};
 use crate::model::mechanism::Mechanism;
 use crate::program::operation::{Bits, Operation, Value};
 use crate::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q, Structure};
@@ -46,7 +46,7 @@ pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
     }
     quantities.extend((0u32..).zip(&mechanism.frames).map(|(index, _)| Q::Orientation(index)));
     let outputs = quantities.into_iter().filter_map(|quantity| {
-        let (rows, columns) = fits::shape(mechanism, quantity)?;
+        let (rows, columns) = conformance::shape(mechanism, quantity)?;
         Some(Output { quantity, rows, columns, values: vec![Value(0); rows * columns] })
     });
     let program = Program {

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use crate::algebra::{Expr, Intermediates};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{ENTRIES, Symmetric, entry, unit};
-use crate::kinematics::linear::{self, Triple};
+use crate::kinematics::linear_forms::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 use crate::number::Number;
 
@@ -31,7 +31,11 @@ pub struct Lump {
 
 impl Lump {
     fn empty() -> Self {
-        Lump { mass: Expr::zero(), moment: linear::zero(), second: std::array::from_fn(|_| Expr::zero()) }
+        Lump {
+            mass: Expr::zero(),
+            moment: linear_forms::zero(),
+            second: std::array::from_fn(|_| Expr::zero()),
+        }
     }
 
     /// Adds another lump whose reference point is at `r`, along the same axes.
@@ -42,8 +46,8 @@ impl Lump {
             let at = entry(i, j);
             self.second[at] = self.second[at].add(&other.second[at]).add(&shift).add(&mixed);
         }
-        let shifted = linear::add(&other.moment, &linear::scale(&other.mass, r));
-        self.moment = linear::add(&self.moment, &shifted);
+        let shifted = linear_forms::add(&other.moment, &linear_forms::scale(&other.mass, r));
+        self.moment = linear_forms::add(&self.moment, &shifted);
         self.mass = self.mass.add(&other.mass);
     }
 
@@ -133,31 +137,31 @@ fn carrier(k: &mut Kinematics<'_>, point: PointId) -> Option<FrameId> {
 /// the way from there, along the frame's home axes.
 fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (Option<PointId>, Triple) {
     let home = k.frames[frame.0].home;
-    let mut way = linear::zero();
+    let mut way = linear_forms::zero();
     let mut at = from;
     while let Some(point) = at {
         let motion = k.points[point.0].clone();
         if motion.base.is_none() && motion.arms.is_empty() && motion.relative.is_empty() {
             return (None, way);
         }
-        let mut step = linear::zero();
+        let mut step = linear_forms::zero();
         let mut rigid = motion.relative.is_empty();
         for arm in &motion.arms {
             rigid &= arm.frame == frame && k.turning(k.tree.owner(arm.axes)) == frame;
-            rigid = rigid && linear::is_zero(&k.change_of(&arm.arm));
+            rigid = rigid && linear_forms::is_zero(&k.change_of(&arm.arm));
             if rigid {
                 let turned = k.tree.convert(&mut k.z, &arm.arm, arm.axes, home);
-                rigid = linear::is_zero(&k.change_of(&turned));
-                step = linear::add(&step, &turned);
+                rigid = linear_forms::is_zero(&k.change_of(&turned));
+                step = linear_forms::add(&step, &turned);
             }
         }
         if !rigid {
             break;
         }
-        way = linear::add(&way, &step);
+        way = linear_forms::add(&way, &step);
         at = motion.base;
     }
-    (at, linear::name(&mut k.z, way))
+    (at, linear_forms::name(&mut k.z, way))
 }
 
 /// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
@@ -177,7 +181,7 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Mas
             // Points on the axis move with the base as they do with the frame, whether the joint is fixed in the base or
             // not; where it is, the way goes on to the base's own reference point.
             let (target, r) =
-                if base == FrameId::N { (seat.1, linear::zero()) } else { rigid_way(k, base, seat.1) };
+                if base == FrameId::N { (seat.1, linear_forms::zero()) } else { rigid_way(k, base, seat.1) };
             let Some(lump) = lumps.get_mut(&seat) else { continue };
             let mut rod = Lump::empty();
             if masses == Masses::Handed {
@@ -195,7 +199,7 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Mas
             let along = k.tree.convert(&mut k.z, &unit(axis), home, base_home);
             let turned = Lump {
                 mass: rod.mass.clone(),
-                moment: linear::scale(&rod.moment[axis], &along),
+                moment: linear_forms::scale(&rod.moment[axis], &along),
                 second: ENTRIES.map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
             };
             lumps.entry((base, target)).or_insert_with(Lump::empty).add_at(&turned, &r);
@@ -212,6 +216,6 @@ fn joint_axis(k: &mut Kinematics<'_>, frame: FrameId) -> Option<usize> {
     let base_home = k.frames[base.0].home;
     let along = k.tree.convert(&mut k.z, &unit(axis), motion.home, base_home);
     let back = k.tree.owner(motion.home);
-    let fixed = linear::is_zero(&k.change_of(&along)) && k.turning(back) == frame;
+    let fixed = linear_forms::is_zero(&k.change_of(&along)) && k.turning(back) == frame;
     fixed.then_some(axis)
 }

@@ -1,0 +1,105 @@
+//! Masses and inertias that no body has.
+
+use super::states::at_rest;
+use crate::diagnostics::{Code, Diagnostic, codes};
+use crate::model::Readable;
+use crate::model::mechanism::{Body, BodyId, Mechanism};
+use crate::numeric::{self, Evaluator, Level, State};
+
+/// Inertias may miss what is possible by this much, relative to their size.
+const POSSIBLE: f64 = 1e-9;
+
+/// What a body cannot have with some values of the parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Impossible {
+    /// of this body
+    pub body: BodyId,
+    /// [`codes::MASS`] or [`codes::INERTIA`]
+    pub code: Code,
+    /// what is impossible, to go on after `the mass of X` or `the inertia of X`
+    pub what: String,
+}
+
+/// The masses that are not positive and the inertias that no body has, with the parameters of a state. What has no value there is
+/// passed over.
+pub fn impossible_bodies(m: &Mechanism, state: &State) -> Vec<Impossible> {
+    let values = at_rest(m, state);
+    let of =
+        |(i, body): (usize, &Body)| impossible(&values, body).map(|(code, what)| (BodyId(i), code, what));
+    let found = m.bodies.iter().enumerate().filter_map(of);
+    found.map(|(body, code, what)| Impossible { body, code, what }).collect()
+}
+
+fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
+    if let Ok(mass) = values.scalar(&body.mass, Level::Motion)
+        && mass.re <= 0.0
+    {
+        // the inertia mostly has it as a factor
+        return Some((codes::MASS, format!("is {}", number(mass.re))));
+    }
+    let i = numeric::central_inertia(values, body).ok()??;
+    let trace = i[0][0] + i[1][1] + i[2][2];
+    let size = i.iter().flatten().fold(0.0_f64, |s, c| s.max(c.abs()));
+    // second moments of mass: tr(I)/2 - I must not be negative along any direction; that implies I is not either
+    let mut moments = i.map(|row| row.map(|c| -c));
+    (0..3).for_each(|k| moments[k][k] += 0.5 * trace);
+    if !i.iter().flatten().all(|c| c.is_finite()) || least_eigenvalue(&moments) >= -POSSIBLE * size {
+        return None;
+    }
+    let why = if least_eigenvalue(&i) < -POSSIBLE * size {
+        "a moment of inertia about some axis is negative"
+    } else {
+        "the largest principal moment exceeds the sum of the two others"
+    };
+    let about = body.inertia.as_ref().is_some_and(|inertia| inertia.about.is_some());
+    Some((codes::INERTIA, if about { format!("about the mass centre, {why}") } else { why.to_owned() }))
+}
+
+/// The same as messages about a model with its own values. `readable` says which bodies could be read.
+pub(super) fn bodies(m: &Mechanism, state: &State, readable: &Readable) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    for found in impossible_bodies(m, state) {
+        let body = &m.bodies[found.body.0];
+        let of_mass = found.code == codes::MASS;
+        if !(if of_mass { &readable.masses } else { &readable.bodies })[found.body.0] {
+            continue;
+        }
+        out.push(if of_mass {
+            let message = format!("the mass of `{}` {} with the values of the model", body.name, found.what);
+            Diagnostic::new(codes::MASS, body.mass_span, message).help("a mass is positive")
+        } else {
+            let message = format!("no body has the inertia of `{}` with the values of the model", body.name);
+            let span = body.inertia.as_ref().map_or(body.span, |inertia| inertia.span);
+            Diagnostic::new(codes::INERTIA, span, message).help(found.what)
+        });
+    }
+    out
+}
+
+/// A number as a message shows it.
+pub(super) fn number(value: f64) -> String {
+    let rounded = format!("{value:.4}").parse::<f64>().unwrap_or(value);
+    if rounded != 0.0 || value == 0.0 { rounded.to_string() } else { format!("{value:e}") }
+}
+
+/// The least eigenvalue of a symmetric 3 x 3 matrix: rotations that make it diagonal.
+fn least_eigenvalue(matrix: &[[f64; 3]; 3]) -> f64 {
+    let mut a = *matrix;
+    for _ in 0..30 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            if a[p][q] == 0.0 {
+                continue;
+            }
+            let theta = 0.5 * (2.0 * a[p][q]).atan2(a[q][q] - a[p][p]);
+            let (s, c) = theta.sin_cos();
+            for row in &mut a {
+                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+            }
+            let (up, uq) = (a[p], a[q]);
+            for k in 0..3 {
+                (a[p][k], a[q][k]) = (c * up[k] - s * uq[k], s * up[k] + c * uq[k]);
+            }
+        }
+    }
+    a[0][0].min(a[1][1]).min(a[2][2])
+}

@@ -1,0 +1,166 @@
+//! Gaps: their rates must be the normal velocities of their contacts, and at the start nothing is inside what it strikes.
+
+use super::states::{at_rest, stated};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::model::mechanism::*;
+use crate::numeric::views::dot3;
+use crate::numeric::{self, Level, State, Views, hyper_dual::HyperDual};
+
+/// Rates may differ by this much, relative to the larger.
+const SAME: f64 = 1e-6;
+/// A gap may begin negative by this much, relative to the size of the coordinates above 1: rounding of initial values.
+const TOUCHING: f64 = 1e-6;
+
+/// Gaps that do not belong to their contacts, and those that begin negative. `found` is what is said already of the contacts.
+pub fn gaps(m: &Mechanism, states: &[State], found: &[Diagnostic]) -> Vec<Diagnostic> {
+    let mut out = Vec::new();
+    for contact in &m.contacts {
+        let Some(gap) = &contact.gap else { continue };
+        let places = [contact.span, contact.point_span, contact.against_span, contact.normal_span];
+        if found.iter().any(|d| places.contains(&d.primary.span)) {
+            continue;
+        }
+        match strange(m, contact, gap, states) {
+            Some(diagnostic) => out.push(diagnostic),
+            None => out.extend(begins_inside(m, contact, gap)),
+        }
+    }
+    out
+}
+
+/// How a gap changes beside the normal velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fit {
+    /// as it should
+    Same,
+    /// with the opposite sign
+    Opposite,
+    /// not at all
+    Constant,
+    /// in another way
+    Other,
+}
+
+fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, states: &[State]) -> Option<Diagnostic> {
+    let fits: Vec<Fit> = states.iter().filter_map(|state| fit(m, contact, gap, state)).collect();
+    if fits.is_empty() || fits.contains(&Fit::Same) {
+        return None;
+    }
+    // away from the surface a gap may be any function that vanishes on it: there it counts
+    let closed: Vec<Fit> =
+        states.iter().filter_map(|state| fit(m, contact, gap, &on_surface(m, gap, state)?)).collect();
+    let last = if closed.is_empty() { &fits } else { &closed };
+    if last.contains(&Fit::Same) {
+        return None;
+    }
+    let name = &contact.name;
+    let (message, help) = match last[0] {
+        Fit::Opposite => (
+            format!("the gap of `{name}` grows while the bodies approach along its normal"),
+            "the normal points from what is struck to the body that strikes, and the gap grows that way: turn the sign of one of them",
+        ),
+        Fit::Constant => (
+            format!("the gap of `{name}` does not change while the bodies approach along its normal"),
+            "it is the distance along the normal of the point that strikes, such as `dot(position(P), N.y)`",
+        ),
+        _ => (
+            format!("the rate of the gap of `{name}` is not the velocity of its point along its normal"),
+            "it is the distance along the normal of the very point that strikes, such as `dot(position(P), N.y)`; check which point and which normal",
+        ),
+    };
+    let related = (contact.normal_span, "this is the normal");
+    Some(Diagnostic::new(codes::GAP_RATE, contact.gap_span, message).related(related.0, related.1).help(help))
+}
+
+fn fit(m: &Mechanism, contact: &Contact, gap: &Scalar, state: &State) -> Option<Fit> {
+    let views = Views::at(m, state).ok()?;
+    let rate = views.rate_parts(gap).ok()?;
+    let normal = views.now.vector(&contact.normal, Level::Motion).ok()?.map(|c| c.re);
+    let velocity = views.vector_parts(|values| values.contact_velocity(contact)).ok()?;
+    let along: Vec<f64> = velocity.into_iter().map(|v| dot3(v, normal)).collect();
+    let size = |list: &[f64]| list.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+    let (of_gap, of_velocity) = (size(&rate), size(&along));
+    if !of_gap.is_finite() || !of_velocity.is_finite() || of_velocity < 1e-9 {
+        return None;
+    }
+    if of_gap < 1e-9 * of_velocity {
+        return Some(Fit::Constant);
+    }
+    let off = |sign: f64| rate.iter().zip(&along).fold(0.0_f64, |off, (g, v)| off.max((sign * g - v).abs()));
+    Some(if off(1.0) <= SAME * of_velocity {
+        Fit::Same
+    } else if off(-1.0) <= SAME * of_velocity {
+        Fit::Opposite
+    } else {
+        Fit::Other
+    })
+}
+
+/// The gap and its derivatives with respect to the coordinates, one at a time.
+fn gradient(m: &Mechanism, gap: &Scalar, state: &State) -> Option<(f64, Vec<f64>)> {
+    let value = at_rest(m, state).scalar(gap, Level::Geometry).ok()?.re;
+    let slope = |moving: usize| {
+        let coordinate = |(i, q): (usize, &f64)| HyperDual {
+            re: *q,
+            e1: f64::from(u8::from(i == moving)),
+            ..HyperDual::ZERO
+        };
+        let coordinates = state.coordinates.iter().enumerate().map(coordinate).collect();
+        let speeds = vec![HyperDual::ZERO; m.speeds.len()];
+        let time = HyperDual::constant(state.time);
+        let values = numeric::Evaluator::new(m, &state.parameters, &state.inputs, time, coordinates, speeds);
+        Some(values.scalar(gap, Level::Geometry).ok()?.e1)
+    };
+    let slopes = (0..state.coordinates.len()).map(slope).collect::<Option<Vec<f64>>>()?;
+    Some((value, slopes))
+}
+
+/// A state nearby at which the gap is closed.
+fn on_surface(m: &Mechanism, gap: &Scalar, state: &State) -> Option<State> {
+    let mut state = state.clone();
+    let in_quaternion = |i: usize| {
+        m.frames.iter().any(|frame| {
+            matches!(&frame.orientation, Orientation::Quaternion(ids) if ids.iter().any(|id| id.0 == i))
+        })
+    };
+    for _ in 0..50 {
+        let (value, mut slopes) = gradient(m, gap, &state)?;
+        if value.abs() < 1e-10 {
+            return Some(state);
+        }
+        slopes.iter_mut().enumerate().filter(|(i, _)| in_quaternion(*i)).for_each(|(_, slope)| *slope = 0.0);
+        let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
+        if !(square > 0.0) || !value.is_finite() {
+            return None;
+        }
+        // a step of Newton's method along the steepest descent, no longer than 1
+        let share = (value / square).clamp(-1.0 / square.sqrt(), 1.0 / square.sqrt());
+        for (q, slope) in state.coordinates.iter_mut().zip(&slopes) {
+            *q -= share * slope;
+        }
+        numeric::assemble(m, &mut state).ok()?;
+    }
+    None
+}
+
+/// A gap that is negative with the initial values, where the model states any that it depends on.
+fn begins_inside(m: &Mechanism, contact: &Contact, gap: &Scalar) -> Option<Diagnostic> {
+    let mut state = State::of(m);
+    numeric::assemble(m, &mut state).ok()?;
+    let state = stated(m, &state, true);
+    let (value, slopes) = gradient(m, gap, &state)?;
+    let decides = |(coordinate, slope): (&Variable, &f64)| {
+        *slope != 0.0 && (coordinate.value.is_some() || coordinate.dependent)
+    };
+    let size = state.coordinates.iter().fold(1.0_f64, |size, q| size.max(q.abs()));
+    if value < -TOUCHING * size && m.coordinates.iter().zip(&slopes).any(decides) {
+        let gap = super::bodies::number(value);
+        let message = format!(
+            "with the initial values the gap of `{}` is {gap} m: it begins inside what it strikes",
+            contact.name
+        );
+        let help = "start where the gap is positive or 0, or turn the signs of gap and normal";
+        return Some(Diagnostic::new(codes::BEGINS_INSIDE, contact.gap_span, message).help(help));
+    }
+    None
+}

@@ -1,0 +1,138 @@
+//! Loads: on which points and about which axes they act.
+
+use super::contacts::Places;
+use crate::diagnostics::{Diagnostic, codes};
+use crate::model::mechanism::*;
+use crate::numeric::views::{Vector3, norm3};
+use crate::numeric::{Level, State, Views};
+use crate::span::Span;
+
+/// Rates may differ by this much, relative to the larger.
+const SAME: f64 = 1e-6;
+
+/// Mistakes in loads, at the states that were seen.
+pub fn loads(m: &Mechanism, states: &[State]) -> Vec<Diagnostic> {
+    let views: Vec<Views<'_>> = states.iter().filter_map(|state| Views::at(m, state).ok()).collect();
+    let places = Places { m, views };
+    let mut out = Vec::new();
+    for load in &m.loads {
+        match &load.kind {
+            LoadKind::Gravity(_) => {}
+            LoadKind::Force { on, from: None, .. }
+                if never_moves(&places, |v| v.vector_parts(|w| w.velocity(*on))) =>
+            {
+                let message = format!("this force does nothing: `{}` never moves", m.points[on.0].name);
+                let help = "a force acts on a point of what moves; its opposite on something else is stated with `from`";
+                out.push(Diagnostic::new(codes::NO_EFFECT, end(load, 0), message).help(help));
+            }
+            LoadKind::Torque { on, from: None, .. }
+                if never_moves(&places, |v| v.vector_parts(|w| w.angular_velocity(*on))) =>
+            {
+                let message = format!("this torque does nothing: `{}` never turns", m.frames[on.0].name);
+                let help =
+                    "a torque acts on a body that turns; its opposite on another is stated with `from`";
+                out.push(Diagnostic::new(codes::NO_EFFECT, end(load, 0), message).help(help));
+            }
+            LoadKind::Force { on, from, .. } => {
+                out.extend(on_a_place(&places, *on, end(load, 0)));
+                out.extend(from.and_then(|from| on_a_place(&places, from, end(load, 1))));
+            }
+            LoadKind::Spring { a, b, .. } => {
+                out.extend(on_a_place(&places, *a, end(load, 0)));
+                out.extend(on_a_place(&places, *b, end(load, 1)));
+            }
+            LoadKind::Torque { .. } => {}
+            LoadKind::Torsion { on, from, axis, angle, angle_span, .. } => {
+                let turns = Turns { on: *on, from: from.unwrap_or(FrameId::N), axis, angle };
+                out.extend(turns.unlike_its_angle(&places, *angle_span));
+            }
+        }
+    }
+    out
+}
+
+/// The place at which an end of the load is named.
+fn end(load: &Load, i: usize) -> Span {
+    load.ends.get(i).copied().unwrap_or(load.span)
+}
+
+fn never_moves<E>(places: &Places<'_>, parts: impl Fn(&Views<'_>) -> Result<Vec<Vector3>, E>) -> bool {
+    let still = |views: &Views<'_>| parts(views).is_ok_and(|parts| parts.iter().all(|v| norm3(*v) < 1e-12));
+    !places.views.is_empty() && places.views.iter().all(still)
+}
+
+/// A load on a place where a contact acts on the point of a body that is there: the two points move differently.
+fn on_a_place(places: &Places<'_>, point: PointId, span: Span) -> Option<Diagnostic> {
+    let m = places.m;
+    let of_body = m.contacts.iter().find_map(|contact| {
+        let struck = match contact.against {
+            Against::Point(struck, Some(body)) => Some((struck, body)),
+            _ => None,
+        };
+        let striking = contact.body.map(|body| (contact.point, body));
+        let (_, body) = [striking, struck].into_iter().flatten().find(|(p, _)| *p == point)?;
+        Some((contact, body))
+    });
+    let (contact, body) = of_body.filter(|(_, body)| m.bodies[body.0].frame.is_some())?;
+    if places.views.is_empty() || places.moves_with(point, body) {
+        return None;
+    }
+    let (p, b) = (&m.points[point.0].name, &m.bodies[body.0].name);
+    let message = format!(
+        "`{p}` is only a place here, no point of `{b}`: this load has no moment on the turning of `{b}`"
+    );
+    let help = format!("place the point of the body that is there under `points`, as in `{p} of {b} = ..;`");
+    let related = format!("the contact `{}` acts on the point of `{b}`", contact.name);
+    Some(Diagnostic::new(codes::LOAD_POINT, span, message).related(contact.point_span, related).help(help))
+}
+
+/// A torsion spring: what turns about what.
+struct Turns<'a> {
+    on: FrameId,
+    from: FrameId,
+    axis: &'a Vector,
+    angle: &'a Scalar,
+}
+
+impl Turns<'_> {
+    /// The rate of the angle is the angular velocity about the axis, or the spring's energy is not what its torque does.
+    fn unlike_its_angle(&self, places: &Places<'_>, span: Span) -> Option<Diagnostic> {
+        let m = places.m;
+        let mut opposite = true;
+        let mut seen = 0;
+        for views in &places.views {
+            let rate = views.rate_parts(self.angle).ok()?;
+            let turning = views.parts(|values| {
+                let axis = values.vector(self.axis, Level::Motion)?;
+                let of = crate::numeric::hyper_dual::sub(
+                    values.angular_velocity(self.on)?,
+                    values.angular_velocity(self.from)?,
+                );
+                Ok(crate::numeric::hyper_dual::dot(of, axis).re)
+            });
+            let turning = turning.ok()?;
+            let size = rate.iter().chain(&turning).fold(0.0_f64, |size, x| size.max(x.abs()));
+            let off = |sign: f64| {
+                rate.iter().zip(&turning).fold(0.0_f64, |off, (a, b)| off.max((sign * a - b).abs()))
+            };
+            if size.is_nan() || off(1.0) <= SAME * size {
+                return None;
+            }
+            opposite &= off(-1.0) <= SAME * size;
+            seen += 1;
+        }
+        if seen == 0 {
+            return None;
+        }
+        let (b, a) = (&m.frames[self.on.0].name, &m.frames[self.from.0].name);
+        let message = if opposite {
+            format!(
+                "this angle grows while `{b}` turns in `{a}` backwards about the axis: the spring drives instead of resisting"
+            )
+        } else {
+            format!("this is not the angle by which `{b}` turns in `{a}` about the axis")
+        };
+        let help = "the rate of the angle must be the angular velocity about the axis, or the work of the torque is not the energy of the spring; check signs, frames and axis";
+        Some(Diagnostic::new(codes::TORSION_ANGLE, span, message).help(help))
+    }
+}

@@ -1,0 +1,71 @@
+//! The states at which checks look: arbitrary ones near the initial values.
+
+use crate::model::mechanism::{Mechanism, Orientation};
+use crate::numeric::{Evaluator, State, hyper_dual::HyperDual};
+
+/// How far the states lie from the initial values.
+const DISTANCES: [f64; 5] = [0.7, 0.4, 0.2, 0.05, 0.0];
+
+/// States away from the initial one, the most general first. The numbers are arbitrary but always the same.
+pub fn arbitrary(m: &Mechanism) -> Vec<State> {
+    DISTANCES.iter().enumerate().map(|(i, distance)| state(m, *distance, i as u64)).collect()
+}
+
+fn state(m: &Mechanism, distance: f64, seed: u64) -> State {
+    let mut state = State::of(m);
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(seed + 1);
+    let mut next = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+    };
+    for (value, parameter) in state.parameters.iter_mut().zip(&m.parameters) {
+        if parameter.value.is_none() {
+            *value = 1.0 + 0.5 * next();
+        }
+    }
+    state.time = 0.5 * (1.0 + next());
+    for q in &mut state.coordinates {
+        *q += distance * next();
+    }
+    for u in &mut state.speeds {
+        *u += 0.5 + 0.4 * next();
+    }
+    for input in &mut state.inputs {
+        *input += next();
+    }
+    for frame in &m.frames {
+        if let Orientation::Quaternion(ids) = &frame.orientation {
+            let length = ids.iter().map(|id| state.coordinates[id.0].powi(2)).sum::<f64>().sqrt();
+            if length > 0.0 {
+                ids.iter().for_each(|id| state.coordinates[id.0] /= length);
+            }
+        }
+    }
+    state
+}
+
+/// The state with only what the model itself says: parameters without a value, and where `dependent` is false what the configuration
+/// equations determine, are not numbers, and neither is what depends on them.
+pub fn stated(m: &Mechanism, state: &State, dependent: bool) -> State {
+    let mut state = state.clone();
+    let missing = |value: &mut f64| *value = f64::NAN;
+    let valueless = m.parameters.iter().map(|parameter| parameter.value.is_none());
+    state
+        .parameters
+        .iter_mut()
+        .zip(valueless)
+        .filter(|(_, none)| *none)
+        .for_each(|(value, _)| missing(value));
+    let unknown = m.coordinates.iter().map(|coordinate| coordinate.dependent && !dependent);
+    state.coordinates.iter_mut().zip(unknown).filter(|(_, none)| *none).for_each(|(value, _)| missing(value));
+    state
+}
+
+/// Values of expressions at a state at rest.
+pub fn at_rest<'m>(m: &'m Mechanism, state: &'m State) -> Evaluator<'m> {
+    let coordinates = state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect();
+    let speeds = vec![HyperDual::ZERO; m.speeds.len()];
+    Evaluator::new(m, &state.parameters, &state.inputs, HyperDual::constant(state.time), coordinates, speeds)
+}
