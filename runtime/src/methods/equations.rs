@@ -2,10 +2,8 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{MethodError, law::Ending};
-use crate::{
-    Impact, Motion, Path, Phases, ReducedMatrix, Sensitivity, Snapshot, Surface, phases::after_slip,
-};
+use super::MethodError;
+use crate::{Path, ReducedMatrix, Surface};
 
 /// Places in a [`State`].
 pub(super) const PHI: usize = 0;
@@ -35,10 +33,10 @@ pub(super) struct Problem {
     ss: f64,
     pub mu: f64,
     /// m_nn in 1/kg and -v_n1 in m/s: the units.
-    nn: f64,
-    speed: f64,
+    pub nn: f64,
+    pub speed: f64,
     /// Slip and its direction at the start.
-    slip: f64,
+    pub slip: f64,
     phi: f64,
 }
 
@@ -165,46 +163,6 @@ impl Problem {
         let d = back(solution(gamma)).normalize();
         let [f, g, _] = self.fgh(d.x, d.y);
         Terminal { sticks: false, phi: d.y.atan2(d.x), impulse: -d * self.mu, v_n: f, s: g }
-    }
-
-    /// The outcome in the units of the input.
-    pub fn outcome(&self, end: &State, path: Path, ending: &Ending) -> Impact<f64> {
-        let after = after_slip(path);
-        let compression = |state: State| {
-            let slides = ending.slip_end.is_none_or(|end| state[I_N] < end[I_N]) && self.slip > 0.0;
-            self.snapshot(&state, if slides { Motion::Sliding } else { after })
-        };
-        let Snapshot { impulse, velocity, contact_work, normal_work, .. } = self.snapshot(end, after);
-        Impact {
-            impulse,
-            velocity,
-            contact_work,
-            normal_work,
-            path,
-            compressions: ending.compressions,
-            phases: Phases {
-                compression_end: ending.first.map(compression),
-                last_compression_end: ending.latest.map(compression),
-                slip_end: ending.slip_end.map(|state| {
-                    let mut moment = self.snapshot(&state, after);
-                    (moment.velocity.y, moment.velocity.z) = (0.0, 0.0);
-                    moment
-                }),
-            },
-            sensitivity: Sensitivity::default(),
-        }
-    }
-
-    fn snapshot(&self, at: &State, motion: Motion) -> Snapshot<f64> {
-        let (sin, cos) = at[PHI].sin_cos();
-        let scale = self.speed / self.nn;
-        Snapshot {
-            impulse: Vector3::new(at[I_N], at[I_T], at[I_S]) * scale,
-            velocity: Vector3::new(at[V_N], at[S] * cos, at[S] * sin) * self.speed,
-            contact_work: at[WORK] * scale * self.speed,
-            normal_work: at[NORMAL_WORK] * scale * self.speed,
-            motion,
-        }
     }
 }
 

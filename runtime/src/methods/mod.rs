@@ -22,6 +22,7 @@ mod equations;
 mod integrate;
 mod irs;
 mod law;
+mod outcome;
 mod runge_kutta;
 mod stability;
 mod sum;

@@ -5,7 +5,7 @@
 
 use super::super::symbols::{Form, Symbol, Symbols, form};
 use super::super::{Left, Rank, Term};
-use super::plain;
+use super::escape::plain;
 
 /// Between factors.
 const TIMES: &str = "<mo lspace=\"0.12em\" rspace=\"0.12em\">&#x22C5;</mo>";

@@ -2,8 +2,10 @@
 //!
 //! An equation is a row of three columns, so that all equal signs of a section stand under each other. The page is well-formed XML too.
 
+mod escape;
 mod mathml;
 
+use escape::plain;
 use mathml::{Writer, math};
 
 use super::symbols::unit;
@@ -23,12 +25,6 @@ pub fn write(document: &Document) -> String {
         names(document, &writer),
         sections(document, &writer),
     )
-}
-
-/// Text as HTML wants it.
-fn plain(text: &str) -> String {
-    let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
-    escaped.chars().filter(|letter| !letter.is_control() || *letter == '\n').collect()
 }
 
 /// Text in which what stands between backticks is code.

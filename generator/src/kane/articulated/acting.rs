@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::super::matrix::{times, transposed};
 use super::super::sums::{sum_scalar, sum_triple};
-use super::Eliminated;
+use super::eliminated::Eliminated;
 use super::relation::PointRelation;
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;

@@ -3,14 +3,15 @@
 use std::collections::BTreeMap;
 
 use super::super::base_parameters::{Lump, Seat};
+use super::super::elimination_order::Node;
 use super::super::matrix::{
     Matrix, arm_matrix, both_halves, column, full, name_matrix, times, transposed, turn_rows,
 };
 use super::super::products::Products;
 use super::super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple, take_by_first, take_by_second};
 use super::acting::Acting;
+use super::eliminated::Eliminated;
 use super::relation::PointRelation;
-use super::{Eliminated, Node};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, ENTRIES, Smaller, Symmetric, is_isotropic};

@@ -10,6 +10,7 @@
 //! and keeps more digits, for each pivot is a sum of what resists there, not a small difference of what the whole subtree weighs.
 
 mod acting;
+mod eliminated;
 mod form;
 mod relation;
 
@@ -24,6 +25,7 @@ use crate::kinematics::linear_forms::{self, Triple};
 use crate::kinematics::{Kinematics, vectors};
 use crate::model::mechanism::{FrameId, PointId};
 use acting::Acting;
+use eliminated::Eliminated;
 use form::{Form, OfFrame, OfPoint};
 
 /// A factorised mechanism: what is done to velocities and derivatives of speeds, from the leaves to the ground.
@@ -37,21 +39,6 @@ enum Step {
     Frame(FrameId, Box<OfFrame>),
     Point(PointId, Box<OfPoint>),
     Eliminated(Box<Eliminated>),
-}
-
-/// An eliminated derivative: `u' = (load - p . da - h . dalpha - sum m u') / d`.
-struct Eliminated {
-    slot: usize,
-    /// 1 / d
-    reciprocal: Expr,
-    /// p, and the point with this da
-    momentum: Option<(PointId, Triple)>,
-    /// h, and the frame with this dalpha
-    angular: Option<(FrameId, Triple)>,
-    /// m, and the slots of these u'
-    others: Vec<(usize, Expr)>,
-    /// the relation that was split last: its dalpha or da is without its own u'
-    split: Node,
 }
 
 impl Articulated {

@@ -1,0 +1,7 @@
+//! Text in which nothing is taken for markup.
+
+/// Text as HTML wants it.
+pub fn plain(text: &str) -> String {
+    let escaped = text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;");
+    escaped.chars().filter(|letter| !letter.is_control() || *letter == '\n').collect()
+}

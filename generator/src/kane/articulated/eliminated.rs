@@ -1,0 +1,22 @@
+//! A derivative of a speed, expressed by what the motion of its base and the load on it are.
+
+use super::super::elimination_order::Node;
+use crate::algebra::Expr;
+use crate::kinematics::linear_forms::Triple;
+use crate::model::mechanism::{FrameId, PointId};
+
+/// An eliminated derivative: `u' = (load - p . da - h . dalpha - sum m u') / d`.
+pub struct Eliminated {
+    /// which speed
+    pub slot: usize,
+    /// 1 / d
+    pub reciprocal: Expr,
+    /// p, and the point with this da
+    pub momentum: Option<(PointId, Triple)>,
+    /// h, and the frame with this dalpha
+    pub angular: Option<(FrameId, Triple)>,
+    /// m, and the slots of these u'
+    pub others: Vec<(usize, Expr)>,
+    /// the relation that was split last: its dalpha or da is without its own u'
+    pub split: Node,
+}

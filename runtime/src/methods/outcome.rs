@@ -1,0 +1,51 @@
+//! The outcome of a collision that has been followed to its end, in the units of the input.
+
+use nalgebra::Vector3;
+
+use super::{
+    equations::{I_N, I_S, I_T, NORMAL_WORK, PHI, Problem, S, State, V_N, WORK},
+    law::Ending,
+};
+use crate::{Impact, Motion, Path, Phases, Sensitivity, Snapshot, phases::after_slip};
+
+impl Problem {
+    /// The outcome in the units of the input.
+    pub fn outcome(&self, end: &State, path: Path, ending: &Ending) -> Impact<f64> {
+        let after = after_slip(path);
+        let compression = |state: State| {
+            let slides = ending.slip_end.is_none_or(|end| state[I_N] < end[I_N]) && self.slip > 0.0;
+            self.snapshot(&state, if slides { Motion::Sliding } else { after })
+        };
+        let Snapshot { impulse, velocity, contact_work, normal_work, .. } = self.snapshot(end, after);
+        Impact {
+            impulse,
+            velocity,
+            contact_work,
+            normal_work,
+            path,
+            compressions: ending.compressions,
+            phases: Phases {
+                compression_end: ending.first.map(compression),
+                last_compression_end: ending.latest.map(compression),
+                slip_end: ending.slip_end.map(|state| {
+                    let mut moment = self.snapshot(&state, after);
+                    (moment.velocity.y, moment.velocity.z) = (0.0, 0.0);
+                    moment
+                }),
+            },
+            sensitivity: Sensitivity::default(),
+        }
+    }
+
+    fn snapshot(&self, at: &State, motion: Motion) -> Snapshot<f64> {
+        let (sin, cos) = at[PHI].sin_cos();
+        let scale = self.speed / self.nn;
+        Snapshot {
+            impulse: Vector3::new(at[I_N], at[I_T], at[I_S]) * scale,
+            velocity: Vector3::new(at[V_N], at[S] * cos, at[S] * sin) * self.speed,
+            contact_work: at[WORK] * scale * self.speed,
+            normal_work: at[NORMAL_WORK] * scale * self.speed,
+            motion,
+        }
+    }
+}
