@@ -30,7 +30,7 @@ pub fn write(document: &Document) -> String {
 /// Text in which what stands between backticks is code.
 fn prose(text: &str) -> String {
     let parts: Vec<String> = text.split('`').map(plain).collect();
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return plain(text);
     }
     let marked = |(index, part): (usize, &String)| match index % 2 {
