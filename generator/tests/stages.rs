@@ -33,7 +33,7 @@ fn rust_files(folder: &Path, module: &[String], out: &mut BTreeMap<Module, PathB
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
-        let within = [module, &[name.clone()]].concat();
+        let within = [module, std::slice::from_ref(&name)].concat();
         if path.is_dir() {
             rust_files(&path, &within, out);
         } else if path.extension().is_some_and(|extension| extension == "rs") {
@@ -162,7 +162,7 @@ impl Imports {
         for (module, names) in &all {
             for name in names.iter().filter(|name| name.reexport) {
                 if let (Some(full), Some(last)) = (absolute(module, &name.path, &files), name.path.last()) {
-                    elsewhere.insert([module.as_slice(), &[last.clone()]].concat(), full);
+                    elsewhere.insert([module.as_slice(), std::slice::from_ref(last)].concat(), full);
                 }
             }
         }
