@@ -94,6 +94,9 @@ fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &s
             let flat = if result.contains("Result < (") {
                 // what collisions use
                 continue;
+            } else if result.contains("ContactState") {
+                // `mechanisms_by_slices.rs` tests it
+                continue;
             } else if result.contains("SMatrix") || result.contains("Matrix3") {
                 "by_rows(value)"
             } else if result.contains("ReducedMatrix") {
@@ -139,6 +142,9 @@ impl Emitted for {module} {{
         match contact {{
 {collisions}            _ => panic!(\"no contact {{contact}}\"),
         }}
+    }}
+    fn by_slices(&self, at: &Inputs) -> Box<dyn Contacts> {{
+        Box::new(Self::machine(at))
     }}
 }}
 "

@@ -2,6 +2,8 @@
 //!
 //! Generated code computes the same bits under the same floating-point backend: it consists of the same operations.
 
+mod prepared;
+
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -9,6 +11,8 @@ use crate::arithmetic::DoubleDouble;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Guard, Inputs, Program, Quantity, Slice, VANISHING, operate};
+
+pub use prepared::{Arguments, Constants, Failed, Prepared};
 
 /// The numbers of a quantity.
 #[derive(Clone, Debug, PartialEq)]

@@ -130,6 +130,17 @@ pub trait Mechanism<T: Scalar = f64> {
     fn position(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
     /// Velocity of a point in N along N.x, N.y, N.z, m/s.
     fn velocity(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
+    /// Acceleration of a point in N along N.x, N.y, N.z, m/s^2, while the independent speeds have the rates `accelerations` (`p`): those of
+    /// [`Mechanism::accelerations`], or with contact forces.
+    fn acceleration(
+        &self,
+        point: usize,
+        state: &State<'_, T>,
+        accelerations: &[T],
+    ) -> Result<Vector3<T>, StateError> {
+        let _ = (point, state, accelerations);
+        Err(StateError::Undefined { what: "acceleration of this point" })
+    }
     /// Partial velocities of a point (3 x `p`) along N.x, N.y, N.z (rows) for the independent speeds (columns).
     fn jacobian(&self, point: usize, state: &State<'_, T>, jacobian: &mut [T]) -> Result<(), StateError>;
     /// Axes of a frame: the columns are its x, y, z along N.x, N.y, N.z. [`StateError::Undefined`] for a frame of which the model knows the

@@ -56,10 +56,7 @@ fn every_quantity_has_a_routine() {
         for output in model.program.outputs.iter().filter(|output| !output.values.is_empty()) {
             let inner = matches!(
                 output.quantity,
-                Q::Contact(
-                    _,
-                    C::Normal | C::First | C::Second | C::Response | C::DependentResponse | C::PrescribedWork
-                )
+                Q::Contact(_, C::Normal | C::First | C::Second | C::DependentResponse | C::PrescribedWork)
             );
             let at = Inputs {
                 tangent: vec![0.0; model.mechanism.independent_states() + at.inputs.len()],

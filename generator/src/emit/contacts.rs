@@ -5,6 +5,7 @@ use quote::quote;
 
 use super::Emitter;
 use super::methods::about;
+use super::routine::Arguments;
 use super::values::local;
 use crate::program::Output;
 use crate::program::{ContactQuantity, Quantity, Structure};
@@ -78,6 +79,24 @@ impl Emitter<'_> {
                 pub impact: #krate::Impact<T>,
             }
 
+            impl<T: #krate::Scalar> Collision<T> {
+                /// The collision without the speeds after it, in the type that all mechanisms share.
+                #[inline]
+                #[must_use]
+                pub fn outcome(&self) -> #krate::CollisionOutcome<T> {
+                    #krate::CollisionOutcome {
+                        normal: self.normal,
+                        tangent: self.tangent,
+                        binormal: self.binormal,
+                        approach: self.approach,
+                        reduced: self.reduced,
+                        impulse_on_point: self.impulse_on_point,
+                        energy_change: self.energy_change,
+                        impact: self.impact,
+                    }
+                }
+            }
+
             #krate::generated::serialize_outcome! {
                 Collision #count speeds #dependent_field impulse impulse_on_point impulse_on_struck normal tangent binormal
                 approach separation reduced energy_change path impact
@@ -105,6 +124,16 @@ impl Emitter<'_> {
                 "Partial velocities V_n, V_t, V_s of the relative velocity along the contact basis (rows) for the independent speeds (columns) at",
             ),
             (
+                ContactQuantity::Response,
+                "response",
+                "Response M^-1 V^T: change of the independent speeds (rows) per unit of impulse along the contact basis (columns), and of their rates per unit of force, at",
+            ),
+            (
+                ContactQuantity::FreeAcceleration,
+                "free_acceleration",
+                "Rates of the contact velocity along the contact basis (rows: normal, first, second) without contact forces, in m/s^2: the derivative of its components as functions of time, coordinates and speeds along (1, q', u'), at",
+            ),
+            (
                 ContactQuantity::Remainder,
                 "remainder_velocity",
                 "The part of the relative velocity that prescribed motion causes, along the contact basis, in m/s, at",
@@ -127,7 +156,63 @@ impl Emitter<'_> {
         let matrices = self.contact_matrices(contact);
         let collide = self.collides(contact).then(|| self.collide(contact));
         let derivatives = self.collides(contact).then(|| self.derivatives(contact));
-        quote! { #(#queries)* #basis #reduced #matrices #collide #derivatives }
+        let state = self.contact_state(contact);
+        quote! { #(#queries)* #basis #reduced #matrices #state #collide #derivatives }
+    }
+
+    /// What the state of a contact is made of.
+    pub fn contact_state_quantities(&self, contact: usize) -> Vec<Quantity> {
+        let all = [
+            ContactQuantity::Gap,
+            ContactQuantity::Normal,
+            ContactQuantity::First,
+            ContactQuantity::Second,
+            ContactQuantity::Velocity,
+            ContactQuantity::Reduced,
+        ];
+        all.into_iter()
+            .filter_map(|quantity| self.contact_output(contact, quantity))
+            .map(|output| output.quantity)
+            .collect()
+    }
+
+    /// Gap, basis, velocity and reduced matrix at once.
+    fn contact_state(&self, contact: usize) -> Option<TokenStream> {
+        let krate = self.krate;
+        let reduced = self.reduced(self.contact_output(contact, ContactQuantity::Reduced)?);
+        let vector = |quantity: ContactQuantity| {
+            let output = self.contact_output(contact, quantity)?;
+            let entries = output.values.iter().map(|&value| local(value));
+            Some(quote!(#krate::nalgebra::Vector3::new(#(#entries),*)))
+        };
+        let [normal, first, second, velocity] = [
+            vector(ContactQuantity::Normal)?,
+            vector(ContactQuantity::First)?,
+            vector(ContactQuantity::Second)?,
+            vector(ContactQuantity::Velocity)?,
+        ];
+        let gap = self.contact_output(contact, ContactQuantity::Gap).and_then(|output| output.values.first());
+        let gap = match gap.map(|&value| local(value)) {
+            Some(gap) => quote!(::core::option::Option::Some(#gap)),
+            None => quote!(::core::option::Option::None),
+        };
+        let docs = format!(
+            "Gap, basis, velocity and reduced mass matrix at {} at once.",
+            self.contact_words(contact)
+        );
+        let value = quote! {
+            #krate::ContactState {
+                gap: #gap,
+                normal: #normal,
+                first: #first,
+                second: #second,
+                velocity: #velocity,
+                reduced: #reduced,
+            }
+        };
+        let name = self.contact_method("contact_state", contact);
+        let quantities = self.contact_state_quantities(contact);
+        Some(self.routine(&name, &docs, &quantities, quote!(#krate::ContactState<T>), value))
     }
 
     pub fn contact_words(&self, contact: usize) -> String {
@@ -201,8 +286,8 @@ impl Emitter<'_> {
         quote!(#krate::ReducedMatrix::new(#(#entries),*))
     }
 
-    fn collide(&self, contact: usize) -> TokenStream {
-        let krate = self.krate;
+    /// What a collision is computed from.
+    fn collision_quantities(&self, contact: usize) -> Vec<Quantity> {
         let index = contact as u32;
         let mut quantities: Vec<Quantity> =
             NEEDED.iter().map(|&quantity| Quantity::Contact(index, quantity)).collect();
@@ -215,6 +300,17 @@ impl Emitter<'_> {
         if !self.dependent.is_empty() {
             quantities.push(Quantity::DependentSpeeds);
         }
+        quantities
+    }
+
+    /// The arguments of a collision but for the surface.
+    pub fn collision_arguments(&self, contact: usize) -> Arguments {
+        Arguments { speeds: true, ..self.arguments(&self.collision_quantities(contact)) }
+    }
+
+    fn collide(&self, contact: usize) -> TokenStream {
+        let krate = self.krate;
+        let quantities = self.collision_quantities(contact);
         let vector = |quantity: ContactQuantity| match self.contact_output(contact, quantity) {
             Some(output) => {
                 let entries = output.values.iter().map(|&value| local(value));
@@ -260,9 +356,7 @@ impl Emitter<'_> {
             Some(Structure::Isotropic) => closed(quote!(Isotropic)),
             Some(Structure::General) | None => quote!(#krate::generated::resolve),
         };
-        let mut arguments = self.arguments(&quantities);
-        arguments.speeds = true;
-        let signature = self.signature(arguments);
+        let signature = self.signature(self.collision_arguments(contact));
         let body = self.compute(&quantities);
         quote! {
             #docs

@@ -153,6 +153,12 @@ impl Emitter<'_> {
                         format!("velocity_{name}"),
                         format!("Velocity of {docs} in N along N.x, N.y, N.z, in m/s."),
                     ),
+                    PointQuantity::Acceleration => (
+                        format!("acceleration_{name}"),
+                        format!(
+                            "Acceleration of {docs} in N along N.x, N.y, N.z, in m/s^2, while the independent speeds have the rates `acceleration`: those of `accelerations`, or with contact forces."
+                        ),
+                    ),
                     PointQuantity::Jacobian => (
                         format!("jacobian_{name}"),
                         format!(

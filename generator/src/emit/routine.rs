@@ -98,7 +98,13 @@ impl Emitter<'_> {
             time: self.uses_time,
             coordinates: !self.coordinates.is_empty(),
             speeds: velocity,
-            accelerations: quantities.contains(&Quantity::InverseDynamics),
+            accelerations: quantities.iter().any(|quantity| {
+                matches!(
+                    quantity,
+                    Quantity::InverseDynamics
+                        | Quantity::Point(_, crate::program::PointQuantity::Acceleration)
+                )
+            }),
             inputs: !self.inputs.is_empty() && (loads || self.kinematic_inputs),
             tangent: quantities.iter().any(|quantity| {
                 matches!(
@@ -118,9 +124,9 @@ impl Emitter<'_> {
             | Q::ConfigurationResidual
             | Q::ConfigurationJacobian
             | Q::Orientation(_) => false,
-            Q::Contact(_, C::Velocity | C::Tangent) => true,
+            Q::Contact(_, C::Velocity | C::FreeAcceleration | C::Tangent) => true,
             Q::Contact(..) => false,
-            Q::Point(_, P::Velocity) => true,
+            Q::Point(_, P::Velocity | P::Acceleration) => true,
             Q::Point(..) => false,
             _ => true,
         };

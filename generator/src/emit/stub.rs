@@ -32,6 +32,7 @@ pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
             C::First,
             C::Second,
             C::Velocity,
+            C::FreeAcceleration,
             C::PartialVelocities,
             C::Remainder,
             C::Reduced,
@@ -42,7 +43,10 @@ pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
         quantities.extend(contact.gap.is_some().then_some(Q::Contact(index, C::Gap)));
     }
     for (index, _) in (0u32..).zip(&mechanism.points) {
-        quantities.extend([P::Position, P::Velocity, P::Jacobian].map(|quantity| Q::Point(index, quantity)));
+        quantities.extend(
+            [P::Position, P::Velocity, P::Jacobian, P::Acceleration]
+                .map(|quantity| Q::Point(index, quantity)),
+        );
     }
     quantities.extend((0u32..).zip(&mechanism.frames).map(|(index, _)| Q::Orientation(index)));
     let outputs = quantities.into_iter().filter_map(|quantity| {

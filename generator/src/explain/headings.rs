@@ -48,6 +48,7 @@ pub fn heading(mechanism: &Mechanism, quantity: Quantity) -> Heading {
             let (title, symbol, unit) = match quantity {
                 PointQuantity::Position => ("position along N.x, N.y, N.z", "p", "m"),
                 PointQuantity::Velocity => ("velocity along N.x, N.y, N.z", "v", "m/s"),
+                PointQuantity::Acceleration => ("acceleration along N.x, N.y, N.z", "a", "m/s^2"),
                 PointQuantity::Jacobian => ("partial velocities along N.x, N.y, N.z", "V", ""),
             };
             Heading { group: format!("Point {name}"), title, symbol, unit }
@@ -66,6 +67,9 @@ fn contact(quantity: ContactQuantity) -> Heading {
         First => ("first tangential axis along N.x, N.y, N.z", "t", ""),
         Second => ("second tangential axis along N.x, N.y, N.z", "s", ""),
         Velocity => ("relative velocity along n, t, s", "v", "m/s"),
+        FreeAcceleration => {
+            ("rates of the relative velocity without contact forces, along n, t, s", "b", "m/s^2")
+        }
         PartialVelocities => ("partial velocities: rows n, t, s", "V", ""),
         Remainder => ("velocity that depends on no speed, along n, t, s", "r", "m/s"),
         Reduced => ("reduced matrix along n, t, s", "m", "1/kg"),
@@ -123,7 +127,10 @@ fn axes(quantity: Quantity) -> [Option<[char; 3]>; 2] {
     let (space, contact) = (Some(['x', 'y', 'z']), Some(['n', 't', 's']));
     match quantity {
         Quantity::Contact(_, Normal | First | Second) => [space, None],
-        Quantity::Contact(_, Velocity | PartialVelocities | Remainder | PrescribedWork) => [contact, None],
+        Quantity::Contact(
+            _,
+            Velocity | FreeAcceleration | PartialVelocities | Remainder | PrescribedWork,
+        ) => [contact, None],
         Quantity::Contact(_, Response | DependentResponse) => [None, contact],
         Quantity::Point(..) => [space, None],
         Quantity::Orientation(_) => [space, space],

@@ -54,6 +54,8 @@ pub enum ContactQuantity {
     Velocity,
     /// rows: contact basis, columns: independent speeds (3 x p); the paper's V_n, V_t, V_s
     PartialVelocities,
+    /// derivative of v^R in the contact basis (3) along (1, q', u'): its rates without contact forces
+    FreeAcceleration,
     /// v_t^R in the contact basis (3)
     Remainder,
     /// reduced matrix V M^-1 V^T in the contact basis: nn, n1, n2, 11, 12, 22 (6)
@@ -80,6 +82,8 @@ pub enum PointQuantity {
     Velocity,
     /// partial velocities along N.x, N.y, N.z (3 x p)
     Jacobian,
+    /// acceleration in N along N.x, N.y, N.z (3) for given rates of the independent speeds (inputs `Acceleration`)
+    Acceleration,
 }
 
 /// The structure of a reduced matrix that its symbols show.
@@ -115,12 +119,13 @@ const WHOLE: [(Quantity, &str); 13] = [
 ];
 
 /// Quantities of a contact.
-const CONTACT: [(ContactQuantity, &str); 12] = [
+const CONTACT: [(ContactQuantity, &str); 13] = [
     (ContactQuantity::Normal, "normal"),
     (ContactQuantity::First, "first"),
     (ContactQuantity::Second, "second"),
     (ContactQuantity::Velocity, "velocity"),
     (ContactQuantity::PartialVelocities, "partial_velocities"),
+    (ContactQuantity::FreeAcceleration, "free_acceleration"),
     (ContactQuantity::Remainder, "remainder"),
     (ContactQuantity::Reduced, "reduced"),
     (ContactQuantity::Response, "response"),
@@ -131,10 +136,11 @@ const CONTACT: [(ContactQuantity, &str); 12] = [
 ];
 
 /// Quantities of a point.
-const POINT: [(PointQuantity, &str); 3] = [
+const POINT: [(PointQuantity, &str); 4] = [
     (PointQuantity::Position, "position"),
     (PointQuantity::Velocity, "velocity"),
     (PointQuantity::Jacobian, "jacobian"),
+    (PointQuantity::Acceleration, "acceleration"),
 ];
 
 /// Structures of a reduced matrix.

@@ -1,6 +1,6 @@
 //! The part of a program that a routine needs, in an order that keeps few values alive.
 
-use super::operation::Value;
+use super::operation::{Operation, Stage, Value};
 use super::output::{Guard, Output};
 use super::quantity::Quantity;
 use super::straight_line::Program;
@@ -36,6 +36,31 @@ impl Program {
             }
         }
         Slice { outputs, guards, order: visit.order }
+    }
+
+    /// When both the value and the scale of a guard are known.
+    pub fn guard_stage(&self, guard: &Guard, stages: &[Stage]) -> Stage {
+        let stage = |value: Value| stages.get(value.index()).copied().unwrap_or(Stage::Velocity);
+        guard.scale.map(stage).into_iter().fold(stage(guard.value), Stage::max)
+    }
+
+    /// Values that depend on parameters alone and are used later, in order.
+    pub fn kept(&self, stages: &[Stage]) -> Vec<Value> {
+        let is_kept = |value: Value| {
+            let parameter_only = stages.get(value.index()) == Some(&Stage::Parameter);
+            parameter_only && !matches!(self.operation(value), Operation::Input(_) | Operation::SinCos(_))
+        };
+        let late = |index: usize| stages.get(index).is_some_and(|&stage| stage > Stage::Parameter);
+        let operations = self.operations.iter().enumerate().filter(|&(index, _)| late(index));
+        let used = operations.flat_map(|(_, operation)| operation.operands());
+        let results = self.outputs.iter().flat_map(|output| output.values.iter().copied());
+        let checked = self.guards.iter().filter(|guard| self.guard_stage(guard, stages) > Stage::Parameter);
+        let checked = checked.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
+        let mut kept: Vec<Value> =
+            used.chain(results).chain(checked).filter(|&value| is_kept(value)).collect();
+        kept.sort_unstable();
+        kept.dedup();
+        kept
     }
 }
 

@@ -22,7 +22,7 @@ pub use error::{CollisionError, ParameterError, StateError};
 #[doc(hidden)]
 pub use saltation::{by_coordinate, reset, salted, state};
 #[doc(hidden)]
-pub use slices::{Description, write_array, write_rows};
+pub use slices::{Description, normalize_quaternions, write_array, write_rows};
 
 #[cfg(feature = "serde")]
 #[doc(hidden)]
@@ -36,4 +36,4 @@ pub use crate::{__serialize_outcome as serialize_outcome, __serialize_record as 
 
 /// Generated code names this constant: where it is missing, the module was made by a generator that this runtime does not fit.
 #[doc(hidden)]
-pub const GENERATED_CODE_FORMAT_2: () = ();
+pub const GENERATED_CODE_FORMAT_3: () = ();

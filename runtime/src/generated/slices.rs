@@ -65,18 +65,23 @@ impl Description {
     /// Brings the quaternions among the coordinates to length 1.
     pub fn normalize<T: Scalar>(&self, coordinates: &mut [T]) -> Result<(), StateError> {
         check_length(coordinates, self.coordinates.len(), "coordinates")?;
-        for quaternion in self.quaternions {
-            let parts = quaternion.iter().filter_map(|&index| coordinates.get(index));
-            let length = parts.fold(T::zero(), |sum, &part| sum + part * part).sqrt();
-            if length > T::zero() {
-                for &index in quaternion {
-                    if let Some(part) = coordinates.get_mut(index) {
-                        *part /= length;
-                    }
+        normalize_quaternions(coordinates, self.quaternions);
+        Ok(())
+    }
+}
+
+/// Brings quaternions, given by the numbers of their coordinates, to length 1; those of length 0 stay.
+pub fn normalize_quaternions<T: Scalar>(coordinates: &mut [T], quaternions: &[[usize; 4]]) {
+    for quaternion in quaternions {
+        let parts = quaternion.iter().filter_map(|&index| coordinates.get(index));
+        let length = parts.fold(T::zero(), |sum, &part| sum + part * part).sqrt();
+        if length > T::zero() {
+            for &index in quaternion {
+                if let Some(part) = coordinates.get_mut(index) {
+                    *part /= length;
                 }
             }
         }
-        Ok(())
     }
 }
 

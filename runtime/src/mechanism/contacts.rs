@@ -100,8 +100,8 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     ) -> Result<(), StateError> {
         let (k, p) = (contacts.len(), self.count(super::Kind::Speed));
         let size = 3 * k;
-        check_length(matrix, size * size, "coupled matrix")?;
-        check_room(workspace, 3 * p * (k + 1), "workspace")?;
+        check_length(matrix, size * size, "the coupled matrix")?;
+        check_room(workspace, 3 * p * (k + 1), "the workspace")?;
         let (rows, response) = workspace.split_at_mut(3 * p * k);
         let Some(response) = response.get_mut(..3 * p) else { return Ok(()) };
         if p == 0 {
@@ -140,7 +140,7 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         workspace: &mut [T],
     ) -> Result<(), StateError> {
         let needed = 3 * self.count(super::Kind::Speed);
-        check_room(workspace, needed, "workspace")?;
+        check_room(workspace, needed, "the workspace")?;
         let Some(response) = workspace.get_mut(..needed) else { return Ok(()) };
         self.accelerations(state, accelerations)?;
         for (contact, force) in forces {

@@ -1,7 +1,7 @@
 //! The emitted modules of all shipped models behind one interface; `tests/build.rs` writes the implementations.
 
 use hodograph::nalgebra::SMatrix;
-use hodograph::{Path, Surface};
+use hodograph::{Contacts, Path, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
@@ -15,6 +15,8 @@ pub trait Emitted {
     fn call(&self, routine: &str, at: &Inputs) -> Option<Result<Vec<f64>, String>>;
     /// a collision; the error is its message
     fn collide(&self, contact: usize, at: &Inputs, surface: &Surface<f64>) -> Result<Hit, String>;
+    /// the mechanism by its traits
+    fn by_slices(&self, at: &Inputs) -> Box<dyn Contacts>;
 }
 
 impl dyn Emitted + '_ {
@@ -47,6 +49,8 @@ pub fn routine(mechanism: &Mechanism, quantity: Quantity) -> Option<String> {
                 ContactQuantity::Gap => "gap",
                 ContactQuantity::Velocity => "contact_velocity",
                 ContactQuantity::PartialVelocities => "partial_velocities",
+                ContactQuantity::FreeAcceleration => "free_acceleration",
+                ContactQuantity::Response => "response",
                 ContactQuantity::Remainder => "remainder_velocity",
                 ContactQuantity::Reduced => "reduced_matrix",
                 ContactQuantity::Tangent => "contact_tangent",
@@ -59,6 +63,7 @@ pub fn routine(mechanism: &Mechanism, quantity: Quantity) -> Option<String> {
                 PointQuantity::Position => "position",
                 PointQuantity::Velocity => "velocity",
                 PointQuantity::Jacobian => "jacobian",
+                PointQuantity::Acceleration => "acceleration",
             };
             return Some(format!("{prefix}_{}", snake_case(&mechanism.points[index as usize].name)));
         }

@@ -1,0 +1,40 @@
+//! Why a model cannot be interpreted.
+
+use std::fmt;
+
+use hodograph::ParameterError;
+
+/// Why a model and its derivation make no mechanism.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Error {
+    /// The model has mistakes: they, as `hodograph check` prints them.
+    Model(String),
+    /// The derivation is missing, stale or damaged: what is wrong and what to do.
+    Derivation(String),
+    /// The parameters belong to no mechanism.
+    Parameters(ParameterError),
+    /// The model gives no value for this parameter.
+    NoValue(String),
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Error::Model(report) => out.write_str(report),
+            Error::Derivation(message) => out.write_str(message),
+            Error::Parameters(error) => error.fmt(out),
+            Error::NoValue(name) => {
+                write!(out, "the model gives no value for the parameter {name}: use `with_parameters`")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Error {}
+
+impl From<ParameterError> for Error {
+    fn from(error: ParameterError) -> Self {
+        Error::Parameters(error)
+    }
+}

@@ -1,0 +1,229 @@
+//! A model with its program and parameters.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use hodograph::generated::check_length;
+use hodograph::{ParameterError, State, StateError};
+use hodograph_generator::interpret::{Arguments, Constants, Failed};
+use hodograph_generator::model::mechanism::{self, Mechanism, Orientation};
+use hodograph_generator::program::Program;
+use hodograph_generator::source::Source;
+use hodograph_generator::{artifact, check, emit, reading, rendering};
+
+use crate::intern::intern;
+use crate::routines::{Request, Routines};
+use crate::{Error, parameters};
+
+/// A mechanism whose equations are interpreted. It has the traits [`hodograph::Mechanism`] and [`hodograph::Contacts`].
+///
+/// What a routine needs is prepared at its first call; later calls compute numbers only. Clones share the model and the program.
+#[derive(Clone, Debug)]
+pub struct InterpretedMechanism {
+    model: Arc<Mechanism>,
+    program: Arc<Program>,
+    /// all, in file order, `fixed` ones too
+    parameters: Vec<f64>,
+    constants: Constants,
+    routines: Routines,
+    quaternions: Vec<[usize; 4]>,
+    dependent_coordinates: Vec<usize>,
+}
+
+impl InterpretedMechanism {
+    /// The mechanism of a model and its program, with the parameters that the model states.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`]
+    pub fn new(model: Mechanism, program: Program) -> Result<Self, Error> {
+        let value = |parameter: &mechanism::Variable| {
+            parameter
+                .value
+                .or(parameter.fixed.then_some(0.0))
+                .ok_or_else(|| Error::NoValue(parameter.name.clone()))
+        };
+        let parameters = model.parameters.iter().map(value).collect::<Result<Vec<f64>, Error>>()?;
+        Self::with(model, program, parameters)
+    }
+
+    /// The mechanism of a model and its program, with these parameters: all that are not `fixed`, in the order of the model.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`]
+    pub fn with_parameters(model: Mechanism, program: Program, parameters: &[f64]) -> Result<Self, Error> {
+        let all = all_parameters(&model, parameters)?;
+        Self::with(model, program, all)
+    }
+
+    /// Reads a model file and the derivation beside it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error`]
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let source = Source::read(path);
+        let checked = check::check(&source);
+        let Some(model) = checked.mechanism else {
+            return Err(Error::Model(rendering::render(&checked.diagnostics, &source)));
+        };
+        let kept = artifact::place::beside(path);
+        let advice = format!("run `hodograph derive {}`", path.display());
+        let text = reading::text(&kept, artifact::MAX_BYTES).map_err(|error| {
+            Error::Derivation(format!("cannot read the derivation {}: {error}; {advice}", kept.display()))
+        })?;
+        let artifact = artifact::decode(&text).map_err(|error| {
+            Error::Derivation(format!("{} is no derivation: {error}; {advice}", kept.display()))
+        })?;
+        if artifact.model != source.content_hash() {
+            let kept = kept.display();
+            return Err(Error::Derivation(format!(
+                "{kept} was derived from another text of the model; {advice}"
+            )));
+        }
+        Self::new(model, artifact.program)
+    }
+
+    fn with(model: Mechanism, program: Program, parameters: Vec<f64>) -> Result<Self, Error> {
+        emit::fits(&model, &program).map_err(Error::Derivation)?;
+        let constants = parameters::constants(&model, &program, &parameters)?;
+        let quaternions = model.frames.iter().filter_map(|frame| match &frame.orientation {
+            Orientation::Quaternion(ids) => Some(ids.map(|id| id.0)),
+            _ => None,
+        });
+        let dependent = model.coordinates.iter().enumerate().filter(|(_, coordinate)| coordinate.dependent);
+        Ok(InterpretedMechanism {
+            routines: Routines::new(&model),
+            quaternions: quaternions.collect(),
+            dependent_coordinates: dependent.map(|(index, _)| index).collect(),
+            model: Arc::new(model),
+            program: Arc::new(program),
+            parameters,
+            constants,
+        })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Mechanism {
+        &self.model
+    }
+
+    /// The equations of the model.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// All parameters in file order, `fixed` ones too.
+    pub fn all_parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    pub(crate) fn quaternions(&self) -> &[[usize; 4]] {
+        &self.quaternions
+    }
+
+    pub(crate) fn dependent_coordinates(&self) -> &[usize] {
+        &self.dependent_coordinates
+    }
+
+    /// Number of independent speeds.
+    pub(crate) fn freedom(&self) -> usize {
+        self.model.speeds.iter().filter(|speed| !speed.dependent).count()
+    }
+
+    pub(crate) fn change_parameters(&mut self, parameters: &[f64]) -> Result<(), ParameterError> {
+        let all = all_parameters(&self.model, parameters)?;
+        self.constants = parameters::constants(&self.model, &self.program, &all)?;
+        self.parameters = all;
+        self.routines.refresh(&self.constants);
+        Ok(())
+    }
+
+    /// Have the slices of a state their lengths?
+    pub(crate) fn check(&self, state: &State<'_>) -> Result<(), StateError> {
+        check_length(state.coordinates, self.model.coordinates.len(), "coordinates")?;
+        check_length(state.speeds, self.freedom(), "speeds")?;
+        check_length(state.inputs, self.model.inputs.len(), "inputs")
+    }
+
+    /// Computes what is requested; `with` receives each number's index and value. `expected` is how many numbers there are to be.
+    pub(crate) fn compute(
+        &self,
+        request: Request,
+        state: &State<'_>,
+        accelerations: &[f64],
+        with: impl FnMut(usize, f64),
+    ) -> Result<(), StateError> {
+        let arguments = Arguments {
+            time: state.time,
+            coordinates: state.coordinates,
+            speeds: state.speeds,
+            inputs: state.inputs,
+            accelerations,
+            tangent: &[],
+        };
+        let prepared = self.routines.get(request, &self.program, &self.constants);
+        prepared.evaluate(&arguments, with).map_err(|failed| match failed {
+            Failed::Singular(guard) => {
+                let message = self.program.guards.get(guard).map_or("", |guard| guard.message.as_str());
+                StateError::Singular { what: intern(message) }
+            }
+            Failed::NotFinite => StateError::NotFinite,
+        })
+    }
+
+    /// Does the program have what is requested?
+    pub(crate) fn has(&self, request: Request) -> bool {
+        !self.routines.get(request, &self.program, &self.constants).is_empty()
+    }
+
+    /// Computes what is requested into a slice, which must be as long; where the mechanism has no such thing, that is empty.
+    pub(crate) fn write(
+        &self,
+        request: Request,
+        state: &State<'_>,
+        accelerations: &[f64],
+        slice: &mut [f64],
+        what: &'static str,
+    ) -> Result<(), StateError> {
+        self.check(state)?;
+        check_length(slice, self.routines.get(request, &self.program, &self.constants).len(), what)?;
+        self.compute(request, state, accelerations, |index, number| {
+            if let Some(slot) = slice.get_mut(index) {
+                *slot = number;
+            }
+        })
+    }
+
+    /// Computes numbers of which there are `N`.
+    pub(crate) fn array<const N: usize>(
+        &self,
+        request: Request,
+        state: &State<'_>,
+        accelerations: &[f64],
+    ) -> Result<[f64; N], StateError> {
+        self.check(state)?;
+        let mut numbers = [0.0; N];
+        self.compute(request, state, accelerations, |index, number| {
+            if let Some(slot) = numbers.get_mut(index) {
+                *slot = number;
+            }
+        })?;
+        Ok(numbers)
+    }
+}
+
+/// All parameters from those that are not `fixed`.
+fn all_parameters(model: &Mechanism, parameters: &[f64]) -> Result<Vec<f64>, ParameterError> {
+    let expected = model.parameters.iter().filter(|parameter| !parameter.fixed).count();
+    if parameters.len() != expected {
+        return Err(ParameterError::Length { expected, found: parameters.len() });
+    }
+    let mut given = parameters.iter().copied();
+    let mut next = |parameter: &mechanism::Variable| match parameter.fixed {
+        true => parameter.value.unwrap_or(0.0),
+        false => given.next().unwrap_or(f64::NAN),
+    };
+    Ok(model.parameters.iter().map(&mut next).collect())
+}

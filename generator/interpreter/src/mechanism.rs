@@ -1,0 +1,229 @@
+//! The trait `Mechanism` by interpretation.
+
+use hodograph::generated::{check_length, normalize_quaternions, write};
+use hodograph::nalgebra::{Matrix3, Vector3};
+use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
+use hodograph_generator::model::mechanism::Variable;
+use hodograph_generator::numeric;
+use hodograph_generator::program::{PointQuantity, Quantity};
+
+use crate::InterpretedMechanism;
+use crate::routines::Request;
+
+/// A quantity of a declaration as the trait describes it.
+fn described(quantity: &Variable) -> Component<'_> {
+    Component { name: &quantity.name, unit: if quantity.unit.is_empty() { "1" } else { &quantity.unit } }
+}
+
+fn named(name: &str) -> Component<'_> {
+    Component { name, unit: "" }
+}
+
+impl InterpretedMechanism {
+    /// The quantities of a kind that the model declares with units.
+    fn declared(&self, kind: Kind) -> Box<dyn Iterator<Item = &Variable> + '_> {
+        let model = self.model();
+        match kind {
+            Kind::Parameter => Box::new(model.parameters.iter().filter(|parameter| !parameter.fixed)),
+            Kind::Coordinate => Box::new(model.coordinates.iter()),
+            Kind::DependentCoordinate => {
+                Box::new(self.dependent_coordinates().iter().map(|&index| &model.coordinates[index]))
+            }
+            Kind::Speed => Box::new(model.speeds.iter().filter(|speed| !speed.dependent)),
+            Kind::DependentSpeed => Box::new(model.speeds.iter().filter(|speed| speed.dependent)),
+            Kind::Input => Box::new(model.inputs.iter()),
+            _ => Box::new(std::iter::empty()),
+        }
+    }
+
+    /// Is there one of this number?
+    pub(crate) fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
+        if index < Mechanism::count(self, kind) { Ok(()) } else { Err(StateError::Missing { kind, index }) }
+    }
+
+    fn vector_of_point(
+        &self,
+        point: usize,
+        quantity: PointQuantity,
+        state: &State<'_>,
+        accelerations: &[f64],
+        what: &'static str,
+    ) -> Result<Vector3<f64>, StateError> {
+        self.exists(Kind::Point, point)?;
+        let request = Request::Point(point, quantity);
+        if point == 0 {
+            self.check(state)?;
+            Ok(Vector3::zeros())
+        } else if self.has(request) {
+            self.array::<3>(request, state, accelerations).map(Vector3::from)
+        } else {
+            Err(StateError::Undefined { what })
+        }
+    }
+}
+
+impl Mechanism for InterpretedMechanism {
+    fn name(&self) -> &str {
+        &self.model().name
+    }
+
+    fn count(&self, kind: Kind) -> usize {
+        match kind {
+            Kind::Point => self.model().points.len(),
+            Kind::Frame => self.model().frames.len(),
+            Kind::Contact => self.model().contacts.len(),
+            kind => self.declared(kind).count(),
+        }
+    }
+
+    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>> {
+        let model = self.model();
+        match kind {
+            Kind::Point => model.points.get(index).map(|point| named(&point.name)),
+            Kind::Frame => model.frames.get(index).map(|frame| named(&frame.name)),
+            Kind::Contact => model.contacts.get(index).map(|contact| named(&contact.name)),
+            kind => self.declared(kind).nth(index).map(described),
+        }
+    }
+
+    fn dependent_coordinate(&self, index: usize) -> Option<usize> {
+        self.dependent_coordinates().get(index).copied()
+    }
+
+    fn parameters(&self, parameters: &mut [f64]) -> Result<(), StateError> {
+        let all = self.model().parameters.iter().zip(self.all_parameters());
+        let run_time: Vec<f64> =
+            all.filter(|(parameter, _)| !parameter.fixed).map(|(_, &value)| value).collect();
+        write(parameters, &run_time, "parameters")
+    }
+
+    fn set_parameters(&mut self, parameters: &[f64]) -> Result<(), ParameterError> {
+        self.change_parameters(parameters)
+    }
+
+    fn initial_state(
+        &self,
+        coordinates: &mut [f64],
+        speeds: &mut [f64],
+        inputs: &mut [f64],
+    ) -> Result<(), StateError> {
+        let state = numeric::State::of(self.model());
+        write(coordinates, &state.coordinates, "coordinates")?;
+        write(speeds, &state.speeds, "speeds")?;
+        write(inputs, &state.inputs, "inputs")
+    }
+
+    fn normalize(&self, coordinates: &mut [f64]) -> Result<(), StateError> {
+        check_length(coordinates, self.model().coordinates.len(), "coordinates")?;
+        normalize_quaternions(coordinates, self.quaternions());
+        Ok(())
+    }
+
+    fn coordinate_rates(&self, state: &State<'_>, rates: &mut [f64]) -> Result<(), StateError> {
+        let request = Request::Whole(Quantity::CoordinateRates);
+        self.write(request, state, &[], rates, "the rates of the coordinates")
+    }
+
+    fn accelerations(&self, state: &State<'_>, accelerations: &mut [f64]) -> Result<(), StateError> {
+        self.write(Request::Whole(Quantity::Accelerations), state, &[], accelerations, "the accelerations")
+    }
+
+    fn dependent_speeds(&self, state: &State<'_>, speeds: &mut [f64]) -> Result<(), StateError> {
+        self.write(Request::Whole(Quantity::DependentSpeeds), state, &[], speeds, "the dependent speeds")
+    }
+
+    fn dependent_accelerations(
+        &self,
+        state: &State<'_>,
+        accelerations: &mut [f64],
+    ) -> Result<(), StateError> {
+        let request = Request::Whole(Quantity::DependentAccelerations);
+        self.write(request, state, &[], accelerations, "the dependent accelerations")
+    }
+
+    fn mass_matrix(&self, state: &State<'_>, matrix: &mut [f64]) -> Result<(), StateError> {
+        self.write(Request::Whole(Quantity::MassMatrix), state, &[], matrix, "the mass matrix")
+    }
+
+    fn forcing(&self, state: &State<'_>, forcing: &mut [f64]) -> Result<(), StateError> {
+        self.write(Request::Whole(Quantity::Forcing), state, &[], forcing, "the forcing")
+    }
+
+    fn inverse_dynamics(
+        &self,
+        state: &State<'_>,
+        accelerations: &[f64],
+        forces: &mut [f64],
+    ) -> Result<(), StateError> {
+        check_length(accelerations, self.freedom(), "the accelerations")?;
+        let request = Request::Whole(Quantity::InverseDynamics);
+        self.write(request, state, accelerations, forces, "the generalized forces")
+    }
+
+    fn kinetic_energy(&self, state: &State<'_>) -> Result<f64, StateError> {
+        self.array::<1>(Request::Whole(Quantity::KineticEnergy), state, &[]).map(|[energy]| energy)
+    }
+
+    fn potential_energy(&self, state: &State<'_>) -> Result<Option<f64>, StateError> {
+        let request = Request::Whole(Quantity::PotentialEnergy);
+        let energy = self.array::<1>(request, state, &[]).map(|[energy]| energy)?;
+        Ok(self.has(request).then_some(energy))
+    }
+
+    fn configuration(
+        &self,
+        state: &State<'_>,
+        residual: &mut [f64],
+        jacobian: &mut [f64],
+    ) -> Result<(), StateError> {
+        let what = "the residual of the configuration equations";
+        self.write(Request::Whole(Quantity::ConfigurationResidual), state, &[], residual, what)?;
+        let what = "the derivatives of the configuration equations";
+        self.write(Request::Whole(Quantity::ConfigurationJacobian), state, &[], jacobian, what)
+    }
+
+    fn position(&self, point: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
+        self.vector_of_point(point, PointQuantity::Position, state, &[], "position of this point")
+    }
+
+    fn velocity(&self, point: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
+        self.vector_of_point(point, PointQuantity::Velocity, state, &[], "velocity of this point")
+    }
+
+    fn acceleration(
+        &self,
+        point: usize,
+        state: &State<'_>,
+        accelerations: &[f64],
+    ) -> Result<Vector3<f64>, StateError> {
+        check_length(accelerations, self.freedom(), "the accelerations")?;
+        let what = "acceleration of this point";
+        self.vector_of_point(point, PointQuantity::Acceleration, state, accelerations, what)
+    }
+
+    fn jacobian(&self, point: usize, state: &State<'_>, jacobian: &mut [f64]) -> Result<(), StateError> {
+        self.exists(Kind::Point, point)?;
+        if point == 0 {
+            self.check(state)?;
+            check_length(jacobian, 3 * self.freedom(), "the partial velocities")?;
+            jacobian.fill(0.0);
+            return Ok(());
+        }
+        let request = Request::Point(point, PointQuantity::Jacobian);
+        self.write(request, state, &[], jacobian, "the partial velocities")
+    }
+
+    fn orientation(&self, frame: usize, state: &State<'_>) -> Result<Matrix3<f64>, StateError> {
+        self.exists(Kind::Frame, frame)?;
+        let request = Request::Frame(frame);
+        if frame == 0 {
+            self.check(state)?;
+            Ok(Matrix3::identity())
+        } else if self.has(request) {
+            let rows = self.array::<9>(request, state, &[])?;
+            Ok(Matrix3::from_row_slice(&rows))
+        } else {
+            Err(StateError::Undefined { what: "orientation of this frame" })
+        }
+    }
+}

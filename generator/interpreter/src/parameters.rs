@@ -1,0 +1,96 @@
+//! Are parameters those of a mechanism? The same questions as at the construction of a generated module, in the same order.
+
+use hodograph::ParameterError;
+use hodograph::generated::{abs, check_inertia, check_mass, exp, log, power, recip, sqrt};
+use hodograph_generator::arithmetic::Function;
+use hodograph_generator::interpret::Constants;
+use hodograph_generator::model::mechanism::{DefinitionValue, Mechanism, Scalar};
+use hodograph_generator::program::Program;
+
+use crate::intern::intern;
+
+/// Expressions nested deeper than this are not checked.
+const DEPTH: usize = 64;
+
+/// Checks parameters (in file order, `fixed` ones too) and computes what depends on them alone.
+///
+/// # Errors
+///
+/// As `new` of a generated module.
+pub fn constants(
+    model: &Mechanism,
+    program: &Program,
+    parameters: &[f64],
+) -> Result<Constants, ParameterError> {
+    let run_time = model.parameters.iter().zip(parameters).filter(|(parameter, _)| !parameter.fixed);
+    for (parameter, value) in run_time {
+        if !value.is_finite() {
+            return Err(ParameterError::NotFinite { name: intern(&parameter.name) });
+        }
+    }
+    for body in &model.bodies {
+        let name = intern(&body.name);
+        if let Some(mass) = scalar(model, parameters, &body.mass, DEPTH) {
+            check_mass(mass, name)?;
+        }
+        let components = body.inertia.as_ref().map(|inertia| {
+            inertia.components.each_ref().map(|component| scalar(model, parameters, component, DEPTH))
+        });
+        if let Some([Some(xx), Some(yy), Some(zz), Some(xy), Some(yz), Some(zx)]) = components {
+            check_inertia([xx, yy, zz, xy, yz, zx], name)?;
+        }
+    }
+    let constants = Constants::new(program, parameters);
+    let not_finite = || ParameterError::from(hodograph::StateError::NotFinite);
+    if let Some((message, finite)) = constants.failure(program) {
+        let singular = ParameterError::Singular { what: intern(message) };
+        return Err(if finite { singular } else { not_finite() });
+    }
+    if constants.finite(program) { Ok(constants) } else { Err(not_finite()) }
+}
+
+/// An expression of parameters alone; `None` for any other.
+fn scalar(model: &Mechanism, parameters: &[f64], expression: &Scalar, depth: usize) -> Option<f64> {
+    let depth = depth.checked_sub(1)?;
+    let of = |expression: &Scalar| scalar(model, parameters, expression, depth);
+    Some(match expression {
+        Scalar::Number(value) => value.to_f64(),
+        Scalar::Pi => std::f64::consts::PI,
+        Scalar::Parameter(id) => {
+            if model.parameters.get(id.0)?.fixed {
+                return None;
+            }
+            *parameters.get(id.0)?
+        }
+        Scalar::Definition(id) => match &model.definitions.get(id.0)?.value {
+            DefinitionValue::Scalar(scalar) => of(scalar)?,
+            DefinitionValue::Vector(_) => return None,
+        },
+        Scalar::Neg(a) => -of(a)?,
+        Scalar::Add(terms) => {
+            let mut terms = terms.iter().map(of);
+            let first = terms.next()??;
+            terms.try_fold(first, |sum, term| Some(sum + term?))?
+        }
+        Scalar::Mul(factors) => {
+            let mut factors = factors.iter().map(of);
+            let first = factors.next()??;
+            factors.try_fold(first, |product, factor| Some(product * factor?))?
+        }
+        Scalar::Div(a, b, _) => of(a)? / of(b)?,
+        Scalar::Pow(base, exponent) => {
+            let base = of(base)?;
+            match &**exponent {
+                Scalar::Number(n) if n.to_integer().is_some_and(|n| i32::try_from(n).is_ok()) => {
+                    let n = i32::try_from(n.to_integer()?).ok()?;
+                    let power = power(base, n.abs());
+                    if n < 0 { recip(power) } else { power }
+                }
+                exponent => exp(log(base) * of(exponent)?),
+            }
+        }
+        Scalar::Call(Function::Sqrt, arguments) => sqrt(of(arguments.first()?)?),
+        Scalar::Call(Function::Abs, arguments) => abs(of(arguments.first()?)?),
+        _ => return None,
+    })
+}

@@ -1,0 +1,169 @@
+//! Prepared routines: each is made when it is first asked for.
+
+use std::sync::OnceLock;
+
+use hodograph_generator::interpret::{Constants, Prepared};
+use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::program::Program;
+use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
+
+/// Quantities of the whole mechanism.
+const WHOLE: [Quantity; 11] = [
+    Quantity::CoordinateRates,
+    Quantity::Accelerations,
+    Quantity::DependentSpeeds,
+    Quantity::DependentAccelerations,
+    Quantity::MassMatrix,
+    Quantity::Forcing,
+    Quantity::InverseDynamics,
+    Quantity::KineticEnergy,
+    Quantity::PotentialEnergy,
+    Quantity::ConfigurationResidual,
+    Quantity::ConfigurationJacobian,
+];
+
+/// Quantities of a point.
+const POINT: [PointQuantity; 4] =
+    [PointQuantity::Position, PointQuantity::Velocity, PointQuantity::Jacobian, PointQuantity::Acceleration];
+
+/// What is asked of a contact.
+const CONTACT: [OfContact; 7] = [
+    OfContact::State,
+    OfContact::One(ContactQuantity::Gap),
+    OfContact::One(ContactQuantity::Velocity),
+    OfContact::One(ContactQuantity::FreeAcceleration),
+    OfContact::One(ContactQuantity::PartialVelocities),
+    OfContact::One(ContactQuantity::Response),
+    OfContact::Collision,
+];
+
+/// What is asked of a contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OfContact {
+    /// basis, velocity, reduced matrix, gap
+    State,
+    /// what a collision is computed from
+    Collision,
+    /// one quantity
+    One(ContactQuantity),
+}
+
+/// The state of a contact, in this order: the gap comes last, because it may be missing.
+pub const STATE: [ContactQuantity; 6] = [
+    ContactQuantity::Normal,
+    ContactQuantity::First,
+    ContactQuantity::Second,
+    ContactQuantity::Velocity,
+    ContactQuantity::Reduced,
+    ContactQuantity::Gap,
+];
+
+/// What a collision is computed from, in this order.
+pub const COLLISION: [ContactQuantity; 8] = [
+    ContactQuantity::Normal,
+    ContactQuantity::First,
+    ContactQuantity::Second,
+    ContactQuantity::Velocity,
+    ContactQuantity::Reduced,
+    ContactQuantity::Response,
+    ContactQuantity::Remainder,
+    ContactQuantity::PrescribedWork,
+];
+
+/// What is asked of a mechanism.
+#[derive(Clone, Copy, Debug)]
+pub enum Request {
+    /// a quantity of the whole mechanism
+    Whole(Quantity),
+    /// a quantity of a point
+    Point(usize, PointQuantity),
+    /// the orientation of a frame
+    Frame(usize),
+    /// something of a contact
+    Contact(usize, OfContact),
+}
+
+impl Request {
+    fn quantities(self) -> Vec<Quantity> {
+        match self {
+            Request::Whole(quantity) => vec![quantity],
+            Request::Point(point, quantity) => vec![Quantity::Point(point as u32, quantity)],
+            Request::Frame(frame) => vec![Quantity::Orientation(frame as u32)],
+            Request::Contact(contact, what) => {
+                let of = |quantity: ContactQuantity| Quantity::Contact(contact as u32, quantity);
+                match what {
+                    OfContact::State => STATE.map(of).to_vec(),
+                    // A collision gives the dependent speeds after it, too: where these are singular, it has no outcome.
+                    OfContact::Collision => {
+                        let mut all = COLLISION.map(of).to_vec();
+                        all.extend([of(ContactQuantity::DependentResponse), Quantity::DependentSpeeds]);
+                        all
+                    }
+                    OfContact::One(quantity) => vec![of(quantity)],
+                }
+            }
+        }
+    }
+}
+
+/// A cell for each request that a mechanism permits.
+#[derive(Clone, Debug)]
+pub struct Routines {
+    points: usize,
+    frames: usize,
+    cells: Vec<OnceLock<Prepared>>,
+}
+
+impl Routines {
+    /// Nothing is prepared yet.
+    pub fn new(model: &Mechanism) -> Self {
+        let (points, frames) = (model.points.len(), model.frames.len());
+        let count = WHOLE.len() + POINT.len() * points + frames + CONTACT.len() * model.contacts.len();
+        Routines { points, frames, cells: (0..count).map(|_| OnceLock::new()).collect() }
+    }
+
+    /// The routine of a request.
+    pub fn get(&self, request: Request, program: &Program, constants: &Constants) -> &Prepared {
+        self.cells[self.place(request)]
+            .get_or_init(|| Prepared::new(program, constants, &request.quantities()))
+    }
+
+    /// Goes over to other parameters.
+    pub fn refresh(&mut self, constants: &Constants) {
+        self.cells.iter_mut().filter_map(OnceLock::get_mut).for_each(|prepared| prepared.refresh(constants));
+    }
+
+    fn place(&self, request: Request) -> usize {
+        let of_points = WHOLE.len();
+        let of_frames = of_points + POINT.len() * self.points;
+        let of_contacts = of_frames + self.frames;
+        fn position<K: PartialEq>(table: &[K], key: K) -> usize {
+            table.iter().position(|known| *known == key).unwrap_or(0)
+        }
+        match request {
+            Request::Whole(quantity) => position(&WHOLE, quantity),
+            Request::Point(point, quantity) => of_points + POINT.len() * point + position(&POINT, quantity),
+            Request::Frame(frame) => of_frames + frame,
+            Request::Contact(contact, what) => {
+                of_contacts + CONTACT.len() * contact + position(&CONTACT, what)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every request that is made has a cell of its own: `place` must not fall back on the first.
+    #[test]
+    fn requests_have_cells_of_their_own() {
+        let routines = Routines { points: 3, frames: 2, cells: Vec::new() };
+        let mut requests: Vec<Request> = WHOLE.map(Request::Whole).to_vec();
+        requests.extend((0..3).flat_map(|point| POINT.map(|quantity| Request::Point(point, quantity))));
+        requests.extend((0..2).map(Request::Frame));
+        requests.extend((0..2).flat_map(|contact| CONTACT.map(|what| Request::Contact(contact, what))));
+        let places: Vec<usize> = requests.iter().map(|&request| routines.place(request)).collect();
+        assert_eq!(places, (0..requests.len()).collect::<Vec<_>>());
+    }
+}
