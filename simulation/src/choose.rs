@@ -1,0 +1,284 @@
+//! Which modes several closed contacts take at an event.
+//!
+//! Each contact by itself is decided exactly by the runtime, for given forces at the others; going round until nothing changes (block Gauss-Seidel,
+//! as Jean and Moreau's method of contact dynamics does for time steps) gives the modes, and one linear system then gives the forces to rounding.
+//! Where going round does not settle, all combinations of modes of few contacts are tried.
+
+use hodograph::{ContactError, ContactMode, Selection, contact_mode, contact_mode_after};
+use nalgebra::{DVector, Vector2};
+
+use crate::forces::{Forces, Hold, Lacking, hold_good, shared};
+use crate::support::Support;
+
+/// Rounds at most.
+const ROUNDS: usize = 3000;
+/// Combinations of modes are tried for at most so many contacts.
+const FEW: usize = 4;
+
+/// What a closed contact does from an event on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Decision {
+    Separate,
+    Stick,
+    /// Along a direction; whether slip begins now.
+    Slide(Vector2<f64>, bool),
+}
+
+/// Decisions for all closed contacts, and whether others were possible.
+#[derive(Clone, Debug)]
+pub(crate) struct Choice {
+    pub decisions: Vec<Decision>,
+    pub forces: Vec<nalgebra::Vector3<f64>>,
+    pub selection: Vec<Selection>,
+    pub unique: bool,
+}
+
+/// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not slip.
+pub(crate) fn choose(
+    support: &Support,
+    slips: &[Option<Vector2<f64>>],
+    mu: &[f64],
+    before: &DVector<f64>,
+) -> Result<Choice, Lacking> {
+    let k = support.len();
+    if k == 1 {
+        return one(support, slips[0], mu[0], before);
+    }
+    let mut lambda = before.clone();
+    let mut decisions = vec![Decision::Separate; k];
+    let mut failed = None;
+    for round in 0..ROUNDS {
+        let mut change = 0.0_f64;
+        failed = None;
+        for i in 0..k {
+            match local(support, i, slips[i], mu[i], &lambda) {
+                Ok((decision, force)) => {
+                    decisions[i] = decision;
+                    let old = Support::three(&lambda, i);
+                    change = change.max((force - old).amax());
+                    lambda.rows_mut(3 * i, 3).copy_from(&force);
+                }
+                Err(error) => failed = Some((i, error)),
+            }
+        }
+        let settled = change <= 1e-11 * lambda.amax();
+        // What the modes say may be right long before the forces have settled.
+        if failed.is_none() && (settled || round % 16 == 15) {
+            // Friction that is just used up somewhere need not mean slip: others may take more.
+            for decisions in [held(support, &decisions, slips, &lambda), decisions.clone()] {
+                for about in [None, Some(&lambda)] {
+                    if let Some(choice) = polished(support, &decisions, slips, mu, about) {
+                        return Ok(choice);
+                    }
+                }
+            }
+        }
+        if settled {
+            break;
+        }
+    }
+    if k <= FEW
+        && let Some(choice) = tried(support, slips, mu)
+    {
+        return Ok(choice);
+    }
+    match failed {
+        Some((i, error)) => Err(Lacking::Contact(i, error)),
+        None => Err(Lacking::Together),
+    }
+}
+
+fn one(
+    support: &Support,
+    slip: Option<Vector2<f64>>,
+    mu: f64,
+    before: &DVector<f64>,
+) -> Result<Choice, Lacking> {
+    let answer = contact_mode_after(
+        &support.reduced(0),
+        &Support::three(&support.beta, 0),
+        &slip.unwrap_or_else(Vector2::zeros),
+        mu,
+        &Support::three(before, 0),
+    )
+    .map_err(|error| Lacking::Contact(0, error))?;
+    Ok(Choice {
+        decisions: vec![decision(answer.mode, answer.direction)],
+        forces: vec![answer.force],
+        selection: vec![answer.selection],
+        unique: answer.force_is_unique,
+    })
+}
+
+fn decision(mode: ContactMode, direction: Option<Vector2<f64>>) -> Decision {
+    match (mode, direction) {
+        (ContactMode::Slide, Some(d)) => Decision::Slide(d, false),
+        (ContactMode::BeginSlip, Some(d)) => Decision::Slide(d, true),
+        (ContactMode::Stick, _) => Decision::Stick,
+        _ => Decision::Separate,
+    }
+}
+
+/// One contact for given forces at the others.
+fn local(
+    support: &Support,
+    i: usize,
+    slip: Option<Vector2<f64>>,
+    mu: f64,
+    lambda: &DVector<f64>,
+) -> Result<(Decision, nalgebra::Vector3<f64>), ContactError<f64>> {
+    let matrix = support.reduced(i);
+    let own = Support::three(lambda, i);
+    let total = support.coupled.fixed_rows::<3>(3 * i) * lambda + support.beta.fixed_rows::<3>(3 * i);
+    let beta = total - matrix.apply(&own);
+    let slip = slip.unwrap_or_else(Vector2::zeros);
+    let answer = contact_mode(&matrix, &beta, &slip, mu)?;
+    Ok((decision(answer.mode, answer.direction), answer.force))
+}
+
+/// The same decisions, but for contacts that begin to slip without an acceleration: they stick.
+fn held(
+    support: &Support,
+    decisions: &[Decision],
+    slips: &[Option<Vector2<f64>>],
+    lambda: &DVector<f64>,
+) -> Vec<Decision> {
+    let acceleration = &support.coupled * lambda + &support.beta;
+    let size = support.beta.amax();
+    decisions
+        .iter()
+        .enumerate()
+        .map(|(i, decision)| {
+            let rate = acceleration[3 * i + 1].hypot(acceleration[3 * i + 2]);
+            let begins = matches!(decision, Decision::Slide(..)) && slips[i].is_none();
+            if begins && rate <= 1e-6 * size { Decision::Stick } else { *decision }
+        })
+        .collect()
+}
+
+/// The forces of these modes by one linear system; `None` where they do not fit.
+fn polished(
+    support: &Support,
+    decisions: &[Decision],
+    slips: &[Option<Vector2<f64>>],
+    mu: &[f64],
+    about: Option<&DVector<f64>>,
+) -> Option<Choice> {
+    let k = support.len();
+    let mut directions: Vec<Option<Vector2<f64>>> = decisions
+        .iter()
+        .map(|decision| match decision {
+            Decision::Slide(d, _) => Some(*d),
+            _ => None,
+        })
+        .collect();
+    let pressed: Vec<usize> = (0..k).filter(|&i| decisions[i] != Decision::Separate).collect();
+    let part = part(support, &pressed);
+    let friction: Vec<f64> = pressed.iter().map(|&i| mu[i]).collect();
+    let weights: Vec<f64> = pressed.iter().map(|&i| about.map_or(1.0, |all| all[3 * i])).collect();
+    let mut found: Option<(Forces, Vec<Hold>)> = None;
+    for _ in 0..60 {
+        let holds: Vec<Hold> =
+            pressed.iter().map(|&i| directions[i].map_or(Hold::Stick, Hold::Slide)).collect();
+        let forces = if pressed.is_empty() {
+            Forces { lambda: DVector::zeros(0), acceleration: DVector::zeros(0), unique: true, f: 1.0 }
+        } else {
+            shared(&part, &holds, &friction, weights.clone()).ok()?
+        };
+        // Slip begins along the acceleration.
+        let mut turned = 0.0_f64;
+        for (place, &i) in pressed.iter().enumerate() {
+            if slips[i].is_none() && directions[i].is_some() {
+                let rate =
+                    Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+                let next = rate / rate.norm();
+                if !next.x.is_finite() {
+                    return None;
+                }
+                turned = turned.max((next - directions[i].unwrap_or(next)).norm());
+                directions[i] = Some(next);
+            }
+        }
+        found = Some((forces, holds));
+        if turned <= 1e-14 {
+            break;
+        }
+    }
+    let (found, holds) = found?;
+    if !hold_good(&found, &holds, &friction) {
+        return None;
+    }
+    let mut lambda = DVector::zeros(3 * k);
+    for (place, &i) in pressed.iter().enumerate() {
+        lambda.rows_mut(3 * i, 3).copy_from(&found.of(place));
+    }
+    let acceleration = &support.coupled * &lambda + &support.beta;
+    let size = support.beta.amax() + (support.coupled.abs() * lambda.abs()).amax();
+    let mut result = Vec::with_capacity(k);
+    for i in 0..k {
+        let rate = Vector2::new(acceleration[3 * i + 1], acceleration[3 * i + 2]);
+        let fits = match (decisions[i], directions[i]) {
+            (Decision::Separate, _) => acceleration[3 * i] >= -1e-11 * size,
+            (Decision::Slide(..), Some(d)) if slips[i].is_none() => {
+                rate.dot(&d) > 1e-11 * size && (rate - d * rate.dot(&d)).norm() <= 1e-9 * size
+            }
+            (Decision::Stick, _) => slips[i].is_none(),
+            _ => true,
+        };
+        if !fits {
+            return None;
+        }
+        result.push(match (decisions[i], directions[i]) {
+            (Decision::Slide(..), Some(d)) => Decision::Slide(d, slips[i].is_none()),
+            (other, _) => other,
+        });
+    }
+    Some(Choice {
+        decisions: result,
+        forces: (0..k).map(|i| Support::three(&lambda, i)).collect(),
+        selection: vec![Selection::Unique; k],
+        unique: found.unique,
+    })
+}
+
+/// The support by some of the contacts.
+pub(crate) fn part(support: &Support, places: &[usize]) -> Support {
+    let rows: Vec<usize> = places.iter().flat_map(|&i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    Support {
+        contacts: places.iter().map(|&i| support.contacts[i]).collect(),
+        coupled: support.coupled.select_rows(&rows).select_columns(&rows),
+        partials: support.partials.select_rows(&rows),
+        response: support.response.select_columns(&rows),
+        velocity: support.velocity.select_rows(&rows),
+        beta: support.beta.select_rows(&rows),
+    }
+}
+
+/// Tries all combinations of modes.
+fn tried(support: &Support, slips: &[Option<Vector2<f64>>], mu: &[f64]) -> Option<Choice> {
+    let k = support.len();
+    for combination in 0..3_usize.pow(k as u32) {
+        let mut rest = combination;
+        let mut decisions = Vec::with_capacity(k);
+        for slip in slips {
+            decisions.push(match (rest % 3, slip) {
+                (0, Some(d)) => Decision::Slide(*d, false),
+                (0, None) => Decision::Stick,
+                (1, None) => {
+                    // A first guess of the direction: the free acceleration's.
+                    let i = decisions.len();
+                    let pull = Vector2::new(support.beta[3 * i + 1], support.beta[3 * i + 2]);
+                    let size = pull.norm();
+                    let guess = if size > 0.0 { pull / size } else { Vector2::new(1.0, 0.0) };
+                    Decision::Slide(guess, true)
+                }
+                _ => Decision::Separate,
+            });
+            rest /= 3;
+        }
+        if let Some(choice) = polished(support, &decisions, slips, mu, None) {
+            return Some(choice);
+        }
+    }
+    None
+}

@@ -1,0 +1,113 @@
+//! What integration lets drift is put right after each step: quaternions, closed loops, gaps and velocities of closed contacts.
+
+use hodograph::{Contacts, Kind, State, StateError};
+use nalgebra::{DMatrix, DVector};
+
+use crate::support::{Support, least_squares};
+
+/// Steps of Newton's method at most.
+const STEPS: usize = 4;
+
+/// Brings quaternions to length one and closes loops.
+pub(crate) fn close_loops(
+    mechanism: &dyn Contacts<f64>,
+    time: f64,
+    coordinates: &mut [f64],
+    speeds: &[f64],
+    inputs: &[f64],
+) -> Result<(), StateError> {
+    mechanism.normalize(coordinates)?;
+    let count = mechanism.count(Kind::DependentCoordinate);
+    if count == 0 {
+        return Ok(());
+    }
+    let places: Vec<usize> = (0..count).filter_map(|index| mechanism.dependent_coordinate(index)).collect();
+    let (mut residual, mut jacobian) = (vec![0.0; count], vec![0.0; count * count]);
+    for _ in 0..STEPS {
+        let state = State { time, coordinates: &*coordinates, speeds, inputs };
+        mechanism.configuration(&state, &mut residual, &mut jacobian)?;
+        let matrix = DMatrix::from_row_slice(count, count, &jacobian);
+        let change = least_squares(&matrix, &-DVector::from_column_slice(&residual));
+        for (&place, change) in places.iter().zip(change.iter()) {
+            coordinates[place] += change;
+        }
+        if change.amax() <= 1e-14 {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the mass matrix.
+pub(crate) fn close_gaps(
+    mechanism: &dyn Contacts<f64>,
+    time: f64,
+    coordinates: &mut [f64],
+    speeds: &[f64],
+    inputs: &[f64],
+    contacts: &[usize],
+) -> Result<(), StateError> {
+    let n = coordinates.len();
+    for _ in 0..STEPS {
+        let state = State { time, coordinates: &*coordinates, speeds, inputs };
+        let mut open = Vec::new();
+        let mut gaps = Vec::new();
+        for &contact in contacts {
+            if let Some(gap) = mechanism.gap(contact, &state)? {
+                open.push(contact);
+                gaps.push(gap);
+            }
+        }
+        if gaps.iter().all(|gap| gap.abs() <= 1e-16) {
+            return Ok(());
+        }
+        let support = Support::new(mechanism, &state, &open, false)?;
+        let rows: Vec<usize> = (0..open.len()).map(|i| 3 * i).collect();
+        let mut wanted = DVector::zeros(3 * open.len());
+        for (i, gap) in gaps.iter().enumerate() {
+            wanted[3 * i] = *gap;
+        }
+        let change = support.without(&rows, &wanted);
+        // q' is affine in u.
+        let (mut here, mut there) = (vec![0.0; n], vec![0.0; n]);
+        mechanism.coordinate_rates(&state, &mut here)?;
+        let moved: Vec<f64> = speeds.iter().zip(change.iter()).map(|(u, change)| u + change).collect();
+        mechanism.coordinate_rates(&State { speeds: &moved, ..state }, &mut there)?;
+        let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
+        for (coordinate, (here, there)) in coordinates.iter_mut().zip(here.iter().zip(&there)) {
+            *coordinate += there - here;
+        }
+        close_loops(mechanism, time, coordinates, speeds, inputs)?;
+        if largest <= 1e-15 {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least change of kinetic energy.
+pub(crate) fn hold_velocities(
+    mechanism: &dyn Contacts<f64>,
+    time: f64,
+    coordinates: &[f64],
+    speeds: &mut [f64],
+    inputs: &[f64],
+    closed: &[(usize, bool)],
+) -> Result<(), StateError> {
+    if closed.is_empty() {
+        return Ok(());
+    }
+    let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
+    let rows: Vec<usize> = closed
+        .iter()
+        .enumerate()
+        .flat_map(|(i, (_, sticks))| (0..if *sticks { 3 } else { 1 }).map(move |axis| 3 * i + axis))
+        .collect();
+    for _ in 0..2 {
+        let state = State { time, coordinates, speeds: &*speeds, inputs };
+        let support = Support::new(mechanism, &state, &contacts, false)?;
+        let change = support.without(&rows, &support.velocity);
+        speeds.iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
+    }
+    Ok(())
+}

@@ -1,0 +1,67 @@
+//! What drives a mechanism: its named inputs as functions of time and state.
+
+use std::fmt;
+use std::sync::Arc;
+
+/// A function that writes the inputs for a time, coordinates and speeds.
+pub type InputFunction = Arc<dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync>;
+
+/// Computes inputs at its sampling times; it may remember. Every cloneable closure of that signature is one.
+pub trait Controller: Send {
+    /// Writes the inputs for a time, coordinates and speeds; the slice holds the inputs so far.
+    fn control(&mut self, time: f64, coordinates: &[f64], speeds: &[f64], inputs: &mut [f64]);
+    /// A copy with its memory.
+    fn boxed_clone(&self) -> Box<dyn Controller>;
+}
+
+impl<F> Controller for F
+where
+    F: FnMut(f64, &[f64], &[f64], &mut [f64]) + Clone + Send + 'static,
+{
+    fn control(&mut self, time: f64, coordinates: &[f64], speeds: &[f64], inputs: &mut [f64]) {
+        self(time, coordinates, speeds, inputs);
+    }
+
+    fn boxed_clone(&self) -> Box<dyn Controller> {
+        Box::new(self.clone())
+    }
+}
+
+/// Where the inputs of a mechanism come from.
+#[derive(Default)]
+pub enum Drive {
+    /// They stay as they are in the start state.
+    #[default]
+    Held,
+    /// They are a smooth function of time and state, evaluated within steps.
+    Continuous(InputFunction),
+    /// They are computed every `period` seconds, from the start on, and held in between.
+    Sampled {
+        /// sampling time, s
+        period: f64,
+        /// the law of control
+        controller: Box<dyn Controller>,
+    },
+}
+
+impl Clone for Drive {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Held => Self::Held,
+            Self::Continuous(function) => Self::Continuous(Arc::clone(function)),
+            Self::Sampled { period, controller } => {
+                Self::Sampled { period: *period, controller: controller.boxed_clone() }
+            }
+        }
+    }
+}
+
+impl fmt::Debug for Drive {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Held => out.write_str("Held"),
+            Self::Continuous(_) => out.write_str("Continuous"),
+            Self::Sampled { period, .. } => write!(out, "Sampled({period} s)"),
+        }
+    }
+}

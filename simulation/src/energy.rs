@@ -1,0 +1,24 @@
+//! Where the energy of a motion goes.
+
+/// The energies at a time and the works since the start, J. Kinetic and potential energy change by the sum of the works, and by the work of
+/// loads that have no potential and of prescribed motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct EnergyAccount {
+    /// kinetic energy
+    pub kinetic: f64,
+    /// potential energy of gravity and springs; `None` where the model has neither
+    pub potential: Option<f64>,
+    /// work of friction in contact that lasts, not positive
+    pub friction: f64,
+    /// change of kinetic energy in impacts
+    pub impacts: f64,
+    /// work of the named inputs
+    pub inputs: f64,
+}
+
+impl EnergyAccount {
+    /// Kinetic and potential energy.
+    pub fn total(&self) -> f64 {
+        self.kinetic + self.potential.unwrap_or(0.0)
+    }
+}

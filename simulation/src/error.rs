@@ -1,0 +1,93 @@
+//! Why a motion cannot be followed.
+
+use std::fmt;
+
+use hodograph::{CollisionError, ContactError, StateError};
+
+/// Why a motion cannot be followed further, when, and at which contact.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SimulationError {
+    /// when, s
+    pub time: f64,
+    /// name of the contact, if it is about one
+    pub contact: Option<String>,
+    /// what is wrong
+    pub reason: Reason,
+}
+
+/// What is wrong.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The mechanism has no equations of motion there.
+    State(StateError),
+    /// A collision has no outcome.
+    Collision(CollisionError<f64>),
+    /// A contact that lasts has no force.
+    Contact(ContactError<f64>),
+    /// A contact begins with a negative gap, m.
+    Overlap(f64),
+    /// An option or a surface is impossible.
+    Option(String),
+    /// A controller or a function of inputs gave a number that is not finite, or has the wrong length.
+    Input(String),
+    /// The integrator's steps became too small.
+    Stalled,
+    /// So many events followed each other without progress in time.
+    EventsWithoutEnd(usize),
+    /// Several contacts were struck together and the option says to stop.
+    Together(Vec<String>),
+    /// The forces at several contacts could not be found.
+    Forces(String),
+}
+
+impl Reason {
+    /// A stable lower-case name.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::State(error) => error.kind(),
+            Self::Collision(error) => error.kind(),
+            Self::Contact(error) => error.kind(),
+            Self::Overlap(_) => "overlap",
+            Self::Option(_) => "bad_option",
+            Self::Input(_) => "bad_input",
+            Self::Stalled => "stalled",
+            Self::EventsWithoutEnd(_) => "events_without_end",
+            Self::Together(_) => "struck_together",
+            Self::Forces(_) => "no_forces",
+        }
+    }
+}
+
+impl fmt::Display for SimulationError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "at t = {}", self.time)?;
+        if let Some(contact) = &self.contact {
+            write!(out, ", contact {contact}")?;
+        }
+        write!(out, ": ")?;
+        match &self.reason {
+            Reason::State(error) => error.fmt(out),
+            Reason::Collision(error) => error.fmt(out),
+            Reason::Contact(error) => error.fmt(out),
+            Reason::Overlap(gap) => {
+                write!(out, "the negative gap {gap}: start where the bodies are apart, or touch")
+            }
+            Reason::Option(message) | Reason::Input(message) | Reason::Forces(message) => {
+                out.write_str(message)
+            }
+            Reason::Stalled => write!(
+                out,
+                "the steps of the integration became too small: the motion is singular or too stiff there"
+            ),
+            Reason::EventsWithoutEnd(count) => {
+                write!(out, "{count} events followed each other without progress in time")
+            }
+            Reason::Together(names) => {
+                write!(out, "{} are struck together, and the option is to stop there", names.join(", "))
+            }
+        }
+    }
+}
+
+impl std::error::Error for SimulationError {}

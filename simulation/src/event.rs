@@ -1,0 +1,86 @@
+//! What happens in a motion.
+
+use hodograph::{CollisionOutcome, ContactMode, Selection};
+
+/// Something that happened at one time.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// s
+    pub time: f64,
+    /// number of the contact, if it happened at one
+    pub contact: Option<usize>,
+    /// what happened
+    pub kind: EventKind,
+    /// coordinates at that time
+    pub coordinates: Vec<f64>,
+    /// independent speeds after it
+    pub speeds: Vec<f64>,
+}
+
+/// What happened.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum EventKind {
+    /// Bodies collided.
+    Collision(Box<Struck>),
+    /// A sliding contact that no finite force can hold suffered an impact with zero speed of approach.
+    ImpactWithoutCollision(Box<Struck>),
+    /// The bodies touch from now on.
+    Contact {
+        /// how they touch
+        mode: ContactMode,
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// The bodies part without a collision.
+    LiftOff {
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// A contact that stuck begins to slip, or slips in another direction after a stop.
+    Slip {
+        /// direction along the two tangential axes of the contact basis
+        direction: [f64; 2],
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// Slip ended and friction holds the contact.
+    Stick {
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// Nothing moves any more.
+    Rest,
+    /// The user's function of this number is zero.
+    Zero(usize),
+}
+
+impl EventKind {
+    /// A stable lower-case name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Collision(_) => "collision",
+            Self::ImpactWithoutCollision(_) => "impact_without_collision",
+            Self::Contact { .. } => "contact",
+            Self::LiftOff { .. } => "lift_off",
+            Self::Slip { .. } => "slip",
+            Self::Stick { .. } => "stick",
+            Self::Rest => "rest",
+            Self::Zero(_) => "zero",
+        }
+    }
+}
+
+/// A solved collision.
+#[derive(Clone, Debug)]
+pub struct Struck {
+    /// the solver's answer along n, t, s, and the axes
+    pub outcome: CollisionOutcome<f64>,
+    /// independent speeds before
+    pub speeds_before: Vec<f64>,
+    /// whether it was solved with e = 0 because the next bounce would be lower than the tolerance
+    pub last_bounce: bool,
+    /// for the first of several contacts struck together: the greatest difference of a speed after all of them between the orders in which
+    /// they may answer; zero where the order does not matter
+    pub spread: Option<f64>,
+}

@@ -1,0 +1,256 @@
+//! Location of events: the first place in a step where one of several functions falls below zero.
+//!
+//! Each function is interpolated at Chebyshev points, more of them or on a part of the step until the last coefficients tell that nothing is left.
+//! What the polynomial does between its points is bounded: on an interval of half width r about m it is at least p(m) - |p'(m)| r - P r^2 / 2 with
+//! P a bound of |p''|. Intervals in which this excludes a zero are left, those in which p' cannot vanish have their ends compared, and all others are
+//! halved: so every extremum is looked at.
+
+/// Degrees tried, each twice the one before: points are used again.
+const DEGREES: [usize; 3] = [8, 16, 32];
+/// Most halvings of a step where a function is not smooth.
+const DEPTH: usize = 24;
+
+/// Where a function falls below zero.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Crossing {
+    /// Its number.
+    pub function: usize,
+    /// Fraction of the step.
+    pub place: f64,
+}
+
+/// A polynomial by its Chebyshev coefficients on [-1, 1].
+struct Chebyshev {
+    coefficients: Vec<f64>,
+    /// Bound of the second derivative.
+    bend: f64,
+    /// What it may differ from the function.
+    error: f64,
+}
+
+impl Chebyshev {
+    /// Through values at cos(k pi / n), k = 0 .. n.
+    fn through(values: &[f64]) -> Self {
+        let n = values.len() - 1;
+        let nf = n as f64;
+        let mut coefficients = vec![0.0; n + 1];
+        for (j, coefficient) in coefficients.iter_mut().enumerate() {
+            let mut sum = 0.0;
+            for (k, value) in values.iter().enumerate() {
+                let weight = if k == 0 || k == n { 0.5 } else { 1.0 };
+                // cos of a multiple of pi / n, by whole turns, so that equal angles give equal bits.
+                let angle = (j * k) % (2 * n);
+                sum += weight * value * (angle as f64 * std::f64::consts::PI / nf).cos();
+            }
+            let half = if j == 0 || j == n { 1.0 } else { 2.0 };
+            *coefficient = half * sum / nf;
+        }
+        let bend = coefficients.iter().enumerate().map(|(k, c)| {
+            let k = (k * k) as f64;
+            c.abs() * k * (k - 1.0) / 3.0
+        });
+        let bend = bend.sum();
+        let last = coefficients.iter().rev().take(3).map(|c| c.abs()).fold(0.0, f64::max);
+        Self { coefficients, bend, error: 2.0 * last }
+    }
+
+    fn size(&self) -> f64 {
+        self.coefficients.iter().map(|c| c.abs()).sum()
+    }
+
+    /// Value and derivative.
+    fn at(&self, x: f64) -> (f64, f64) {
+        // Clenshaw's recurrence, and its derivative.
+        let (mut b1, mut b2, mut d1, mut d2) = (0.0, 0.0, 0.0, 0.0);
+        for &c in self.coefficients.iter().skip(1).rev() {
+            let d = 2.0 * b1 + 2.0 * x * d1 - d2;
+            (d2, d1) = (d1, d);
+            let b = c + 2.0 * x * b1 - b2;
+            (b2, b1) = (b1, b);
+        }
+        let first = self.coefficients.first().copied().unwrap_or(0.0);
+        (first + x * b1 - b2, b1 + x * d1 - d2)
+    }
+
+    /// The first place in [low, high] where the polynomial falls below -noise.
+    fn first_below(&self, low: f64, high: f64, noise: f64, depth: usize) -> Option<f64> {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let (value, slope) = self.at(middle);
+        let least = value - slope.abs() * half - 0.5 * self.bend * half * half;
+        if least > -noise {
+            return None;
+        }
+        let monotone = slope.abs() > self.bend * half;
+        if monotone || depth == 0 || half < 1e-13 {
+            let (first, last) = (self.at(low).0, self.at(high).0);
+            if first < -noise {
+                return Some(low);
+            }
+            return (last < -noise).then(|| self.bisect(low, high));
+        }
+        self.first_below(low, middle, noise, depth - 1)
+            .or_else(|| self.first_below(middle, high, noise, depth - 1))
+    }
+
+    /// The zero between a place where the polynomial is not below zero and one where it is.
+    fn bisect(&self, mut low: f64, mut high: f64) -> f64 {
+        if self.at(low).0 <= 0.0 {
+            return low;
+        }
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if self.at(middle).0 > 0.0 { low = middle } else { high = middle }
+        }
+        high
+    }
+}
+
+/// The first crossing of `count` functions over the fractions [0, 1] of a step. `values` gives all functions at a fraction, or nothing where they
+/// cannot be evaluated; `noise` is what rounding may do to each.
+pub(crate) fn first_crossing(
+    count: usize,
+    noise: &[f64],
+    values: &mut dyn FnMut(f64) -> Option<Vec<f64>>,
+) -> Option<Crossing> {
+    if count == 0 {
+        return None;
+    }
+    let active: Vec<usize> = (0..count).collect();
+    within(&active, noise, values, 0.0, 1.0, DEPTH)
+}
+
+fn within(
+    active: &[usize],
+    noise: &[f64],
+    values: &mut dyn FnMut(f64) -> Option<Vec<f64>>,
+    low: f64,
+    high: f64,
+    depth: usize,
+) -> Option<Crossing> {
+    let mut points: Vec<Option<Vec<f64>>> = Vec::new();
+    let mut unresolved: Vec<usize> = active.to_vec();
+    let mut found: Option<Crossing> = None;
+    for degree in DEGREES {
+        // Every second point is known.
+        let mut next = vec![None; degree + 1];
+        for (k, slot) in next.iter_mut().enumerate() {
+            let known = if points.is_empty() || k % 2 == 1 {
+                None
+            } else {
+                points.get_mut(k / 2).and_then(Option::take)
+            };
+            let x = (k as f64 * std::f64::consts::PI / degree as f64).cos();
+            let place = if k == 0 {
+                high
+            } else if k == degree {
+                low
+            } else {
+                low + 0.5 * (high - low) * (1.0 + x)
+            };
+            *slot = known.or_else(|| values(place));
+        }
+        points = next;
+        let Some(rows) = points.iter().map(Option::as_ref).collect::<Option<Vec<&Vec<f64>>>>() else {
+            // Somewhere there are no values: a shorter part may have them.
+            break;
+        };
+        let mut left = Vec::new();
+        for function in unresolved {
+            let column: Vec<f64> = rows.iter().map(|row| row[function]).collect();
+            let polynomial = Chebyshev::through(&column);
+            let noise = noise.get(function).copied().unwrap_or(0.0);
+            let (size, error) = (polynomial.size(), polynomial.error);
+            let rest = size - 2.0 * polynomial.coefficients[0].abs();
+            let fine = (1e-13 * size).max(4.0 * noise);
+            // Far from zero, or well interpolated.
+            if polynomial.coefficients[0] > 0.0 && rest + 8.0 * error < 0.0 {
+                continue;
+            }
+            if error > fine && !(error <= 1e-9 * size && degree == 32 && depth == 0) {
+                left.push(function);
+                continue;
+            }
+            if let Some(x) = polynomial.first_below(-1.0, 1.0, noise + error, 60) {
+                let place = low + 0.5 * (high - low) * (1.0 + x);
+                if found.is_none_or(|crossing| place < crossing.place) {
+                    found = Some(Crossing { function, place });
+                }
+            }
+        }
+        unresolved = left;
+        if unresolved.is_empty() {
+            return found;
+        }
+    }
+    if depth == 0 || high - low < 1e-12 {
+        // Not smooth even here: the ends tell.
+        let ends = (values(low), values(high));
+        if let (Some(_), Some(last)) = ends {
+            for function in unresolved {
+                let noise = noise.get(function).copied().unwrap_or(0.0);
+                if last[function] < -noise && found.is_none_or(|crossing| high < crossing.place) {
+                    found = Some(Crossing { function, place: high });
+                }
+            }
+        }
+        return found;
+    }
+    let middle = 0.5 * (low + high);
+    let rest = unresolved;
+    let first = within(&rest, noise, values, low, middle, depth - 1);
+    let earliest = |a: Option<Crossing>, b: Option<Crossing>| match (a, b) {
+        (Some(a), Some(b)) => Some(if b.place < a.place { b } else { a }),
+        (a, b) => a.or(b),
+    };
+    if let Some(first) = first {
+        return earliest(found, Some(first));
+    }
+    if found.is_some_and(|crossing| crossing.place <= middle) {
+        return found;
+    }
+    earliest(found, within(&rest, noise, values, middle, high, depth - 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn first(f: impl Fn(f64) -> f64) -> Option<f64> {
+        first_crossing(1, &[0.0], &mut |x| Some(vec![f(x)])).map(|crossing| crossing.place)
+    }
+
+    #[test]
+    fn crossings_are_found_wherever_they_are() {
+        for k in 1..200 {
+            let zero = f64::from(k) / 200.0;
+            let place = first(|x| zero - x).unwrap();
+            assert!((place - zero).abs() < 1e-12);
+            // Down and up again within a thousandth of the step: no sign change between the ends.
+            let width = 5e-4;
+            if zero < 0.99 {
+                let place = first(|x| (x - zero) * (x - zero - width) * (1.0 + x)).unwrap();
+                assert!((place - zero).abs() < 1e-9, "{zero}: {place}");
+            }
+        }
+    }
+
+    #[test]
+    fn oscillations_are_resolved() {
+        // The dip below zero is the 23rd minimum.
+        let f = |x: f64| 1.0001 + (300.0 * x).cos() - 0.0002 * x;
+        let place = first(f).unwrap();
+        let mut x = 0.0;
+        while f(x) > 0.0 {
+            x += 1e-7;
+        }
+        assert!((place - x).abs() < 2e-7, "{place} {x}");
+        assert!(first(|x| 1.0001 + (300.0 * x).cos()).is_none());
+        assert!(first(|x: f64| (x - 0.3).powi(2)).is_none());
+    }
+
+    #[test]
+    fn kinks_do_not_hide_a_crossing() {
+        let place = first(|x: f64| (x - 0.4).abs() - 1e-4).unwrap();
+        assert!((place - 0.3999).abs() < 1e-6, "{place}");
+    }
+}

@@ -1,0 +1,160 @@
+//! The rates of the state while the modes of all contacts stay.
+
+use hodograph::{ContactError, Contacts, Kind, State, StateError};
+use nalgebra::Vector2;
+
+use crate::Drive;
+use crate::forces::{Forces, Hold, Lacking, shared};
+use crate::support::Support;
+
+/// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
+const DIRECTION: f64 = 1e-10;
+
+/// A closed contact while its mode lasts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closed {
+    pub contact: usize,
+    pub mu: f64,
+    /// its normal force when its mode was decided
+    pub weight: f64,
+    /// none while it sticks; else the direction in which slip began, for as long as slip is too small to have one
+    pub slides: Option<Vector2<f64>>,
+}
+
+/// Why the rates cannot be evaluated.
+#[derive(Clone, Debug)]
+pub(crate) enum Failure {
+    State(StateError),
+    Contact(usize, ContactError<f64>),
+    Together,
+    Input(String),
+}
+
+impl From<StateError> for Failure {
+    fn from(error: StateError) -> Self {
+        Self::State(error)
+    }
+}
+
+/// The system that is integrated: coordinates, speeds, work of friction, work of inputs.
+pub(crate) struct Motion<'a> {
+    pub mechanism: &'a dyn Contacts<f64>,
+    pub drive: &'a Drive,
+    pub held: &'a [f64],
+    pub closed: &'a [Closed],
+    /// Nothing moves: what is left of the rates is rounding.
+    pub resting: bool,
+}
+
+/// All that is known of a state.
+pub(crate) struct Evaluation {
+    pub rates: Vec<f64>,
+    pub support: Support,
+    pub holds: Vec<Hold>,
+    pub forces: Option<Forces>,
+}
+
+/// Numbers of the state beyond coordinates and speeds: work of friction and of inputs.
+pub(crate) const WORKS: usize = 2;
+
+impl Motion<'_> {
+    /// Coordinates and speeds.
+    pub fn split<'y>(&self, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        (&y[..n], &y[n..n + p])
+    }
+
+    /// The inputs in a state.
+    pub fn inputs(&self, t: f64, y: &[f64]) -> Result<Vec<f64>, Failure> {
+        let mut inputs = self.held.to_vec();
+        if let Drive::Continuous(function) = self.drive {
+            let (q, u) = self.split(y);
+            function(t, q, u, &mut inputs);
+            if let Some(bad) = inputs.iter().position(|value| !value.is_finite()) {
+                return Err(Failure::Input(self.bad_input(bad, inputs[bad])));
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// What is said of an input that is no number.
+    pub fn bad_input(&self, index: usize, value: f64) -> String {
+        let name = self.mechanism.component(Kind::Input, index).map_or("?", |component| component.name);
+        format!("the input {name} is {value}: what drives the mechanism must give finite numbers")
+    }
+
+    /// Modes as they are at these velocities.
+    pub fn holds(&self, support: &Support, speeds: &[f64]) -> Vec<Hold> {
+        self.closed
+            .iter()
+            .enumerate()
+            .map(|(i, closed)| match closed.slides {
+                None => Hold::Stick,
+                Some(began) => {
+                    let slip = support.slip(i);
+                    let speed = slip.norm();
+                    let known = speed > DIRECTION * support.velocity_size(i, speeds);
+                    Hold::Slide(if known { slip / speed } else { began })
+                }
+            })
+            .collect()
+    }
+
+    /// Rates, and the forces of the closed contacts.
+    pub fn evaluate(&self, t: f64, y: &[f64]) -> Result<Evaluation, Failure> {
+        let (q, u) = self.split(y);
+        let (n, p) = (q.len(), u.len());
+        let inputs = self.inputs(t, y)?;
+        let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
+        let mut rates = vec![0.0; n + p + WORKS];
+        self.mechanism.coordinate_rates(&state, &mut rates[..n])?;
+        self.mechanism.accelerations(&state, &mut rates[n..n + p])?;
+        let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        let support = Support::new(self.mechanism, &state, &contacts, true)?;
+        let holds = self.holds(&support, u);
+        let mut found = None;
+        if !contacts.is_empty() {
+            let mu: Vec<f64> = self.closed.iter().map(|closed| closed.mu).collect();
+            let weights: Vec<f64> = self.closed.iter().map(|closed| closed.weight).collect();
+            let lacking = |lacking| match lacking {
+                Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
+                Lacking::Together => Failure::Together,
+            };
+            let answer = shared(&support, &holds, &mu, weights).map_err(lacking)?;
+            let greatest = answer.lambda.amax();
+            for (i, rate) in rates[n..n + p].iter_mut().enumerate() {
+                let mut size = rate.abs();
+                for (response, force) in support.response.row(i).iter().zip(answer.lambda.iter()) {
+                    *rate += response * force;
+                    size += response.abs() * greatest;
+                }
+                // What friction holds stays exactly where it is.
+                let rounding = if self.resting { 1e-11 } else { 64.0 * f64::EPSILON };
+                if rate.abs() <= rounding * size {
+                    *rate = 0.0;
+                }
+            }
+            for (i, hold) in holds.iter().enumerate() {
+                if let Hold::Slide(_) = hold {
+                    let force = answer.of(i);
+                    rates[n + p] += Vector2::new(force.y, force.z).dot(&support.slip(i));
+                }
+            }
+            found = Some(answer);
+        }
+        if inputs.iter().any(|&input| input != 0.0) {
+            rates[n + p + 1] = self.input_power(&state)?;
+        }
+        Ok(Evaluation { rates, support, holds, forces: found })
+    }
+
+    /// Power of the inputs: the generalized forces they add, times the speeds.
+    fn input_power(&self, state: &State<'_>) -> Result<f64, StateError> {
+        let p = state.speeds.len();
+        let (mut with, mut without) = (vec![0.0; p], vec![0.0; p]);
+        self.mechanism.forcing(state, &mut with)?;
+        let none = vec![0.0; state.inputs.len()];
+        self.mechanism.forcing(&State { inputs: &none, ..*state }, &mut without)?;
+        Ok(with.iter().zip(&without).zip(state.speeds).map(|((a, b), u)| (a - b) * u).sum())
+    }
+}

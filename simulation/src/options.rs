@@ -1,0 +1,80 @@
+//! What a simulation may be told.
+
+use std::fmt;
+use std::sync::Arc;
+
+use hodograph::Surface;
+
+use crate::Drive;
+
+/// A function of time, coordinates and speeds whose zeros are events.
+pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
+
+/// What happens where several contacts are struck at the same time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Together {
+    /// One after the other, the fastest approach first, until nothing approaches.
+    #[default]
+    Sequential,
+    /// All at once: the contacts deform in the ratio of their stiffnesses (Liu, Zhao and Brogliato 2008).
+    Lzb,
+    /// The simulation ends with an error.
+    Stop,
+}
+
+/// Options of a simulation. Start from `Options::default()`.
+#[derive(Clone)]
+pub struct Options {
+    /// relative tolerance of the integration
+    pub relative_tolerance: f64,
+    /// absolute tolerance of the integration, in the units of coordinates and speeds; bounces lower than this end in contact
+    pub absolute_tolerance: f64,
+    /// greatest step of the integration, s
+    pub max_step: f64,
+    /// the surfaces of the contacts that have one of their own, by number
+    pub surfaces: Vec<(usize, Surface<f64>)>,
+    /// the surfaces of all other contacts
+    pub surface: Option<Surface<f64>>,
+    /// where inputs come from
+    pub drive: Drive,
+    /// what happens where several contacts are struck together
+    pub together: Together,
+    /// stiffness of each contact relative to the others, for [`Together::Lzb`]; 1 where the list ends
+    pub stiffness: Vec<f64>,
+    /// whether all orders of up to four contacts struck together are compared
+    pub compare_orders: bool,
+    /// functions whose zeros are events
+    pub events: Vec<EventFunction>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            relative_tolerance: 1e-12,
+            absolute_tolerance: 1e-12,
+            max_step: f64::INFINITY,
+            surfaces: Vec::new(),
+            surface: None,
+            drive: Drive::Held,
+            together: Together::Sequential,
+            stiffness: Vec::new(),
+            compare_orders: true,
+            events: Vec::new(),
+        }
+    }
+}
+
+impl fmt::Debug for Options {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.debug_struct("Options")
+            .field("relative_tolerance", &self.relative_tolerance)
+            .field("absolute_tolerance", &self.absolute_tolerance)
+            .field("max_step", &self.max_step)
+            .field("surfaces", &self.surfaces)
+            .field("surface", &self.surface)
+            .field("drive", &self.drive)
+            .field("together", &self.together)
+            .field("events", &self.events.len())
+            .finish_non_exhaustive()
+    }
+}

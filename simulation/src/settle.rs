@@ -1,0 +1,295 @@
+//! Modes of closed contacts at events.
+
+use hodograph::{ContactError, ContactMode, Kind, Selection, State};
+use nalgebra::{DVector, Vector2, Vector3};
+
+use crate::choose::{Choice, Decision, choose};
+use crate::forces::{Lacking, hold_good};
+use crate::motion::Failure;
+use crate::proceed::mus;
+use crate::simulation::{Leaving, Phase, Simulation};
+use crate::support::Support;
+use crate::{EventKind, Reason, SimulationError};
+
+/// Slip below this, relative to the speeds that make it up, is none.
+const NO_SLIP: f64 = 1e-11;
+/// The first step of a slip that begins, s.
+const FIRST: f64 = 1e-7;
+/// So many events at one time make a contact change its mode even where another share of the forces might keep it.
+const PATIENCE: usize = 40;
+
+impl Simulation<'_> {
+    /// Something from outside changed the forces: modes that still fit are kept.
+    pub(crate) fn settle_again(&mut self) -> Result<(), SimulationError> {
+        if self.keeps()? {
+            return Ok(());
+        }
+        let candidates: Vec<usize> = (0..self.phases.len()).filter(|&i| self.phases[i].is_closed()).collect();
+        let was = self.phases.clone();
+        self.decide(&candidates, &was)
+    }
+
+    /// Whether the modes as they are have forces that fit.
+    fn keeps(&self) -> Result<bool, SimulationError> {
+        let closed = self.closed();
+        if closed.is_empty() {
+            return Ok(true);
+        }
+        match self.motion(&closed).evaluate(self.t, &self.y) {
+            Ok(evaluation) => {
+                let forces = evaluation.forces.as_ref();
+                Ok(forces.is_none_or(|forces| hold_good(forces, &evaluation.holds, &mus(&closed))))
+            }
+            Err(Failure::Contact(..) | Failure::Together) => Ok(false),
+            Err(failure) => Err(self.failure(failure)),
+        }
+    }
+
+    /// Friction no longer suffices at a contact.
+    pub(crate) fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let was = self.phases.clone();
+        let before = self.force_of(contact)?;
+        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
+        let state = (self.y.clone(), self.phases.clone(), self.queue.len());
+        let decided = self.decide(&candidates, &was);
+        if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
+            // On the edge neither sticking nor slipping fits: what is at its limit begins to slip.
+            (self.y, self.phases) = (state.0, state.1);
+            self.queue.truncate(state.2);
+            return self.slip_at_limit(&candidates);
+        }
+        decided?;
+        let patient = candidates.len() > 1 && self.crowd.0 < PATIENCE;
+        if self.phases[contact] == Phase::Stick && !(patient && self.keeps()?) {
+            self.slip_against(contact, &before);
+        }
+        Ok(())
+    }
+
+    /// All contacts whose friction is used up begin to slip.
+    fn slip_at_limit(&mut self, candidates: &[usize]) -> Result<(), SimulationError> {
+        for &contact in candidates {
+            let force = self.force_of(contact)?;
+            let most = self.mu(contact) * force.x;
+            if self.phases[contact] == Phase::Stick && force.y.hypot(force.z) >= (1.0 - 1e-9) * most {
+                self.slip_against(contact, &force);
+            }
+        }
+        Ok(())
+    }
+
+    /// Slip begins against the friction that held it.
+    fn slip_against(&mut self, contact: usize, force: &Vector3<f64>) {
+        let friction = Vector2::new(force.y, force.z);
+        let size = friction.norm();
+        if size > 0.0 {
+            self.phases[contact] = Phase::Slide(-friction / size);
+            self.next = FIRST;
+            self.slips(contact, Selection::Unique);
+        }
+    }
+
+    /// The normal force of a contact vanishes.
+    pub(crate) fn lift_off(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let was = self.phases.clone();
+        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
+        if candidates.len() > 1 && self.crowd.0 < PATIENCE {
+            self.decide(&candidates, &was)?;
+            if !self.phases[contact].is_closed() || self.keeps()? {
+                return Ok(());
+            }
+        }
+        if self.phases[contact].is_closed() {
+            self.phases[contact] = Phase::Open(Leaving::Lifted);
+            self.forces[contact] = Vector3::zeros();
+            self.resting = false;
+            self.push(Some(contact), EventKind::LiftOff { selection: Selection::Unique });
+        }
+        self.settle_again()
+    }
+
+    /// Slip of these contacts has ended.
+    pub(crate) fn slip_ended(&mut self, stopped: &[usize]) -> Result<(), SimulationError> {
+        let mut was = self.phases.clone();
+        for &contact in stopped {
+            was[contact] = Phase::Slide(Vector2::zeros());
+        }
+        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
+        self.decide(&candidates, &was)?;
+        self.look_for_rest()
+    }
+
+    /// The force at a contact as things are; the last one decided where it cannot be evaluated.
+    fn force_of(&self, contact: usize) -> Result<Vector3<f64>, SimulationError> {
+        let closed = self.closed();
+        let place = closed.iter().position(|closed| closed.contact == contact);
+        let evaluation = self.motion(&closed).evaluate(self.t, &self.y);
+        Ok(match (place, evaluation) {
+            (Some(place), Ok(evaluation)) => {
+                evaluation.forces.map_or(self.forces[contact], |forces| forces.of(place))
+            }
+            _ => self.forces[contact],
+        })
+    }
+
+    /// Decides the modes of contacts whose gaps are closed and which do not approach or part; `was` are the phases before.
+    pub(crate) fn decide(&mut self, candidates: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
+        if candidates.is_empty() {
+            return Ok(());
+        }
+        self.resting = false;
+        // Contacts without slip are held so, that it is none exactly.
+        let slips = self.slips_of(candidates)?;
+        for (&contact, slip) in candidates.iter().zip(&slips) {
+            self.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
+        }
+        self.correct()?;
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let inputs = self.motion(&[]).inputs(self.t, &self.y).map_err(|failure| self.failure(failure))?;
+        let state =
+            State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &inputs };
+        let support = Support::new(self.mechanism, &state, candidates, true)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let mu: Vec<f64> = candidates.iter().map(|&contact| self.mu(contact)).collect();
+        let before = DVector::from_iterator(
+            3 * candidates.len(),
+            candidates.iter().flat_map(|&contact| self.forces[contact].iter().copied().collect::<Vec<f64>>()),
+        );
+        match choose(&support, &slips, &mu, &before) {
+            Ok(choice) => {
+                self.apply(candidates, was, &choice);
+                Ok(())
+            }
+            Err(Lacking::Contact(
+                place,
+                ContactError::ImpactWithoutCollision { .. } | ContactError::Jam { .. },
+            )) => self.impact_without_collision(candidates[place]),
+            Err(Lacking::Contact(place, error)) => {
+                Err(self.error(Some(candidates[place]), Reason::Contact(error)))
+            }
+            Err(Lacking::Together) => Err(self.failure(Failure::Together)),
+        }
+    }
+
+    /// The directions of slip; none where there is none.
+    fn slips_of(&self, candidates: &[usize]) -> Result<Vec<Option<Vector2<f64>>>, SimulationError> {
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let speeds = &self.y[n..n + p];
+        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let support = Support::new(self.mechanism, &state, candidates, false)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        Ok(candidates
+            .iter()
+            .enumerate()
+            .map(|(i, &contact)| {
+                if self.phases[contact] == Phase::Stick {
+                    return None;
+                }
+                let slip = support.slip(i);
+                let size = support.velocity_size(i, speeds).max(support.velocity_size(i, &self.scale));
+                (slip.norm() > NO_SLIP * size).then(|| slip / slip.norm())
+            })
+            .collect())
+    }
+
+    /// Takes the modes chosen, and says what changed.
+    fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
+        self.unique = choice.unique;
+        for (place, &contact) in candidates.iter().enumerate() {
+            let selection = choice.selection[place];
+            self.forces[contact] = choice.forces[place];
+            match choice.decisions[place] {
+                Decision::Separate => {
+                    self.phases[contact] = Phase::Open(Leaving::Lifted);
+                    if was[contact].is_closed() {
+                        self.push(Some(contact), EventKind::LiftOff { selection });
+                    }
+                }
+                Decision::Stick => {
+                    self.phases[contact] = Phase::Stick;
+                    match was[contact] {
+                        Phase::Open(_) => self.begin_contact(contact, selection),
+                        Phase::Slide(_) if !self.bounces(contact) => {
+                            self.push(Some(contact), EventKind::Stick { selection });
+                        }
+                        Phase::Slide(_) => {}
+                        Phase::Stick => {}
+                    }
+                }
+                Decision::Slide(direction, begins) => {
+                    self.phases[contact] = Phase::Slide(direction);
+                    if begins {
+                        self.next = self.next.min(FIRST);
+                    }
+                    match was[contact] {
+                        Phase::Open(_) => self.begin_contact(contact, selection),
+                        _ if begins => self.slips(contact, selection),
+                        _ => {}
+                    }
+                }
+            }
+        }
+    }
+
+    fn slips(&mut self, contact: usize, selection: Selection) {
+        self.resting = false;
+        if let Phase::Slide(d) = self.phases[contact]
+            && !self.bounces(contact)
+        {
+            self.push(Some(contact), EventKind::Slip { direction: [d.x, d.y], selection });
+        }
+    }
+
+    /// Whether the bounces of a contact, which now are lower than the tolerance, have not yet ended.
+    fn bounces(&self, contact: usize) -> bool {
+        self.chatter.iter().any(|&(time, other)| other == contact && time > self.t)
+    }
+
+    /// A contact begins: said now, or when its bounces have ended.
+    fn begin_contact(&mut self, contact: usize, selection: Selection) {
+        if self.bounces(contact) {
+            return;
+        }
+        let mode = if self.phases[contact] == Phase::Stick { ContactMode::Stick } else { ContactMode::Slide };
+        self.push(Some(contact), EventKind::Contact { mode, selection });
+    }
+
+    /// Says that a contact has begun.
+    pub(crate) fn announce_contact(&mut self, contact: usize) {
+        self.begin_contact(contact, Selection::Unique);
+    }
+
+    /// Whether everything that touches sticks, and nothing moves.
+    pub(crate) fn look_for_rest(&mut self) -> Result<(), SimulationError> {
+        let closed = self.closed();
+        if self.resting || closed.is_empty() || closed.iter().any(|closed| closed.slides.is_some()) {
+            return Ok(());
+        }
+        if !self.chatter.is_empty() {
+            return Ok(());
+        }
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let state =
+            State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &self.held };
+        let kinetic = self.mechanism.kinetic_energy(&state);
+        let still = kinetic.is_ok_and(|kinetic| kinetic <= 1e-22 * self.greatest);
+        if !still {
+            return Ok(());
+        }
+        let mut y = self.y.clone();
+        y[n..n + p].fill(0.0);
+        self.resting = true;
+        let rates = self.motion(&closed).evaluate(self.t, &y).map(|evaluation| evaluation.rates);
+        let quiet = rates.is_ok_and(|rates| rates[..n + p].iter().all(|rate| *rate == 0.0));
+        if quiet {
+            self.y = y;
+            if let Some(step) = &mut self.step {
+                step.corrected(&self.y);
+            }
+            self.push(None, EventKind::Rest);
+        } else {
+            self.resting = false;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,347 @@
+//! A motion from a start state on.
+
+use std::collections::VecDeque;
+
+use hodograph::{Contacts, Kind, State, Surface};
+use nalgebra::{Vector2, Vector3};
+
+use crate::motion::{Closed, Failure, Motion, WORKS};
+use crate::stepper::Step;
+use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
+
+/// How an open contact came to be open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Leaving {
+    /// Its gap is open.
+    Apart,
+    /// It separated with a speed now, at this gap, which is zero but for rounding.
+    Bounced(f64),
+    /// It lifted off: gap and its rate begin at zero.
+    Lifted,
+}
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Phase {
+    Open(Leaving),
+    Stick,
+    /// With the direction in which slip began.
+    Slide(Vector2<f64>),
+}
+
+impl Phase {
+    pub fn is_closed(&self) -> bool {
+        !matches!(self, Phase::Open(_))
+    }
+}
+
+/// What a contact does at the moment, for whoever asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactPhase {
+    /// The bodies are apart, or leave each other.
+    Open,
+    /// They touch, without slip.
+    Stick,
+    /// They touch and slide on each other.
+    Slide,
+}
+
+/// A motion that is followed on demand. Clones go on independently, with the same results.
+///
+/// Steps of the integration and the times of events do not depend on the times at which the motion is looked at.
+#[derive(Clone)]
+pub struct Simulation<'m> {
+    pub(crate) mechanism: &'m dyn Contacts<f64>,
+    pub(crate) options: Options,
+    pub(crate) surfaces: Vec<Option<Surface<f64>>>,
+    pub(crate) phases: Vec<Phase>,
+    /// force of each contact when its mode was last decided
+    pub(crate) forces: Vec<Vector3<f64>>,
+    /// whether the forces of the closed contacts were the only possible ones
+    pub(crate) unique: bool,
+    /// time, coordinates, speeds and works at the front: the end of the last step, after its events
+    pub(crate) t: f64,
+    pub(crate) y: Vec<f64>,
+    pub(crate) held: Vec<f64>,
+    pub(crate) step: Option<Step>,
+    pub(crate) next: f64,
+    pub(crate) queue: VecDeque<Event>,
+    /// contacts whose bounces end at a time
+    pub(crate) chatter: Vec<(f64, usize)>,
+    pub(crate) next_sample: Option<f64>,
+    pub(crate) samples: u64,
+    pub(crate) start: f64,
+    pub(crate) resting: bool,
+    /// greatest size of each speed so far
+    pub(crate) scale: Vec<f64>,
+    pub(crate) energy: EnergyAccount,
+    /// greatest kinetic energy so far
+    pub(crate) greatest: f64,
+    /// events at this time, and the time
+    pub(crate) crowd: (usize, f64),
+    view: (f64, Vec<f64>),
+    failed: Option<SimulationError>,
+}
+
+impl std::fmt::Debug for Simulation<'_> {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        out.debug_struct("Simulation")
+            .field("mechanism", &self.mechanism.name())
+            .field("t", &self.t)
+            .field("phases", &self.phases)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Numbers of contacts and their forces (n, t, s), N.
+pub type ContactForces = Vec<(usize, Vector3<f64>)>;
+
+/// How far [`Simulation::advance`] came.
+#[derive(Clone, Debug)]
+pub enum Progress {
+    /// An event, not later than the time asked for.
+    Event(Event),
+    /// The time asked for: the simulation's state is the state then.
+    Reached,
+}
+
+impl<'m> Simulation<'m> {
+    /// A motion that begins in a state. What touches and approaches there collides at once; what touches and does not approach is in contact.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the options or the state: a missing or impossible surface, a contact that begins with a negative gap, a state in which the
+    /// mechanism cannot be evaluated.
+    pub fn new(
+        mechanism: &'m dyn Contacts<f64>,
+        state: &State<'_>,
+        options: Options,
+    ) -> Result<Self, SimulationError> {
+        let (n, p) = (mechanism.count(Kind::Coordinate), mechanism.count(Kind::Speed));
+        let count = mechanism.count(Kind::Contact);
+        let mut y = state.coordinates.to_vec();
+        y.extend_from_slice(state.speeds);
+        y.resize(n + p + WORKS, 0.0);
+        let mut simulation = Self {
+            mechanism,
+            surfaces: Vec::new(),
+            phases: vec![Phase::Open(Leaving::Apart); count],
+            forces: vec![Vector3::zeros(); count],
+            unique: true,
+            t: state.time,
+            view: (state.time, y.clone()),
+            y,
+            held: state.inputs.to_vec(),
+            step: None,
+            next: 1e-3,
+            queue: VecDeque::new(),
+            chatter: Vec::new(),
+            next_sample: match &options.drive {
+                Drive::Sampled { .. } => Some(state.time),
+                _ => None,
+            },
+            samples: 0,
+            start: state.time,
+            resting: false,
+            scale: state.speeds.iter().map(|speed| speed.abs()).collect(),
+            energy: EnergyAccount::default(),
+            greatest: 0.0,
+            crowd: (0, f64::NEG_INFINITY),
+            failed: None,
+            options,
+        };
+        simulation.check(state)?;
+        simulation.begin()?;
+        simulation.view = (simulation.t, simulation.y.clone());
+        Ok(simulation)
+    }
+
+    /// Goes on until the next event or until a time, whichever comes first.
+    ///
+    /// # Errors
+    ///
+    /// Why the motion cannot be followed, with time and contact. States and events before are not lost: ask for an earlier time.
+    pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
+        loop {
+            if self.queue.front().is_some_and(|event| event.time <= until)
+                && let Some(event) = self.queue.pop_front()
+            {
+                let mut y = event.coordinates.clone();
+                y.extend_from_slice(&event.speeds);
+                y.resize(self.y.len(), 0.0);
+                self.view = (event.time, y);
+                return Ok(Progress::Event(event));
+            }
+            if self.t >= until {
+                self.look(until);
+                return Ok(Progress::Reached);
+            }
+            if let Some(error) = &self.failed {
+                return Err(error.clone());
+            }
+            if let Err(error) = self.proceed() {
+                self.failed = Some(error);
+            }
+        }
+    }
+
+    /// Goes on to a time and returns the events on the way.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::advance`]; the events before are in the order in which they happened, and lost: use that to keep them.
+    pub fn advance_to(&mut self, time: f64) -> Result<Vec<Event>, SimulationError> {
+        let mut events = Vec::new();
+        loop {
+            match self.advance(time)? {
+                Progress::Event(event) => events.push(event),
+                Progress::Reached => return Ok(events),
+            }
+        }
+    }
+
+    /// Looks at the state at a time in the last step.
+    fn look(&mut self, time: f64) {
+        if time >= self.t {
+            self.view = (self.t, self.y.clone());
+            return;
+        }
+        if let Some(step) = &mut self.step {
+            let y = step.at((time - step.t) / step.h);
+            self.view = (time, y);
+        }
+        // Integration lets quaternions drift; they are put right at the end of a step only.
+        let n = self.mechanism.count(Kind::Coordinate);
+        let _ = self.mechanism.normalize(&mut self.view.1[..n]);
+    }
+
+    /// The time up to which the motion was looked at, s.
+    pub fn time(&self) -> f64 {
+        self.view.0
+    }
+
+    /// Coordinates at [`Simulation::time`].
+    pub fn coordinates(&self) -> &[f64] {
+        &self.view.1[..self.mechanism.count(Kind::Coordinate)]
+    }
+
+    /// Independent speeds at [`Simulation::time`].
+    pub fn speeds(&self) -> &[f64] {
+        let n = self.mechanism.count(Kind::Coordinate);
+        &self.view.1[n..n + self.mechanism.count(Kind::Speed)]
+    }
+
+    /// The inputs at the end of the last step.
+    pub fn inputs(&self) -> &[f64] {
+        &self.held
+    }
+
+    /// What a contact does after the events so far. It may be ahead of [`Simulation::time`] by a step of the integration in which nothing
+    /// happens.
+    pub fn phase(&self, contact: usize) -> Option<ContactPhase> {
+        self.phases.get(contact).map(|phase| match phase {
+            Phase::Open(_) => ContactPhase::Open,
+            Phase::Stick => ContactPhase::Stick,
+            Phase::Slide(_) => ContactPhase::Slide,
+        })
+    }
+
+    /// Forces (n, t, s along the contact bases) of the contacts that are closed, at [`Simulation::time`], and whether no others are possible.
+    ///
+    /// # Errors
+    ///
+    /// Where the forces cannot be evaluated.
+    pub fn contact_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
+        let closed = self.closed();
+        if closed.is_empty() {
+            return Ok((Vec::new(), true));
+        }
+        let motion = self.motion(&closed);
+        let evaluation =
+            motion.evaluate(self.view.0, &self.view.1).map_err(|failure| self.failure(failure))?;
+        let forces = evaluation.forces.map_or(Vec::new(), |forces| {
+            closed.iter().enumerate().map(|(i, closed)| (closed.contact, forces.of(i))).collect()
+        });
+        Ok((forces, self.unique))
+    }
+
+    /// Where the energy went since the start, at the end of the last step.
+    ///
+    /// # Errors
+    ///
+    /// Where the mechanism cannot be evaluated.
+    pub fn energy(&self) -> Result<EnergyAccount, SimulationError> {
+        let motion = self.motion(&[]);
+        let (q, u) = motion.split(&self.y);
+        let state = State { time: self.t, coordinates: q, speeds: u, inputs: &self.held };
+        let works = &self.y[q.len() + u.len()..];
+        let fault = |error| self.failure(Failure::State(error));
+        Ok(EnergyAccount {
+            kinetic: self.mechanism.kinetic_energy(&state).map_err(fault)?,
+            potential: self.mechanism.potential_energy(&state).map_err(fault)?,
+            friction: works[0],
+            inputs: works[1],
+            ..self.energy
+        })
+    }
+
+    /// The mechanism.
+    pub fn mechanism(&self) -> &'m dyn Contacts<f64> {
+        self.mechanism
+    }
+
+    /// The closed contacts as the integration needs them.
+    pub(crate) fn closed(&self) -> Vec<Closed> {
+        self.phases
+            .iter()
+            .enumerate()
+            .filter_map(|(contact, phase)| {
+                let slides = match phase {
+                    Phase::Open(_) => return None,
+                    Phase::Stick => None,
+                    Phase::Slide(direction) => Some(*direction),
+                };
+                Some(Closed { contact, mu: self.mu(contact), weight: self.forces[contact].x, slides })
+            })
+            .collect()
+    }
+
+    pub(crate) fn mu(&self, contact: usize) -> f64 {
+        self.surfaces.get(contact).copied().flatten().map_or(0.0, |surface| surface.mu)
+    }
+
+    pub(crate) fn motion<'a>(&'a self, closed: &'a [Closed]) -> Motion<'a> {
+        Motion {
+            mechanism: self.mechanism,
+            drive: &self.options.drive,
+            held: &self.held,
+            closed,
+            resting: self.resting,
+        }
+    }
+
+    /// An error here and now.
+    pub(crate) fn error(&self, contact: Option<usize>, reason: Reason) -> SimulationError {
+        let name = |index| self.mechanism.component(Kind::Contact, index);
+        SimulationError {
+            time: self.t,
+            contact: contact.and_then(name).map(|component| component.name.to_owned()),
+            reason,
+        }
+    }
+
+    pub(crate) fn failure(&self, failure: Failure) -> SimulationError {
+        match failure {
+            Failure::State(error) => self.error(None, Reason::State(error)),
+            Failure::Contact(contact, error) => self.error(Some(contact), Reason::Contact(error)),
+            Failure::Together => self.error(
+                None,
+                Reason::Forces(
+                    "the contacts that are closed have no forces under which they keep their modes"
+                        .to_owned(),
+                ),
+            ),
+            Failure::Input(message) => self.error(None, Reason::Input(message)),
+        }
+    }
+}

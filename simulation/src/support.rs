@@ -1,0 +1,145 @@
+//! The closed contacts of a mechanism in a state, together: W, beta, velocities.
+
+use hodograph::{Contacts, Kind, ReducedMatrix, State, StateError};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
+
+/// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact basis.
+#[derive(Clone, Debug)]
+pub(crate) struct Support {
+    /// Numbers of the contacts in the mechanism.
+    pub contacts: Vec<usize>,
+    /// W = V M^-1 V^T (3k x 3k).
+    pub coupled: DMatrix<f64>,
+    /// V (3k x p).
+    pub partials: DMatrix<f64>,
+    /// M^-1 V^T (p x 3k).
+    pub response: DMatrix<f64>,
+    /// Velocities (3k).
+    pub velocity: DVector<f64>,
+    /// Free accelerations (3k).
+    pub beta: DVector<f64>,
+}
+
+impl Support {
+    /// Evaluates the contacts; without `accelerate` the free accelerations stay zero.
+    pub fn new(
+        mechanism: &dyn Contacts<f64>,
+        state: &State<'_>,
+        contacts: &[usize],
+        accelerate: bool,
+    ) -> Result<Self, StateError> {
+        let (k, p) = (contacts.len(), mechanism.count(Kind::Speed));
+        let mut partials = DMatrix::zeros(3 * k, p);
+        let mut response = DMatrix::zeros(p, 3 * k);
+        let mut velocity = DVector::zeros(3 * k);
+        let mut beta = DVector::zeros(3 * k);
+        let mut numbers = vec![0.0; 3 * p];
+        for (i, &contact) in contacts.iter().enumerate() {
+            mechanism.partial_velocities(contact, state, &mut numbers)?;
+            partials.view_mut((3 * i, 0), (3, p)).copy_from(&DMatrix::from_row_slice(3, p, &numbers));
+            mechanism.response(contact, state, &mut numbers)?;
+            response.view_mut((0, 3 * i), (p, 3)).copy_from(&DMatrix::from_row_slice(p, 3, &numbers));
+            velocity.rows_mut(3 * i, 3).copy_from(&mechanism.contact_velocity(contact, state)?);
+            if accelerate {
+                beta.rows_mut(3 * i, 3).copy_from(&mechanism.free_acceleration(contact, state)?);
+            }
+        }
+        let mut coupled = &partials * &response;
+        // Symmetric but for rounding.
+        for row in 0..3 * k {
+            for column in 0..row {
+                let mean = 0.5 * (coupled[(row, column)] + coupled[(column, row)]);
+                coupled[(row, column)] = mean;
+                coupled[(column, row)] = mean;
+            }
+        }
+        Ok(Self { contacts: contacts.to_vec(), coupled, partials, response, velocity, beta })
+    }
+
+    /// Number of contacts.
+    pub fn len(&self) -> usize {
+        self.contacts.len()
+    }
+
+    /// The reduced matrix of one.
+    pub fn reduced(&self, i: usize) -> ReducedMatrix<f64> {
+        let block: Matrix3<f64> = self.coupled.fixed_view::<3, 3>(3 * i, 3 * i).into_owned();
+        ReducedMatrix::from(block)
+    }
+
+    /// Three entries of a vector of all contacts.
+    pub fn three(all: &DVector<f64>, i: usize) -> Vector3<f64> {
+        all.fixed_rows::<3>(3 * i).into_owned()
+    }
+
+    /// The slip of one.
+    pub fn slip(&self, i: usize) -> Vector2<f64> {
+        Vector2::new(self.velocity[3 * i + 1], self.velocity[3 * i + 2])
+    }
+
+    /// What rounding may do to the velocity of a contact: the sizes of the terms it is made of.
+    pub fn velocity_size(&self, i: usize, speeds: &[f64]) -> f64 {
+        (0..3)
+            .map(|row| {
+                self.partials.row(3 * i + row).iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum::<f64>()
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// The change of speeds of least kinetic energy that makes the rows of the velocity given zero.
+    pub fn without(&self, rows: &[usize], velocity: &DVector<f64>) -> DVector<f64> {
+        if rows.is_empty() {
+            return DVector::zeros(self.response.nrows());
+        }
+        let m = rows.len();
+        let matrix = DMatrix::from_fn(m, m, |i, j| self.coupled[(rows[i], rows[j])]);
+        let right = DVector::from_fn(m, |i, _| -velocity[rows[i]]);
+        let impulse = least_squares(&matrix, &right);
+        let mut change = DVector::zeros(self.response.nrows());
+        for (&row, &size) in rows.iter().zip(impulse.iter()) {
+            change += self.response.column(row) * size;
+        }
+        change
+    }
+}
+
+/// Below this ratio to the greatest one a singular value counts as zero.
+const SINGULAR: f64 = 1e-10;
+
+/// The least x with A x = b as nearly as possible.
+pub(crate) fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
+    solve(matrix, right).0
+}
+
+/// The least x with A x = b as nearly as possible, and whether it is the only one.
+pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
+    let n = right.len();
+    if n == 0 {
+        return (DVector::zeros(0), true);
+    }
+    if n == 1 {
+        let entry = matrix[(0, 0)];
+        return if entry == 0.0 { (DVector::zeros(1), false) } else { (right / entry, true) };
+    }
+    let lu = matrix.clone().full_piv_lu();
+    let diagonal = lu.u().diagonal().abs();
+    if diagonal.min() > 1e-7 * diagonal.max()
+        && let Some(mut x) = lu.solve(right)
+    {
+        // One refinement.
+        if let Some(more) = lu.solve(&(right - matrix * &x)) {
+            x += more;
+        }
+        return (x, true);
+    }
+    let svd = matrix.clone().svd(true, true);
+    let cutoff = SINGULAR * svd.singular_values.max();
+    let unique = svd.singular_values.min() > cutoff;
+    match svd.solve(right, cutoff) {
+        Ok(x) => {
+            let more = svd.solve(&(right - matrix * &x), cutoff);
+            (more.map_or_else(|_| x.clone(), |more| &x + more), unique)
+        }
+        Err(_) => (DVector::zeros(n), false),
+    }
+}
