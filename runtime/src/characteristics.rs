@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::{ReducedMatrix, Scalar, solve::contact};
+use crate::{ReducedMatrix, Scalar, solve::Contact};
 
 /// What the paper calls mu_c, phi_c, mu_s, c_n, c_t, c_s, phi_hat, f_hat and g_hat, for one contact and one coefficient of friction.
 ///
@@ -43,7 +43,7 @@ impl<T: Scalar> Characteristics<T> {
     /// The characteristics of a contact. The matrix must be that of a mechanism: positive semidefinite, m_nn > 0.
     #[inline]
     pub fn of(matrix: &ReducedMatrix<T>, mu: T) -> Self {
-        let c = contact(matrix, mu);
+        let c = Contact::new(matrix, mu);
         let hold = c.hold();
         let mu_c = hold.norm();
         let rate = c.held_rate(&hold);
@@ -55,11 +55,8 @@ impl<T: Scalar> Characteristics<T> {
         };
         let renewal = (mu < mu_c).then(|| {
             let d: Vector2<T> = c.renewal();
-            Renewal {
-                phi_hat: d.y.atan2(d.x),
-                f_hat: c.normal_rate(&d) * matrix.nn,
-                g_hat: c.slip_rate(&d).dot(&d) * matrix.nn,
-            }
+            let [f, g, _] = c.rates(&d);
+            Renewal { phi_hat: d.y.atan2(d.x), f_hat: f * matrix.nn, g_hat: g * matrix.nn }
         });
         Self {
             mu_c,
@@ -75,8 +72,7 @@ impl<T: Scalar> Characteristics<T> {
 #[inline]
 pub fn rates<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, phi: T) -> Vector3<T> {
     let (sin, cos) = phi.sin_cos();
-    let c = contact(matrix, mu);
+    let c = Contact::new(matrix, mu);
     let d = Vector2::new(cos, sin);
-    let rate = c.slip_rate(&d);
-    Vector3::new(c.normal_rate(&d), rate.dot(&d), d.x * rate.y - d.y * rate.x) * matrix.nn
+    Vector3::from(c.rates(&d)) * matrix.nn
 }

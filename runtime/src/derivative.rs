@@ -3,8 +3,11 @@
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use crate::{
-    Impact, ImpactError, Law, Path, ReducedMatrix, Scalar, Surface, dual::Dual, scalar::constant, solve,
-    solve::solve_real,
+    Impact, ImpactError, Law, Path, ReducedMatrix, Scalar, Surface,
+    dual::Dual,
+    scalar::constant,
+    solve,
+    solve::{Contact, solve_real},
 };
 
 /// Inputs: approach velocity (3), reduced matrix (6), mu, e.
@@ -152,10 +155,8 @@ fn plastic<T: Scalar>(
     let push = match impact.path {
         Path::SlidingThenSticking | Path::Sticking => {
             // No tangential velocity comes: T x = b, as sticking demands.
-            match matrix_hold(matrix) {
-                Some([t, s]) => Vector3::new(T::one(), -t, -s),
-                None => return,
-            }
+            let hold = Contact::new(matrix, surface.mu).hold();
+            Vector3::new(T::one(), -hold.x, -hold.y)
         }
         _ if speed > T::zero() => {
             Vector3::new(T::one(), -surface.mu * slip.x / speed, -surface.mu * slip.y / speed)
@@ -173,18 +174,6 @@ fn plastic<T: Scalar>(
         result.impulse.set_column(10, &(push * more));
         result.velocity.set_column(10, &(rates * more));
     }
-}
-
-/// T^-1 b of a contact that sticks, if T is not singular.
-fn matrix_hold<T: Scalar>(m: &ReducedMatrix<T>) -> Option<[T; 2]> {
-    let det = m.tt * m.ss - m.ts * m.ts;
-    if det > m.tt * m.ss * T::default_epsilon() * constant(64.0) {
-        return Some([(m.ss * m.nt - m.ts * m.ns) / det, (m.tt * m.ns - m.ts * m.nt) / det]);
-    }
-    // Rank one: the least push that does it.
-    let square = m.tt * m.tt + m.ss * m.ss + (m.ts + m.ts) * m.ts;
-    let [x, y] = [m.tt * m.nt + m.ts * m.ns, m.ts * m.nt + m.ss * m.ns];
-    (square > T::zero()).then(|| [x / square, y / square])
 }
 
 /// Why there is no derivative: another path, or number of compressions, is found close by.
@@ -233,8 +222,9 @@ fn non_smoothness<T: Scalar>(
 fn straight<T: Scalar>(m: &ReducedMatrix<T>, v: &Vector3<T>, mu: T) -> bool {
     let slip = v.yz();
     let d = slip / slip.norm();
-    let across = m.ns * d.x - m.nt * d.y;
-    let pull = m.ts * (d.x * d.x - d.y * d.y) + (m.ss - m.tt) * d.x * d.y;
-    let noise = T::default_epsilon() * (m.nt.abs() + m.ns.abs() + mu * (m.tt + m.ss)) * constant(4.0);
-    (across - mu * pull).abs() <= noise && across.abs() > noise && mu > T::zero()
+    let c = Contact::new(m, mu);
+    let [.., h] = c.rates(&d);
+    let across = c.b.y * d.x - c.b.x * d.y;
+    let noise = constant::<T>(4.0) * T::default_epsilon() * c.slip_size();
+    h.abs() <= noise && across.abs() > noise && mu > T::zero()
 }

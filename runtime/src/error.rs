@@ -12,7 +12,7 @@ use crate::Law;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ImpactError<T> {
-    /// An input is infinite or not a number, or the outcome is too large for the number type.
+    /// An input is infinite or not a number, or the outcome is beyond the range of the number type: too large, or a normal impulse too small.
     NotFinite {
         /// The value found.
         value: T,
@@ -42,6 +42,21 @@ pub enum ImpactError<T> {
         /// The m_nn given, in 1/kg.
         nn: T,
     },
+    /// An impact without collision was asked for (v_n1 = 0) where slip brings none: f (31) is not negative, or there is no slip.
+    NoImpact {
+        /// f in the direction of slip, or m_nn without slip, in 1/kg.
+        rate: T,
+    },
+    /// The answer found breaks a law of impact by more than its digits allow: rounding forbids an answer in this number type.
+    ///
+    /// That takes a contact that is nearly wedged (mu close to mu_c of a singular matrix) or friction beyond the inverse of the
+    /// rounding unit on a singular contact.
+    Inaccurate {
+        /// The law.
+        violated: Violation,
+        /// By how much, over the speeds or works of the impact.
+        residual: T,
+    },
     /// The bodies wedge: no outcome satisfies this law, because the normal velocity stops changing, stuck or sliding.
     Wedged {
         /// The normal velocity at which the contact jams, in m/s.
@@ -49,6 +64,37 @@ pub enum ImpactError<T> {
         /// The law that has no outcome.
         law: Law,
     },
+}
+
+/// The laws that every answer is held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum Violation {
+    /// v_2 = v_1 + M I (20)-(22).
+    Momentum,
+    /// Coulomb's law: the tangential impulse is at most mu I_n.
+    Friction,
+    /// The bodies push and part: I_n >= 0, v_n2 >= 0.
+    Separation,
+    /// Friction takes energy, and never gives any.
+    Energy,
+    /// What the hypothesis of restitution says of v_n2, I_n2 or the normal work.
+    Restitution,
+}
+
+impl fmt::Display for Violation {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Self::Momentum => "the balance of momentum",
+            Self::Friction => "Coulomb's law of friction",
+            Self::Separation => "separation",
+            Self::Energy => "dissipation by friction",
+            Self::Restitution => "the law of restitution",
+        })
+    }
 }
 
 impl<T> ImpactError<T> {
@@ -62,6 +108,8 @@ impl<T> ImpactError<T> {
             Self::NotApproaching { .. } => "not_approaching",
             Self::NotPositiveSemidefinite { .. } => "not_positive_semidefinite",
             Self::NoNormalMobility { .. } => "no_normal_mobility",
+            Self::NoImpact { .. } => "no_impact",
+            Self::Inaccurate { .. } => "inaccurate",
             Self::Wedged { .. } => "wedged",
         }
     }
@@ -72,7 +120,8 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
         match self {
             Self::NotFinite { value } => write!(
                 out,
-                "an input or the outcome is not finite ({value}): check the state and the parameters for overflow or division by zero"
+                "an input or the outcome is not finite or beyond the range of the numbers ({value}): check the state and the parameters for \
+                 overflow or division by zero"
             ),
             Self::NegativeFriction { mu } => {
                 write!(out, "the coefficient of friction is {mu}: it must not be negative")
@@ -93,6 +142,16 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
             Self::NoNormalMobility { nn } => write!(
                 out,
                 "m_nn is {nn}: no impulse along the normal can move the contact point; check the normal and the constraints"
+            ),
+            Self::NoImpact { rate } => write!(
+                out,
+                "nothing happens at normal velocity 0, because a normal impulse would part the bodies at the rate {rate}: an impact without \
+                 collision needs f < 0"
+            ),
+            Self::Inaccurate { violated, residual } => write!(
+                out,
+                "rounding forbids an answer: the one found misses {violated} by {residual} of its scale; change mu, which is close to mu_c of \
+                 a nearly wedged contact or very large, or use a wider number type"
             ),
             Self::Wedged { normal_velocity, law } => write!(
                 out,

@@ -6,7 +6,7 @@ use crate::{
     Impact, ImpactError, Motion, ReducedMatrix, Scalar, Snapshot, Surface,
     phases::{Units, after_slip},
     scalar::constant,
-    solve::{Contact, Restitution, Slide, State, Terminal, check, collide, contact, slide, slips},
+    solve::{Contact, Restitution, Slide, State, Terminal, checked, collide, slide, slips},
 };
 
 /// A solved collision that can be evaluated at any normal impulse, exactly: the curve of v_s over v_t that the paper calls hodograph, with the
@@ -48,12 +48,12 @@ impl<T: Scalar> Hodograph<T> {
         approach: &Vector3<T>,
         surface: &Surface<T>,
     ) -> Result<Self, ImpactError<T>> {
-        check(matrix, approach, surface)?;
+        let matrix = &checked(matrix, approach, surface)?.unwrap_or(*matrix);
         let mut restitution = Restitution::new(surface.law, surface.e);
         restitution.thorough = true;
-        let impact = collide(matrix, approach, surface, restitution, slide)?;
+        let impact = collide(matrix, approach, -approach.x, surface, restitution, slide)?;
         let terminal = (after_slip(impact.path) != Motion::Sliding).then(|| {
-            let Terminal { push, gain, rate, .. } = Terminal::of(&contact(matrix, surface.mu));
+            let Terminal { push, gain, rate, .. } = Terminal::of(&Contact::new(matrix, surface.mu));
             (push, gain, rate)
         });
         Ok(Self { approach: *approach, matrix: *matrix, mu: surface.mu, impact, terminal })
@@ -79,7 +79,7 @@ impl<T: Scalar> Hodograph<T> {
         if normal_impulse >= self.impact.impulse.x {
             return self.end(after);
         }
-        let contact: Contact<T> = contact(&self.matrix, self.mu);
+        let contact = Contact::new(&self.matrix, self.mu);
         let speed = -self.approach.x;
         let scale = speed / self.matrix.nn;
         let units = Units { approach: &self.approach, scale, speed, contact };
@@ -90,12 +90,12 @@ impl<T: Scalar> Hodograph<T> {
         // No: it is the beginning, or not a number.
         let begun = normal_impulse > zero;
         if !begun {
-            return units.snapshot(&State::approach(), &tangential, first);
+            return units.snapshot(&State::before(-T::one()), &tangential, first);
         }
         let stop = normal_impulse / scale;
         let slip_end = self.impact.phases.slip_end.map(|snapshot| self.state(&snapshot, scale, speed));
         let from = match slip_end {
-            None if !slides => State::approach(),
+            None if !slides => State::before(-T::one()),
             Some(end) if stop >= end.normal => end,
             _ => match slide(&contact, tangential, slip, &mut Restitution::until(stop)) {
                 Slide::Ended(state, velocity) => return units.snapshot(&state, &velocity, first),

@@ -37,7 +37,7 @@ pub use crate::{
         contact_mode_after,
     },
     derivative::{ImpactDerivative, NonSmoothness, derivative},
-    error::ImpactError,
+    error::{ImpactError, Violation},
     generated::{CollisionError, ParameterError, StateError},
     hodograph::Hodograph,
     impact::{Impact, Path},
@@ -49,7 +49,7 @@ pub use crate::{
     saltation::{Saltation, saltation, speed_derivative},
     scalar::Scalar,
     sensitivity::Sensitivity,
-    solve::solve,
+    solve::{impact_without_collision, solve},
     surface::Surface,
 };
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use crate::{Characteristics, ReducedMatrix, Scalar, rates, scalar::constant, solve::contact};
+use crate::{Characteristics, ReducedMatrix, Scalar, rates, scalar::constant, solve::Contact};
 
 /// phi_bar: the direction in which slip that now has the direction `phi` will be when it stops, in radians from t towards s, within a turn of `phi`.
 ///
@@ -12,14 +12,13 @@ use crate::{Characteristics, ReducedMatrix, Scalar, rates, scalar::constant, sol
 /// At most some 10 000 operations (it bisects); h is a polynomial of degree four in the tangent of half the angle, whose zeros are found between those of its
 /// derivatives.
 pub fn phi_bar<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, phi: T) -> Option<T> {
-    let c = contact(matrix, mu);
-    let noise = constant::<T>(4.0) * T::default_epsilon() * (c.b.norm() + mu * (c.tt + c.ss));
+    let c = Contact::new(matrix, mu);
+    let noise = constant::<T>(4.0) * T::default_epsilon() * c.slip_size();
     let right_angle = T::frac_pi_2();
     let side = {
         let (sin, cos) = phi.sin_cos();
         let d = Vector2::new(cos, sin);
-        let rate = c.slip_rate(&d);
-        let h = d.x * rate.y - d.y * rate.x;
+        let [.., h] = c.rates(&d);
         if h.abs() <= noise {
             T::zero()
         } else if h > T::zero() {

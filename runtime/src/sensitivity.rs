@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 
 use crate::{
-    scalar::{Real, constant, larger, length},
+    scalar::{Real, constant, length},
     solve::{Contact, Restitution, State},
 };
 
@@ -28,13 +28,29 @@ pub struct Sensitivity {
     /// There was no slip at the start, or so little (below the root of the rounding unit, over the speed of approach) that its direction means
     /// nothing.
     pub no_slip: bool,
+    /// An impact without collision began where f is zero but for rounding: dynamic jam. With a little more of f nothing happens.
+    pub jam: bool,
 }
 
 impl Sensitivity {
     /// Whether there is a reason at all.
     #[inline]
     pub const fn any(self) -> bool {
-        self.near_mu_c || self.grazing || self.unstable_direction || self.no_slip
+        self.near_mu_c || self.grazing || self.unstable_direction || self.no_slip || self.jam
+    }
+
+    /// The names of the flags that are set.
+    #[inline]
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        let Self { near_mu_c, grazing, unstable_direction, no_slip, jam } = self;
+        let flags = [
+            (near_mu_c, "near_mu_c"),
+            (grazing, "grazing"),
+            (unstable_direction, "unstable_direction"),
+            (no_slip, "no_slip"),
+            (jam, "jam"),
+        ];
+        flags.into_iter().filter_map(|(set, name)| set.then_some(name))
     }
 
     /// What the slip of approach alone tells.
@@ -80,13 +96,9 @@ impl Sensitivity {
 /// Whether a direction lies near a root of h that repels.
 #[inline]
 fn unstable<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
-    let two = constant::<T>(2.0);
-    let along = c.b.dot(d);
-    let across = c.b.y * d.x - c.b.x * d.y;
-    let (double_cos, double_sin) = (d.x * d.x - d.y * d.y, two * d.x * d.y);
-    let difference = c.tt - c.ss;
-    let h = across - c.mu * (c.ts * double_cos - difference * double_sin / two);
-    let slope = c.mu * (two * c.ts * double_sin + difference * double_cos) - along;
-    let noise = constant::<T>(64.0) * T::default_epsilon() * larger(along.abs(), c.mu * (c.tt + c.ss));
+    let [_, g, h] = c.rates(d);
+    // h'
+    let slope = c.convergence(d) - g;
+    let noise = constant::<T>(64.0) * T::default_epsilon() * c.slip_size();
     slope > noise && h.abs() <= constant::<T>(NEAR) * slope
 }

@@ -56,7 +56,15 @@ fn every_reference_case_is_within_its_condition() {
 fn answers_have_the_fields_of_the_contract_in_order() {
     let run = hodograph(&["solve"], &case().to_string());
     assert_eq!(run.code, 0);
-    let names = ["\"impulse\":[", "\"v\":[", "\"dE\":", "\"dEn\":", "\"path\":[\"", "\"compressions\":1}"];
+    let names = [
+        "\"impulse\":[",
+        "\"v\":[",
+        "\"dE\":",
+        "\"dEn\":",
+        "\"path\":[\"",
+        "\"compressions\":1,",
+        "\"sensitivity\":[]}",
+    ];
     let places: Vec<usize> = names.iter().map(|name| run.stdout.find(name).unwrap()).collect();
     assert!(places.is_sorted() && run.stdout.ends_with("}\n"), "{}", run.stdout);
 }

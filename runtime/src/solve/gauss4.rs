@@ -129,17 +129,17 @@ mod tests {
     use super::*;
     use crate::{
         ReducedMatrix,
-        solve::{State, contact},
+        solve::{Contact, State},
     };
 
     #[test]
     fn a_nudge_is_of_fourth_order() {
         let matrix = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
         for mu in [0.3, 0.6, 1.1, 1.6, 3.0] {
-            let contact = contact(&matrix, mu);
+            let contact = Contact::new(&matrix, mu);
             let slip = Vector2::new(1.063, 0.2);
             let (arc, w) = SlidingArc::through(&contact, &slip.normalize());
-            let from = ArcPoint { state: State::approach(), since: 0.0, w, sigma: slip.norm() / arc.e(w) };
+            let from = ArcPoint { state: State::before(-1.0), since: 0.0, w, sigma: slip.norm() / arc.e(w) };
             let rates = arc.rates(&from);
             let error = |step: f64| {
                 let (mut a, mut b) = (from, from);

@@ -19,6 +19,12 @@ impl<T: Real> Grazing<T> {
         Self { rising: true, last: -T::one(), target, nearest: T::one() }
     }
 
+    /// None yet, and v_n falls from zero.
+    #[inline]
+    pub fn falling() -> Self {
+        Self { rising: false, last: T::zero(), ..Self::new(T::zero()) }
+    }
+
     /// v_n went to `to` without turning on the way.
     #[inline]
     pub fn moved(&mut self, to: T) {

@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 
 use super::{
+    Contact,
     restitution::{LinearArc, Restitution, State},
     sliding::Slide,
-    terminal::Contact,
 };
 use crate::scalar::{Real, constant, larger};
 
@@ -15,10 +15,8 @@ use crate::scalar::{Real, constant, larger};
 /// `impulse` is I_n since the beginning, or `None` for all I_n until slip stops.
 #[inline]
 pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
-    let across = Vector2::new(-d.y, d.x);
-    let rate = c.slip_rate(d);
-    let (g, turn) = (rate.dot(d), rate.dot(&across));
-    let sum = -c.mu * (c.tt * d.y * d.y - (c.ts + c.ts) * d.x * d.y + c.ss * d.x * d.x);
+    let [_, g, turn] = c.rates(d);
+    let sum = c.convergence(d);
     let left = |i: &T| slip + g * *i > T::default_epsilon() * slip;
     let Some(impulse) = impulse.filter(left) else {
         return if sum < T::zero() && g < T::zero() { turn * slip / (g * sum) } else { T::zero() };
@@ -58,17 +56,16 @@ pub(super) fn perturbed<T: Real>(
 ) -> Option<Slide<T>> {
     let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
     let across = Vector2::new(-d.y, d.x);
-    let pull = Vector2::new(c.tt * across.x + c.ts * across.y, c.ts * across.x + c.ss * across.y);
+    let pull = c.dragged(&across);
     let rate = c.slip_rate(d);
-    let g = rate.dot(d);
+    let [f, g, turn] = c.rates(d);
     // First order is not enough for an angle that grows faster than slip stops. A zero with so steep an h' has no second one close by.
-    let slope = -c.mu * pull.dot(&across) - g;
-    let size = c.b.x.abs() + c.b.y.abs() + c.mu * (c.tt + c.ss);
+    let slope = -pull.dot(&across) - g;
+    let size = c.slip_size();
     if slope > constant::<T>(0.25) * g.abs() && slope > constant::<T>(1e-3) * size {
         return None;
     }
-    let (f, turn) = (c.normal_rate(d), rate.dot(&across));
-    if f.abs() <= constant::<T>(1024.0) * T::default_epsilon() * c.size() {
+    if f.abs() <= constant::<T>(1024.0) * T::default_epsilon() * c.normal_size() {
         return None;
     }
     let angle = |impulse: T| deviation(c, d, slip, Some(impulse));
@@ -80,7 +77,8 @@ pub(super) fn perturbed<T: Real>(
         LinearArc::Ended { impulse, .. } | LinearArc::Passed(impulse) => Some(impulse),
         LinearArc::Endless => None,
     };
-    let mut state = State::approach();
+    let mut state = restitution.start();
+    let start = -state.velocity;
     let whole = remains(*restitution, &state, stop)?;
     // Nor is it enough for a large angle.
     let mut mean = (angle(whole) / whole).abs();
@@ -92,9 +90,9 @@ pub(super) fn perturbed<T: Real>(
         }
         last = deviation(c, d, slip, None);
         mean = larger(mean, (last / stop).abs());
-        stop + c.mu * d.dot(&pull) * last / g
+        stop + d.dot(&pull) * last / g
     });
-    let few = constant::<T>(16.0) * T::default_epsilon() * f.abs() / c.size();
+    let few = constant::<T>(16.0) * T::default_epsilon() * f.abs() / c.normal_size();
     if slope * whole > slip * constant(0.25)
         || mean * mean > few
         || size * mean * mean * mean > few * turn.abs()
@@ -102,7 +100,7 @@ pub(super) fn perturbed<T: Real>(
         return None;
     }
     let tangential = |impulse: T, angle: T| -(*d * impulse + across * angle) * c.mu;
-    let left = |impulse: T, angle: T| *d * slip + rate * impulse - pull * (c.mu * angle);
+    let left = |impulse: T, angle: T| *d * slip + rate * impulse - pull * angle;
     // The work that the chord of v_n over I_n leaves out: the integral of B by Boole's rule, with points that crowd where slip may stop.
     let bow = |from: T, length: T| {
         let part = |y: f64| (one - constant(y)) * angle(from + length * constant(y * (2.0 - y)));
@@ -110,15 +108,15 @@ pub(super) fn perturbed<T: Real>(
             + part(0.5) * constant(12.0)
             + part(0.0) * constant(7.0);
         let chord = (angle(from) + angle(from + length)) * half;
-        -c.mu * c.b.dot(&across) * length * (sum * constant(1.0 / 45.0) - chord)
+        -c.mu_b.dot(&across) * length * (sum * constant(1.0 / 45.0) - chord)
     };
     let (mut from, mut spent) = (zero, zero);
-    if restitution.stop.is_none() && f > zero && one / f <= whole {
-        let mean = angle(one / f) * f;
+    if restitution.stop.is_none() && f > zero && start / f <= whole {
+        let mean = angle(start / f) * f / start;
         let along = *d + across * mean;
-        from = one / c.normal_rate(&along);
+        from = start / c.normal_rate(&along);
         spent = mean * from;
-        let work = bow(zero, from) - from * half;
+        let work = bow(zero, from) - start * from * half;
         state = State { normal: from, tangential: tangential(from, spent), velocity: zero, work };
         if restitution.compressed(&state) {
             return Some(Slide::Ended(state, left(from, spent)));

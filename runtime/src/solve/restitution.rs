@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::{grazing::Grazing, terminal::Contact};
+use super::{Contact, grazing::Grazing};
 use crate::{Law, scalar::Real, scalar::constant, scalar::larger};
 
 /// Slip over |v_n1| (times mu if that is above one) beyond which the balance of energy would lose digits of the work.
@@ -22,9 +22,20 @@ pub(crate) struct State<T: Real> {
 }
 
 impl<T: Real> State<T> {
+    /// Before any impulse, with this v_n.
     #[inline]
-    pub fn approach() -> Self {
-        Self { normal: T::zero(), tangential: Vector2::zeros(), velocity: -T::one(), work: T::zero() }
+    pub fn before(velocity: T) -> Self {
+        Self { normal: T::zero(), tangential: Vector2::zeros(), velocity, work: T::zero() }
+    }
+
+    /// The same state in other units of normal and tangential impulse.
+    pub fn in_units(self, normal: T, tangential: T) -> Self {
+        Self {
+            normal: self.normal * normal,
+            tangential: self.tangential * tangential,
+            velocity: self.velocity,
+            work: self.work * normal,
+        }
     }
 }
 
@@ -33,6 +44,10 @@ impl<T: Real> State<T> {
 pub(crate) struct Restitution<T: Real> {
     law: Law,
     e: T,
+    /// v_n at the start.
+    start: T,
+    /// Whether the work is always integrated directly.
+    direct: bool,
     /// v_n, I_n or the normal work at which restitution ends, whichever the law speaks of.
     pub target: T,
     least_work: T,
@@ -55,11 +70,14 @@ pub(crate) struct Restitution<T: Real> {
 }
 
 impl<T: Real> Restitution<T> {
+    /// For a collision with v_n1 = -1.
     #[inline]
     pub fn new(law: Law, e: T) -> Self {
         Self {
             law,
             e,
+            start: -T::one(),
+            direct: false,
             target: e,
             least_work: T::zero(),
             ended: T::zero(),
@@ -71,6 +89,40 @@ impl<T: Real> Restitution<T> {
             thorough: false,
             stop: None,
             grazing: Grazing::new(if law == Law::Newton { e } else { T::zero() }),
+        }
+    }
+
+    /// For an impact without collision, v_n1 = 0 and f < 0: v_n starts so little below zero that no sum feels it.
+    #[inline]
+    pub fn without_collision(law: Law, e: T) -> Self {
+        let eps = T::default_epsilon();
+        // Newton's hypothesis asks for v_n2 = -e 0.
+        let e = if law == Law::Newton { T::zero() } else { e };
+        let start = -(eps * eps * eps * eps);
+        Self { start, grazing: Grazing::falling(), ..Self::new(law, e) }
+    }
+
+    /// The state at the start.
+    #[inline]
+    pub fn start(&self) -> State<T> {
+        State::before(self.start)
+    }
+
+    /// The same restitution where the work is integrated directly and impulses are counted in other units: what one was is `normal` (and
+    /// `tangential`) now.
+    #[cold]
+    pub fn in_units(&self, normal: T, tangential: T, direct: bool) -> Self {
+        Self {
+            direct,
+            target: if self.law == Law::Newton { self.target } else { self.target * normal },
+            least_work: self.least_work * normal,
+            ended: self.ended * normal,
+            wanted: self.wanted * normal,
+            lost: self.lost * normal,
+            first: self.first.map(|state| state.in_units(normal, tangential)),
+            latest: self.latest.map(|state| state.in_units(normal, tangential)),
+            stop: self.stop.map(|stop| stop * normal),
+            ..*self
         }
     }
 
@@ -154,7 +206,18 @@ impl<T: Real> Restitution<T> {
     /// Whether slip is so fast that the work must not be found from the balance of energy.
     #[inline]
     pub fn fast(&self, contact: &Contact<T>, slip: T) -> bool {
-        slip * larger(T::one(), contact.mu) > constant(FAST)
+        self.direct || slip * larger(T::one(), contact.mu) > constant(FAST)
+    }
+
+    /// Whether the law ends the collision here, but for this share of what it speaks of.
+    #[inline]
+    pub fn is_ended(&self, end: &State<T>, share: T) -> bool {
+        let scale = match self.law {
+            Law::Newton => T::one(),
+            Law::Poisson => end.normal,
+            Law::Stronge => -self.least_work,
+        };
+        (self.watched(end) - self.target).abs() <= share * scale
     }
 
     /// The quantity that the law watches.

@@ -3,14 +3,15 @@
 use nalgebra::Vector2;
 
 use super::{
+    Contact,
     event_location::EventLocation,
     gauss16::Panel,
     perturbation::{deviation, perturbed},
+    range::rescaled,
     restitution::{LinearArc, Restitution, State},
     sliding_arc::{ArcPoint, SlidingArc},
-    terminal::Contact,
 };
-use crate::{scalar::Real, scalar::constant, scalar::length};
+use crate::scalar::{Real, constant};
 
 /// The greatest number of stretches. Each is as long in lambda as the zeros of q are far from it, so that a few dozen lead past everything.
 const STRETCHES: u32 = 512;
@@ -36,22 +37,35 @@ pub(crate) fn slide<T: Real>(
     speed: T,
     restitution: &mut Restitution<T>,
 ) -> Slide<T> {
+    if c.is_ordinary() {
+        return arc(c, from, speed, restitution);
+    }
+    rescaled(c, from, speed, restitution)
+}
+
+/// The same for a contact whose rates are ordinary numbers.
+#[inline]
+pub(super) fn arc<T: Real>(
+    c: &Contact<T>,
+    from: Vector2<T>,
+    speed: T,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
     let eps = T::default_epsilon();
     // Rounding leaves h this uncertain.
-    let noise = eps * (length(&c.b) + c.mu * (c.tt + c.ss));
+    let noise = eps * c.slip_size();
     let direction = from / speed;
-    let rate = c.slip_rate(&direction);
-    let h = rate.y * direction.x - rate.x * direction.y;
+    let [.., h] = c.rates(&direction);
     if h.abs() <= noise * constant(NEARLY) {
         if h.abs() <= noise * constant(4.0) {
-            return straight(c, direction, speed, State::approach(), restitution);
+            return straight(c, direction, speed, restitution.start(), restitution);
         }
         if let Some(slide) = perturbed(c, &direction, speed, restitution) {
             return slide;
         }
     }
     let (arc, w) = SlidingArc::through(c, &direction);
-    let mut at = ArcPoint { state: State::approach(), since: T::zero(), w, sigma: speed / arc.e(w) };
+    let mut at = ArcPoint { state: restitution.start(), since: T::zero(), w, sigma: speed / arc.e(w) };
     let stops = arc.last_rate() < T::zero();
     let mut panel = Panel::new(speed);
     for _ in 0..STRETCHES {
@@ -94,13 +108,12 @@ pub(crate) fn straight<T: Real>(
     restitution: &mut Restitution<T>,
 ) -> Slide<T> {
     let noise = constant::<T>(1024.0) * T::default_epsilon();
-    let g = c.slip_rate(&d).dot(&d);
-    let mut f = c.normal_rate(&d);
-    if f.abs() <= noise * (T::one() + c.mu * length(&c.b)) {
+    let [mut f, g, h] = c.rates(&d);
+    if f.abs() <= noise * c.normal_size() {
         f = T::zero();
     }
     // Slip that no longer changes while v_n does not either goes on for ever.
-    let dead = f == T::zero() && g.abs() <= noise * (length(&c.b) + c.mu * (c.tt + c.ss));
+    let dead = f == T::zero() && g.abs() <= noise * c.slip_size();
     let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
     let across = Vector2::new(-d.y, d.x);
     let turned = |impulse: Option<T>| if T::refined() { deviation(c, &d, slip, impulse) } else { T::zero() };
@@ -116,8 +129,7 @@ pub(crate) fn straight<T: Real>(
             let mut left = d * (slip + g * impulse);
             let deviation = turned(Some(impulse));
             if T::refined() {
-                let pull = Vector2::new(c.ts * d.x - c.tt * d.y, c.ss * d.x - c.ts * d.y);
-                left += across * (c.slip_rate(&d).dot(&across) * impulse) - pull * (c.mu * deviation);
+                left += across * (h * impulse) - c.dragged(&across) * deviation;
             }
             Slide::Ended(moved(impulse, velocity, work, deviation), left)
         }

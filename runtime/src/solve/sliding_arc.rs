@@ -10,9 +10,9 @@
 use nalgebra::Vector2;
 
 use super::{
+    Contact,
     invariant_directions::{Near, Zero, halved, neighbours, over, times},
     restitution::State,
-    terminal::Contact,
 };
 use crate::scalar::{Real, constant, fma, larger, smaller};
 
@@ -95,8 +95,8 @@ impl<T: Real> SlidingArc<T> {
         let (half, four, six) = (constant::<T>(0.5), constant::<T>(4.0), constant::<T>(6.0));
         // b, mu times the mean and the deviator of T, as seen from d.
         let b = over(&c.b, d);
-        let mean = c.mu * (c.tt + c.ss) * half;
-        let nu = over(&over(&Vector2::new(c.mu * (c.tt - c.ss) * half, c.mu * c.ts), d), d);
+        let mean = (c.mu_tt + c.mu_ss) * half;
+        let nu = over(&over(&Vector2::new((c.mu_tt - c.mu_ss) * half, c.mu_ts), d), d);
         let ahead = Vector2::new(one, zero);
         let h = b.y - nu.y;
         let rough =
@@ -129,12 +129,13 @@ impl<T: Real> SlidingArc<T> {
         let sin = a.y * z.x - a.x * z.y;
         let product = times(&a, &z);
         let q1 = six * over(&over(&nu, &product), &product).y * sin;
-        let cross = over(&b, &product).x;
+        let mu_b = over(&c.mu_b, d);
+        let cross = over(&mu_b, &product).x;
         let mean_root = (q0 * q2).sqrt().primal();
         let lean = -(q1 * half).primal() / mean_root;
         let modulus = (q0 / q2).sqrt().primal();
         let factor = if lean < -one { (lean * lean - one).sqrt() - lean } else { one };
-        let f = [one - c.mu * over(&b, &u).x, two * (cos - c.mu * cross), one - c.mu * over(&b, &s).x];
+        let f = [c.nn - over(&mu_b, &u).x, two * (c.nn * cos - cross), c.nn - over(&mu_b, &s).x];
         let k = [g_u, cos * (g_u + g_s) - q1, g_s - q2 - q2];
         let slip = [times(&u, d), times(&product, d) * two, times(&s, d)];
         let arc = Self {
@@ -146,7 +147,7 @@ impl<T: Real> SlidingArc<T> {
             k,
             central: [k[0] + q0, k[1] + q1, k[2] + q2],
             f,
-            size: c.size(),
+            size: c.normal_size(),
             bend: (sin + sin).abs(),
             outer: (modulus * factor).primal(),
             angle: angle(lean).primal(),

@@ -2,40 +2,10 @@
 
 use nalgebra::Vector2;
 
-use crate::{scalar::Real, scalar::constant, scalar::larger, scalar::length};
-
-/// The tangential part of a contact, in units where m_nn = 1: b = (m_nt, m_ns) and T.
-#[derive(Clone, Copy)]
-pub(crate) struct Contact<T: Real> {
-    pub mu: T,
-    pub b: Vector2<T>,
-    pub tt: T,
-    pub ts: T,
-    pub ss: T,
-}
+use super::Contact;
+use crate::scalar::{Real, constant, larger, length};
 
 impl<T: Real> Contact<T> {
-    /// b - mu T d: the rate of the tangential velocity while sliding along d.
-    #[inline]
-    pub fn slip_rate(&self, d: &Vector2<T>) -> Vector2<T> {
-        Vector2::new(
-            self.b.x - self.mu * (self.tt * d.x + self.ts * d.y),
-            self.b.y - self.mu * (self.ts * d.x + self.ss * d.y),
-        )
-    }
-
-    /// The size of the terms of which f is made: f is known to this times the rounding of the numbers.
-    #[inline]
-    pub fn size(&self) -> T {
-        T::one() + self.mu * (self.b.x.abs() + self.b.y.abs())
-    }
-
-    /// f (31).
-    #[inline]
-    pub fn normal_rate(&self, d: &Vector2<T>) -> T {
-        T::one() - self.mu * self.b.dot(d)
-    }
-
     /// The least-norm solution of T x = b by elimination from the larger pivot; a pivot lost to rounding counts as zero if b lies in the range of T.
     ///
     /// If b does not, such a pivot is small and no zero: a positive semidefinite matrix has at least the square of what is left of b there.
@@ -81,15 +51,20 @@ impl<T: Real> Contact<T> {
     /// Newton's method on 1 / |(mu T + g)^-1 b| = 1, from below, where it rises to the root without crossing it.
     #[inline]
     pub fn renewal(&self) -> Vector2<T> {
-        let (tt, ts, ss) = (self.mu * self.tt, self.mu * self.ts, self.mu * self.ss);
-        let size = length(&self.b);
+        let (mut b, mut tt, mut ts, mut ss) = (self.b, self.mu_tt, self.mu_ts, self.mu_ss);
+        if !self.is_ordinary() {
+            // The direction depends on the ratios alone.
+            let unit = T::one() / self.slip_size();
+            (b, tt, ts, ss) = (b * unit, tt * unit, ts * unit, ss * unit);
+        }
+        let size = length(&b);
         let mut g = larger(size - (tt + ss), T::default_epsilon() * size);
-        let mut d = self.b / size;
+        let mut d = b / size;
         let mut settled = false;
         for _ in 0..48 {
             let (p, q) = (tt + g, ss + g);
             let det = p * q - ts * ts;
-            let y = Vector2::new(q * self.b.x - ts * self.b.y, p * self.b.y - ts * self.b.x) / det;
+            let y = Vector2::new(q * b.x - ts * b.y, p * b.y - ts * b.x) / det;
             let norm = length(&y);
             d = y / norm;
             // d|y|/dg = -d . (mu T + g)^-1 y
@@ -107,10 +82,9 @@ impl<T: Real> Contact<T> {
             }
         }
         // The determinant may have lost digits: what they left in h, taken away.
-        let rate = self.slip_rate(&d);
+        let [_, g, h] = self.rates(&d);
         let across = Vector2::new(-d.y, d.x);
-        let fall = rate.dot(&d) + tt * d.y * d.y - (ts + ts) * d.x * d.y + ss * d.x * d.x;
-        let turn = rate.dot(&across) / fall;
+        let turn = h / (g - self.convergence(&d));
         if turn.abs() > constant(1e-4) {
             return d;
         }

@@ -13,7 +13,7 @@ use super::{
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Restitution, Slide, State, straight},
+    solve::{Contact, Restitution, Slide, State, slide, straight},
 };
 
 /// (v_2 / v_1)^2 up to which slip is expanded about the direction of v_1.
@@ -36,6 +36,9 @@ impl Shape for Balanced {
         speed: T,
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
+        if !c.is_ordinary() {
+            return slide(c, from, speed, restitution);
+        }
         let (axis, values) = principal(c);
         decay(c, from, speed, axis, values, restitution)
     }
@@ -76,9 +79,9 @@ pub(super) fn decay<T: Real>(
     let difference = fast - slow;
     let turns = (difference * first * second).abs() > T::default_epsilon() * fast * speed * speed;
     if !turns || stays(first, second) {
-        return straight(c, from / speed, speed, State::approach(), restitution);
+        return straight(c, from / speed, speed, restitution.start(), restitution);
     }
-    let begin = State::approach();
+    let begin = restitution.start();
     follow(
         Decay { mu: c.mu, axis, begin, start: [first, second], rates: [fast, slow], difference },
         restitution,

@@ -52,7 +52,7 @@ enum Piece<T: Real> {
 
 /// Follows a course until the law ends the collision or slip stops.
 pub(super) fn follow<T: Real>(mut course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
-    let mut state = State::approach();
+    let mut state = restitution.start();
     // f changes sign once at most.
     for _ in 0..3 {
         match along(&course, restitution) {

@@ -6,7 +6,7 @@ use super::{Diagonal, Shape, balanced::decay};
 use crate::{
     ReducedMatrix, Surface,
     scalar::Real,
-    solve::{Contact, Restitution, Slide},
+    solve::{Contact, Restitution, Slide, slide},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -23,6 +23,9 @@ impl Shape for Diagonal {
         speed: T,
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
+        if !c.is_ordinary() {
+            return slide(c, from, speed, restitution);
+        }
         let (one, zero) = (T::one(), T::zero());
         if c.tt >= c.ss {
             decay(c, from, speed, Vector2::new(one, zero), [c.tt, c.ss], restitution)

@@ -27,9 +27,9 @@ impl Shape for Frictionless {
         let across = c.b.y * d.x - c.b.x * d.y;
         // Slip can only pass through zero where it is along b.
         if across.abs() <= constant::<T>(0.25) * T::default_epsilon() * length(&c.b) {
-            return straight(c, d, speed, State::approach(), restitution);
+            return straight(c, d, speed, restitution.start(), restitution);
         }
-        let start = State::approach();
+        let start = restitution.start();
         match restitution.follow_linear(&start, T::one(), &Vector2::zeros(), None) {
             LinearArc::Ended { impulse, velocity, work } => Slide::Ended(
                 State { normal: impulse, tangential: Vector2::zeros(), velocity, work },

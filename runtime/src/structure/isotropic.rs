@@ -13,7 +13,7 @@ use super::{
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Restitution, Slide, State, straight},
+    solve::{Contact, Restitution, Slide, State, slide, straight},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -30,12 +30,15 @@ impl Shape for Isotropic {
         speed: T,
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
+        if !c.is_ordinary() {
+            return slide(c, from, speed, restitution);
+        }
         let d = from / speed;
         let beta = length(&c.b);
         let across = d.x * c.b.y - d.y * c.b.x;
         let noise = constant::<T>(4.0) * T::default_epsilon() * (beta + c.mu * (c.tt + c.ss));
         if across.abs() <= noise {
-            return straight(c, d, speed, State::approach(), restitution);
+            return straight(c, d, speed, restitution.start(), restitution);
         }
         let axis = c.b / beta;
         let kappa = c.mu * c.tt;
@@ -43,7 +46,7 @@ impl Shape for Isotropic {
         let arc = Arc {
             mu: c.mu,
             axis,
-            begin: State::approach(),
+            begin: restitution.start(),
             across,
             kappa,
             rates: [kappa - beta, kappa + beta],

@@ -21,7 +21,7 @@ pub(crate) use self::implementation::Shape;
 use crate::{
     Impact, ImpactError, ReducedMatrix, Scalar, Surface,
     scalar::Real,
-    solve::{Contact, Restitution, Slide, check, collide, slide},
+    solve::{Contact, Restitution, Slide, checked, collide, slide},
 };
 
 /// A structure of the reduced matrix and the approach: one of the marker types of this module.
@@ -95,6 +95,9 @@ pub fn solve_structured<S: Structure, T: Scalar>(
 ) -> Result<Impact<T>, ImpactError<T>> {
     let (mut matrix, mut approach, mut surface) = (*matrix, *approach, *surface);
     S::impose(&mut matrix, &mut approach, &mut surface);
-    check(&matrix, &approach, &surface)?;
-    collide(&matrix, &approach, &surface, Restitution::new(surface.law, surface.e), S::slide)
+    if let Some(cleaned) = checked(&matrix, &approach, &surface)? {
+        matrix = cleaned;
+    }
+    let restitution = Restitution::new(surface.law, surface.e);
+    collide(&matrix, &approach, -approach.x, &surface, restitution, S::slide)
 }

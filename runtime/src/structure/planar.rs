@@ -6,7 +6,7 @@ use super::{Planar, Shape};
 use crate::{
     ReducedMatrix, Surface,
     scalar::Real,
-    solve::{Contact, Restitution, Slide, State, straight},
+    solve::{Contact, Restitution, Slide, straight},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -23,6 +23,6 @@ impl Shape for Planar {
         speed: T,
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
-        straight(c, from / speed, speed, State::approach(), restitution)
+        straight(c, from / speed, speed, restitution.start(), restitution)
     }
 }

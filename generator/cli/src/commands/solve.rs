@@ -22,7 +22,7 @@ const LONGEST_LINE: usize = 1 << 20;
 ///
 ///   {"m":[nn,nt,ns,tt,ts,ss],"v":[n,t,s],"mu":0.6,"e":0.8,"law":"stronge"}
 ///
-/// Its answer is {"impulse":[n,t,s],"v":[n,t,s],"dE":..,"dEn":..,"path":[..],"compressions":1} or
+/// Its answer is {"impulse":[n,t,s],"v":[n,t,s],"dE":..,"dEn":..,"path":[..],"compressions":1,"sensitivity":[]} or
 /// {"error":{"kind":"..","message":".."}}. Blank lines are skipped, other fields are left alone. Exit 0 if every line was
 /// solved, 1 if one had an error.
 // the brackets are JSON, as the help shows it

@@ -22,6 +22,8 @@ pub struct Answer {
     pub path: &'static [&'static str],
     /// how often compression ended
     pub compressions: u32,
+    /// why a little change of the input may change the outcome by much
+    pub sensitivity: Vec<&'static str>,
 }
 
 impl TryFrom<&Impact<f64>> for Answer {
@@ -47,6 +49,7 @@ impl TryFrom<&Impact<f64>> for Answer {
             normal_work: impact.normal_work + 0.0,
             path: impact.path.phases(),
             compressions: impact.compressions,
+            sensitivity: impact.sensitivity.names().collect(),
         })
     }
 }

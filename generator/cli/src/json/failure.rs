@@ -30,6 +30,8 @@ pub enum Kind {
     NoNormalMobility,
     /// no outcome exists
     Wedged,
+    /// rounding forbids an outcome that obeys the laws of impact
+    Inaccurate,
     /// a method other than the exact one did not come to an end
     Unfinished,
     /// the equations cannot be evaluated in this state
@@ -84,6 +86,7 @@ impl From<ImpactError<f64>> for Failure {
             ImpactError::NotPositiveSemidefinite { .. } => Kind::NotPositiveSemidefinite,
             ImpactError::NoNormalMobility { .. } => Kind::NoNormalMobility,
             ImpactError::Wedged { .. } => Kind::Wedged,
+            ImpactError::Inaccurate { .. } => Kind::Inaccurate,
             _ => Kind::NotFinite,
         };
         Failure::new(kind, error.to_string())

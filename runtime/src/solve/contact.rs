@@ -1,0 +1,95 @@
+//! A contact in the units of the solver: the rates f, g and h of (31)-(33), in their one place.
+
+use nalgebra::Vector2;
+
+use crate::{
+    ReducedMatrix,
+    scalar::{Real, constant},
+};
+
+/// The reduced matrix and mu, in units where m_nn = 1: b = (m_nt, m_ns) and the tangential block T.
+#[derive(Clone, Copy)]
+pub(crate) struct Contact<T: Real> {
+    /// One, but in the units of [`super::range`].
+    pub nn: T,
+    pub mu: T,
+    pub b: Vector2<T>,
+    pub tt: T,
+    pub ts: T,
+    pub ss: T,
+    /// mu b and mu T, which is what slip sees of them.
+    pub mu_b: Vector2<T>,
+    pub mu_tt: T,
+    pub mu_ts: T,
+    pub mu_ss: T,
+}
+
+impl<T: Real> Contact<T> {
+    #[inline]
+    pub fn new(matrix: &ReducedMatrix<T>, mu: T) -> Self {
+        // Not by the inverse of m_nn, which may be infinite where no quotient is.
+        let nn = matrix.nn;
+        let b = Vector2::new(matrix.nt / nn, matrix.ns / nn);
+        let (tt, ts, ss) = (matrix.tt / nn, matrix.ts / nn, matrix.ss / nn);
+        Self { nn: T::one(), mu, b, tt, ts, ss, mu_b: b * mu, mu_tt: mu * tt, mu_ts: mu * ts, mu_ss: mu * ss }
+    }
+
+    /// b - mu T d: the rate of the tangential velocity by I_n while slip has the direction d.
+    #[inline]
+    pub fn slip_rate(&self, d: &Vector2<T>) -> Vector2<T> {
+        Vector2::new(
+            self.b.x - (self.mu_tt * d.x + self.mu_ts * d.y),
+            self.b.y - (self.mu_ts * d.x + self.mu_ss * d.y),
+        )
+    }
+
+    /// f (31): the rate of v_n by I_n.
+    #[inline]
+    pub fn normal_rate(&self, d: &Vector2<T>) -> T {
+        self.nn - self.mu_b.dot(d)
+    }
+
+    /// f, g and h (31)-(33).
+    #[inline]
+    pub fn rates(&self, d: &Vector2<T>) -> [T; 3] {
+        let rate = self.slip_rate(d);
+        [self.normal_rate(d), rate.dot(d), rate.y * d.x - rate.x * d.y]
+    }
+
+    /// g + h' = -mu d'.T d', with d' a right angle ahead of d: h' is the derivative of h by phi.
+    #[inline]
+    pub fn convergence(&self, d: &Vector2<T>) -> T {
+        -(self.mu_tt * d.y * d.y - (self.mu_ts + self.mu_ts) * d.x * d.y + self.mu_ss * d.x * d.x)
+    }
+
+    /// mu T x.
+    #[inline]
+    pub fn dragged(&self, x: &Vector2<T>) -> Vector2<T> {
+        Vector2::new(self.mu_tt * x.x + self.mu_ts * x.y, self.mu_ts * x.x + self.mu_ss * x.y)
+    }
+
+    /// The size of the terms of f, which is known to this times the rounding unit.
+    #[inline]
+    pub fn normal_size(&self) -> T {
+        self.nn + self.mu_b.x.abs() + self.mu_b.y.abs()
+    }
+
+    /// The size of the terms of g and h, likewise.
+    #[inline]
+    pub fn slip_size(&self) -> T {
+        self.b.x.abs() + self.b.y.abs() + self.mu_tt + self.mu_ss
+    }
+
+    /// Whether sixth powers of the rates stay within the range of the number type.
+    #[inline]
+    pub fn is_ordinary(&self) -> bool {
+        // Known while compiling: 2^20 for single precision, 2^160 for double.
+        let single = T::default_epsilon() > constant(1e-10);
+        let (most, least) = if single { (1_048_576.0, 1.0 / 1_048_576.0) } else { (WIDE, 1.0 / WIDE) };
+        let size = self.slip_size();
+        size < constant(most) && size > constant(least) && self.normal_size() < constant(most)
+    }
+}
+
+/// 2^160.
+const WIDE: f64 = 1_461_501_637_330_902_918_203_684_832_716_283_019_655_932_542_976.0;

@@ -1,0 +1,130 @@
+//! The laws of impact, held against every answer before it leaves: nothing that breaks one is given out.
+//!
+//! Residuals are those of the answer itself, in the units of the solver, and count relative to the speeds and works of the impact.
+//! An answer of the solver is exact to a small multiple of the rounding unit times the condition of the contact; where a residual exceeds
+//! [`share`] of its scale, rounding has taken half of the digits, and the input does not determine the answer in these numbers.
+
+use nalgebra::Vector2;
+
+use super::{Contact, Restitution, State};
+use crate::{
+    ImpactError, Violation,
+    scalar::{Real, constant, larger, length},
+};
+
+/// The largest residual of a sound answer over its scale: half of the digits in single precision, nine of sixteen in double.
+#[inline(always)]
+fn share<T: Real>() -> T {
+    constant(if T::default_epsilon() > constant(1e-10) { 3.5e-4 } else { 9.4e-10 })
+}
+
+/// The residuals of an answer, each with its scale.
+struct Residuals<T> {
+    momentum: [(T, T); 2],
+    work: T,
+    energy: T,
+}
+
+impl<T: Real> Restitution<T> {
+    /// Holds an answer against the laws: v_2 = v_1 + M I (20)-(22), Coulomb's cone, I_n >= 0, v_n2 >= 0, no work gained from friction, and
+    /// what the law of restitution says of v_n, I_n or the work.
+    #[inline]
+    pub(super) fn verify(
+        &self,
+        c: &Contact<T>,
+        from: &Vector2<T>,
+        slip: T,
+        end: &State<T>,
+        velocity: &Vector2<T>,
+    ) -> Result<(), ImpactError<T>> {
+        let Residuals { momentum: [(n, speed), (t, slips)], work, energy } =
+            self.residuals(c, from, slip, end, velocity);
+        let share = share::<T>();
+        let most = c.mu * end.normal;
+        let i = &end.tangential;
+        // Written so that what is not a number fails.
+        let sound = n <= share * speed
+            && t <= share * slips
+            && end.normal >= T::zero()
+            && end.velocity >= -share * speed
+            && i.x * i.x + i.y * i.y <= most * most * (T::one() + share)
+            && work <= share * energy
+            && self.is_ended(end, share);
+        if sound { Ok(()) } else { self.violation(c, from, slip, end, velocity) }
+    }
+
+    /// The residuals of the balance of momentum along n and across it, and the work of friction, each with its scale.
+    #[inline(always)]
+    fn residuals(
+        &self,
+        c: &Contact<T>,
+        from: &Vector2<T>,
+        slip: T,
+        end: &State<T>,
+        velocity: &Vector2<T>,
+    ) -> Residuals<T> {
+        let (i, start) = (&end.tangential, self.start().velocity);
+        let n = start + end.normal + c.b.dot(i) - end.velocity;
+        let t = from.x + c.b.x * end.normal + (c.tt * i.x + c.ts * i.y) - velocity.x;
+        let s = from.y + c.b.y * end.normal + (c.ts * i.x + c.ss * i.y) - velocity.y;
+        let speed = T::one() + end.velocity.abs();
+        let slips = T::one() + slip + velocity.x.abs() + velocity.y.abs();
+        let half = constant::<T>(0.5);
+        let rubbed = i.x * (from.x + velocity.x) + i.y * (from.y + velocity.y);
+        let pushed = end.normal * (start + end.velocity);
+        Residuals {
+            momentum: [(n.abs(), speed), (larger(t.abs(), s.abs()), slips)],
+            work: (rubbed + pushed) * half - end.work,
+            energy: end.normal * speed + (i.x.abs() + i.y.abs()) * slips,
+        }
+    }
+
+    /// Names the law that an answer breaks, if it does: the same again with care for the range of the numbers.
+    #[cold]
+    #[inline(never)]
+    fn violation(
+        &self,
+        c: &Contact<T>,
+        from: &Vector2<T>,
+        slip: T,
+        end: &State<T>,
+        velocity: &Vector2<T>,
+    ) -> Result<(), ImpactError<T>> {
+        let i = &end.tangential;
+        for value in [end.normal, i.x, i.y, end.velocity, velocity.x, velocity.y, end.work] {
+            if !value.is_finite() {
+                return Err(ImpactError::NotFinite { value });
+            }
+        }
+        let share = share::<T>();
+        let Residuals { momentum: [(n, speed), (t, slips)], work, energy } =
+            self.residuals(c, from, slip, end, velocity);
+        let broken = |violated: Violation, residual: T| Err(ImpactError::Inaccurate { violated, residual });
+        let within = |residual: T, scale: T| residual <= share * scale;
+        if !within(n, speed) {
+            return broken(Violation::Momentum, n / speed);
+        }
+        if !within(t, slips) {
+            return broken(Violation::Momentum, t / slips);
+        }
+        if end.normal < T::zero() {
+            return broken(Violation::Separation, -end.normal);
+        }
+        if !within(-end.velocity, speed) {
+            return broken(Violation::Separation, -end.velocity);
+        }
+        let size = larger(i.x.abs(), i.y.abs());
+        // Denormal impulses have no digits to compare.
+        if size > constant(if T::default_epsilon() > constant(1e-10) { 1e-30 } else { 1e-290 }) {
+            let most = c.mu * end.normal;
+            let excess = length(&(i / size)) - most / size;
+            if !within(excess, T::one()) {
+                return broken(Violation::Friction, excess);
+            }
+        }
+        if !within(work, energy) {
+            return broken(Violation::Energy, work / energy);
+        }
+        if self.is_ended(end, share) { Ok(()) } else { broken(Violation::Restitution, share) }
+    }
+}

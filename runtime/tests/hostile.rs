@@ -1,0 +1,395 @@
+//! No answer that breaks a law leaves the solver: random contacts made to hurt, with friction from none to 1e308, ranks 1 to 3, entries that
+//! are rounding noise, anisotropy, and numbers near both ends of the range, in single and double precision.
+//!
+//! The laws are evaluated in numbers of twice the digits and share nothing with the solver's own check but what they say.
+
+mod common;
+
+use common::double_double::Double;
+use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar, solve_structured};
+use hodograph::{Characteristics, Impact, ImpactError, Law, ReducedMatrix, Scalar, Surface, solve};
+use nalgebra::{Matrix3, Vector3, convert};
+use std::collections::BTreeMap;
+
+const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
+
+/// A small deterministic source of numbers in [-1, 1].
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    fn pick(&mut self, count: usize) -> usize {
+        (((self.next() + 1.0) * 0.5 * count as f64) as usize).min(count - 1)
+    }
+
+    /// A power of ten with an exponent up to this size.
+    fn power(&mut self, most: f64) -> f64 {
+        10.0_f64.powf(most * self.next())
+    }
+}
+
+/// Numbers as the solver sees them, as doubles.
+#[derive(Clone, Copy, Debug)]
+struct Case {
+    m: [f64; 6],
+    v: [f64; 3],
+    mu: f64,
+    e: f64,
+    law: Law,
+    /// What the entries are known to, over the largest diagonal entry.
+    noise: f64,
+    /// The smallest number with all digits.
+    least: f64,
+    /// Nothing is extreme: an answer exists and is known to many digits.
+    tame: bool,
+}
+
+/// The greatest relative residual of each law: momentum, friction, separation, law of restitution, friction's work, Stronge's energy.
+fn residuals(case: &Case, hit: &Impact<f64>) -> [f64; 6] {
+    let d = |x: f64| Double::from(x);
+    let [nn, nt, ns, tt, ts, ss] = case.m.map(d);
+    let unit = Double::from(-case.v[0]);
+    let m = [[nn, nt, ns], [nt, tt, ts], [ns, ts, ss]].map(|row| row.map(|x| x / nn));
+    let v1 = case.v.map(|x| d(x) / unit);
+    let v2: [Double; 3] = std::array::from_fn(|k| d(hit.velocity[k]) / unit);
+    // In the order in which no intermediate number leaves the range.
+    let i: [Double; 3] = std::array::from_fn(|k| {
+        let x = d(hit.impulse[k]);
+        let ways = [x * nn, x / unit, nn / unit];
+        let size = |way: &Double| if way.hi == 0.0 { f64::INFINITY } else { way.hi.abs().log10().abs() };
+        let nearest = (0..3).min_by(|&a, &b| size(&ways[a]).total_cmp(&size(&ways[b])));
+        match nearest {
+            Some(0) => ways[0] / unit,
+            Some(1) => ways[1] * nn,
+            _ => x * ways[2],
+        }
+    });
+    let abs = |x: Double| x.abs().hi;
+    let speed = 1.0 + abs(v2[0]);
+    let slips = 1.0 + abs(v1[1]) + abs(v1[2]) + abs(v2[1]) + abs(v2[2]);
+    let largest = case.m[0].max(case.m[3]).max(case.m[5]) / case.m[0];
+    let rounding = case.noise * largest * (abs(i[0]) + abs(i[1]) + abs(i[2]));
+    let mut momentum: f64 = 0.0;
+    for k in 0..3 {
+        let sum = v1[k] + m[k][0] * i[0] + m[k][1] * i[1] + m[k][2] * i[2] - v2[k];
+        let scale = if k == 0 { speed } else { slips };
+        momentum = momentum.max((abs(sum) - rounding).max(0.0) / scale);
+    }
+    let rubbed = abs(i[1]).hypot(abs(i[2]));
+    // Denormal numbers have no digits to compare.
+    let most = case.mu * abs(i[0]);
+    let denormal = hit.impulse.yz().amax() < 1e12 * case.least;
+    let excess = (rubbed - most) / (most + 1e18 * case.least * abs(i[0]));
+    let friction = if denormal || most.is_infinite() { 0.0 } else { excess };
+    let friction = if case.mu == 0.0 { rubbed } else { friction };
+    let separation = (-i[0].hi).max(-v2[0].hi / speed);
+    let law = match case.law {
+        Law::Newton => abs(v2[0] - d(case.e)) / speed,
+        _ if case.e == 0.0 => abs(v2[0]) / speed,
+        _ => 0.0,
+    };
+    let work = d(hit.normal_work / case.v[0] / case.v[0] * case.m[0]);
+    let across = i[1] * (v1[1] + v2[1]) + i[2] * (v1[2] + v2[2]);
+    let total = (i[0] * (v2[0] - d(1.0)) + across) * 0.5;
+    let scale = abs(i[0]) * speed + (abs(i[1]) + abs(i[2])) * slips;
+    let energy = if case.law == Law::Stronge { total.hi / scale } else { 0.0 };
+    [momentum, friction, separation, law, (total - work).hi / scale, energy]
+}
+
+#[derive(Default)]
+struct Tally {
+    counts: BTreeMap<String, usize>,
+    tame: BTreeMap<String, usize>,
+    worst: [f64; 6],
+}
+
+impl Tally {
+    fn take(&mut self, case: &Case, answer: Result<Impact<f64>, ImpactError<f64>>, tolerance: f64) {
+        let kind = match &answer {
+            Ok(hit) => {
+                let numbers = [hit.contact_work, hit.normal_work];
+                assert!(
+                    hit.impulse.iter().chain(hit.velocity.iter()).chain(&numbers).all(|x| x.is_finite()),
+                    "{case:?} {hit:?}"
+                );
+                let found = residuals(case, hit);
+                for (worst, residual) in self.worst.iter_mut().zip(found) {
+                    assert!(residual <= tolerance, "{found:?}\n{case:?}\n{hit:?}");
+                    *worst = worst.max(residual);
+                }
+                "solved"
+            }
+            Err(error) => error.kind(),
+        };
+        if std::env::var("HOSTILE").is_ok_and(|what| what == kind) {
+            println!("{case:?} {answer:?}");
+        }
+        *self.counts.entry(kind.to_owned()).or_default() += 1;
+        if case.tame {
+            *self.tame.entry(kind.to_owned()).or_default() += 1;
+        }
+    }
+
+    fn report(&self, what: &str) {
+        println!(
+            "{what}: {:?}\n  tame: {:?}\n  worst {:?}",
+            self.counts,
+            self.tame,
+            self.worst.map(|x| format!("{x:.1e}"))
+        );
+        let solved = |counts: &BTreeMap<String, usize>| counts.get("solved").copied().unwrap_or(0);
+        let all = |counts: &BTreeMap<String, usize>| counts.values().sum::<usize>();
+        let wedged = self.tame.get("wedged").copied().unwrap_or(0);
+        assert_eq!(
+            solved(&self.tame) + wedged,
+            all(&self.tame),
+            "{what}: an ordinary contact without answer"
+        );
+        let wedged = self.counts.get("wedged").copied().unwrap_or(0);
+        let refused = all(&self.counts) - solved(&self.counts) - wedged;
+        assert!(10 * refused <= all(&self.counts), "{what}: {refused} refused");
+    }
+}
+
+/// A contact of a rank, with all that hurts; `epsilon` is the rounding unit of the numbers, `range` the exponent of the largest.
+fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
+    let rank = 1 + random.pick(3);
+    let bound = |x: f64| x.clamp(10.0_f64.powf(-range), 10.0_f64.powf(range));
+    let wild = random.pick(2) == 0;
+    let spread = if wild { range / 40.0 } else { 0.5 };
+    let scales = [random.power(spread), random.power(spread), random.power(spread)];
+    let mut b = Matrix3::from_fn(|i, j| if j < rank { random.next() * scales[i] } else { 0.0 });
+    // A direction that does not move, or by noise alone.
+    let still = random.pick(4);
+    let mut noise = 0.0;
+    if still == 1 || still == 2 {
+        b.row_mut(still).fill(0.0);
+        if random.pick(2) == 0 {
+            let size = 8.0 * epsilon * b.amax();
+            b.row_mut(still).iter_mut().for_each(|x| *x = size * random.next());
+        }
+    }
+    let mut v = b * Vector3::from_fn(|_, _| random.next());
+    if random.pick(4) == 0 {
+        v = Vector3::from_fn(|_, _| random.next());
+    }
+    v.x = -v.x.abs();
+    match random.pick(6) {
+        0 => (v.y, v.z) = (0.0, 0.0),
+        1 => {
+            let slip = random.power(range / 20.0);
+            (v.y, v.z) = (v.y * slip, v.z * slip);
+        }
+        _ => {}
+    }
+    let mut m = b * b.transpose();
+    if random.pick(2) == 0 {
+        // Rounding noise in every entry.
+        noise = 16.0 * epsilon;
+        let size = noise * m[(0, 0)].max(m[(1, 1)]).max(m[(2, 2)]);
+        for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+            m[(i, j)] += size * random.next();
+        }
+    }
+    let mass = if random.pick(3) == 0 { random.power(range / 3.0) } else { 1.0 };
+    let pace = if random.pick(3) == 0 { random.power(range / 6.0) } else { 1.0 };
+    let (m, v) = (m * mass, v * pace);
+    let matrix = ReducedMatrix::from(m);
+    let mu_c = Characteristics::of(&matrix, 1.0).mu_c;
+    let mu = match random.pick(8) {
+        0 => 0.0,
+        1 => 10.0_f64.powf(-range),
+        2 => bound(random.power(range)),
+        3 if mu_c.is_finite() => {
+            bound(mu_c * (1.0 + random.next() * 10.0_f64.powf(8.0 * random.next() - 8.0)))
+        }
+        _ => random.power(1.5),
+    };
+    let e = [0.0, 1.0, 0.5 + 0.5 * random.next()][random.pick(3)];
+    let law = LAWS[random.pick(3)];
+    let tame = !wild
+        && rank == 3
+        && m.determinant() > 1e-4 * m.trace().powi(3)
+        && (mu == 0.0 || mu < 100.0)
+        && v.x.abs() > 1e-6 * v.yz().norm()
+        && v.x != 0.0;
+    Case {
+        m: matrix.into(),
+        v: v.into(),
+        mu,
+        e,
+        law,
+        noise: noise.max(256.0 * epsilon),
+        least: 10.0_f64.powf(-range),
+        tame,
+    }
+}
+
+/// Solves a case in the numbers of a type, with what these numbers make of it.
+fn solved<T: Scalar>(case: &Case) -> (Case, Result<Impact<f64>, ImpactError<f64>>) {
+    let to = |x: f64| -> T { convert(x) };
+    let back = |x: T| nalgebra::try_convert::<T, f64>(x).unwrap_or(f64::NAN);
+    let m = case.m.map(to);
+    let v = case.v.map(to);
+    let surface = Surface { mu: to(case.mu), e: to(case.e), law: case.law };
+    let seen = Case { m: m.map(back), v: v.map(back), mu: back(surface.mu), e: back(surface.e), ..*case };
+    let vector = |v: &Vector3<T>| Vector3::new(back(v.x), back(v.y), back(v.z));
+    // The solver in doubles gives a frame for the fields that are not compared.
+    let answer = solve(&ReducedMatrix::from(m), &Vector3::from(v), &surface);
+    let answer = match answer {
+        Ok(hit) => {
+            let plain = ReducedMatrix::new(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
+            let mut frame =
+                solve(&plain, &Vector3::new(-1.0, 0.0, 0.0), &Surface { mu: 0.0, e: 0.0, law: case.law })
+                    .expect("an outcome");
+            frame.impulse = vector(&hit.impulse);
+            frame.velocity = vector(&hit.velocity);
+            frame.contact_work = back(hit.contact_work);
+            frame.normal_work = back(hit.normal_work);
+            Ok(frame)
+        }
+        Err(error) => Err(match error {
+            ImpactError::Wedged { law, .. } => ImpactError::Wedged { normal_velocity: 0.0, law },
+            ImpactError::Inaccurate { violated, residual } => {
+                ImpactError::Inaccurate { violated, residual: back(residual) }
+            }
+            ImpactError::NotApproaching { .. } => ImpactError::NotApproaching { normal_velocity: 0.0 },
+            ImpactError::NotPositiveSemidefinite { .. } => {
+                ImpactError::NotPositiveSemidefinite { minor: 0.0 }
+            }
+            ImpactError::NoNormalMobility { .. } => ImpactError::NoNormalMobility { nn: 0.0 },
+            _ => ImpactError::NotFinite { value: 0.0 },
+        }),
+    };
+    (seen, answer)
+}
+
+#[test]
+fn double_precision() {
+    let mut random = Random(21);
+    let mut tally = Tally::default();
+    for _ in 0..60_000 {
+        let case = contact(&mut random, f64::EPSILON, 308.0);
+        if case.v[0] < 0.0 {
+            let (seen, answer) = solved::<f64>(&case);
+            tally.take(&seen, answer, 1.1e-9);
+        }
+    }
+    tally.report("double precision");
+}
+
+#[test]
+fn single_precision() {
+    let mut random = Random(22);
+    let mut tally = Tally::default();
+    for _ in 0..60_000 {
+        let case = contact(&mut random, f64::from(f32::EPSILON), 37.0);
+        if case.v[0] < 0.0 && (case.v[0] as f32) < 0.0 {
+            let (seen, answer) = solved::<f32>(&case);
+            tally.take(&seen, answer, 4e-4);
+        }
+    }
+    tally.report("single precision");
+}
+
+/// The closed forms are held to the same laws.
+#[test]
+fn closed_forms() {
+    let mut random = Random(23);
+    let mut tallies = [(); 4].map(|()| Tally::default());
+    for _ in 0..30_000 {
+        let case = contact(&mut random, f64::EPSILON, 308.0);
+        if case.v[0] >= 0.0 {
+            continue;
+        }
+        let [nn, nt, ns, tt, ts, ss] = case.m;
+        let [n, t, s] = case.v;
+        let surface = Surface { mu: case.mu, e: case.e, law: case.law };
+        let variants = [
+            ([nn, nt, 0.0, tt, 0.0, ss], [n, t, 0.0]),
+            ([nn, 0.0, 0.0, tt, ts, ss], [n, t, s]),
+            ([nn, 0.0, 0.0, tt, 0.0, ss], [n, t, s]),
+            ([nn, nt, ns, tt.max(ss), 0.0, tt.max(ss)], [n, t, s]),
+        ];
+        for (kind, ((m, v), tally)) in variants.into_iter().zip(&mut tallies).enumerate() {
+            let (matrix, approach) = (ReducedMatrix::from(m), Vector3::from(v));
+            let answer = match kind {
+                0 => solve_structured::<Planar, _>(&matrix, &approach, &surface),
+                1 => solve_structured::<Balanced, _>(&matrix, &approach, &surface),
+                2 => solve_structured::<Diagonal, _>(&matrix, &approach, &surface),
+                _ => solve_structured::<Isotropic, _>(&matrix, &approach, &surface),
+            };
+            // An isotropic contact made of another's couplings may be none.
+            if kind == 3 && matches!(answer, Err(ImpactError::NotPositiveSemidefinite { .. })) {
+                continue;
+            }
+            tally.take(&Case { m, v, ..case }, answer, 1.1e-9);
+        }
+    }
+    for (tally, what) in tallies.iter().zip(["planar", "balanced", "diagonal", "isotropic"]) {
+        tally.report(what);
+    }
+}
+
+/// What was wrong once: a singular contact close to mu_c that gained energy, friction beyond 1e71, spurious refusals of tiny numbers.
+#[test]
+fn wrong_once() {
+    let m = [
+        0.18014824382572298,
+        -0.420750580666942,
+        0.16886182934617142,
+        1.6755467502844015,
+        -0.620154188571219,
+        0.2318472622443747,
+    ];
+    let surface = Surface { mu: 5.965507846482992, e: 0.8, law: Law::Stronge };
+    let answer = solve(&ReducedMatrix::from(m), &Vector3::new(-1.0, 0.0, 0.0), &surface);
+    assert!(matches!(answer, Err(ImpactError::Inaccurate { .. } | ImpactError::Wedged { .. })), "{answer:?}");
+    // Great friction: the limit is that of friction that stops slip at once.
+    let m = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
+    let v = Vector3::new(-0.946, 1.063, 0.3);
+    for law in LAWS {
+        let at = |mu: f64| {
+            solve(&m, &v, &Surface { mu, e: 0.5, law }).unwrap_or_else(|e| panic!("{mu:e} {law:?} {e}"))
+        };
+        let limit = at(1e20);
+        for mu in [1e30, 1e51, 1e60, 1e71, 1e100, 1e150, 1e200, 1e280] {
+            let hit = at(mu);
+            assert!((hit.velocity - limit.velocity).amax() < 1e-12, "{mu:e} {law:?} {hit:?} {limit:?}");
+            assert!((hit.impulse.yz() - limit.impulse.yz()).amax() < 1e-11, "{mu:e} {law:?}");
+            assert_eq!(hit.path, limit.path);
+        }
+    }
+    for mu in [1e-300, 1e-308, 5e-324] {
+        let hit = solve(&m, &v, &Surface { mu, e: 0.5, law: Law::Stronge }).expect("an outcome");
+        let none = solve(&m, &v, &Surface { mu: 0.0, e: 0.5, law: Law::Stronge }).expect("an outcome");
+        assert!((hit.velocity - none.velocity).amax() < 1e-15);
+    }
+    for tiny in [1e-290, 1e-300, 1e-305] {
+        let m = ReducedMatrix::new(1.0, tiny, 0.5 * tiny, tiny, 0.0, tiny);
+        for (v, law) in [
+            ([-1.0, 1.0, 0.5], Law::Poisson),
+            ([-1.0, 0.0, 0.0], Law::Stronge),
+            ([-1.0, 1e-9, 0.0], Law::Newton),
+        ] {
+            let hit = solve(&m, &Vector3::from(v), &Surface { mu: 0.5, e: 0.5, law })
+                .unwrap_or_else(|e| panic!("{tiny:e} {e}"));
+            assert!((hit.velocity - Vector3::new(0.5, v[1], v[2])).amax() < 1e-15);
+        }
+    }
+    // Noise beside a zero diagonal entry.
+    let m = ReducedMatrix::new(0.25, 0.1, 1e-18, 0.04, 0.0, 0.0);
+    for (law, mu) in LAWS.into_iter().zip([0.0, 0.2, 0.9]) {
+        let exact = ReducedMatrix { ns: 0.0, ..m };
+        let surface = Surface { mu, e: 0.5, law };
+        let v = Vector3::new(-1.0, 0.4, 0.0);
+        assert_eq!(solve(&m, &v, &surface), solve(&exact, &v, &surface));
+    }
+    let coupled = ReducedMatrix { ns: 1e-9, ..m };
+    let refused = solve(&coupled, &Vector3::new(-1.0, 0.4, 0.0), &surface).map_err(|e| e.kind());
+    assert_eq!(refused.err(), Some("not_positive_semidefinite"));
+}
