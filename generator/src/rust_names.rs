@@ -12,19 +12,20 @@ const KEYWORDS: &[&str] = &[
     "virtual", "where", "while", "yield",
 ];
 
-/// Type names of a generated module beside the mechanism's own.
-pub const TYPES: &[&str] = &[
+/// The types of a generated module beside the mechanism's own.
+pub const RECORDS: &[&str] = &[
     "Parameters",
     "Coordinates",
     "Speeds",
     "DependentSpeeds",
     "Inputs",
     "Collision",
-    "T",
-    "Result",
-    "Ok",
-    "Err",
+    "CollisionDerivative",
+    "Linearisation",
 ];
+
+/// What else has a meaning in generated code.
+const TAKEN: &[&str] = &["T", "Result", "Ok", "Err"];
 
 /// Is it a Rust keyword?
 pub fn is_keyword(name: &str) -> bool {
@@ -72,11 +73,8 @@ pub fn pascal_case(name: &str) -> String {
 pub fn type_name(mechanism: &str) -> String {
     let name = pascal_case(mechanism);
     let starts_well = name.starts_with(|c: char| c.is_alphabetic());
-    if TYPES.contains(&name.as_str()) || is_keyword(&name) || !starts_well {
-        format!("{name}Mechanism")
-    } else {
-        name
-    }
+    let taken = [RECORDS, TAKEN].concat().contains(&name.as_str());
+    if taken || is_keyword(&name) || !starts_well { format!("{name}Mechanism") } else { name }
 }
 
 /// An identifier, raw where it is a keyword. What is no identifier becomes one.

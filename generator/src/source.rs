@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use proc_macro2::{Span as RustSpan, TokenStream};
-use sha2::{Digest, Sha256};
 
 use crate::compiler;
 use crate::diagnostics::{Diagnostic, codes};
@@ -169,35 +168,5 @@ impl Source {
         let line = before.matches('\n').count() + 1;
         let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
         Some(Location { line, column })
-    }
-
-    /// A hash of what the model says: its tokens and documentation. Blanks, line ends and plain comments do not enter, and a
-    /// model has the same hash in a file and inline. 64 hexadecimal digits.
-    pub fn content_hash(&self) -> String {
-        let mut hash = Sha256::new();
-        hash.update(b"hodograph model 1\n");
-        if let Ok(tokens) = self.tokens() {
-            for token in tokens.iter() {
-                let (kind, sign) = match token.kind {
-                    TokenKind::Name => (b'n', None),
-                    TokenKind::Number => (b'0', None),
-                    TokenKind::Sign(c) | TokenKind::Open(c) | TokenKind::Close(c) => (b's', Some(c)),
-                    TokenKind::OuterDoc => (b'd', None),
-                    TokenKind::InnerDoc => (b'm', None),
-                    TokenKind::Bad(_) => (b'?', None),
-                };
-                let text: Cow<'_, str> = match sign {
-                    Some(c) => c.to_string().into(),
-                    None if kind == b'd' || kind == b'm' => {
-                        token.text.lines().map(str::trim).collect::<Vec<_>>().join("\n").into()
-                    }
-                    None => token.text.as_str().into(),
-                };
-                hash.update([kind]);
-                hash.update((text.len() as u64).to_le_bytes());
-                hash.update(text.as_bytes());
-            }
-        }
-        hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
     }
 }

@@ -33,8 +33,10 @@ pub enum Found {
     Fresh(Box<Program>),
     /// nothing
     Absent,
-    /// something else: what
-    Stale(String),
+    /// that of another text of the model
+    Stale,
+    /// what is none, or was changed since it was written: why
+    Damaged(String),
 }
 
 /// Looks for the derivation of a model.
@@ -42,14 +44,26 @@ pub fn find(path: &Path, model: &Model) -> Found {
     let text = match reading::text(path, artifact::MAX_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Absent,
-        Err(error) => return Found::Stale(format!("it cannot be read: {error}")),
+        Err(error) => return Found::Damaged(format!("it cannot be read: {error}")),
     };
     match artifact::decode(&text) {
-        Ok(Artifact { model: hash, program, .. }) if hash == model.source.content_hash() => {
+        Ok(Artifact { model: hash, program, .. }) if hash == artifact::model_hash(&model.source) => {
             Found::Fresh(Box::new(program))
         }
-        Ok(_) => Found::Stale("it was derived from another text of the model".to_owned()),
-        Err(error) => Found::Stale(error.to_string()),
+        Ok(_) => Found::Stale,
+        Err(error) => Found::Damaged(error.to_string()),
+    }
+}
+
+impl Found {
+    /// What is wrong with it, as the rest of a sentence about it; nothing if it is fresh.
+    pub fn fault(&self) -> Option<String> {
+        match self {
+            Found::Fresh(_) => None,
+            Found::Absent => Some("is not there".to_owned()),
+            Found::Stale => Some("is stale: it was derived from another text of the model".to_owned()),
+            Found::Damaged(why) => Some(format!("is damaged: {why}")),
+        }
     }
 }
 
@@ -63,18 +77,11 @@ pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
     let kept = place::beside(path);
     let program = match find(&kept, &model) {
         Found::Fresh(program) => *program,
-        Found::Absent => {
+        other => {
             eprintln!(
-                "note: {} is not there: deriving in memory; `hodograph derive {}` keeps the result",
+                "note: {} {}; deriving in memory, `hodograph derive {}` keeps the result",
                 kept.display(),
-                path.display()
-            );
-            derive(&model, limits)?.0
-        }
-        Found::Stale(why) => {
-            eprintln!(
-                "note: {} is stale ({why}): deriving in memory; `hodograph derive {}` renews it",
-                kept.display(),
+                other.fault().unwrap_or_default(),
                 path.display()
             );
             derive(&model, limits)?.0

@@ -104,16 +104,69 @@ mod deriving {
         assert_eq!(fs::read(&kept).unwrap(), bytes, "the same bytes every time");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2, "no temporary file is left");
 
-        // Plain comments and blanks do not matter, numbers do.
-        fs::write(&path, format!("// a remark\n{ROD}")).unwrap();
+        // Comments, blanks and defaults do not matter: the equations are the same to the byte.
+        let other = format!("// a remark\n{ROD}").replace("m = 0.5", "m = 0.6").replace("rad = 0.3", "rad");
+        fs::write(&path, other).unwrap();
         assert_eq!(check().code, 0);
-        fs::write(&path, ROD.replace("m = 0.5", "m = 0.6")).unwrap();
+        run(&["derive", "--force", &text(folder.path())]);
+        assert_eq!(fs::read(&kept).unwrap(), bytes);
+        // What is folded into the equations does.
+        fs::write(&path, ROD.replace("l: m = 0.5", "fixed l: m = 0.5")).unwrap();
         let stale = check();
         assert_eq!(stale.code, 1);
         assert!(stale.stdout.contains("is stale: it was derived from another text"), "{}", stale.stdout);
         assert!(run(&["eval", &text(&path)]).stderr.contains("is stale"));
         fs::write(&kept, "nonsense").unwrap();
-        assert!(check().stdout.contains("is stale: line 1"), "{}", check().stdout);
+        assert!(check().stdout.contains("is damaged: line 1"), "{}", check().stdout);
+    }
+
+    #[test]
+    fn a_changed_derivation_is_never_used() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, kept) = (folder.path().join("rod.mech"), folder.path().join("rod.derivation"));
+        fs::write(&path, ROD).unwrap();
+        assert_eq!(run(&["derive", &text(&path)]).code, 0);
+        let right = run(&["eval", &text(&path)]).stdout;
+        let written = fs::read_to_string(&kept).unwrap();
+        fs::write(&kept, written.replacen("number 0.5", "number 0.6", 1)).unwrap();
+        let check = run(&["derive", "--check", &text(&path)]);
+        assert_eq!(check.code, 1);
+        assert!(check.stdout.contains("is damaged: line"), "{}", check.stdout);
+        let evaluated = run(&["eval", &text(&path)]);
+        assert_eq!((evaluated.code, &evaluated.stdout), (0, &right));
+        assert!(evaluated.stderr.contains("is damaged"), "{}", evaluated.stderr);
+        // it is renewed without being asked to
+        assert_eq!(run(&["derive", &text(&path)]).code, 0);
+        assert_eq!(fs::read_to_string(&kept).unwrap(), written);
+    }
+
+    #[test]
+    fn verification_derives_again() {
+        let folder = tempfile::tempdir().unwrap();
+        let (path, kept) = (folder.path().join("rod.mech"), folder.path().join("rod.derivation"));
+        fs::write(&path, ROD).unwrap();
+        let verify = || run(&["derive", "--verify", &text(&path)]);
+        let absent = verify();
+        assert_eq!(absent.code, 1);
+        assert!(absent.stdout.contains("rod.derivation is not there"), "{}", absent.stdout);
+        assert!(!kept.exists());
+        run(&["derive", &text(&path)]);
+        assert_eq!(verify().code, 0);
+        // Whoever changes numbers and digest together is found out too.
+        let source = hodograph_generator::source::Source::file("rod.mech", ROD);
+        let mut artifact =
+            hodograph_generator::artifact::decode(&fs::read_to_string(&kept).unwrap()).unwrap();
+        artifact.program.guards.clear();
+        let hash = hodograph_generator::artifact::model_hash(&source);
+        fs::write(&kept, hodograph_generator::artifact::encode(&artifact.program, &hash)).unwrap();
+        assert_eq!(run(&["derive", "--check", &text(&path)]).code, 0);
+        let other = verify();
+        assert_eq!(other.code, 1);
+        assert!(
+            other.stdout.contains("is not what the model gives: they differ from line"),
+            "{}",
+            other.stdout
+        );
     }
 
     #[test]

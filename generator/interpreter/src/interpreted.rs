@@ -76,7 +76,7 @@ impl InterpretedMechanism {
         let artifact = artifact::decode(&text).map_err(|error| {
             Error::Derivation(format!("{} is no derivation: {error}; {advice}", kept.display()))
         })?;
-        if artifact.model != source.content_hash() {
+        if artifact.model != artifact::model_hash(&source) {
             let kept = kept.display();
             return Err(Error::Derivation(format!(
                 "{kept} was derived from another text of the model; {advice}"

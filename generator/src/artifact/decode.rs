@@ -1,8 +1,9 @@
 //! Reads a derivation. Whatever the text, the answer is a valid program or an error.
 
+use std::borrow::Cow;
 use std::fmt;
 
-use super::{Artifact, FORMAT, FUNCTIONS, is_binary};
+use super::{Artifact, DIGEST, FORMAT, FUNCTIONS, hash, is_binary};
 use crate::program::graph::Input;
 use crate::program::operation::{Bits, Operation, Value};
 use crate::program::{Guard, Output, Program};
@@ -25,9 +26,34 @@ impl fmt::Display for DecodeError {
 
 impl std::error::Error for DecodeError {}
 
-/// Reads a derivation.
+/// Reads a derivation, which must be to the byte what was written, but for ends of lines that a checkout has made CR LF throughout.
 pub fn decode(text: &str) -> Result<Artifact, DecodeError> {
-    let mut lines = Lines { lines: text.lines(), number: 0 };
+    let text = &*line_feeds(text);
+    let mut lines = Lines { rest: text, number: 0 };
+    let artifact = body(&mut lines)?;
+    let written = &text[..text.len() - lines.rest.len()];
+    let digest = lines.after(DIGEST)?;
+    if !lines.rest.is_empty() {
+        lines.number += 1;
+        return Err(lines.error("something stands after the end of the derivation"));
+    }
+    if digest != hash::of_text(written) {
+        return Err(lines.error(
+            "the text does not agree with its digest: it was changed after it was written, by hand or by a merge",
+        ));
+    }
+    Ok(artifact)
+}
+
+/// The text with LF where every line ends in CR LF.
+fn line_feeds(text: &str) -> Cow<'_, str> {
+    let ends = text.matches('\n').count();
+    let all = text.matches("\r\n").count() == ends && text.matches('\r').count() == ends;
+    if ends > 0 && all { text.replace("\r\n", "\n").into() } else { text.into() }
+}
+
+/// Everything above the digest.
+fn body(lines: &mut Lines<'_>) -> Result<Artifact, DecodeError> {
     let header = lines.after("hodograph derivation ")?;
     if header != FORMAT.to_string() {
         let message = format!(
@@ -74,7 +100,7 @@ pub fn decode(text: &str) -> Result<Artifact, DecodeError> {
 }
 
 struct Lines<'a> {
-    lines: std::str::Lines<'a>,
+    rest: &'a str,
     number: usize,
 }
 
@@ -85,7 +111,9 @@ impl<'a> Lines<'a> {
 
     fn next(&mut self) -> Result<&'a str, DecodeError> {
         self.number += 1;
-        self.lines.next().ok_or_else(|| self.error("the file ends too early"))
+        let (line, rest) = self.rest.split_once('\n').ok_or_else(|| self.error("the file ends too early"))?;
+        self.rest = rest;
+        Ok(line)
     }
 
     fn after(&mut self, prefix: &str) -> Result<&'a str, DecodeError> {

@@ -2,17 +2,19 @@
 
 use std::fmt::Write;
 
-use super::{FORMAT, FUNCTIONS};
+use super::{DIGEST, FORMAT, FUNCTIONS};
 use crate::arithmetic::Function;
 use crate::program::Program;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Value};
 
-/// The text of a derivation. `model` is the content hash of the model, without spaces.
+/// The text of a derivation. `model` is the [`model_hash`](super::model_hash) of the model.
 pub fn encode(program: &Program, model: &str) -> String {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = write(&mut text, program, model);
+    let digest = super::hash::of_text(&text);
+    let _ = writeln!(text, "{DIGEST}{digest}");
     text
 }
 

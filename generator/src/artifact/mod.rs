@@ -1,9 +1,9 @@
 //! The checked-in derivation: a program as lines of text, beside the model that it belongs to.
 //!
 //! ```text
-//! hodograph derivation 1
+//! hodograph derivation 2
 //! generator 0.1.0
-//! model 51b0c2..                      content hash of the model
+//! model 51b0c2..                      hash of the model
 //! structures general                  per contact
 //! 0 coordinate 2                      operations: index, word, operands
 //! 1 sincos 0
@@ -13,22 +13,28 @@
 //! output mass_matrix 1 1 : 4          quantity, rows, columns, values
 //! guard 4 scale 3 : the arm is stretched
 //! end 5
+//! digest 9f4e01..                     hash of all that stands above, to the byte
 //! ```
 //!
-//! Numbers are the shortest decimals that read back exactly. The same program gives the same bytes.
+//! A text that was changed in any way since it was written is refused: it does not agree with its digest. Numbers are the shortest decimals that read back exactly. The same program gives the same bytes.
 
 mod decode;
 mod encode;
+mod hash;
 pub mod place;
 
 pub use decode::{DecodeError, decode};
 pub use encode::encode;
+pub use hash::model_hash;
 
 use crate::arithmetic::Function;
 use crate::program::Program;
 
 /// The version of the format. It changes when a program of one version would mean something else in another.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
+
+/// What the last line begins with.
+const DIGEST: &str = "digest ";
 
 /// A file with a derivation has at most so many bytes: a thousand times what shipped models have.
 pub const MAX_BYTES: usize = 128 << 20;
@@ -38,7 +44,7 @@ pub const MAX_BYTES: usize = 128 << 20;
 pub struct Artifact {
     /// version of the generator that wrote it
     pub generator: String,
-    /// content hash of the model that it was derived from
+    /// [`model_hash`] of the model that it was derived from
     pub model: String,
     /// the program
     pub program: Program,

@@ -31,7 +31,7 @@ use crate::rust_names;
 use record::Record;
 
 pub use conformance::fits;
-pub use stub::{skeleton, stub};
+pub use stub::stub;
 
 /// How a module is emitted.
 #[derive(Clone, Debug)]

@@ -1,87 +1,43 @@
-//! The module of a model with mistakes: enough that one mistake does not cause ten.
+//! What stands in for the module of a model that has none: its mistakes, and no others.
 
 use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use quote::quote;
 
-use super::{Options, conformance};
-use crate::model::mechanism::Mechanism;
-use crate::program::operation::{Bits, Operation, Value};
-use crate::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q, Structure};
-use crate::program::{Output, Program};
 use crate::rust_names;
 
-/// The module of a sound model whose derivation is missing: everything has its type, and nothing a meaning.
-pub fn stub(mechanism: &Mechanism, options: &Options) -> TokenStream {
-    let mut quantities = vec![
-        Q::CoordinateRates,
-        Q::DependentSpeeds,
-        Q::MassMatrix,
-        Q::Forcing,
-        Q::Accelerations,
-        Q::DependentAccelerations,
-        Q::InverseDynamics,
-        Q::KineticEnergy,
-        Q::PotentialEnergy,
-        Q::ConfigurationResidual,
-        Q::ConfigurationJacobian,
-        Q::ConstraintResidual,
-    ];
-    for (index, contact) in (0u32..).zip(&mechanism.contacts) {
-        let all = [
-            C::Normal,
-            C::First,
-            C::Second,
-            C::Velocity,
-            C::FreeAcceleration,
-            C::PartialVelocities,
-            C::Remainder,
-            C::Reduced,
-            C::Response,
-            C::DependentResponse,
-        ];
-        quantities.extend(all.map(|quantity| Q::Contact(index, quantity)));
-        quantities.extend(contact.gap.is_some().then_some(Q::Contact(index, C::Gap)));
-    }
-    for (index, _) in (0u32..).zip(&mechanism.points) {
-        quantities.extend(
-            [P::Position, P::Velocity, P::Jacobian, P::Acceleration]
-                .map(|quantity| Q::Point(index, quantity)),
-        );
-    }
-    quantities.extend((0u32..).zip(&mechanism.frames).map(|(index, _)| Q::Orientation(index)));
-    let outputs = quantities.into_iter().filter_map(|quantity| {
-        let (rows, columns) = conformance::shape(mechanism, quantity)?;
-        Some(Output { quantity, rows, columns, values: vec![Value(0); rows * columns] })
-    });
-    let program = Program {
-        operations: vec![Operation::Constant(Bits::new(0.0))],
-        outputs: outputs.collect(),
-        guards: vec![],
-        structures: vec![Structure::General; mechanism.contacts.len()],
-    };
-    super::module(mechanism, &program, options)
-        .unwrap_or_else(|_| skeleton(&options.module, Some(&mechanism.name), &options.tracked))
-}
-
-/// A module with the types that every mechanism has, and nothing in them. `tracked` as in [`super::Options`].
-pub fn skeleton(module: &str, mechanism: Option<&str>, tracked: &[TokenStream]) -> TokenStream {
+/// A module that holds `errors` (calls of `compile_error!`) and the names of the types that a mechanism has.
+///
+/// The names are imports of what does not exist. In a module with a `compile_error!` the compiler does not report these, and takes what
+/// they name, and all that follows from it in the user's code, for already reported: one mistake in a model is one error. `tracked` as in
+/// [`super::Options`].
+pub fn stub(module: &str, mechanism: &str, errors: &TokenStream, tracked: &[TokenStream]) -> TokenStream {
     let module = rust_names::ident(module);
-    let name = rust_names::ident(&rust_names::type_name(mechanism.unwrap_or("Mechanism")));
-    let records = ["Parameters", "Coordinates", "Speeds", "DependentSpeeds", "Inputs"]
-        .map(|name| format_ident!("{name}"));
+    let records = rust_names::RECORDS.iter().map(|record| rust_names::ident(record));
+    let name = rust_names::ident(&rust_names::type_name(mechanism));
     quote! {
         /// The model has mistakes.
-        #[allow(dead_code, clippy::all)]
         pub mod #module {
             #(const _: &[u8] = ::core::include_bytes!(#tracked);)*
-            #(
-                /// The model has mistakes.
-                #[derive(Clone, Copy, Debug, Default, PartialEq)]
-                pub struct #records<T = f64>(::core::marker::PhantomData<T>);
-            )*
-            /// The model has mistakes.
-            #[derive(Clone, Copy, Debug, Default, PartialEq)]
-            pub struct #name<T = f64>(::core::marker::PhantomData<T>);
+            #errors
+            pub use self::absent::{#name #(, #records)*};
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rust_names::snake_case;
+
+    #[test]
+    fn a_stub_is_rust() {
+        // of a file that is missing its name is all that is known
+        for name in ["two_sleds", "arm.v2", "2-arms", "-", "ö", "a b", "linearisation", "fn"] {
+            let error = quote!(::core::compile_error! { "no" });
+            let tokens = stub(&snake_case(name), name, &error, &[quote!("x")]);
+            let file = syn::parse2::<syn::File>(tokens).unwrap_or_else(|error| panic!("{name}: {error}"));
+            let [syn::Item::Mod(module)] = &file.items[..] else { panic!("one module") };
+            assert_eq!(module.content.as_ref().map_or(0, |(_, items)| items.len()), 3, "{name}");
         }
     }
 }

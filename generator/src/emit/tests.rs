@@ -1,6 +1,6 @@
 //! A small module under review, and the properties that every module has.
 
-use super::{Options, Program, module, module_in_parts, skeleton};
+use super::{Options, Program, module, module_in_parts};
 use quote::quote;
 
 use crate::arithmetic::Function;
@@ -17,6 +17,7 @@ fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Variable 
         unit: unit.into(),
         value,
         fixed: false,
+        typical: 1.0,
         dependent: false,
         span: Span::default(),
     }
@@ -223,15 +224,4 @@ fn a_foreign_program_is_refused() {
     let options = Options { krate: quote!(::hodograph), module: "x".into(), tracked: vec![] };
     let error = module(&mechanism, &Program::new(&derived()), &options).unwrap_err();
     assert!(error.contains("Coordinate(0)"), "{error}");
-}
-
-#[test]
-fn a_skeleton_is_rust() {
-    let tokens = skeleton("two_sleds", None, &[quote!("x")]);
-    syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
-    // of a file that is missing its name is all that is known
-    for name in ["arm.v2", "2-arms", "-", "ö", "a b"] {
-        let tokens = skeleton(&crate::rust_names::snake_case(name), Some(name), &[]);
-        syn::parse2::<syn::File>(tokens).expect("a skeleton is Rust");
-    }
 }

@@ -8,14 +8,6 @@ use crate::program::Program;
 use crate::reading;
 use crate::source::Source;
 
-/// Where a program comes from.
-pub struct Found {
-    /// the program
-    pub program: Program,
-    /// was it read from the file (which the module then depends on)?
-    pub checked_in: bool,
-}
-
 /// Finds the program of a model. `path` is where its derivation should be, `shown` how messages call that file, `command` what
 /// writes it.
 pub fn find(
@@ -24,7 +16,7 @@ pub fn find(
     path: &Path,
     shown: &str,
     command: &str,
-) -> Result<Found, String> {
+) -> Result<Program, String> {
     let text = match reading::text(path, artifact::MAX_BYTES) {
         Ok(text) => text,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
@@ -38,22 +30,22 @@ pub fn find(
     let artifact = artifact::decode(&text).map_err(|error| {
         format!("the derivation `{shown}` is damaged or of another version ({error}); {repair}")
     })?;
-    if artifact.model != source.content_hash() {
+    if artifact.model != artifact::model_hash(source) {
         return Err(format!(
             "the derivation `{shown}` is stale: the model has changed since it was derived; {repair}"
         ));
     }
-    Ok(Found { program: artifact.program, checked_in: true })
+    Ok(artifact.program)
 }
 
 #[cfg(feature = "derive")]
-fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) -> Result<Found, String> {
+fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) -> Result<Program, String> {
     use crate::DerivationError;
 
     #[cfg(unix)]
     let _elsewhere = lead_stdout_elsewhere();
     match crate::derive(mechanism) {
-        Ok(derived) => Ok(Found { program: Program::new(&derived), checked_in: false }),
+        Ok(derived) => Ok(Program::new(&derived)),
         Err(DerivationError::Model(error)) => Err(error.diagnostic().compiler_text(source)),
         Err(error) => Err(format!("the equations could not be derived: {error}")),
     }
@@ -71,7 +63,7 @@ fn lead_stdout_elsewhere() -> Box<dyn std::any::Any> {
 }
 
 #[cfg(not(feature = "derive"))]
-fn absent(_source: &Source, _mechanism: &Mechanism, shown: &str, command: &str) -> Result<Found, String> {
+fn absent(_source: &Source, _mechanism: &Mechanism, shown: &str, command: &str) -> Result<Program, String> {
     Err(format!(
         "the model has no derivation `{shown}`; run this in the folder of the package's Cargo.toml and check the result \
          in:\n\n    {command}\n\n(or, while the model is being written, switch on the feature `derive` of hodograph)"
@@ -103,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_fresh_derivation_is_taken() {
-        let hash = Source::file("models/drop.mech", MODEL).content_hash();
+        let hash = artifact::model_hash(&Source::file("models/drop.mech", MODEL));
         assert_eq!(said("fresh", Some(&artifact::encode(&Program::default(), &hash))), "");
     }
 

@@ -11,6 +11,7 @@ use crate::compiler;
 use crate::emit;
 use crate::rust_names;
 use crate::source::Source;
+use crate::syntax::token::TokenKind;
 
 /// The path that the user wrote, and where.
 pub struct ModelPath {
@@ -83,43 +84,34 @@ pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStr
         Ok(place) => place,
         Err(message) => {
             let error = report::error(path.span, path.span, &message);
-            let skeleton = (!stem.is_empty()).then(|| emit::skeleton(&module, Some(&stem), &[]));
-            return quote!(#error #skeleton);
+            return if stem.is_empty() { error } else { emit::stub(&module, &stem, &error, &[]) };
         }
     };
     let mut tracked_files = vec![tracked(&path.text, place.in_package)];
-    let failed = |error: TokenStream, tracked: &[TokenStream]| {
-        let skeleton = emit::skeleton(&module, Some(&stem), tracked);
-        quote!(#error #skeleton)
-    };
     let source = Source::read_as(path.text.clone(), &place.path);
+    let name = name(&source).unwrap_or(stem);
+    let failed = |error: &TokenStream, tracked: &[TokenStream]| emit::stub(&module, &name, error, tracked);
     let checked = check(&source);
     let Some(mechanism) = checked.mechanism else {
-        return failed(report::of_file(&source, &checked.diagnostics, path.span), &tracked_files);
+        return failed(&report::of_file(&source, &checked.diagnostics, path.span), &tracked_files);
     };
     let shown = Path::new(&path.text).with_extension("derivation").to_string_lossy().into_owned();
     let command = format!("hodograph derive {}", path.text);
-    let found =
-        derivation::find(&source, &mechanism, &place.path.with_extension("derivation"), &shown, &command);
-    let module_of = |found: &derivation::Found, tracked: Vec<TokenStream>| {
-        let options = emit::Options { krate: krate.clone(), module: module.clone(), tracked };
-        emit::module(&mechanism, &found.program, &options)
-    };
-    let result = found.and_then(|found| {
-        let mut files = tracked_files.clone();
-        if found.checked_in {
-            files.push(tracked(&shown, place.in_package));
-        }
-        module_of(&found, files)
-    });
-    result.unwrap_or_else(|message| {
-        if place.path.with_extension("derivation").is_file() {
-            tracked_files.push(tracked(&shown, place.in_package));
-        }
-        let error = report::error(path.span, path.span, &message);
+    let kept = place.path.with_extension("derivation");
+    if kept.is_file() {
+        tracked_files.push(tracked(&shown, place.in_package));
+    }
+    let result = derivation::find(&source, &mechanism, &kept, &shown, &command).and_then(|program| {
         let options =
             emit::Options { krate: krate.clone(), module: module.clone(), tracked: tracked_files.clone() };
-        let stub = emit::stub(&mechanism, &options);
-        quote!(#error #stub)
-    })
+        emit::module(&mechanism, &program, &options)
+    });
+    result.unwrap_or_else(|message| failed(&report::error(path.span, path.span, &message), &tracked_files))
+}
+
+/// The name after the word `mechanism`.
+fn name(source: &Source) -> Option<String> {
+    let tokens = source.tokens().ok()?;
+    let head = tokens.iter().position(|token| token.is_word("mechanism"))?;
+    tokens.get(head + 1).filter(|token| token.kind == TokenKind::Name).map(|token| token.text.clone())
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use proc_macro2::{Span, TokenStream};
+use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
 use super::{derivation, report};
@@ -20,36 +20,37 @@ pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenS
     let source = Source::inline("mechanism!", model);
     let checked = check(&source);
     let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
-    let Some(mechanism) = checked.mechanism else {
-        let errors = report::of_inline(&source, &checked.diagnostics);
+    let failed = |error: &TokenStream, tracked: &[TokenStream]| match &name {
+        Some(name) => emit::stub(&module, name, error, tracked),
         // what has no name nobody refers to
-        let skeleton = name.as_deref().map(|name| emit::skeleton(&module, Some(name), &[]));
-        return quote!(#errors #skeleton);
+        None => error.clone(),
+    };
+    let Some(mechanism) = checked.mechanism else {
+        return failed(&report::of_inline(&source, &checked.diagnostics), &[]);
     };
     let shown = format!("derived/{module}.derivation");
     let command = format!("hodograph derive {}", invoking_file(first, package));
     let path = package.join(&shown);
     let relative = format!("/{shown}");
-    let tracked = quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative));
-    let result = derivation::find(&source, &mechanism, &path, &shown, &command).and_then(|found| {
-        let tracked = if found.checked_in { vec![tracked.clone()] } else { vec![] };
-        let options = emit::Options { krate: krate.clone(), module: module.clone(), tracked };
-        emit::module(&mechanism, &found.program, &options)
+    let tracked =
+        path.is_file().then(|| quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative)));
+    let tracked: Vec<TokenStream> = tracked.into_iter().collect();
+    let result = derivation::find(&source, &mechanism, &path, &shown, &command).and_then(|program| {
+        let options =
+            emit::Options { krate: krate.clone(), module: module.clone(), tracked: tracked.clone() };
+        emit::module(&mechanism, &program, &options)
     });
-    result.unwrap_or_else(|message| {
-        let error = report::error(at, at, &message);
-        let tracked = if path.is_file() { vec![tracked] } else { vec![] };
-        let options = emit::Options { krate: krate.clone(), module: module.clone(), tracked };
-        let stub = emit::stub(&mechanism, &options);
-        quote!(#error #stub)
-    })
+    result.unwrap_or_else(|message| failed(&report::error(at, at, &message), &tracked))
 }
 
 /// The name after `mechanism`, which follows the documentation, and where it stands.
 fn name(model: &TokenStream) -> Option<(String, Span)> {
-    let mut trees = model.clone().into_iter();
-    trees.by_ref().find(|tree| tree.to_string() == "mechanism")?;
-    let token = trees.next()?;
+    let trees: Vec<TokenTree> = model.clone().into_iter().collect();
+    let is = |tree: &TokenTree, word: &str| matches!(tree, TokenTree::Ident(ident) if ident == word);
+    let head = trees.iter().position(|tree| is(tree, "mechanism"));
+    // the word itself may be misspelled
+    let head = head.or_else(|| trees.iter().position(|tree| matches!(tree, TokenTree::Ident(_))))?;
+    let token = trees.get(head + 1)?;
     let name = token.to_string();
     let is_name = name.starts_with(|c: char| c == '_' || c.is_alphabetic());
     is_name.then(|| (name, token.span()))

@@ -11,7 +11,8 @@ const SAMPLES: u64 = 24;
 /// Half a turn in the units of angles that coordinates commonly have.
 const HALF_TURNS: [(&str, f64); 4] = [("rad", PI), ("mrad", 1000.0 * PI), ("deg", 180.0), ("rev", 0.5)];
 
-/// States all over the mechanism's range, the same ones every time; parameters as the model states them.
+/// States all over the mechanism's range and parameters of common sizes, the same ones every time. Default values do not enter, so that
+/// equations are the same whatever they are.
 pub fn samples(mechanism: &Mechanism) -> Vec<Inputs> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
 }
@@ -25,13 +26,17 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
         bits ^= bits << 17;
         (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
-    let given = |quantity: &Variable| quantity.value.filter(|value| *value != 0.0);
     let half_turn = |unit: &str| HALF_TURNS.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
-    // An angle may be any; anything else is of the size that the model gives it.
-    let mut around = |quantity: &Variable, angle: bool| match (half_turn(&quantity.unit), given(quantity)) {
-        (Some(half_turn), _) if angle => half_turn * next(),
-        (_, Some(value)) => value * (1.0 + 0.5 * next()),
-        (_, None) => next(),
+    let parameters =
+        mechanism.parameters.iter().map(|parameter| match parameter.value.filter(|_| parameter.fixed) {
+            Some(value) => value,
+            None => parameter.typical * (1.0 + 0.5 * next()),
+        });
+    let parameters: Vec<f64> = parameters.collect();
+    // An angle may be any; anything else is of the size that its unit suggests.
+    let mut around = |quantity: &Variable, angle: bool| match half_turn(&quantity.unit) {
+        Some(half_turn) if angle => half_turn * next(),
+        _ => 2.0 * quantity.typical * next(),
     };
     let mut coordinates: Vec<f64> =
         mechanism.coordinates.iter().map(|coordinate| around(coordinate, true)).collect();
@@ -45,7 +50,7 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
     }
     let directions = coordinates.len() + speeds.len() + inputs.len();
     Inputs {
-        parameters: mechanism.parameters.iter().map(|parameter| parameter.value.unwrap_or(1.0)).collect(),
+        parameters,
         time: next(),
         accelerations: speeds.iter().map(|_| next()).collect(),
         tangent: (0..directions).map(|_| next()).collect(),
@@ -59,21 +64,35 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
 mod tests {
     use super::*;
 
-    #[test]
-    fn samples_are_of_the_sizes_that_the_model_gives() {
-        let model = "mechanism M; parameters { m: kg = 2, l: m } coordinates { q1: rad = 0.1, x: m = 0.004, y: m, q2: deg }
-            speeds { u1: rad/s, u2: m/s = 3, u3: m/s, u4: rad/s } frames { B = N.rotate(z, q1); C = N.rotate(z, q2); } points { G = O + x*N.x + y*N.y; }
-            bodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] }, S { frame: C, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] } }
-            kinematics { d(x)/dt = u2; d(y)/dt = u3; d(q2)/dt = u4; }";
+    fn mechanism(model: &str) -> Mechanism {
         let checked = crate::check::check(&crate::source::Source::file("m.mech", model));
-        let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
-        let samples = samples(&mechanism);
-        assert!(samples.iter().all(|sample| sample.parameters == [2.0, 1.0]));
+        checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics))
+    }
+
+    const MODEL: &str = "mechanism M; parameters { fixed m: kg = 2, l: m = 7 } coordinates { q1: rad = 0.1, x: mm = 4, y: m, q2: deg }
+        speeds { u1: rad/s, u2: mm/s = 3, u3: m/s, u4: rad/s } frames { B = N.rotate(z, q1); C = N.rotate(z, q2); } points { G = O + x*N.x + y*N.y; }
+        bodies { R { frame: B, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] }, S { frame: C, centre: G, mass: m, inertia: [m*l^2, m*l^2, m*l^2] } }
+        kinematics { d(x)/dt = u2; d(y)/dt = u3; d(q2)/dt = u4; }";
+
+    #[test]
+    fn samples_are_of_common_sizes_whatever_the_unit() {
+        let samples = samples(&mechanism(MODEL));
+        assert!(samples.iter().all(|sample| sample.parameters[0] == 2.0));
+        assert!(samples.iter().all(|sample| (0.25..=0.75).contains(&sample.parameters[1])));
         assert!(samples.iter().any(|sample| sample.coordinates[0] > 2.0));
-        assert!(samples.iter().all(|sample| (0.002..=0.006).contains(&sample.coordinates[1])));
-        assert!(samples.iter().any(|sample| sample.coordinates[2] < -0.5));
+        assert!(samples.iter().any(|sample| sample.coordinates[1] > 500.0));
+        assert!(samples.iter().all(|sample| sample.coordinates[1].abs() <= 1000.0));
+        assert!(samples.iter().all(|sample| sample.coordinates[2].abs() <= 1.0));
         assert!(samples.iter().any(|sample| sample.coordinates[3] > 90.0));
-        assert!(samples.iter().all(|sample| (1.5..=4.5).contains(&sample.speeds[1])));
-        assert_eq!(samples, super::samples(&mechanism));
+        assert!(samples.iter().any(|sample| sample.speeds[1].abs() > 1000.0));
+    }
+
+    #[test]
+    fn samples_do_not_depend_on_defaults() {
+        let other = MODEL
+            .replace("l: m = 7", "l: m = 0")
+            .replace("q1: rad = 0.1", "q1: rad")
+            .replace("u2: mm/s = 3", "u2: mm/s = -1");
+        assert_eq!(samples(&mechanism(MODEL)), samples(&mechanism(&other)));
     }
 }

@@ -10,14 +10,14 @@ use super::Kinematics;
 use super::axes::{AxesId, AxesTree};
 use super::linear_forms::{LinearScalar, LinearVector};
 use crate::algebra::{Expr, Intermediates, Sample};
-use crate::model::mechanism::{
-    DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Variable, Vector,
-};
+use crate::model::mechanism::{DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Vector};
 use crate::numeric;
 use crate::program::graph::Input;
 
 /// States at which it is decided whether something is identically 0.
-const SAMPLES: u64 = 4;
+const SAMPLES: u64 = 12;
+/// So many of them that have a value are enough to judge by.
+pub(crate) const ENOUGH: usize = 4;
 
 impl Kinematics<'_> {
     /// Left minus right, as forms: one, or the components that are not identically 0.
@@ -89,7 +89,7 @@ impl Kinematics<'_> {
                 .collect();
             rows.map(numeric::rank)
         });
-        ranks.max().unwrap_or(forms.len())
+        ranks.take(ENOUGH).max().unwrap_or(forms.len())
     }
 
     /// A vector as a form along given axes, by the shortest way: velocities do not pass through the axes of bodies that they do
@@ -167,12 +167,13 @@ impl LinearVector {
 
 /// Is the expression 0 at all samples at which it has a value?
 pub(super) fn vanishes(z: &Intermediates, samples: &mut [Sample], expr: &Expr) -> bool {
-    let seen: Vec<bool> = samples.iter_mut().filter_map(|sample| sample.vanishes(z, expr)).collect();
+    let seen: Vec<bool> =
+        samples.iter_mut().filter_map(|sample| sample.vanishes(z, expr)).take(ENOUGH).collect();
     seen.len() > 1 && seen.iter().all(|&zero| zero)
 }
 
-/// Arbitrary states near the initial values, the same ones every time. Parameters are moved as well: what is 0 only with their
-/// default values is not identically 0.
+/// Arbitrary states and parameters of common sizes, the same ones every time. Default values do not enter: what is 0 with them only
+/// is not identically 0, and equations are the same whatever they are. Some expressions have values in some of the states only.
 pub(super) fn samples(mechanism: &Mechanism) -> Vec<Sample> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
 }
@@ -186,21 +187,14 @@ fn sample(mechanism: &Mechanism, seed: u64) -> Sample {
         (bits >> 11) as f64 / (1_u64 << 53) as f64
     };
     let mut inputs = HashMap::from([(Input::Time, next())]);
-    let given = |quantity: &Variable| quantity.value.filter(|value| *value != 0.0);
     for (i, parameter) in mechanism.parameters.iter().enumerate() {
-        // small where the model says 0, so that roots of what it says keep their domain
-        let share = next();
-        let value = given(parameter).map_or(0.05 + 0.1 * share, |value| value * (0.9 + 0.2 * share));
-        inputs.insert(Input::Parameter(i as u32), value);
+        inputs.insert(Input::Parameter(i as u32), parameter.typical * (0.5 + next()));
     }
     for i in 0..mechanism.inputs.len() {
         inputs.insert(Input::Input(i as u32), next());
     }
-    let mut coordinates: Vec<f64> = mechanism
-        .coordinates
-        .iter()
-        .map(|coordinate| coordinate.value.unwrap_or(0.0) + 0.6 * (next() - 0.4))
-        .collect();
+    let mut coordinates: Vec<f64> =
+        mechanism.coordinates.iter().map(|coordinate| coordinate.typical * (0.2 + 1.6 * next())).collect();
     for frame in &mechanism.frames {
         if let Orientation::Quaternion(parts) = &frame.orientation {
             let length = parts.iter().map(|part| coordinates[part.0].powi(2)).sum::<f64>().sqrt();

@@ -99,8 +99,10 @@ pub struct Variable {
     pub docs: String,
     /// unit as written, for instance `kg*m^2`
     pub unit: String,
-    /// value or initial value in that unit, if one is given
+    /// value or initial value in that unit, if one is given; unless it is `fixed`, equations do not depend on it
     pub value: Option<f64>,
+    /// a size that such a quantity commonly has, in that unit; all quantities of a unit have the same
+    pub typical: f64,
     /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it appears as
     /// its number; it is kept here so that doors can name it.
     pub fixed: bool,

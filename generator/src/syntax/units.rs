@@ -29,6 +29,20 @@ impl Unit {
     pub fn factor(&self) -> f64 {
         self.number.to_f64() * std::f64::consts::PI.powi(self.pi_power)
     }
+
+    /// A size that quantities with this unit commonly have, counted in it: that of a mechanism of half a metre, a kilogram and a
+    /// quarter of a second, whose radii of gyration are an eighth of a metre; for numbers and angles a half. (A weight is 8 N then.)
+    /// Powers of 2 are the same on every machine.
+    pub fn typical(&self) -> f64 {
+        let [metre, _, second] =
+            self.dimension.exponents.map(|exponent| exponent.to_integer().clamp(-30, 30));
+        let halves = match self.dimension {
+            none if none.is_none() => 1,
+            inertia if inertia == Dimension::of(2, 1, 0) => 6,
+            _ => metre + 2 * second,
+        };
+        0.5_f64.powi(halves) / self.factor()
+    }
 }
 
 /// Symbol, powers of m, kg, s, size as a fraction, powers of pi, may it have a prefix?

@@ -1,7 +1,10 @@
 //! `hodograph derive`: derivations to be checked in.
 
 use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+
+use hodograph_generator::artifact::MAX_BYTES;
+use hodograph_generator::reading;
 
 use crate::derivation::{self, Found, Limits};
 use crate::files::{Entry, collect};
@@ -17,11 +20,14 @@ pub struct Arguments {
     /// model files, Rust files that use `mechanism!`, or directories of them
     #[arg(required = true)]
     models: Vec<PathBuf>,
-    /// derive nothing: name the derivations that are stale or missing, and exit 1 if there are any
+    /// derive nothing: name the derivations that are stale, damaged or missing, and exit 1 if there are any
     #[arg(long)]
     check: bool,
-    /// derive also where the derivation is fresh
+    /// write nothing: derive again, name the derivations that are not what the model gives, and exit 1 if there are any
     #[arg(long, conflicts_with = "check")]
+    verify: bool,
+    /// derive also where the derivation is fresh
+    #[arg(long, conflicts_with_all = ["check", "verify"])]
     force: bool,
     #[command(flatten)]
     limits: Limits,
@@ -64,14 +70,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// Derives or checks one model; false if it is stale.
 fn one(arguments: &Arguments, entry: &Entry, model: &Model, path: PathBuf) -> Outcome<bool> {
     let found = derivation::find(&path, model);
-    if arguments.check {
-        let why = match found {
-            Found::Fresh(_) => return Ok(true),
-            Found::Absent => "is not there".to_owned(),
-            Found::Stale(why) => format!("is stale: {why}"),
+    if arguments.check || arguments.verify {
+        let fault = match found.fault() {
+            None if arguments.verify => difference(model, &path, &arguments.limits)?,
+            fault => fault,
         };
+        let Some(fault) = fault else { return Ok(true) };
         let (path, model) = (path.display(), entry.path.display());
-        output::line(&format!("{path} {why}; run `hodograph derive {model}`"))?;
+        let force = if matches!(found, Found::Fresh(_)) { " --force" } else { "" };
+        output::line(&format!("{path} {fault}; run `hodograph derive{force} {model}`"))?;
         return Ok(false);
     }
     if matches!(found, Found::Fresh(_)) && !arguments.force {
@@ -82,4 +89,23 @@ fn one(arguments: &Arguments, entry: &Entry, model: &Model, path: PathBuf) -> Ou
     derivation::write(&path, &text)?;
     eprintln!("{} written", path.display());
     Ok(true)
+}
+
+/// How a fresh derivation differs from what its model gives now.
+fn difference(model: &Model, path: &Path, limits: &Limits) -> Outcome<Option<String>> {
+    let kept = reading::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
+    let (_, derived) = derivation::derive(model, limits)?;
+    let [kept, derived]: [Vec<&str>; 2] = [&kept, &derived].map(|text| text.lines().collect());
+    if kept == derived {
+        return Ok(None);
+    }
+    let line = kept.iter().zip(&derived).take_while(|(a, b)| a == b).count() + 1;
+    let wrote =
+        |lines: &[&str]| lines.iter().find_map(|line| line.strip_prefix("generator ")).map(str::to_owned);
+    let (before, now) = (wrote(&kept).unwrap_or_default(), wrote(&derived).unwrap_or_default());
+    let version = match before == now {
+        true => String::new(),
+        false => format!(" (version {before} of the generator wrote it, this is {now})"),
+    };
+    Ok(Some(format!("is not what the model gives: they differ from line {line}{version}")))
 }

@@ -51,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let text: String = steps.iter().map(|step| format!("{}\t{}\n", step.pass, row(&step.cost))).collect();
         std::fs::write(path, text).map_err(|error| Stop::unwritable(path, &error))?;
     }
-    let text = artifact::encode(&Program::new(&derived), &source.content_hash());
+    let text = artifact::encode(&Program::new(&derived), &artifact::model_hash(&source));
     std::fs::write(&arguments.output, text).map_err(|error| Stop::unwritable(&arguments.output, &error))
 }
 

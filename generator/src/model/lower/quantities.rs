@@ -126,6 +126,7 @@ impl Lowering<'_> {
             docs: source.docs.clone(),
             unit: unit.as_ref().map_or(String::new(), |unit| unit.text.clone()),
             value: number,
+            typical: unit.as_ref().map_or(1.0, Unit::typical),
             fixed: is_fixed,
             dependent: is_dependent,
             span: source.name.span,
