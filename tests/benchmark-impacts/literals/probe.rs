@@ -154,7 +154,7 @@ fn cases(count: usize) -> Vec<Case> {
     let mut cases: Vec<Case> = Vec::new();
     let families = [
         "any rank", "ill-conditioned", "nearly straight", "merging zeros", "slow", "fast", "steep", "near mu_c", "little e",
-        "repeated", "hardly mobile", "lasting", "balanced", "isotropic", "singular, turned", "next to immobile", "f small",
+        "repeated", "hardly mobile", "lasting", "balanced", "isotropic", "singular, turned", "next to immobile", "f small", "out of range",
     ];
     for (m, v, mu, e, law) in WEAK {
         let (matrix, approach, surface) = (ReducedMatrix::from(m), Vector3::from(v), Surface { mu, e, law });
@@ -258,6 +258,11 @@ fn cases(count: usize) -> Vec<Case> {
                     continue;
                 }
                 m.nn = nn;
+            }
+            if family == "out of range" {
+                // Friction and couplings of any size.
+                surface.mu = random.between(1e-60, 1e-40);
+                v.yz_mut_scale(random.between(1e-5, 1e5));
             }
             if m.nn < 1e-2 || condition(&m) > 1e12 {
                 continue;
