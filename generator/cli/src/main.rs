@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+#[allow(dead_code)] // until a command uses it
+mod animation;
 mod commands;
 mod derivation;
 mod evaluate;

@@ -12,7 +12,7 @@ mod layout;
 mod legend;
 mod png;
 mod series;
-mod svg;
+pub mod svg;
 #[cfg(test)]
 mod tests;
 pub mod trace;

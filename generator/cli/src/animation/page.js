@@ -1,0 +1,435 @@
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const byId = (id) => document.getElementById(id);
+  const stage = byId("stage"), slider = byId("time"), clock = byId("now");
+  const times = data.times, count = times.length;
+  const first = count ? times[0] : 0, last = count ? times[count - 1] : 0;
+  const finite = (v) => v !== null && v.every((x) => x !== null);
+  const SVG = stage.namespaceURI;
+  const make = (parent, tag, kind, attributes) => {
+    const node = document.createElementNS(SVG, tag);
+    if (kind) node.setAttribute("class", kind);
+    for (const name in attributes || {}) node.setAttribute(name, attributes[name]);
+    return parent.appendChild(node);
+  };
+  const set = (node, attributes) => { for (const name in attributes) node.setAttribute(name, attributes[name]); };
+  const show = (node, shown) => { node.style.display = shown ? "" : "none"; };
+  const minus = (text) => text.replace("-", "\u2212");
+  const dashes = ["", "7 3", "8 3 1.5 3", "2 2.5", "13 3", "5 2 1.5 2 1.5 2"];
+
+  // Where the time lies between two moments: at an impact, after it.
+  const moment = (t) => {
+    let low = 0, high = count - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= t) low = middle; else high = middle - 1;
+    }
+    const next = Math.min(low + 1, count - 1), step = times[next] - times[low];
+    return { low, next, part: step > 0 ? (t - times[low]) / step : 0 };
+  };
+  const between = (list, m) => {
+    const a = list[m.low], b = list[m.next];
+    if (!a || !finite(a)) return null;
+    if (!b || !finite(b)) return a;
+    return a.map((x, i) => x + (b[i] - x) * m.part);
+  };
+
+  // Vectors, and the direction from which one looks.
+  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+  const norm = (a) => Math.hypot(a[0], a[1], a[2]);
+  const scaled = (a, s) => a.map((x) => x * s);
+  const plus = (a, b) => a.map((x, i) => x + b[i]);
+  const unit = (a) => { const n = norm(a); return n > 0 ? scaled(a, 1 / n) : null; };
+  const up = unit(data.up) || [0, 0, 1];
+  const side = unit(cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
+  const other = cross(side, up);
+  const places = data.points.flatMap((p) => p.places.filter((v) => v && finite(v)));
+  const marks = places.concat(data.events.map((e) => e.at).filter((v) => v && finite(v)));
+  const spread = (axis) => {
+    let low = Infinity, high = -Infinity;
+    for (const v of marks) { const x = dot(v, axis); if (x < low) low = x; if (x > high) high = x; }
+    return low <= high ? [low, high] : [-1, 1];
+  };
+  const box = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].map(spread);
+  const middle = box.map((b) => (b[0] + b[1]) / 2);
+  const extent = Math.max(...box.map((b) => b[1] - b[0])) || 1;
+  let reach = 0;
+  for (const v of marks) reach = Math.max(reach, norm(plus(v, scaled(middle, -1))));
+  reach = reach || 1;
+  // A plane motion is looked at from straight before it.
+  const home = () => {
+    const flat = [0, 1, 2].filter((i) => box[i][1] - box[i][0] < 1e-3 * extent);
+    const upAxis = [0, 1, 2].find((i) => Math.abs(up[i]) > 0.99);
+    if (flat.length === 1 && flat[0] !== upAxis) {
+      const from = [0, 0, 0]; from[flat[0]] = flat[0] === 1 ? -1 : 1;
+      return { turn: Math.atan2(dot(from, other), dot(from, side)), tilt: 0, zoom: 1 };
+    }
+    if (flat.length === 1) return { turn: 0, tilt: Math.PI / 2 - 0.001, zoom: 1 };
+    return { turn: 0.6, tilt: 0.35, zoom: 1 };
+  };
+  let view = home();
+  const camera = () => {
+    const flat = plus(scaled(side, Math.cos(view.turn)), scaled(other, Math.sin(view.turn)));
+    const towards = plus(scaled(flat, Math.cos(view.tilt)), scaled(up, Math.sin(view.tilt)));
+    const right = unit(cross(up, flat));
+    return { right, above: cross(towards, right) };
+  };
+  let size = [600, 400];
+  const projector = () => {
+    const { right, above } = camera();
+    const width = Math.max(...spread(right).map((x) => Math.abs(x - dot(middle, right)))) || reach;
+    const height = Math.max(...spread(above).map((x) => Math.abs(x - dot(middle, above)))) || reach;
+    const room = Math.min((size[0] / 2 - 46) / Math.max(width, 0.02 * reach), (size[1] / 2 - 40) / Math.max(height, 0.02 * reach));
+    const scale = Math.max(room, 1e-9) * view.zoom;
+    const place = (v) => {
+      const d = plus(v, scaled(middle, -1));
+      return [size[0] / 2 + scale * dot(d, right), size[1] / 2 - scale * dot(d, above)];
+    };
+    return { place, scale };
+  };
+
+  // What stands on the stage.
+  const world = make(stage, "g"), trails = make(stage, "g"), lines = make(stage, "g"), arrows = make(stage, "g");
+  const dots = make(stage, "g"), names = make(stage, "g");
+  const axes = ["x", "y", "z"].map((name) => ({
+    name, line: make(world, "path", "world", { fill: "none" }), text: make(world, "text", "number", { "text-anchor": "middle" }),
+  }));
+  axes.forEach((a) => { a.text.textContent = "N." + a.name; });
+  const segments = data.segments.map(() => make(lines, "line", "segment"));
+  const points = data.points.map((p) => {
+    const node = make(dots, "circle", "point", { r: 4 });
+    make(node, "title").textContent = p.name;
+    const text = make(names, "text", "name");
+    text.textContent = p.name;
+    return { node, text, chosen: 0, trail: make(trails, "path", "trail") };
+  });
+  const frames = data.frames.map(() => [0, 1, 2].map(() => make(arrows, "path", "arrow frame")));
+  const forces = data.forces.map(() => make(arrows, "path", "arrow force"));
+  const happenings = data.events.map(() => ({ ring: make(arrows, "circle", "happening", { r: 9 }), arrow: make(arrows, "path", "arrow impulse") }));
+  const moving = data.points.map((p) => {
+    const start = p.places.find((v) => v && finite(v));
+    return !!start && p.places.some((v) => v && finite(v) && norm(plus(v, scaled(start, -1))) > 1e-6 * extent);
+  });
+  const largest = (vectors) => vectors.reduce((most, v) => (v && finite(v) ? Math.max(most, norm(v)) : most), 0);
+  const most = { impulse: largest(data.events.map((e) => e.impulse)), force: largest(data.forces.flatMap((f) => f.force)) };
+  // An event is shown for a while after it.
+  const hold = Math.max(0.04 * (last - first), 1e-9);
+
+  const arrow = (from, to) => {
+    const d = [to[0] - from[0], to[1] - from[1]], n = Math.hypot(d[0], d[1]);
+    if (n < 1) return "";
+    const [x, y] = [d[0] / n, d[1] / n], h = Math.min(10, 0.5 * n), w = 0.45 * h;
+    const at = (u, v) => `${(to[0] - h * u * x - v * w * y).toFixed(1)} ${(to[1] - h * u * y + v * w * x).toFixed(1)}`;
+    return `M${from[0].toFixed(1)} ${from[1].toFixed(1)}L${to[0].toFixed(1)} ${to[1].toFixed(1)}M${at(1, 1)}L${at(0, 0)}L${at(1, -1)}`;
+  };
+  const pointed = (node, at, vector, longest, place) => {
+    const from = at && finite(at) ? place(at) : null;
+    const ok = from && vector && finite(vector) && longest > 0;
+    show(node, !!ok);
+    if (!ok) return;
+    const { right, above } = camera();
+    const length = 0.22 * Math.min(size[0], size[1]) / longest;
+    const to = [from[0] + length * dot(vector, right), from[1] - length * dot(vector, above)];
+    node.setAttribute("d", arrow(from, to));
+  };
+
+  const corners = [[8, -8, "start"], [8, 16, "start"], [-8, -8, "end"], [-8, 16, "end"], [0, -13, "middle"], [0, 22, "middle"], [13, 4, "start"], [-13, 4, "end"]];
+  const widths = data.points.map((p) => 7.6 * p.name.length + 3);
+  const label = (taken, index, at) => {
+    const point = points[index], width = widths[index];
+    const order = [point.chosen, ...corners.keys()];
+    for (const choice of order) {
+      const [dx, dy, anchor] = corners[choice], x = at[0] + dx, y = at[1] + dy;
+      const left = anchor === "start" ? x : anchor === "end" ? x - width : x - width / 2;
+      const rect = [left, y - 12, left + width, y + 4];
+      const inside = rect[0] >= 1 && rect[1] >= 1 && rect[2] <= size[0] - 1 && rect[3] <= size[1] - 1;
+      if (inside && taken.every((r) => rect[2] < r[0] || r[2] < rect[0] || rect[3] < r[1] || r[3] < rect[1])) {
+        taken.push(rect);
+        point.chosen = choice;
+        set(point.text, { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor });
+        return true;
+      }
+    }
+    return false;
+  };
+
+  const drawTrails = () => {
+    const { place } = projector();
+    points.forEach((p, i) => {
+      show(p.trail, moving[i] && byId("trails").checked);
+      if (!moving[i]) return;
+      let path = "", pen = false, before = [NaN, NaN];
+      for (const v of data.points[i].places) {
+        if (!v || !finite(v)) { pen = false; continue; }
+        const at = place(v);
+        if (pen && Math.hypot(at[0] - before[0], at[1] - before[1]) < 0.7) continue;
+        path += `${pen ? "L" : "M"}${at[0].toFixed(1)} ${at[1].toFixed(1)}`;
+        pen = true; before = at;
+      }
+      p.trail.setAttribute("d", path);
+    });
+    const long = 34, { right, above } = camera(), foot = [64, size[1] - 52], taken = [];
+    axes.forEach((a, i) => {
+      const e = [0, 0, 0]; e[i] = 1;
+      const d = [dot(e, right), -dot(e, above)], n = Math.hypot(d[0], d[1]);
+      const to = [foot[0] + long * d[0], foot[1] + long * d[1]];
+      a.line.setAttribute("d", arrow(foot, to));
+      const x = n > 0.05 ? to[0] + 11 * d[0] / n : 0, y = n > 0.05 ? to[1] + 11 * d[1] / n + 4 : 0;
+      const free = n > 0.25 && taken.every((t) => Math.abs(t[0] - x) > 26 || Math.abs(t[1] - y) > 14);
+      show(a.text, free);
+      if (free) { taken.push([x, y]); set(a.text, { x: x.toFixed(1), y: y.toFixed(1) }); }
+    });
+  };
+
+  let now = first;
+  const draw = () => {
+    const m = moment(now), { place, scale } = projector();
+    const at = data.points.map((p) => { const v = between(p.places, m); return v ? place(v) : null; });
+    data.segments.forEach(([a, b], i) => {
+      const shown = at[a] && at[b];
+      show(segments[i], !!shown);
+      if (shown) set(segments[i], { x1: at[a][0].toFixed(2), y1: at[a][1].toFixed(2), x2: at[b][0].toFixed(2), y2: at[b][1].toFixed(2) });
+    });
+    const taken = [];
+    points.forEach((p, i) => {
+      show(p.node, !!at[i]);
+      if (at[i]) set(p.node, { cx: at[i][0].toFixed(2), cy: at[i][1].toFixed(2) });
+      show(p.text, !!at[i] && byId("names").checked && label(taken, i, at[i]));
+    });
+    const { right, above } = camera();
+    data.frames.forEach((f, i) => [0, 1, 2].forEach((axis) => {
+      const e = f.axes[m.low] && f.axes[m.low][axis], from = at[f.at];
+      show(frames[i][axis], !!(e && from));
+      if (e && from) frames[i][axis].setAttribute("d", arrow(from, [from[0] + 26 * dot(e, right), from[1] - 26 * dot(e, above)]));
+    }));
+    data.forces.forEach((f, i) => pointed(forces[i], f.at[m.low], f.force[m.low], most.force, place));
+    data.events.forEach((e, i) => {
+      const shown = e.time <= now && now < e.time + hold && e.at && finite(e.at);
+      show(happenings[i].ring, !!shown);
+      if (shown) { const [cx, cy] = place(e.at); set(happenings[i].ring, { cx: cx.toFixed(1), cy: cy.toFixed(1) }); }
+      if (shown) pointed(happenings[i].arrow, e.at, e.impulse, most.impulse, place); else show(happenings[i].arrow, false);
+    });
+    slider.value = now;
+    clock.value = minus(now.toFixed(digits)) + " s";
+    slider.setAttribute("aria-valuetext", clock.value);
+    cursors.forEach((c) => c());
+    let current = -1;
+    data.events.forEach((e, i) => { if (e.time <= now) current = i; });
+    if (current !== marked) {
+      if (buttons[marked]) buttons[marked].removeAttribute("aria-current");
+      if (buttons[current]) buttons[current].setAttribute("aria-current", "true");
+      marked = current;
+    }
+  };
+  const digits = Math.max(2, Math.min(9, 3 - Math.floor(Math.log10(Math.max(last - first, 1e-6)))));
+
+  // Curves below: one chart for each panel.
+  const cursors = [], charts = [], margins = [];
+  let left = 60;
+  const step = (width, most) => {
+    const rough = width / most, power = 10 ** Math.floor(Math.log10(rough)), times = rough / power;
+    return (times <= 1 ? 1 : times <= 2 ? 2 : times <= 5 ? 5 : 10) * power;
+  };
+  const numbers = (low, high, most) => {
+    const by = step(high - low, most), list = [];
+    const places = Math.max(0, -Math.floor(Math.log10(by) + 1e-9));
+    const text = (x) => {
+      const largest = Math.max(Math.abs(low), Math.abs(high));
+      if (largest >= 1e5 || largest < 1e-3) return x === 0 ? "0" : minus(String(+x.toPrecision(3)).includes("e") ? x.toExponential(1) : String(+x.toPrecision(4)));
+      return minus((Math.abs(x) < by / 1e6 ? 0 : x).toFixed(Math.min(places, 9)));
+    };
+    for (let k = Math.ceil(low / by - 1e-9); k * by <= high + 1e-9 * by && list.length < 50; k++) list.push([k * by, text(k * by)]);
+    return list;
+  };
+  const panels = [...new Set(data.series.map((s) => s.panel))];
+  panels.forEach((panel) => {
+    const all = data.series.filter((s) => s.panel === panel), units = [...new Set(all.map((s) => s.unit))];
+    const heading = document.createElement("h2");
+    heading.textContent = panel + (units.length === 1 && units[0] ? ` [${units[0]}]` : "");
+    const svg = document.createElementNS(SVG, "svg");
+    svg.setAttribute("class", "chart");
+    svg.setAttribute("role", "img");
+    svg.setAttribute("aria-label", `${panel} over time: ${all.map((s) => s.name).join(", ")}`);
+    const key = document.createElement("ul");
+    key.className = "key";
+    all.forEach((s, i) => {
+      const item = document.createElement("li"), sample = document.createElementNS(SVG, "svg");
+      sample.setAttribute("viewBox", "0 0 36 10");
+      sample.setAttribute("aria-hidden", "true");
+      make(sample, "path", "curve", { d: "M0 5L36 5", style: `stroke:var(--c${i % 6})`, "stroke-dasharray": dashes[i % 6] });
+      item.append(sample, s.name + (units.length > 1 && s.unit ? ` [${s.unit}]` : ""));
+      key.append(item);
+    });
+    byId("curves").append(heading, svg, key);
+    let low = Infinity, high = -Infinity;
+    for (const s of all) for (const v of s.values) if (v !== null) { if (v < low) low = v; if (v > high) high = v; }
+    if (!(low <= high)) { low = -1; high = 1; }
+    const margin = Math.max(0.06 * (high - low), 1e-6 * Math.max(Math.abs(low), Math.abs(high))) || 1;
+    low -= margin; high += margin;
+    let width = 100, height = 100;
+    margins.push(16 + 7 * Math.max(...numbers(low, high, 5).map((r) => r[1].length), 1));
+    const x = (t) => left + (last > first ? (t - first) / (last - first) : 0) * (width - left - 12);
+    const y = (v) => 8 + (high - v) / (high - low) * (height - 36);
+    const cursor = document.createElementNS(SVG, "line");
+    cursor.setAttribute("class", "cursor");
+    charts.push(() => {
+      width = svg.clientWidth || 600; height = svg.clientHeight || 170;
+      svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
+      svg.replaceChildren();
+      left = Math.max(...margins);
+      numbers(low, high, 5).forEach(([v, text]) => {
+        make(svg, "line", v === 0 ? "axis" : "grid", { x1: left, x2: width - 12, y1: y(v).toFixed(1), y2: y(v).toFixed(1) });
+        make(svg, "text", "number", { x: left - 7, y: (y(v) + 4).toFixed(1), "text-anchor": "end" }).textContent = text;
+      });
+      if (last > first) numbers(first, last, Math.max(2, Math.floor(width / 110))).forEach(([t, text]) => {
+        make(svg, "line", "grid", { x1: x(t).toFixed(1), x2: x(t).toFixed(1), y1: 8, y2: height - 28 });
+        const anchor = x(t) > width - 34 ? "end" : "middle";
+        make(svg, "text", "number", { x: Math.min(x(t), width - 4).toFixed(1), y: height - 12, "text-anchor": anchor }).textContent = text + " s";
+      });
+      all.forEach((s, i) => {
+        let path = "", pen = false, before = -9, beforeY = -9;
+        s.values.forEach((v, k) => {
+          if (v === null) { pen = false; return; }
+          const px = x(times[k]), py = y(v);
+          if (pen && px - before < 0.3 && Math.abs(py - beforeY) < 0.3 && k < count - 1) return;
+          path += `${pen ? "L" : "M"}${px.toFixed(2)} ${py.toFixed(2)}`;
+          pen = true; before = px; beforeY = py;
+        });
+        make(svg, "path", "curve", { d: path, style: `stroke:var(--c${i % 6})`, "stroke-dasharray": dashes[i % 6] });
+      });
+      svg.append(cursor);
+      set(cursor, { y1: 8, y2: height - 28 });
+    });
+    cursors.push(() => set(cursor, { x1: x(now).toFixed(2), x2: x(now).toFixed(2) }));
+    const seek = (event) => {
+      const at = (event.clientX - svg.getBoundingClientRect().left - left) / Math.max(width - left - 12, 1);
+      go(first + Math.min(1, Math.max(0, at)) * (last - first));
+    };
+    svg.addEventListener("pointerdown", (event) => { svg.setPointerCapture(event.pointerId); pause(); seek(event); });
+    svg.addEventListener("pointermove", (event) => { if (event.buttons) seek(event); });
+  });
+
+  // Events, each a button that leads to its time.
+  const buttons = [];
+  let marked = -2;
+  if (data.events.length) {
+    const heading = document.createElement("h2"), list = document.createElement("ol");
+    heading.textContent = `Events (${data.events.length})`;
+    data.events.forEach((e) => {
+      const item = document.createElement("li"), button = document.createElement("button");
+      button.type = "button";
+      const impulse = e.impulse && finite(e.impulse) ? `, impulse ${norm(e.impulse).toPrecision(4)} N\u00b7s` : "";
+      button.textContent = `${minus(e.time.toFixed(Math.max(digits, 4)))} s: ${e.label}${e.contact ? ` at ${e.contact}` : ""}${impulse}`;
+      button.addEventListener("click", () => { pause(); go(e.time); });
+      item.append(button); list.append(item); buttons.push(button);
+    });
+    byId("events").append(heading, list);
+  }
+  const keyed = (kind, text) => {
+    const item = document.createElement("li"), sample = document.createElementNS(SVG, "svg");
+    sample.setAttribute("viewBox", "0 0 36 10");
+    sample.setAttribute("aria-hidden", "true");
+    make(sample, "path", `arrow ${kind}`, { d: arrow([1, 5], [35, 5]) });
+    item.append(sample, text);
+    byId("key").append(item);
+  };
+  if (most.impulse > 0) keyed("impulse", `impulse, longest ${most.impulse.toPrecision(3)} N\u00b7s`);
+  if (most.force > 0) keyed("force", `force, longest ${most.force.toPrecision(3)} N`);
+
+  // Time runs.
+  const speeds = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+  const wanted = last - first >= 2 && last - first <= 30 ? 1 : (last - first) / 8;
+  const nearest = speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best), 1);
+  const speed = byId("speed");
+  speeds.filter((s) => s >= nearest / 11 && s <= nearest * 11).forEach((s) => {
+    const option = document.createElement("option");
+    option.value = s; option.textContent = `${s}\u00d7`; option.selected = s === nearest;
+    speed.append(option);
+  });
+  let running = false, clockBefore = 0;
+  const play = byId("play");
+  // The signs are drawn: not every font has them.
+  const sign = make(play, "svg", "", { viewBox: "0 0 20 20", "aria-hidden": "true" });
+  const outline = make(sign, "path", "");
+  const shape = (text, path) => { play.setAttribute("aria-label", text); outline.setAttribute("d", path); };
+  const pause = () => { running = false; shape("Play", "M4 2L18 10L4 18Z"); };
+  const start = () => {
+    if (now >= last) now = first;
+    running = true; clockBefore = performance.now();
+    shape("Pause", "M4 2H8V18H4ZM12 2H16V18H12Z");
+    requestAnimationFrame(tick);
+  };
+  pause();
+  const tick = () => {
+    if (!running) return;
+    const clockNow = performance.now();
+    now = Math.min(last, now + (clockNow - clockBefore) / 1000 * Number(speed.value));
+    clockBefore = clockNow;
+    draw();
+    if (now >= last) pause(); else requestAnimationFrame(tick);
+  };
+  const go = (t) => { now = Math.min(last, Math.max(first, t)); draw(); };
+  const hop = (by) => {
+    pause();
+    const m = moment(now);
+    let index = by > 0 ? m.low + 1 : m.part > 0 ? m.low : m.low - 1;
+    // Moments at the same time look alike in the picture: go on to another time.
+    while (by < 0 && index > 0 && times[index] >= now) index--;
+    go(times[Math.min(count - 1, Math.max(0, index))]);
+  };
+  play.addEventListener("click", () => (running ? pause() : start()));
+  set(slider, { min: first, max: last });
+  slider.addEventListener("input", () => { pause(); go(Number(slider.value)); });
+  document.addEventListener("keydown", (event) => {
+    const field = event.target.closest("button, select, input");
+    if (event.altKey || event.ctrlKey || event.metaKey || event.target === speed) return;
+    const turn = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] }[event.key];
+    if (event.shiftKey && turn) { rotate(turn[0], turn[1]); }
+    else if (event.key === " " && !(field && field !== slider)) { running ? pause() : start(); }
+    else if (event.key === "ArrowLeft") hop(-1);
+    else if (event.key === "ArrowRight") hop(1);
+    else if (event.key === "Home") { pause(); go(first); }
+    else if (event.key === "End") { pause(); go(last); }
+    else return;
+    event.preventDefault();
+  });
+
+  // The view turns with a pointer and comes closer with two, or a wheel.
+  const pointers = new Map();
+  const rotate = (turn, tilt) => {
+    view.turn -= turn;
+    view.tilt = Math.min(Math.PI / 2 - 0.001, Math.max(-Math.PI / 2 + 0.001, view.tilt + tilt));
+    drawTrails(); draw();
+  };
+  const closer = (by) => { view.zoom = Math.min(50, Math.max(0.1, view.zoom * by)); drawTrails(); draw(); };
+  stage.addEventListener("pointerdown", (event) => { stage.setPointerCapture(event.pointerId); pointers.set(event.pointerId, [event.clientX, event.clientY]); });
+  stage.addEventListener("pointermove", (event) => {
+    const before = pointers.get(event.pointerId);
+    if (!before) return;
+    const after = [event.clientX, event.clientY];
+    const others = [...pointers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
+    pointers.set(event.pointerId, after);
+    if (others.length) {
+      const away = (p) => Math.hypot(p[0] - others[0][0], p[1] - others[0][1]);
+      if (away(before) > 5) closer(away(after) / away(before));
+    } else rotate((after[0] - before[0]) / 150, (after[1] - before[1]) / 150);
+  });
+  ["pointerup", "pointercancel"].forEach((name) => stage.addEventListener(name, (event) => pointers.delete(event.pointerId)));
+  stage.addEventListener("wheel", (event) => { event.preventDefault(); closer(Math.exp(-event.deltaY / 600)); }, { passive: false });
+  byId("view").addEventListener("click", () => { view = home(); drawTrails(); draw(); });
+  ["names", "trails"].forEach((id) => byId(id).addEventListener("change", () => { drawTrails(); draw(); }));
+
+  const layout = () => {
+    size = [stage.clientWidth || 600, stage.clientHeight || 400];
+    stage.setAttribute("viewBox", `0 0 ${size[0]} ${size[1]}`);
+    charts.forEach((chart) => chart());
+    drawTrails(); draw();
+  };
+  if (count) {
+    new ResizeObserver(layout).observe(document.body);
+    layout();
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) start();
+  }
+})();

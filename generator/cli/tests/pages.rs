@@ -1,0 +1,81 @@
+//! Pages in a real browser. They are left out of `cargo test`, which needs none: `cargo test --workspace in_a_browser -- --ignored`.
+
+#[path = "common/browser.rs"]
+mod browser;
+#[allow(dead_code)] // each test has its own use of it
+mod common;
+
+use common::hodograph;
+
+/// Signs of a formula stand beside each other, numerators over denominators, equations below each other.
+const EQUATIONS: &str = r#"
+const rows = [...document.querySelectorAll('.equation')];
+if (!rows.length) complain('there are no equations');
+if (!document.querySelectorAll('.matrix mtable').length) complain('there are no matrices');
+for (const node of document.querySelectorAll('math')) {
+  if (!page.getComputedStyle(node).display.includes('math')) complain(`is laid out as ${page.getComputedStyle(node).display}: ${describe(node)}`);
+  const size = box(node);
+  if (size.width < 2 || size.height < 4) complain(`is not seen: ${describe(node)}`);
+}
+const tokens = (node) => [...node.querySelectorAll('mi, mn, mo')].filter((token) => box(token).width > 0.5);
+for (const row of rows.concat([...document.querySelectorAll('.matrix')])) {
+  const boxes = tokens(row).map((token) => [token, box(token)]);
+  boxes.forEach(([a, first], index) => boxes.slice(index + 1).forEach(([b, second]) => {
+    const stretched = [a, b].some((token) => token.getAttribute('stretchy') === 'true');
+    // The point over a letter stands in its box.
+    const accent = [a, b].some((token) => token.parentElement.localName === 'mover');
+    if (!stretched && !accent && crossing(first, second, 1)) complain(`${describe(a)} on ${describe(b)} in ${describe(row)}`);
+  }));
+  for (const fraction of row.querySelectorAll('mfrac')) {
+    const [above, below] = [...fraction.children].map(box);
+    if (above.bottom > below.top + 1) complain(`the fraction ${describe(fraction)}`);
+  }
+}
+rows.forEach((row, index) => {
+  const [left, sign, right] = [...row.children].map(box);
+  if (left.right > sign.left + 0.5 || sign.right > right.left + 0.5) complain(`the columns of ${describe(row)}`);
+  const next = rows[index + 1];
+  if (next && crossing(box(row), box(next), 0.5)) complain(`${describe(row)} on ${describe(next)}`);
+  if (next && next.parentElement === row.parentElement && Math.abs(box(row.children[1]).left - box(next.children[1]).left) > 0.5) {
+    complain(`the sign of ${describe(row)} is not over the next`);
+  }
+});
+for (const link of document.querySelectorAll('nav a')) {
+  if (!document.getElementById(link.getAttribute('href').slice(1))) complain(`leads nowhere: ${describe(link)}`);
+}
+return found;
+"#;
+
+#[test]
+#[ignore = "needs Chromium"]
+fn equations_are_laid_out_in_a_browser() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
+    let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|ending| ending == "mech"));
+    paths.sort();
+    assert!(paths.len() > 20);
+    for path in paths {
+        let run = hodograph(&["explain", path.to_str().unwrap(), "--format", "html"], "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let complaints = browser::complaints(&run.stdout, EQUATIONS);
+        assert!(complaints.is_empty(), "{}:\n{}", path.display(), complaints.join("\n"));
+    }
+}
+
+/// The test sees what it is for: with the rule that was there, and with a wide line, it complains.
+#[test]
+#[ignore = "needs Chromium"]
+fn a_spoiled_page_is_noticed_in_a_browser() {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/two_sleds.mech");
+    let page = hodograph(&["explain", model, "--format", "html"], "").stdout;
+    for (style, what) in [
+        ("math { display: block }", "laid out as block"),
+        ("h1 { width: 3000px }", "wider than the window"),
+        ("mo { margin-right: -12px }", " on "),
+        ("body { background: url(http://example.org/a.png) }", "asks for"),
+    ] {
+        let spoiled = page.replace("</style>", &format!("{style}</style>"));
+        let complaints = browser::complaints(&spoiled, EQUATIONS);
+        assert!(complaints.iter().any(|text| text.contains(what)), "{style}: {complaints:?}");
+    }
+}
