@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use super::arithmetic::{ZERO, neg, quotient, sum, times};
 use super::exact::Exact;
 use super::headings::{heading, lefts, matrix};
-use super::symbols::Symbols;
-use super::{Document, Entry, Equation, Left, Section, Term, stage_title};
+use super::symbols::{Symbol, Symbols};
+use super::{Document, Entry, Equation, INTERMEDIATE, Left, Section, Term, stage_title};
 use crate::arithmetic::Function;
 use crate::model::mechanism::{Mechanism, Variable};
 use crate::program::graph::Input;
@@ -41,26 +41,21 @@ pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
         };
         reader.terms.insert(value, term);
     }
+    let names = names(mechanism);
+    let symbols = Symbols::new(names.iter().flat_map(|(_, list)| list).map(|entry| entry.name.as_str()));
     let intermediate = intermediate.into_iter().filter(|(_, list)| !list.is_empty());
     let mut sections: Vec<Section> = intermediate
         .map(|(stage, equations)| Section {
-            group: "Intermediate symbols".to_owned(),
+            group: INTERMEDIATE.to_owned(),
             title: stage_title(stage).to_owned(),
             unit: String::new(),
-            symbol: "",
+            symbol: None,
             matrix: Vec::new(),
             equations,
         })
         .collect();
-    sections.extend(slice.outputs.iter().map(|output| reader.section(output)));
-    let names = names(mechanism);
-    Document {
-        title: mechanism.name.clone(),
-        docs: mechanism.docs.clone(),
-        symbols: Symbols::new(names.iter().flat_map(|(_, list)| list).map(|entry| entry.name.as_str())),
-        names,
-        sections,
-    }
+    sections.extend(slice.outputs.iter().map(|output| reader.section(output, &symbols)));
+    Document { title: mechanism.name.clone(), docs: mechanism.docs.clone(), symbols, names, sections }
 }
 
 fn names(mechanism: &Mechanism) -> Vec<(&'static str, Vec<Entry>)> {
@@ -160,17 +155,32 @@ impl Reader<'_> {
         format!("delta_{name}")
     }
 
-    fn section(&self, output: &Output) -> Section {
+    /// The equations of a quantity; its symbol gets a stroke where a name of the model looks like one of its entries.
+    fn section(&self, output: &Output, symbols: &Symbols) -> Section {
         let heading = heading(self.mechanism, output.quantity);
-        let lefts = lefts(self.mechanism, output, heading.symbol);
+        let taken = |head: &str, index: String| symbols.has(&Symbol { head: head.to_owned(), index });
+        let clash = |left: &Left| match left {
+            Left::Entry(symbol, indices) => taken(symbol, indices.join(",")),
+            Left::Z(_) | Left::Of(..) => false,
+        };
+        let mut symbol = heading.symbol.to_owned();
+        let mut left_sides = lefts(self.mechanism, output, &symbol);
+        while left_sides.iter().any(clash) {
+            symbol.push('\'');
+            left_sides = lefts(self.mechanism, output, &symbol);
+        }
         let rights = output.values.iter().map(|&value| self.of(value));
         Section {
             group: heading.group,
             title: heading.title.to_owned(),
             unit: heading.unit.to_owned(),
-            symbol: heading.symbol,
+            symbol: Some(symbol).filter(|symbol| !taken(symbol, String::new())),
             matrix: matrix(output),
-            equations: lefts.into_iter().zip(rights).map(|(left, right)| Equation { left, right }).collect(),
+            equations: left_sides
+                .into_iter()
+                .zip(rights)
+                .map(|(left, right)| Equation { left, right })
+                .collect(),
         }
     }
 }

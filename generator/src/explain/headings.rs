@@ -82,8 +82,8 @@ fn contact(quantity: ContactQuantity) -> Heading {
     Heading { group: String::new(), title, symbol, unit }
 }
 
-/// The left sides of the equations of a quantity.
-pub fn lefts(mechanism: &Mechanism, output: &Output, symbol: &'static str) -> Vec<Left> {
+/// The left sides of the equations of a quantity, with its symbol.
+pub fn lefts(mechanism: &Mechanism, output: &Output, symbol: &str) -> Vec<Left> {
     let own = |list: &mut dyn Iterator<Item = &Variable>, rate: bool| -> Vec<Left> {
         list.map(|name| Left::Of(name.name.clone(), rate)).collect()
     };
@@ -95,7 +95,7 @@ pub fn lefts(mechanism: &Mechanism, output: &Output, symbol: &'static str) -> Ve
         Quantity::DependentAccelerations => return own(&mut speeds(true), true),
         _ => {}
     }
-    let entry = |indices: Vec<String>| Left::Entry(symbol, indices);
+    let entry = |indices: Vec<String>| Left::Entry(symbol.to_owned(), indices);
     if let Quantity::Contact(_, ContactQuantity::Reduced) = output.quantity {
         return ["nn", "nt", "ns", "tt", "ts", "ss"].map(|pair| entry(vec![pair.to_owned()])).into();
     }

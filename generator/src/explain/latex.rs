@@ -76,8 +76,8 @@ fn letters(text: &str) -> String {
         out += &format!("\\{name}{{}}");
         rest = &rest[letter.len_utf8()..];
     }
-    match rest.chars().count() {
-        0 => out,
+    match rest.trim_end_matches('\'').chars().count() {
+        0 => format!("{out}{rest}"),
         1 if rest.is_ascii() => format!("{out}{}", plain(rest)),
         1.. => format!("{out}\\mathrm{{{}}}", text_in_formula(rest)),
     }
@@ -149,7 +149,8 @@ impl Writer<'_> {
             };
             let rows = places.iter().map(|row| row.iter().map(cell).collect::<Vec<_>>().join(" & "));
             let rows = rows.collect::<Vec<_>>().join(" \\\\\n");
-            out += &format!("\\[\n{} = \\begin{{bmatrix}}\n{rows}\n\\end{{bmatrix}}\n\\]\n", section.symbol);
+            let symbol = section.symbol.as_ref().map_or(String::new(), |symbol| format!("{symbol} = "));
+            out += &format!("\\[\n{symbol}\\begin{{bmatrix}}\n{rows}\n\\end{{bmatrix}}\n\\]\n");
         }
         let lines: Vec<String> = below.into_iter().map(|equation| self.equation(equation)).collect();
         if !lines.is_empty() {

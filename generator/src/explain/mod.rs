@@ -129,7 +129,7 @@ enum Left {
     /// an intermediate symbol
     Z(usize),
     /// an entry of a quantity: its symbol, and its indices where it has more than one entry
-    Entry(&'static str, Vec<String>),
+    Entry(String, Vec<String>),
     /// a quantity that belongs to a name of the model, such as a rate
     Of(String, bool),
 }
@@ -142,8 +142,8 @@ struct Section {
     title: String,
     /// may be empty
     unit: String,
-    /// of the whole quantity; empty for intermediate symbols
-    symbol: &'static str,
+    /// of the whole quantity, unless a name of the model has it
+    symbol: Option<String>,
     /// which equations stand in which row of a matrix; empty for what is no matrix
     matrix: Vec<Vec<usize>>,
     equations: Vec<Equation>,
@@ -151,11 +151,17 @@ struct Section {
 
 /// An entry of a matrix with more symbols than this is written below it.
 const SHORT: usize = 4;
+/// The same for matrices of many columns.
+const SHORTEST: usize = 2;
+const MANY_COLUMNS: usize = 4;
+
+/// What intermediate symbols stand under.
+const INTERMEDIATE: &str = "Intermediate symbols";
 
 impl Section {
     /// The heading in one line.
     fn line(&self) -> String {
-        match self.symbol.is_empty() || self.group.is_empty() {
+        match self.group.is_empty() || self.group == INTERMEDIATE {
             true => self.title.clone(),
             false => format!("{}: {}", self.group, self.title),
         }

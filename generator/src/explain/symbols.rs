@@ -92,11 +92,16 @@ impl Symbols {
             let written_out = Symbol { head: name.to_owned(), index: String::new() };
             let mut symbol = if taken.contains(&own) { written_out } else { own };
             while !taken.insert(symbol.clone()) {
-                symbol.head.push('\u{2032}');
+                symbol.head.push('\'');
             }
             of.insert(name.to_owned(), symbol);
         }
         Symbols { of, letter }
+    }
+
+    /// Does a name look like this?
+    pub fn has(&self, symbol: &Symbol) -> bool {
+        self.of.values().any(|known| known == symbol)
     }
 
     /// The symbol of a name.

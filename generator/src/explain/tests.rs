@@ -167,6 +167,27 @@ fn pages_have_a_row_for_each_equation() {
     }
 }
 
+/// A force F on a mass K: the equations' own F and K are told from them.
+#[test]
+fn quantities_do_not_look_like_names_of_the_model() {
+    let source = "mechanism T; parameters { K: kg = 1, l: m = 1 } inputs { F: N*m } coordinates { q1: rad } speeds { u1: rad/s } \
+                  frames { B = N.rotate(z, q1); } points { G = O - l/2*B.y; } bodies { R { frame: B, centre: G, mass: K, \
+                  inertia: [K*l^2/12, 0, K*l^2/12] } } loads { torque on B: F*N.z; }";
+    let checked = crate::check::check(&crate::source::Source::file("t.mech", source));
+    let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{:?}", checked.diagnostics));
+    let mut graph = Graph::new();
+    let [mass, force] = [Input::Parameter(0), Input::Input(0)].map(|input| graph.input(input));
+    let one = |quantity, node| Output { quantity, rows: 1, columns: 1, values: vec![node] };
+    let outputs = vec![one(Quantity::Forcing, force), one(Quantity::KineticEnergy, mass)];
+    let derived = Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] };
+    let program = Program::new(&derived);
+    let [text, latex, html] = [Format::Text, Format::Latex, Format::Html]
+        .map(|format| explain(&mechanism, &program, &[Quantity::Forcing, Quantity::KineticEnergy], format));
+    assert!(text.contains("  F' = F\n") && text.contains("  K' = K\n"), "{text}");
+    assert!(latex.contains("F' &= F\n") && latex.contains("K' &= K\n"), "{latex}");
+    assert_eq!(rows(&html), ["F\u{2032}=F", "K\u{2032}=K"]);
+}
+
 /// Every kind of term, in every place where brackets matter.
 #[test]
 fn terms_are_bracketed_and_numbers_are_powers_of_ten() {
@@ -227,12 +248,12 @@ fn terms_are_bracketed_and_numbers_are_powers_of_ten() {
         (Term::Call("sqrt", vec![sum.clone()]), "sqrt(a\u{2212}b)", "sqrt(a - b)", "\\sqrt{a-b}"),
     ];
     for (right, page, text, latex) in cases {
-        let equation = Equation { left: Left::Entry("F", vec!["1".to_owned()]), right };
+        let equation = Equation { left: Left::Entry("F".to_owned(), vec!["1".to_owned()]), right };
         let section = Section {
             group: String::new(),
             title: "Forcing".to_owned(),
             unit: String::new(),
-            symbol: "F",
+            symbol: Some("F".to_owned()),
             matrix: Vec::new(),
             equations: vec![equation],
         };

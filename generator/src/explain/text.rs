@@ -47,7 +47,7 @@ fn left(document: &Document, left: &Left) -> String {
         Left::Z(index) => format!("{}{index}", document.symbols.letter),
         Left::Of(name, false) => name.clone(),
         Left::Of(name, true) => format!("d({name})/dt"),
-        Left::Entry(symbol, indices) if indices.is_empty() => (*symbol).to_owned(),
+        Left::Entry(symbol, indices) if indices.is_empty() => symbol.clone(),
         Left::Entry(symbol, indices) => format!("{symbol}[{}]", indices.join(",")),
     }
 }

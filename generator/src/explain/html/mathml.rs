@@ -27,9 +27,9 @@ pub fn math(inner: &str) -> String {
     format!("<math displaystyle=\"true\">{inner}</math>")
 }
 
-/// Letters: a word stands upright, and so does what begins with a small Greek delta before a word.
-fn letters(text: &str) -> String {
-    format!("<mi>{}</mi>", plain(text))
+/// A letter, which browsers set italic, or a word, which stands upright.
+pub fn letters(text: &str) -> String {
+    format!("<mi>{}</mi>", plain(&text.replace('\'', "\u{2032}")))
 }
 
 /// A base with an index and an exponent, each of which may be empty.
