@@ -1,4 +1,6 @@
 //! The quantities of section 3 that depend on the contact alone.
+//!
+//! Theory: docs/theory.md, section 12.
 
 use nalgebra::{Vector2, Vector3};
 

@@ -1,4 +1,6 @@
 //! The direction in which slip stops.
+//!
+//! Theory: docs/theory.md, section 12.
 
 use nalgebra::Vector2;
 

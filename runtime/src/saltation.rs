@@ -1,4 +1,6 @@
 //! How a small deviation of a mechanism's state passes through a collision.
+//!
+//! Theory: docs/theory.md, section 13.4.
 
 use nalgebra::{Matrix3, SMatrix, SVector};
 

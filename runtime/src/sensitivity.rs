@@ -1,4 +1,6 @@
 //! Where a small change of the input changes the outcome, or its path, by much.
+//!
+//! Theory: docs/theory.md, section 14.
 
 use nalgebra::Vector2;
 

@@ -1,4 +1,6 @@
 //! Dual numbers: a value with its derivatives with respect to `N` inputs, carried through the solver by forward differentiation.
+//!
+//! Theory: docs/theory.md, section 13.1.
 
 mod operators;
 

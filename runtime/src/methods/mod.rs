@@ -17,6 +17,8 @@
 //! * 6.3.3: with Stronge's hypothesis v_n2 of (61) is 0.269934 (mu = 1.1) and 0.184789 (mu = 1.6) for the paper's own inputs, not 0.203 and 0.267.
 //! * (41), (43): mu_c and the terminal rates are formed with the pseudo-inverse of the tangential block, so that they exist for
 //!   planar and other singular matrices too (Appendix C prints 0/0).
+//!
+//! Theory: docs/theory.md, section 15.
 
 mod equations;
 mod integrate;

@@ -3,6 +3,8 @@
 //! In the eigenbasis of T the components of slip are exponentials of sigma, dI_n = s dsigma: v_1' = -alpha v_1, v_2' = -nu v_2 with
 //! alpha = mu lambda_1 >= nu = mu lambda_2, so that v_2 ~ v_1^(lambda_2 / lambda_1). The impulse, the integral of s, is an incomplete beta
 //! function of the direction, summed here by two series that complement each other.
+//!
+//! Theory: docs/theory.md, section 11.3.
 
 use nalgebra::{Vector2, Vector3};
 

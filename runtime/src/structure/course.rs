@@ -1,4 +1,6 @@
 //! A sliding arc in closed form, and the search for the end of the collision on it.
+//!
+//! Theory: docs/theory.md, sections 8 and 11.
 
 use nalgebra::Vector2;
 

@@ -1,4 +1,6 @@
 //! The balanced contact whose axes are t and s: its eigenbasis is at hand.
+//!
+//! Theory: docs/theory.md, section 11.4.
 
 use nalgebra::{Vector2, Vector3};
 

@@ -1,4 +1,6 @@
 //! Without friction the impulse is along n, v_n is linear in it, and so is the slip.
+//!
+//! Theory: docs/theory.md, section 11.1.
 
 use nalgebra::{Vector2, Vector3};
 

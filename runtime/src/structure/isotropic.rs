@@ -3,6 +3,8 @@
 //! With m_ts = 0, m_tt = m_ss and slip (v_1, v_2) along b and across it, P = (s + v_1) / 2 and M = (s - v_1) / 2 obey P' = (beta - kappa) P and
 //! M' = -(beta + kappa) M, where dI_n = s dsigma, beta = |b| and kappa = mu m_tt. So everything on the arc is a sum of exponentials of
 //! sigma; without sigma it reads s sin(psi) ~ tan(psi/2)^(kappa/beta), psi counted from b.
+//!
+//! Theory: docs/theory.md, section 11.2.
 
 use nalgebra::{Vector2, Vector3};
 

@@ -7,6 +7,8 @@
 //! | [`Planar`], [`Frictionless`] | linear in I_n | is the variable |
 //! | [`Isotropic`] | exponentials of sigma, dI_n = s dsigma | exponentials of sigma |
 //! | [`Balanced`], [`Diagonal`] | exponentials of sigma | an incomplete beta function of the direction |
+//!
+//! Theory: docs/theory.md, section 11.
 
 mod balanced;
 mod course;

@@ -1,4 +1,6 @@
 //! In a plane the direction of slip stays (h = 0), and every arc is linear in I_n.
+//!
+//! Theory: docs/theory.md, section 11.1.
 
 use nalgebra::{Vector2, Vector3};
 
