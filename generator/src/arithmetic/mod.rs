@@ -4,6 +4,7 @@
 mod double_double;
 mod doubles;
 mod function;
+mod large_angles;
 pub mod reproducible;
 
 pub use doubles::{Arithmetic, call, call2, sin_cos};

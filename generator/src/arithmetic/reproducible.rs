@@ -9,8 +9,9 @@ use hodograph_arithmetic::DoubleDouble;
 
 use super::doubles::{self, Arithmetic};
 use super::function::Function;
+use super::large_angles;
 
-/// Angles up to here are reduced here, rad; of larger ones sine and cosine are those of the system.
+/// Angles up to here are reduced here, rad; larger ones need more digits of pi.
 const LARGEST: f64 = 524288.0;
 
 /// A number of twice the digits.
@@ -135,13 +136,19 @@ impl Arithmetic for Reproducible {
 
     fn sin_cos(self) -> (Self, Self) {
         let near = self.rounded();
-        if near.abs() > LARGEST || near.is_nan() {
-            let (sine, cosine) = near.sin_cos();
-            return (Self::exactly(sine), Self::exactly(cosine));
+        if !near.is_finite() {
+            return (Self::exactly(f64::NAN), Self::exactly(f64::NAN));
         }
-        let (turns, rest) = self.reduced(Self::half_pi());
+        let (quarter, rest) = if near.abs() > LARGEST {
+            let low = (self - Self::exactly(near)).rounded();
+            let (quarter, [high, low]) = large_angles::reduced(near, low);
+            (quarter, Self::parts(high, low))
+        } else {
+            let (turns, rest) = self.reduced(Self::half_pi());
+            (turns.rem_euclid(4.0) as u8, rest)
+        };
         let (cosine, sine) = rest.series(true);
-        match turns.rem_euclid(4.0) as u8 {
+        match quarter {
             0 => (sine, cosine),
             1 => (cosine, -sine),
             2 => (-sine, -cosine),
@@ -243,6 +250,10 @@ mod tests {
             vanishes(tanh * cosh - sinh, &name);
             vanishes(of(x).call(Tan).call(Atan) - of(x), &name);
             vanishes(s1.call2(Atan2, c1) - of(x), &name);
+            let (s, c) = of(x * 1e13).sin_cos();
+            vanishes(s * s + c * c - one, &name);
+            let (s2, _) = (of(2.0) * of(x * 1e13)).sin_cos();
+            vanishes(s2 - of(2.0) * s * c, &name);
             vanishes(s1.call(Asin).sin_cos().0 - s1, &name);
             vanishes(c1.call(Acos).sin_cos().1 - c1, &name);
         }

@@ -1,18 +1,18 @@
 //! Is a point a point of the body that is named? In `P of B = Q + ..` the velocity of P is that of Q plus the turning of B about
 //! Q, which is so only if Q moves with B. That shows in numbers.
 
+use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
 use crate::numeric::Evaluation;
-
-type Vector3 = [f64; 3];
+use crate::numeric::views::{cross3, norm3, sub3};
 
 /// Points that are placed on bodies to which they do not belong.
-pub(super) fn strangers(m: &Mechanism, seen: &[Evaluation]) -> Vec<Diagnostic> {
+pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for (i, point) in m.points.iter().enumerate() {
         let Place::Material { frame, from, .. } = point.place else { continue };
-        let stays = seen.iter().any(|at| stays_on(m, at, frame, from).unwrap_or(true));
+        let stays = seen.iter().any(|seen| stays_on(m, &seen.at, frame, from).unwrap_or(true));
         if stays {
             continue;
         }
@@ -29,9 +29,9 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Evaluation]) -> Vec<Diagnostic> {
         let Some(particle) = body else { continue };
         let apart = |at: &Evaluation| {
             let (a, b) = (at.positions[contact.point.0]?, at.positions[particle.centre.0]?);
-            Some(length(sub(a, b)) > 1e-9 * (length(a) + length(b)))
+            Some(norm3(sub3(a, b)) > 1e-9 * (norm3(a) + norm3(b)))
         };
-        if !seen.is_empty() && seen.iter().all(|at| apart(at) == Some(true)) {
+        if !seen.is_empty() && seen.iter().all(|seen| apart(&seen.at) == Some(true)) {
             let (p, centre) = (&m.points[contact.point.0].name, &m.points[particle.centre.0].name);
             let message = format!("`{p}` is no point of the particle `{}`", particle.name);
             let help = format!("a particle is one point: `{centre}`");
@@ -46,28 +46,16 @@ fn stays_on(m: &Mechanism, at: &Evaluation, frame: FrameId, point: PointId) -> O
     let turning = at.angular_velocities[frame.0];
     let mut references = m.bodies.iter().filter(|body| body.frame == Some(frame)).map(|body| body.centre);
     let with = |reference: PointId| {
-        let arm = sub(at.positions[point.0]?, at.positions[reference.0]?);
+        let arm = sub3(at.positions[point.0]?, at.positions[reference.0]?);
         let (of_point, of_reference) = (at.velocities[point.0], at.velocities[reference.0]);
-        let turned = cross(turning, arm);
-        let slip = sub(sub(of_point, of_reference), turned);
-        let scale = length(of_point) + length(of_reference) + length(turned);
-        Some(length(slip) <= 1e-9 * scale)
+        let turned = cross3(turning, arm);
+        let slip = sub3(sub3(of_point, of_reference), turned);
+        let scale = norm3(of_point) + norm3(of_reference) + norm3(turned);
+        Some(norm3(slip) <= 1e-9 * scale)
     };
     if frame == FrameId::N {
         return with(PointId::O);
     }
     let first = with(references.next()?)?;
     references.try_fold(first, |stays, reference| Some(stays || with(reference)?))
-}
-
-fn sub(a: Vector3, b: Vector3) -> Vector3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn cross(a: Vector3, b: Vector3) -> Vector3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn length(v: Vector3) -> f64 {
-    v.iter().map(|c| c * c).sum::<f64>().sqrt()
 }

@@ -1,25 +1,26 @@
 //! Contacts: what moves in them, and whose points they are.
 
+use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
-use crate::numeric::views::{Vector3, alike, dot3, norm3, sub3};
-use crate::numeric::{Evaluation, State, Views};
+use crate::numeric::views::{alike, dot3, norm3, sub3};
+use crate::numeric::{Failure, Level, Views};
 
 /// A point that leaves its body along the normal by this share of its velocity is no point of it.
 const SLIP: f64 = 1e-6;
+/// What rounding can leave of a velocity that is 0, beside the fastest.
+const ROUNDING: f64 = 1e-12;
 
 /// Mistakes in contacts, at the states that were seen. `found` is what is said already, of points for instance.
-pub fn contacts(m: &Mechanism, seen: &[(State, Evaluation)], found: &[Diagnostic]) -> Vec<Diagnostic> {
-    let views: Vec<Views<'_>> = seen.iter().filter_map(|(state, _)| Views::at(m, state).ok()).collect();
-    let places = Places { m, views };
+pub fn contacts(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagnostic> {
+    let places = Places { m, views: seen.iter().map(|seen| &seen.views).collect() };
     let mut out = Vec::new();
     for (i, contact) in m.contacts.iter().enumerate() {
-        let velocities: Vec<_> = seen.iter().map(|(_, at)| &at.contacts[i]).collect();
         if let Some(error) = places.one_body(contact) {
             out.push(error);
             continue;
         }
-        if let Some(still) = approach(contact, &velocities) {
+        if let Some(still) = approach(m, contact, i, seen) {
             out.push(still);
             continue;
         }
@@ -36,21 +37,25 @@ pub fn contacts(m: &Mechanism, seen: &[(State, Evaluation)], found: &[Diagnostic
     out
 }
 
-/// A contact in which nothing moves, or never along the normal.
-fn approach(contact: &Contact, seen: &[&crate::numeric::ContactEvaluation]) -> Option<Diagnostic> {
-    let any = |moves: &dyn Fn(Vector3, Vector3) -> bool| {
-        let of = |at: &&crate::numeric::ContactEvaluation| {
-            at.partial_velocities.iter().chain([&at.remainder]).any(|v| moves(*v, at.normal))
-        };
-        seen.iter().any(of)
-    };
-    if !any(&|v, _| norm3(v) > 1e-12) {
+/// A contact in which nothing moves, or never along the normal: beside what moves at all with each speed.
+fn approach(m: &Mechanism, contact: &Contact, index: usize, seen: &[Seen<'_>]) -> Option<Diagnostic> {
+    let (mut moves, mut approaches) = (false, false);
+    for seen in seen {
+        let at = &seen.at.contacts[index];
+        let scale = fastest(m, &seen.views).ok()?;
+        let parts = at.partial_velocities.iter().chain([&at.remainder]);
+        for (v, scale) in parts.zip(scale) {
+            moves |= norm3(*v) > ROUNDING * scale;
+            approaches |= norm3(*v) > ROUNDING * scale && dot3(*v, at.normal).abs() > ROUNDING * norm3(*v);
+        }
+    }
+    if !moves {
         let message =
             format!("the relative velocity of `{}` is always zero: nothing can strike", contact.name);
         let help = "check `point`, `against` and the bodies they belong to";
         return Some(Diagnostic::new(codes::CONTACT_STILL, contact.span, message).help(help));
     }
-    if !any(&|v, n| dot3(v, n).abs() > 1e-12 * norm3(v)) {
+    if !approaches {
         let message = format!("`{}` never moves along its normal: nothing can strike", contact.name);
         let help = "check `normal`; it points from what is struck to the body that strikes";
         return Some(Diagnostic::new(codes::NEVER_APPROACHES, contact.span, message).help(help));
@@ -58,12 +63,29 @@ fn approach(contact: &Contact, seen: &[&crate::numeric::ContactEvaluation]) -> O
     None
 }
 
+/// The velocity of the fastest point, for each speed and for prescribed motion.
+pub fn fastest(m: &Mechanism, views: &Views<'_>) -> Result<Vec<f64>, Failure> {
+    let mut out = vec![0.0_f64; views.units.len() + 1];
+    for i in 0..m.points.len() {
+        let parts = views.vector_parts(|values| values.velocity(PointId(i)))?;
+        out.iter_mut().zip(parts).for_each(|(out, v)| *out = out.max(norm3(v)));
+    }
+    for body in (0..m.bodies.len()).map(BodyId) {
+        let points = m.contacts.iter().map(|contact| contact.point);
+        for point in points {
+            let parts = views.vector_parts(|values| values.velocity_on_body(point, body))?;
+            out.iter_mut().zip(parts).for_each(|(out, v)| *out = out.max(norm3(v)));
+        }
+    }
+    Ok(out)
+}
+
 /// With what points move, at the states that were seen.
 pub struct Places<'m> {
     /// the mechanism
     pub m: &'m Mechanism,
     /// the states
-    pub views: Vec<Views<'m>>,
+    pub views: Vec<&'m Views<'m>>,
 }
 
 impl Places<'_> {
@@ -156,7 +178,7 @@ impl Places<'_> {
             }
             let place = views.vector_parts(|values| values.rate_of_position(point)).ok()?;
             let matter = views.vector_parts(|values| values.velocity_on_body(point, body)).ok()?;
-            let normal = views.now.vector(&contact.normal, crate::numeric::Level::Motion).ok()?.map(|c| c.re);
+            let normal = views.now.vector(&contact.normal, Level::Motion).ok()?.map(|c| c.re);
             let size = place.iter().chain(&matter).fold(0.0_f64, |size, v| size.max(norm3(*v)));
             let slip = place.iter().zip(&matter).map(|(a, b)| dot3(sub3(*a, *b), normal).abs());
             Some(slip.fold(0.0, f64::max) > SLIP * size)

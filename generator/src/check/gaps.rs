@@ -1,6 +1,6 @@
 //! Gaps: their rates must be the normal velocities of their contacts, and at the start nothing is inside what it strikes.
 
-use super::states::{at_rest, stated};
+use super::states::{Seen, at_rest, stated};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
 use crate::numeric::views::dot3;
@@ -12,7 +12,7 @@ const SAME: f64 = 1e-6;
 const TOUCHING: f64 = 1e-6;
 
 /// Gaps that do not belong to their contacts, and those that begin negative. `found` is what is said already of the contacts.
-pub fn gaps(m: &Mechanism, states: &[State], found: &[Diagnostic]) -> Vec<Diagnostic> {
+pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for contact in &m.contacts {
         let Some(gap) = &contact.gap else { continue };
@@ -20,7 +20,7 @@ pub fn gaps(m: &Mechanism, states: &[State], found: &[Diagnostic]) -> Vec<Diagno
         if found.iter().any(|d| places.contains(&d.primary.span)) {
             continue;
         }
-        match strange(m, contact, gap, states) {
+        match strange(m, contact, gap, seen) {
             Some(diagnostic) => out.push(diagnostic),
             None => out.extend(begins_inside(m, contact, gap)),
         }
@@ -41,14 +41,19 @@ enum Fit {
     Other,
 }
 
-fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, states: &[State]) -> Option<Diagnostic> {
-    let fits: Vec<Fit> = states.iter().filter_map(|state| fit(m, contact, gap, state)).collect();
+fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) -> Option<Diagnostic> {
+    let fits: Vec<Fit> = seen.iter().filter_map(|seen| fit(&seen.views, contact, gap)).collect();
     if fits.is_empty() || fits.contains(&Fit::Same) {
         return None;
     }
     // away from the surface a gap may be any function that vanishes on it: there it counts
-    let closed: Vec<Fit> =
-        states.iter().filter_map(|state| fit(m, contact, gap, &on_surface(m, gap, state)?)).collect();
+    let closed: Vec<Fit> = seen
+        .iter()
+        .filter_map(|seen| {
+            let state = on_surface(m, gap, seen.state)?;
+            fit(&Views::at(m, &state).ok()?, contact, gap)
+        })
+        .collect();
     let last = if closed.is_empty() { &fits } else { &closed };
     if last.contains(&Fit::Same) {
         return None;
@@ -72,8 +77,7 @@ fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, states: &[State]) -> 
     Some(Diagnostic::new(codes::GAP_RATE, contact.gap_span, message).related(related.0, related.1).help(help))
 }
 
-fn fit(m: &Mechanism, contact: &Contact, gap: &Scalar, state: &State) -> Option<Fit> {
-    let views = Views::at(m, state).ok()?;
+fn fit(views: &Views<'_>, contact: &Contact, gap: &Scalar) -> Option<Fit> {
     let rate = views.rate_parts(gap).ok()?;
     let normal = views.now.vector(&contact.normal, Level::Motion).ok()?.map(|c| c.re);
     let velocity = views.vector_parts(|values| values.contact_velocity(contact)).ok()?;

@@ -1,19 +1,19 @@
 //! Loads: on which points and about which axes they act.
 
 use super::contacts::Places;
+use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
 use crate::numeric::views::{Vector3, norm3};
-use crate::numeric::{Level, State, Views};
+use crate::numeric::{Level, Views};
 use crate::span::Span;
 
 /// Rates may differ by this much, relative to the larger.
 const SAME: f64 = 1e-6;
 
 /// Mistakes in loads, at the states that were seen.
-pub fn loads(m: &Mechanism, states: &[State]) -> Vec<Diagnostic> {
-    let views: Vec<Views<'_>> = states.iter().filter_map(|state| Views::at(m, state).ok()).collect();
-    let places = Places { m, views };
+pub fn loads(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
+    let places = Places { m, views: seen.iter().map(|seen| &seen.views).collect() };
     let mut out = Vec::new();
     for load in &m.loads {
         match &load.kind {
@@ -58,7 +58,7 @@ fn end(load: &Load, i: usize) -> Span {
 
 fn never_moves<E>(places: &Places<'_>, parts: impl Fn(&Views<'_>) -> Result<Vec<Vector3>, E>) -> bool {
     let still = |views: &Views<'_>| parts(views).is_ok_and(|parts| parts.iter().all(|v| norm3(*v) < 1e-12));
-    !places.views.is_empty() && places.views.iter().all(still)
+    !places.views.is_empty() && places.views.iter().copied().all(still)
 }
 
 /// A load on a place where a contact acts on the point of a body that is there: the two points move differently.

@@ -1,13 +1,17 @@
 //! What must hold of the motion: rates and dependent speeds that the equations determine, and inertia along every speed.
 
-use super::states::at_rest;
+use super::states::{Seen, at_rest};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
-use crate::numeric::{self, Evaluation, Failure, State};
+use crate::numeric::views::dot3;
+use crate::numeric::{self, Evaluation, Failure, Level, State};
+
+/// What rounding can leave of a number beside its terms.
+const ROUNDING: f64 = 1e-12;
 
 /// Bodies whose inertia is given in a frame in which it changes, at all of the states.
-pub fn changing_inertias(m: &Mechanism, seen: &[(State, Evaluation)]) -> Vec<Diagnostic> {
-    let at: Vec<Vec<bool>> = seen.iter().map(|(state, at)| turning_inertias(m, state, at)).collect();
+pub fn changing_inertias(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
+    let at: Vec<Vec<bool>> = seen.iter().map(|seen| turning_inertias(m, seen.state, &seen.at)).collect();
     let mut out = Vec::new();
     for (_, body) in m.bodies.iter().enumerate().filter(|(i, _)| at.iter().all(|turns| turns[*i])) {
         let frame = body.inertia.as_ref().map_or("", |inertia| m.frames[inertia.frame.0].name.as_str());
@@ -120,19 +124,23 @@ fn count(n: usize, word: &str) -> String {
 }
 
 /// Speeds along which nothing resists.
-pub fn inertia_of_speeds(m: &Mechanism, seen: &[Evaluation]) -> Option<Diagnostic> {
+pub fn inertia_of_speeds(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Diagnostic> {
     // that there is none at all is said already
     if m.bodies.is_empty() {
         return None;
     }
-    let columns: Vec<Option<usize>> = seen.iter().map(|e| numeric::singular_column(&e.mass_matrix)).collect();
+    let noise: Vec<Vec<f64>> = seen.iter().map(|seen| noise(m, seen).unwrap_or_default()).collect();
+    let column =
+        |(seen, noise): (&Seen<'_>, &Vec<f64>)| numeric::singular_column(&seen.at.mass_matrix, noise);
+    let columns: Vec<Option<usize>> = seen.iter().zip(&noise).map(column).collect();
     if !columns.iter().all(Option::is_some) {
         return None;
     }
     let column = columns.first()?.as_ref()?;
     let speed = m.speeds.get(*column)?;
-    let alone = seen.iter().all(|e| e.mass_matrix[*column][*column].abs() < 1e-15);
-    let message = if alone {
+    let still =
+        |(seen, noise): (&Seen<'_>, &Vec<f64>)| seen.at.mass_matrix[*column][*column] <= noise[*column];
+    let message = if seen.iter().zip(&noise).all(still) {
         format!("nothing that has mass moves with the speed `{}`", speed.name)
     } else {
         format!(
@@ -142,4 +150,28 @@ pub fn inertia_of_speeds(m: &Mechanism, seen: &[Evaluation]) -> Option<Diagnosti
     };
     let help = "give what it moves a mass or inertia, remove the speed, or make it dependent by a constraint";
     Some(Diagnostic::new(codes::NO_INERTIA, speed.span, message).help(help))
+}
+
+/// What rounding can make of each diagonal entry of the mass matrix where it should be 0: by what moves at all with that speed, whatever
+/// its units and however little that is.
+fn noise(m: &Mechanism, seen: &Seen<'_>) -> Option<Vec<f64>> {
+    let values = &seen.views.now;
+    let mut noise = vec![0.0_f64; seen.views.units.len()];
+    let mut masses = 0.0_f64;
+    for body in &m.bodies {
+        masses = masses.max(values.scalar(&body.mass, Level::Motion).ok()?.re.abs());
+        let (Some(frame), Some(inertia)) = (body.frame, numeric::central_inertia(values, body).ok()?) else {
+            continue;
+        };
+        let size = inertia.iter().flatten().fold(0.0_f64, |size, c| size.max(c.abs()));
+        let turning = seen.views.partials(|values| values.angular_velocity(frame)).ok()?;
+        noise.iter_mut().zip(turning).for_each(|(noise, w)| *noise += ROUNDING * size * dot3(w, w));
+    }
+    let mut fastest = vec![0.0_f64; noise.len()];
+    for i in 0..m.points.len() {
+        let moving = seen.views.partials(|values| values.velocity(PointId(i))).ok()?;
+        fastest.iter_mut().zip(moving).for_each(|(fastest, v)| *fastest = fastest.max(dot3(v, v)));
+    }
+    noise.iter_mut().zip(fastest).for_each(|(noise, v)| *noise += ROUNDING * ROUNDING * masses * v);
+    Some(noise)
 }

@@ -1,13 +1,14 @@
 //! Checks that need numbers: they look at the mechanism at several arbitrary states near its initial values. What is wrong at
 //! all of them is wrong with the mechanism; what is wrong at one may be a singular state, which is no mistake of the model.
 
+use super::states::Seen;
 use super::{
     bodies, body_points, contacts, gaps, loads, loops, motion, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
 use crate::model::mechanism::Mechanism;
-use crate::numeric::{self, Evaluation, Failure, State};
+use crate::numeric::{self, Failure, State, Views};
 use crate::span::Span;
 
 /// Mechanisms of more parts than this are not looked at: it would take too long.
@@ -55,12 +56,19 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         return out;
     }
     let sound = out.is_empty();
-    let (mut seen, mut failures) = (Vec::new(), Vec::new());
+    let (mut closed, mut failures) = (Vec::new(), Vec::new());
     for mut state in arbitrary {
-        let result = numeric::assemble(m, &mut state).and_then(|()| numeric::evaluate(m, &state));
-        match result {
-            Ok(evaluation) => seen.push((state, evaluation)),
+        match numeric::assemble(m, &mut state) {
+            Ok(()) => closed.push(state),
             Err(failure) => failures.push((state, failure)),
+        }
+    }
+    let mut seen = Vec::new();
+    for state in &closed {
+        let numbers = Views::at(m, state).and_then(|views| Ok((numeric::evaluate_views(m, &views)?, views)));
+        match numbers {
+            Ok((at, views)) => seen.push(Seen { state, at, views }),
+            Err(failure) => failures.push((state.clone(), failure)),
         }
     }
     if seen.is_empty() {
@@ -68,21 +76,20 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         out.extend(unit_vectors::normals(m, &alone));
         return out;
     }
-    let closed: Vec<State> = seen.iter().map(|(state, _)| state.clone()).collect();
-    out.extend(unit_vectors::normals(m, &stated(&closed, true)));
-    let evaluations: Vec<Evaluation> = seen.iter().map(|(_, at)| at.clone()).collect();
+    let met: Vec<State> = seen.iter().map(|seen| seen.state.clone()).collect();
+    out.extend(unit_vectors::normals(m, &stated(&met, true)));
     if sound {
         out.extend(motion::changing_inertias(m, &seen));
-        out.extend(motion::inertia_of_speeds(m, &evaluations));
+        out.extend(motion::inertia_of_speeds(m, &seen));
     }
-    out.extend(body_points::strangers(m, &evaluations));
+    out.extend(body_points::strangers(m, &seen));
     out.extend(vector_constraints::inseparable(m, &seen));
     let of_contacts = contacts::contacts(m, &seen, &out);
     out.extend(of_contacts);
     // what follows takes velocities at their word
     if !out.iter().any(Diagnostic::hides_meaning) {
-        out.extend(gaps::gaps(m, &closed, &out));
-        out.extend(loads::loads(m, &closed));
+        out.extend(gaps::gaps(m, &seen, &out));
+        out.extend(loads::loads(m, &seen));
         out.extend(loops::open_at_the_start(m));
     }
     out

@@ -1,10 +1,20 @@
 //! The states at which checks look: arbitrary ones near the initial values.
 
 use crate::model::mechanism::{Mechanism, Orientation};
-use crate::numeric::{Evaluator, State, hyper_dual::HyperDual};
+use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual};
 
 /// How far the states lie from the initial values.
 const DISTANCES: [f64; 5] = [0.7, 0.4, 0.2, 0.05, 0.0];
+
+/// What is seen at a state.
+pub struct Seen<'m> {
+    /// the state
+    pub state: &'m State,
+    /// what holds there
+    pub at: Evaluation,
+    /// where that comes from
+    pub views: Views<'m>,
+}
 
 /// States away from the initial one, the most general first. The numbers are arbitrary but always the same.
 pub fn arbitrary(m: &Mechanism) -> Vec<State> {

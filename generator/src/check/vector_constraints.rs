@@ -1,9 +1,10 @@
 //! Vector constraints whose components depend on each other: the derivation needs axes along which those that say nothing are
 //! identically 0.
 
+use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::{EquationSides, Mechanism};
-use crate::numeric::{self, Evaluation, State};
+use crate::numeric;
 use crate::span::Span;
 
 /// What is nothing beside the other entries of a matrix.
@@ -13,10 +14,10 @@ const NOISE: f64 = 1e-9;
 type Rows = [Vec<f64>; 3];
 
 /// The vector constraints that no frame takes apart, by what they are at some states.
-pub fn inseparable(m: &Mechanism, states: &[(State, Evaluation)]) -> Vec<Diagnostic> {
+pub fn inseparable(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     let at: Option<Vec<Vec<Vec<f64>>>> =
-        states.iter().map(|(state, _)| numeric::constraint_coefficients(m, state).ok()).collect();
+        seen.iter().map(|seen| numeric::constraint_coefficients(m, seen.state).ok()).collect();
     let Some(at) = at else { return out };
     let mut first = 0;
     for equation in &m.constraints {
@@ -33,9 +34,9 @@ pub fn inseparable(m: &Mechanism, states: &[(State, Evaluation)]) -> Vec<Diagnos
         let fits = |frame: usize| {
             let turned: Option<Vec<Rows>> = along_n
                 .iter()
-                .zip(states)
-                .map(|(rows, (_, at))| {
-                    at.orientations.get(frame).copied().flatten().map(|axes| turned(rows, &axes))
+                .zip(seen)
+                .map(|(rows, seen)| {
+                    seen.at.orientations.get(frame).copied().flatten().map(|axes| turned(rows, &axes))
                 })
                 .collect();
             turned.is_some_and(|turned| components(&turned) <= rank)

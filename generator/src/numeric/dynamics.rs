@@ -12,7 +12,11 @@ fn apply3(m: &[Vector3; 3], v: Vector3) -> Vector3 {
 
 /// Everything at a state.
 pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
-    let views = Views::at(m, state)?;
+    evaluate_views(m, &Views::at(m, state)?)
+}
+
+/// Everything at a state of which the views are known.
+pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Failure> {
     let p = views.units.len();
     let mut out = Evaluation {
         mass_matrix: vec![vec![0.0; p]; p],
@@ -30,13 +34,13 @@ pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
         dependent_accelerations: views.dependent_accelerations.clone(),
     };
     for body in &m.bodies {
-        add_body(&views, body, &mut out)?;
+        add_body(views, body, &mut out)?;
     }
     for load in &m.loads {
-        add_load(m, &views, &load.kind, &mut out)?;
+        add_load(m, views, &load.kind, &mut out)?;
     }
     for contact in &m.contacts {
-        out.contacts.push(contact_values(&views, contact)?);
+        out.contacts.push(contact_values(views, contact)?);
     }
     geometry(m, &views.now, &mut out)?;
     let finite = out.mass_matrix.iter().flatten().chain(&out.forcing).all(|v| v.is_finite());

@@ -103,12 +103,13 @@ pub fn rank(mut rows: Vec<Vec<f64>>) -> usize {
     rank
 }
 
-/// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is.
-pub fn singular_column(matrix: &[Vec<f64>]) -> Option<usize> {
+/// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is. A diagonal entry is 0
+/// if it is no more than its `noise`.
+pub fn singular_column(matrix: &[Vec<f64>], noise: &[f64]) -> Option<usize> {
     let n = matrix.len();
-    let largest = (0..n).fold(0.0_f64, |m, i| m.max(matrix[i][i].abs()));
+    let noise_of = |i: usize| noise.get(i).copied().unwrap_or(0.0).max(0.0);
     let scale: Vec<f64> = (0..n).map(|i| matrix[i][i].max(0.0).sqrt()).collect();
-    if let Some(i) = (0..n).find(|&i| matrix[i][i] <= 1e-18 * largest || matrix[i][i] <= 0.0) {
+    if let Some(i) = (0..n).find(|&i| matrix[i][i] <= noise_of(i)) {
         return Some(i);
     }
     let mut a: Vec<Vec<f64>> =

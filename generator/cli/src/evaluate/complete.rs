@@ -1,6 +1,6 @@
 //! Closed loops: dependent coordinates that satisfy the configuration equations.
 
-use hodograph_generator::model::mechanism::{EquationSides, PointId, Vector};
+use hodograph_generator::numeric;
 use hodograph_generator::program::{PointQuantity, Quantity};
 use nalgebra::{DMatrix, DVector};
 
@@ -165,16 +165,14 @@ fn conditioned(matrix: &DMatrix<f64>) -> f64 {
     values.min() / values.max()
 }
 
-/// Two points whose velocities a constraint holds equal stay apart as they are, so where they are meant to be one point they must
-/// begin as one.
+/// Points that velocity constraints hold together stay apart as they are, so they must begin as one.
 ///
 /// # Errors
 ///
 /// `inconsistent_state` with the distance.
 pub fn check_loops(machine: &Machine, state: &State) -> Result<(), Failure> {
     let mechanism = &machine.mechanism;
-    for constraint in &mechanism.constraints {
-        let Some([a, b]) = joined(&constraint.sides) else { continue };
+    for [a, b] in numeric::held_together(mechanism, &state.to_numeric()) {
         let wanted = [a, b].map(|point| Quantity::Point(point.0 as u32, PointQuantity::Position));
         let numbers = machine.evaluate(state, &wanted)?;
         let (at, other) = (numbers.get(wanted[0]), numbers.get(wanted[1]));
@@ -194,29 +192,4 @@ pub fn check_loops(machine: &Machine, state: &State) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// The points whose velocities an equation holds equal and which have positions to compare.
-fn joined(sides: &EquationSides) -> Option<[PointId; 2]> {
-    let EquationSides::Vector(left, right) = sides else { return None };
-    let mut terms = Vec::new();
-    (velocities(left, 1, &mut terms) && velocities(right, -1, &mut terms)).then_some(())?;
-    match terms[..] {
-        [(a, 1), (b, -1)] | [(b, -1), (a, 1)] => Some([a, b]),
-        _ => None,
-    }
-}
-
-/// Writes a vector as a sum of velocities of points; `false` if it has other terms.
-fn velocities(vector: &Vector, sign: i32, terms: &mut Vec<(PointId, i32)>) -> bool {
-    match vector {
-        Vector::Zero => true,
-        Vector::Velocity(point) => {
-            terms.push((*point, sign));
-            true
-        }
-        Vector::Neg(inner) => velocities(inner, -sign, terms),
-        Vector::Add(parts) => parts.iter().all(|part| velocities(part, sign, terms)),
-        _ => false,
-    }
 }

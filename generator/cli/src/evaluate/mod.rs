@@ -5,6 +5,8 @@ pub mod complete;
 pub mod contact;
 pub mod report;
 
+use hodograph_generator::check::impossible_bodies;
+use hodograph_generator::diagnostics::codes;
 use hodograph_generator::interpret::{self, Evaluator};
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::program::Inputs;
@@ -132,16 +134,30 @@ impl Machine {
     ///
     /// # Errors
     ///
-    /// `bad_json`, `unknown_name`, `not_finite`, `inconsistent_state`, `singular_state`.
+    /// `bad_json`, `unknown_name`, `not_finite`, `impossible_body`, `inconsistent_state`, `singular_state`.
     pub fn state(&self, text: Option<&str>) -> Result<State, Failure> {
         let mut state = match text {
             Some(text) => State::read(text, &self.mechanism)?,
             None => State::initial(&self.mechanism),
         };
+        self.check_bodies(&state)?;
         self.check_quaternions(&state)?;
         complete::complete(self, &mut state)?;
         complete::check_loops(self, &state)?;
         Ok(state)
+    }
+
+    /// No body has a mass that is not positive, or some inertias: the generated constructor refuses the same parameters.
+    fn check_bodies(&self, state: &State) -> Result<(), Failure> {
+        let impossible = impossible_bodies(&self.mechanism, &state.to_numeric());
+        let Some(found) = impossible.first() else { return Ok(()) };
+        let body = &self.mechanism.bodies[found.body.0].name;
+        let message = if found.code == codes::MASS {
+            format!("with these parameters the mass of {body} {}: a mass is positive", found.what)
+        } else {
+            format!("with these parameters no body has the inertia of {body}: {}", found.what)
+        };
+        Err(Failure::new(Kind::ImpossibleBody, message))
     }
 
     /// The equations hold for unit quaternions only; which one was meant cannot be guessed.

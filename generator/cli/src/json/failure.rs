@@ -38,6 +38,8 @@ pub enum Kind {
     SingularState,
     /// the coordinates contradict each other
     InconsistentState,
+    /// a mass or an inertia that no body has
+    ImpossibleBody,
 }
 
 /// An error of `solve`, `eval` or `collide`.

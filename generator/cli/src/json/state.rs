@@ -21,6 +21,19 @@ pub struct State {
     pub speeds: Vec<f64>,
 }
 
+impl State {
+    /// The same for the numeric road of the generator.
+    pub fn to_numeric(&self) -> hodograph_generator::numeric::State {
+        hodograph_generator::numeric::State {
+            parameters: self.parameters.clone(),
+            inputs: self.inputs.clone(),
+            time: self.time,
+            coordinates: self.coordinates.clone(),
+            speeds: self.speeds.clone(),
+        }
+    }
+}
+
 /// Number of independent speeds, which stand first in `Mechanism::speeds`.
 pub fn independent(mechanism: &Mechanism) -> usize {
     mechanism.speeds.iter().filter(|speed| !speed.dependent).count()
