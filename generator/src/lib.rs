@@ -33,6 +33,7 @@ pub mod interpret;
 pub mod kane;
 #[cfg(feature = "derive")]
 pub mod kinematics;
+mod letters;
 pub mod model;
 pub mod number;
 pub mod numeric;

@@ -34,10 +34,30 @@ enum Content {
     },
 }
 
+/// Is there a carriage return at the end of a line, and no line feed after it?
+fn ends_lines_with_returns(text: &str) -> bool {
+    let mut parts = text.split('\r');
+    // what is before the first belongs to none
+    parts.next();
+    let mut rest = parts.skip_while(|part| part.is_empty() || part.starts_with('\n'));
+    rest.any(|part| !part.is_empty() && !part.starts_with('\n'))
+}
+
 impl Source {
     /// A model in a file. `name` is what messages call it: its path, as the user knows it.
     pub fn file(name: impl Into<String>, text: impl Into<String>) -> Source {
-        Source { name: name.into(), content: Content::File(text.into()) }
+        let (name, text) = (name.into(), text.into());
+        if ends_lines_with_returns(&text) {
+            let message =
+                "the lines of the file end with carriage returns alone, so that all of it is one line"
+                    .to_owned();
+            return Source::unreadable(
+                name,
+                message,
+                "save the file with line feeds, as editors and `tr '\\r' '\\n'` do",
+            );
+        }
+        Source { name, content: Content::File(text) }
     }
 
     /// A model in a file, from its bytes. Bytes that are no UTF-8 are reported by `check`.

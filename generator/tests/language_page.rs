@@ -118,6 +118,8 @@ fn every_construct_has_an_example() {
         "against: Ac of SledA",
         "against: SledA",
         "against: velocity ",
+        "against: T,",
+        "against: T about H",
         "normal:",
         "gap:",
         ".vec(",

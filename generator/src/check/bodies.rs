@@ -37,7 +37,12 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
         // the inertia mostly has it as a factor
         return Some((codes::MASS, format!("is {}", number(mass.re))));
     }
-    let i = numeric::central_inertia(values, body).ok()??;
+    let inertia = body.inertia.as_ref()?;
+    // what is possible does not depend on the axes, only on the point
+    let i = match inertia.about {
+        Some(_) => numeric::central_inertia(values, body).ok()??,
+        None => numeric::own_inertia(values, inertia).ok()?.map(|row| row.map(|c| c.re)),
+    };
     let trace = i[0][0] + i[1][1] + i[2][2];
     let size = i.iter().flatten().fold(0.0_f64, |s, c| s.max(c.abs()));
     // second moments of mass: tr(I)/2 - I must not be negative along any direction; that implies I is not either
@@ -51,16 +56,23 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
     } else {
         "the largest principal moment exceeds the sum of the two others"
     };
-    let about = body.inertia.as_ref().is_some_and(|inertia| inertia.about.is_some());
-    Some((codes::INERTIA, if about { format!("about the mass centre, {why}") } else { why.to_owned() }))
+    Some((
+        codes::INERTIA,
+        if inertia.about.is_some() { format!("about the mass centre, {why}") } else { why.to_owned() },
+    ))
 }
 
-/// The same as messages about a model with its own values. `readable` says which bodies could be read.
-pub(super) fn bodies(m: &Mechanism, state: &State, readable: &Readable) -> Vec<Diagnostic> {
+/// The same as messages about a model with its own values. `readable` says which bodies could be read, `upright` whether axes are unit
+/// vectors.
+pub(super) fn bodies(m: &Mechanism, state: &State, readable: &Readable, upright: bool) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for found in impossible_bodies(m, state) {
         let body = &m.bodies[found.body.0];
         let of_mass = found.code == codes::MASS;
+        let about = body.inertia.as_ref().is_some_and(|inertia| inertia.about.is_some());
+        if !of_mass && about && !upright {
+            continue;
+        }
         if !(if of_mass { &readable.masses } else { &readable.bodies })[found.body.0] {
             continue;
         }

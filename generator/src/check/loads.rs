@@ -42,6 +42,7 @@ pub fn loads(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
                 out.extend(on_a_place(&places, *b, end(load, 1)));
             }
             LoadKind::Torque { .. } => {}
+            LoadKind::Torsion { on, from, .. } if *from == Some(*on) => {}
             LoadKind::Torsion { on, from, axis, angle, angle_span, .. } => {
                 let turns = Turns { on: *on, from: from.unwrap_or(FrameId::N), axis, angle };
                 out.extend(turns.unlike_its_angle(&places, *angle_span));

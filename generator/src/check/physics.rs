@@ -49,8 +49,8 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     let mut out = unit_vectors::unit_vectors(m, readable, &alone);
     // without proper axes nothing turns as it should
     let upright = out.is_empty();
-    let initial = alone.last().map_or(Vec::new(), |state| bodies::bodies(m, state, readable));
-    out.extend(initial.into_iter().filter(|found| upright || found.code == codes::MASS));
+    let initial = alone.last().map_or(Vec::new(), |state| bodies::bodies(m, state, readable, upright));
+    out.extend(initial);
     if !upright || !readable.is_whole() {
         out.extend(unit_vectors::normals(m, &alone));
         return out;
@@ -87,7 +87,8 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     let of_contacts = contacts::contacts(m, &seen, &out);
     out.extend(of_contacts);
     // what follows takes velocities at their word
-    if !out.iter().any(Diagnostic::hides_meaning) {
+    let of_one_part = [codes::MASS, codes::INERTIA, codes::NORMAL, codes::CONTACT, codes::CONTACT_STILL];
+    if !out.iter().any(|found| found.hides_meaning() && !of_one_part.contains(&found.code)) {
         out.extend(gaps::gaps(m, &seen, &out));
         out.extend(loads::loads(m, &seen));
         out.extend(loops::open_at_the_start(m));

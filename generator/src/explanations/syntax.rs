@@ -6,7 +6,7 @@ use crate::diagnostics::codes::*;
 pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: UNREADABLE,
-        text: "The file is not there, may not be read, or is not UTF-8. The message says which. Models are plain text; save them as UTF-8.",
+        text: "The file is not there, may not be read, is not UTF-8, or its lines end with carriage returns alone, so that the first comment takes all that follows. The message says which. Models are plain text; save them as UTF-8, with line feeds.",
         wrong: None,
         right: None,
     },
@@ -18,7 +18,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: BAD_TOKEN,
-        text: "A character or a quoted text that means nothing in a model. Models are sequences of Rust tokens: there is no degree sign, no superscript, no quoted text.",
+        text: "A character or a quoted text that means nothing in a model. Models are sequences of Rust tokens: there is no degree sign, no superscript, no quoted text. Letters of another script that look like Latin ones make another name: a Cyrillic `а` among Latin letters is told.",
         wrong: Some("coordinates { q1: rad = 30° }"),
         right: Some("coordinates { q1: deg = 30 }"),
     },

@@ -194,6 +194,11 @@ impl Names {
         self.symbols.get(name).map(|(symbol, _)| *symbol)
     }
 
+    /// All names, in the order of their declaration.
+    pub fn all(&self) -> impl Iterator<Item = &str> {
+        self.order.iter().map(|(text, _)| text.as_str())
+    }
+
     /// Where it is declared; `None` for what is given.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.symbols.get(name).and_then(|(_, place)| *place)

@@ -47,15 +47,20 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
     if finite { Ok(out) } else { Err(Failure::Unsupported("a state at which the equations are singular")) }
 }
 
-/// Inertia about the mass centre, along N's axes.
-pub fn central_inertia(values: &Evaluator<'_>, body: &Body) -> Result<Option<[Vector3; 3]>, Failure> {
-    let Some(inertia) = &body.inertia else { return Ok(None) };
+/// Inertia as it is stated: along the axes of its frame, about its point.
+pub fn own_inertia(values: &Evaluator<'_>, inertia: &Inertia) -> Result<Matrix3, Failure> {
     let mut components = [HyperDual::ZERO; 6];
     for (c, scalar) in components.iter_mut().zip(inertia.components.iter()) {
         *c = values.scalar(scalar, Level::Motion)?;
     }
     let [xx, yy, zz, xy, yz, zx] = components;
-    let local = [[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]];
+    Ok([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+}
+
+/// Inertia about the mass centre, along N's axes.
+pub fn central_inertia(values: &Evaluator<'_>, body: &Body) -> Result<Option<[Vector3; 3]>, Failure> {
+    let Some(inertia) = &body.inertia else { return Ok(None) };
+    let local = own_inertia(values, inertia)?;
     let axes = values.orientation(inertia.frame)?;
     let mut out = product(&product(&axes, &local), &transposed(&axes)).map(|row| row.map(|c| c.re));
     if let Some(point) = inertia.about {

@@ -16,7 +16,7 @@ mod state;
 pub mod views;
 
 pub use assembly::assemble;
-pub use dynamics::{central_inertia, evaluate, evaluate_views};
+pub use dynamics::{central_inertia, evaluate, evaluate_views, own_inertia};
 pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};
 pub use loops::held_together;

@@ -1,8 +1,12 @@
 //! The parser: a cursor over tokens that reports what it does not find and carries on behind it.
 
+use std::borrow::Cow;
+use std::collections::HashSet;
+
 use super::token::{Bad, Token, TokenKind};
 use super::tree::{Name, Section, Tree};
 use crate::diagnostics::{Diagnostic, codes};
+use crate::letters;
 use crate::span::Span;
 
 /// Brackets, signs and exponents may be nested this deep.
@@ -13,6 +17,7 @@ const MAX_ERRORS: usize = 200;
 /// Reads a model. The tree holds all that could be read.
 pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
     let mut diagnostics = Vec::new();
+    let tokens = in_latin(tokens, &mut diagnostics);
     let tokens: Vec<&Token> = tokens.iter().filter(|token| readable(token, &mut diagnostics)).collect();
     let nesting = match balanced(&tokens) {
         Ok(nesting) => nesting,
@@ -29,6 +34,25 @@ pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
     let mut parser = Parser { tokens, nesting, at: 0, depth: 0, tree, diagnostics };
     parser.model();
     (parser.tree, parser.diagnostics)
+}
+
+/// Words in which Cyrillic letters stand among Latin ones are refused, each once, and then read as they look: it is one mistake.
+fn in_latin<'t>(tokens: &'t [Token], diagnostics: &mut Vec<Diagnostic>) -> Cow<'t, [Token]> {
+    let is_mixed = |token: &Token| token.kind == TokenKind::Name && letters::mixed(&token.text).is_some();
+    if !tokens.iter().any(is_mixed) {
+        return Cow::Borrowed(tokens);
+    }
+    let mut seen = HashSet::new();
+    let mut tokens = tokens.to_vec();
+    for token in tokens.iter_mut().filter(|token| token.kind == TokenKind::Name) {
+        let Some(found) = letters::mixed(&token.text) else { continue };
+        if seen.insert(token.text.clone()) && diagnostics.len() < MAX_ERRORS {
+            let message = format!("`{}` has a {} letter among Latin ones", token.text, found.script);
+            diagnostics.push(Diagnostic::new(codes::BAD_TOKEN, token.span, message).help(found.advice()));
+        }
+        token.text = found.latin;
+    }
+    Cow::Owned(tokens)
 }
 
 /// Reports a bad token; is this one to be read?

@@ -3,6 +3,7 @@
 use super::tree::{Expr, ExprKind};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::{Dimension, Exponent};
+use crate::letters;
 use crate::number::Number;
 use crate::{suggest, vocabulary};
 
@@ -169,6 +170,9 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
 
 fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, format!("there is no unit `{name}`"));
+    if let Some(found) = letters::lookalike(name) {
+        return error.help(found.advice());
+    }
     if let Some(right) = vocabulary::unit(name) {
         return error.help(format!("write `{right}`"));
     }

@@ -11,6 +11,7 @@ use crate::arithmetic::Function;
 use crate::arithmetic::reproducible;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::{Dimension, Exponent};
+use crate::letters;
 use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
 use crate::{suggest, vocabulary};
@@ -374,7 +375,9 @@ impl Lowering<'_> {
                 format!("a frame has no axis `{}`", field.text),
             );
             let methods = ["vec", "rotate", "euler", "space", "quaternion", "spin"];
-            let error = if methods.contains(&field.text.as_str()) {
+            let error = if let Some(found) = letters::lookalike(&field.text) {
+                error.help(found.advice())
+            } else if methods.contains(&field.text.as_str()) {
                 error.help(format!("`{}` needs arguments in parentheses", field.text))
             } else {
                 error.help("the axes are `x`, `y` and `z`")

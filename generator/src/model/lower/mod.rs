@@ -23,6 +23,7 @@ use super::provenance::Provenance;
 use super::readable::Readable;
 use super::typed::{Traits, Typed, TypedValue};
 use crate::diagnostics::{Code, Diagnostic, Label, codes};
+use crate::letters;
 use crate::span::Span;
 use crate::syntax::tree::{Declaration, ExprKind, Name, Tree};
 use crate::syntax::units::{self, Unit};
@@ -355,6 +356,14 @@ impl<'a> Lowering<'a> {
             None => {}
         }
         let error = Diagnostic::new(codes::UNKNOWN_NAME, name.span, unknown_name(&name.text));
+        if let Some((advice, place)) = self.looks_like(&name.text) {
+            let error = error.help(advice);
+            self.report(match place {
+                Some(place) => error.related(place, "this is declared"),
+                None => error,
+            });
+            return None;
+        }
         if let Some(advice) = self.meant_by(&name.text) {
             self.report(error.help(advice));
             return None;
@@ -381,6 +390,29 @@ impl<'a> Lowering<'a> {
         };
         self.report(error);
         None
+    }
+
+    /// A declared name that looks the same and is written in letters of another script, and its place.
+    fn looks_like(&self, text: &str) -> Option<(String, Option<Span>)> {
+        if let Some(found) = letters::lookalike(text)
+            && self.names.get(&found.latin).is_some()
+        {
+            return Some((found.advice(), self.names.place(&found.latin)));
+        }
+        // as for suggestions, nobody reads so many
+        if self.unknown.len() > MAX_SUGGESTIONS {
+            return None;
+        }
+        let (other, found) = self.names.all().find_map(|other| {
+            letters::lookalike(other)
+                .filter(|found| found.latin == text)
+                .map(|found| (other.to_owned(), found))
+        })?;
+        let advice = format!(
+            "the name that is declared has the {} letter `{}`: write it in Latin letters",
+            found.script, found.letter
+        );
+        Some((advice, self.names.place(&other)))
     }
 
     /// What an author means by a name of another language.
