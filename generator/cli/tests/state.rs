@@ -275,8 +275,16 @@ fn impossible_masses_are_said_to_be() {
         if command == "collide" {
             arguments.extend(["--contact", "BcAc", "--mu", "0.6", "--e", "0.8", "--law", "stronge"]);
         }
-        let run = hodograph(&arguments, r#"{"parameters":{"m":-3}}"#);
-        assert_eq!(run.error_kind(), "inconsistent_state");
-        assert!(run.stdout.contains("masses and inertias"), "{}", run.stdout);
+        for mass in ["-3", "0"] {
+            let run = hodograph(&arguments, &format!(r#"{{"parameters":{{"m":{mass}}}}}"#));
+            assert_eq!(run.error_kind(), "impossible_body");
+            assert!(run.stdout.contains(&format!("the mass of SledA is {mass}")), "{}", run.stdout);
+        }
     }
+    // the mass matrix would be positive definite all the same
+    let run = hodograph(
+        &["eval", model("planar_double_pendulum").as_str(), "--state", "-"],
+        r#"{"parameters":{"m2":-0.01}}"#,
+    );
+    assert_eq!(run.error_kind(), "impossible_body");
 }

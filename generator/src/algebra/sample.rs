@@ -18,16 +18,32 @@ const ROUNDING: f64 = 1e-12;
 struct Sized {
     value: f64,
     terms: f64,
+    /// a number from outside: nothing has been rounded
+    exact: bool,
 }
+
+/// Sines of angles that are not known to so much (rad) say nothing.
+const ANGLE_KNOWN: f64 = 1e-3;
 
 impl Sized {
     fn exact(value: f64) -> Self {
-        Sized { value, terms: value.abs() }
+        Sized { value, terms: value.abs(), exact: true }
     }
 
     /// A function of it that changes by `slope` where it changes by 1.
     fn mapped(self, value: f64, slope: f64) -> Self {
-        Sized { value, terms: value.abs() + slope.abs() * self.terms }
+        let brought = if self.exact { 0.0 } else { slope.abs() * self.terms };
+        Sized::rounded(value, value.abs() + brought)
+    }
+
+    fn rounded(value: f64, terms: f64) -> Self {
+        Sized { value, terms, exact: false }
+    }
+
+    /// A function of it as an angle: of large angles only exact ones are known well enough.
+    fn turned(self, value: f64, slope: f64) -> Self {
+        let known = self.exact || ROUNDING * self.terms <= ANGLE_KNOWN;
+        self.mapped(if known { value } else { f64::NAN }, slope)
     }
 }
 
@@ -51,7 +67,7 @@ impl Sample {
 
     /// Is the expression 0 here, but for rounding? `None` if it has no value.
     pub fn vanishes(&mut self, z: &Intermediates, expr: &Expr) -> Option<bool> {
-        let Sized { value, terms } = self.sized(z, expr);
+        let Sized { value, terms, .. } = self.sized(z, expr);
         (value.is_finite() && terms.is_finite()).then(|| value.abs() <= ROUNDING * terms)
     }
 
@@ -60,15 +76,14 @@ impl Sample {
             View::Number(number) => Sized::exact(number.to_f64()),
             View::Symbol(symbol) => self.symbol(z, symbol),
             View::Sum(terms) => {
-                terms.iter().map(|term| self.sized(z, term)).fold(Sized::exact(0.0), |sum, term| Sized {
-                    value: sum.value + term.value,
-                    terms: sum.terms + term.terms,
+                terms.iter().map(|term| self.sized(z, term)).fold(Sized::exact(0.0), |sum, term| {
+                    Sized::rounded(sum.value + term.value, sum.terms + term.terms)
                 })
             }
             View::Product(factors) => {
                 factors.iter().map(|factor| self.sized(z, factor)).fold(Sized::exact(1.0), |a, b| {
                     let terms = a.value.abs() * b.terms + b.value.abs() * a.terms;
-                    Sized { value: a.value * b.value, terms }
+                    Sized::rounded(a.value * b.value, terms)
                 })
             }
             View::Power(base, n) => {
@@ -84,7 +99,7 @@ impl Sample {
         }
         let value = match z.meaning(symbol) {
             Meaning::Input(input) => Sized::exact(self.inputs.get(input).copied().unwrap_or(f64::NAN)),
-            Meaning::Pi => Sized::exact(std::f64::consts::PI),
+            Meaning::Pi => Sized::rounded(std::f64::consts::PI, std::f64::consts::PI),
             // It may be defined later: nothing is remembered.
             Meaning::Unknown => Sized::exact(f64::NAN),
             Meaning::Named(value) => self.sized(z, value),
@@ -105,8 +120,8 @@ fn call(function: Function, a: Sized, b: Sized) -> Sized {
     use Function::*;
     let x = a.value;
     match function {
-        Sin => a.mapped(x.sin(), x.cos()),
-        Cos => a.mapped(x.cos(), x.sin()),
+        Sin => a.turned(x.sin(), x.cos()),
+        Cos => a.turned(x.cos(), x.sin()),
         Tan => a.mapped(x.tan(), 1.0 + x.tan().powi(2)),
         Asin => a.mapped(x.asin(), 1.0 / (1.0 - x * x).sqrt()),
         Acos => a.mapped(x.acos(), 1.0 / (1.0 - x * x).sqrt()),
@@ -115,7 +130,7 @@ fn call(function: Function, a: Sized, b: Sized) -> Sized {
             let square = x * x + b.value * b.value;
             let terms = (b.value.abs() * a.terms + x.abs() * b.terms) / square;
             let value = x.atan2(b.value);
-            Sized { value, terms: terms + value.abs() }
+            Sized::rounded(value, terms + value.abs())
         }
         Sqrt => a.mapped(x.sqrt(), 0.5 / x.sqrt()),
         Exp => a.mapped(x.exp(), x.exp()),
@@ -125,7 +140,7 @@ fn call(function: Function, a: Sized, b: Sized) -> Sized {
         Tanh => a.mapped(x.tanh(), 1.0 - x.tanh().powi(2)),
         Abs => a.mapped(x.abs(), 1.0),
         Sign => Sized::exact(if x < 0.0 { -1.0 } else { 1.0 }),
-        Min => Sized { value: x.min(b.value), terms: a.terms + b.terms },
-        Max => Sized { value: x.max(b.value), terms: a.terms + b.terms },
+        Min => Sized::rounded(x.min(b.value), a.terms + b.terms),
+        Max => Sized::rounded(x.max(b.value), a.terms + b.terms),
     }
 }

@@ -1,9 +1,11 @@
 //! Masses and inertias that no body has.
 
+use std::collections::HashMap;
+
 use super::states::at_rest;
-use crate::diagnostics::{Code, Diagnostic, codes};
+use crate::diagnostics::{Code, Diagnostic, Label, codes};
 use crate::model::Readable;
-use crate::model::mechanism::{Body, BodyId, Mechanism};
+use crate::model::mechanism::{Body, BodyId, Mechanism, Scalar};
 use crate::numeric::{self, Evaluator, Level, State};
 
 /// Inertias may miss what is possible by this much, relative to their size.
@@ -65,7 +67,9 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
 /// The same as messages about a model with its own values. `readable` says which bodies could be read, `upright` whether axes are unit
 /// vectors.
 pub(super) fn bodies(m: &Mechanism, state: &State, readable: &Readable, upright: bool) -> Vec<Diagnostic> {
-    let mut out = Vec::new();
+    let mut out: Vec<Diagnostic> = Vec::new();
+    // bodies that have the same mass: it is one mistake
+    let mut masses: HashMap<String, usize> = HashMap::new();
     for found in impossible_bodies(m, state) {
         let body = &m.bodies[found.body.0];
         let of_mass = found.code == codes::MASS;
@@ -76,9 +80,25 @@ pub(super) fn bodies(m: &Mechanism, state: &State, readable: &Readable, upright:
         if !(if of_mass { &readable.masses } else { &readable.bodies })[found.body.0] {
             continue;
         }
+        if of_mass {
+            let mass = format!("{:?}", body.mass);
+            if let Some(first) = masses.get(&mass) {
+                let text = format!("so is that of `{}`", body.name);
+                out[*first].related.push(Label { span: body.mass_span, text });
+                continue;
+            }
+            masses.insert(mass, out.len());
+        }
         out.push(if of_mass {
             let message = format!("the mass of `{}` {} with the values of the model", body.name, found.what);
-            Diagnostic::new(codes::MASS, body.mass_span, message).help("a mass is positive")
+            let error = Diagnostic::new(codes::MASS, body.mass_span, message).help("a mass is positive");
+            match &body.mass {
+                Scalar::Parameter(id) => {
+                    let parameter = &m.parameters[id.0];
+                    error.related(parameter.span, format!("`{}` is declared here", parameter.name))
+                }
+                _ => error,
+            }
         } else {
             let message = format!("no body has the inertia of `{}` with the values of the model", body.name);
             let span = body.inertia.as_ref().map_or(body.span, |inertia| inertia.span);

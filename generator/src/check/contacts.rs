@@ -20,6 +20,9 @@ pub fn contacts(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<D
             out.push(error);
             continue;
         }
+        if found.iter().any(|d| d.primary.span == contact.normal_span) {
+            continue;
+        }
         if let Some(still) = approach(m, contact, i, seen) {
             out.push(still);
             continue;

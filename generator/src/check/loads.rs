@@ -4,8 +4,9 @@ use super::contacts::Places;
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
-use crate::numeric::views::{Vector3, norm3};
-use crate::numeric::{Level, Views};
+use crate::numeric::hyper_dual::sub;
+use crate::numeric::views::{Vector3, cross3, dot3, norm3};
+use crate::numeric::{Evaluator, Level, Views};
 use crate::span::Span;
 
 /// Rates may differ by this much, relative to the larger.
@@ -95,45 +96,61 @@ struct Turns<'a> {
     angle: &'a Scalar,
 }
 
+/// How the rate of an angle fits an angular velocity about an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fit {
+    Same,
+    Opposite,
+    /// neither, about a hinge, or in a joint of several axes of which the angle knows nothing
+    Other,
+    /// in a joint of several axes, where there is no angle about an axis: it may be meant as it is
+    Open,
+}
+
 impl Turns<'_> {
     /// The rate of the angle is the angular velocity about the axis, or the spring's energy is not what its torque does.
     fn unlike_its_angle(&self, places: &Places<'_>, span: Span) -> Option<Diagnostic> {
         let m = places.m;
-        let mut opposite = true;
-        let mut seen = 0;
-        for views in &places.views {
-            let rate = views.rate_parts(self.angle).ok()?;
-            let turning = views.parts(|values| {
-                let axis = values.vector(self.axis, Level::Motion)?;
-                let of = crate::numeric::hyper_dual::sub(
-                    values.angular_velocity(self.on)?,
-                    values.angular_velocity(self.from)?,
-                );
-                Ok(crate::numeric::hyper_dual::dot(of, axis).re)
-            });
-            let turning = turning.ok()?;
-            let size = rate.iter().chain(&turning).fold(0.0_f64, |size, x| size.max(x.abs()));
-            let off = |sign: f64| {
-                rate.iter().zip(&turning).fold(0.0_f64, |off, (a, b)| off.max((sign * a - b).abs()))
-            };
-            if size.is_nan() || off(1.0) <= SAME * size {
-                return None;
-            }
-            opposite &= off(-1.0) <= SAME * size;
-            seen += 1;
-        }
-        if seen == 0 {
-            return None;
-        }
+        let fits: Option<Vec<Fit>> = places.views.iter().map(|views| self.fit(views)).collect();
+        let fits = fits.filter(|fits| !fits.is_empty() && !fits.contains(&Fit::Same))?;
         let (b, a) = (&m.frames[self.on.0].name, &m.frames[self.from.0].name);
-        let message = if opposite {
+        let message = if fits.iter().all(|fit| *fit == Fit::Opposite) {
             format!(
                 "this angle grows while `{b}` turns in `{a}` backwards about the axis: the spring drives instead of resisting"
             )
+        } else if fits.contains(&Fit::Open) {
+            return None;
         } else {
             format!("this is not the angle by which `{b}` turns in `{a}` about the axis")
         };
         let help = "the rate of the angle must be the angular velocity about the axis, or the work of the torque is not the energy of the spring; check signs, frames and axis";
         Some(Diagnostic::new(codes::TORSION_ANGLE, span, message).help(help))
+    }
+
+    /// `None` where there are no numbers.
+    fn fit(&self, views: &Views<'_>) -> Option<Fit> {
+        let rate = views.rate_parts(self.angle).ok()?;
+        let axis = views.now.vector(self.axis, Level::Motion).ok()?.map(|c| c.re);
+        let relative = |values: &Evaluator<'_>| {
+            Ok(sub(values.angular_velocity(self.on)?, values.angular_velocity(self.from)?))
+        };
+        let parts = views.vector_parts(relative).ok()?;
+        let turning: Vec<f64> = parts.iter().map(|w| dot3(*w, axis)).collect();
+        let size = |list: &[f64]| list.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
+        let largest = size(&rate).max(size(&turning));
+        let off =
+            |sign: f64| rate.iter().zip(&turning).fold(0.0_f64, |off, (a, b)| off.max((sign * a - b).abs()));
+        if largest.is_nan() || off(1.0) <= SAME * largest {
+            return Some(Fit::Same);
+        }
+        if off(-1.0) <= SAME * largest {
+            return Some(Fit::Opposite);
+        }
+        let fastest = parts.iter().fold(0.0_f64, |size, w| size.max(norm3(*w)));
+        let crossed = |a: &Vector3, b: &Vector3| norm3(cross3(*a, *b)) > SAME * fastest * fastest;
+        let hinge = !parts.iter().any(|a| parts.iter().any(|b| crossed(a, b)));
+        let shared: f64 = rate.iter().zip(&turning).map(|(a, b)| a * b).sum();
+        let strange = shared.abs() <= SAME * size(&rate) * size(&turning);
+        Some(if hinge || strange { Fit::Other } else { Fit::Open })
     }
 }

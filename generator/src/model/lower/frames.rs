@@ -230,6 +230,7 @@ impl Lowering<'_> {
                         if unit.is_si() && unit.dimension.is_none() {
                             self.agreement(provenance);
                         } else {
+                            unread = true;
                             let message = "the parts of a quaternion are plain numbers";
                             let error = Diagnostic::new(codes::DIMENSION, argument.span, message)
                                 .help("declare the coordinate with the unit 1");

@@ -188,6 +188,7 @@ impl Lowering<'_> {
         if a == b {
             let error = Diagnostic::new(codes::LOAD, load.span, "a spring between a point and itself");
             self.report(error.help("name two points"));
+            return None;
         }
         self.same_root(a, b, load);
         Some(LoadKind::Spring { a, b, stiffness: stiffness?, length: length?, damping: damping? })
