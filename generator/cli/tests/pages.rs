@@ -5,6 +5,8 @@ mod browser;
 #[allow(dead_code)] // each test has its own use of it
 mod common;
 
+use std::path::PathBuf;
+
 use common::hodograph;
 
 /// Signs of a formula stand beside each other, numerators over denominators, equations below each other.
@@ -46,15 +48,20 @@ for (const link of document.querySelectorAll('nav a')) {
 return found;
 "#;
 
-#[test]
-#[ignore = "needs Chromium"]
-fn equations_are_laid_out_in_a_browser() {
+/// The shipped models.
+fn models() -> Vec<PathBuf> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models");
     let mut paths: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|ending| ending == "mech"));
     paths.sort();
     assert!(paths.len() > 20);
-    for path in paths {
+    paths
+}
+
+#[test]
+#[ignore = "needs Chromium"]
+fn equations_are_laid_out_in_a_browser() {
+    for path in models() {
         let run = hodograph(&["explain", path.to_str().unwrap(), "--format", "html"], "");
         assert_eq!(run.code, 0, "{}", run.stderr);
         let complaints = browser::complaints(&run.stdout, EQUATIONS);
@@ -77,5 +84,23 @@ fn a_spoiled_page_is_noticed_in_a_browser() {
         let spoiled = page.replace("</style>", &format!("{style}</style>"));
         let complaints = browser::complaints(&spoiled, EQUATIONS);
         assert!(complaints.iter().any(|text| text.contains(what)), "{style}: {complaints:?}");
+    }
+}
+
+/// Run by `cargo test --workspace by_latex -- --ignored`.
+#[test]
+#[ignore = "needs pdflatex"]
+fn equations_are_set_by_latex() {
+    for path in models() {
+        let run = hodograph(&["explain", path.to_str().unwrap(), "--format", "latex"], "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("equations.tex"), run.stdout).unwrap();
+        let set = std::process::Command::new("pdflatex")
+            .args(["-interaction=nonstopmode", "-halt-on-error", "equations.tex"])
+            .current_dir(folder.path())
+            .output()
+            .expect("no pdflatex here: install it (Debian: apt-get install texlive-latex-base)");
+        assert!(set.status.success(), "{}:\n{}", path.display(), String::from_utf8_lossy(&set.stdout));
     }
 }

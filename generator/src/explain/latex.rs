@@ -1,5 +1,6 @@
 //! Equations as a LaTeX document.
 
+use super::collect::size;
 use super::symbols::{Form, Symbol, form, greek_name, unit};
 use super::{Document, Equation, Left, Place, Rank, Section, Term};
 
@@ -159,23 +160,71 @@ impl Writer<'_> {
         out
     }
 
-    /// An equation, a long sum in several lines.
+    /// An equation, a long right side in several lines.
     fn equation(&self, equation: &Equation) -> String {
         let mut out = format!("{} &= ", self.left(&equation.left));
-        let Term::Sum(terms) = &equation.right else {
-            return format!("{out}{}", self.term(&equation.right, Rank::Sum));
-        };
         let mut used = 0;
-        for (index, part) in terms.iter().enumerate() {
-            let size = super::collect::size(part);
+        for (index, (piece, size)) in self.pieces(&equation.right).into_iter().enumerate() {
             if index > 0 && used + size > LINE {
-                out += " \\\\\n&\\quad {} ";
+                out.push_str(" \\\\\n&\\quad {} ");
                 used = 0;
             }
             used += size;
-            out += &self.summand(index, part);
+            out.push_str(&piece);
         }
         out
+    }
+
+    /// A right side in pieces, between which a line may end, with the number of their symbols.
+    fn pieces(&self, term: &Term) -> Vec<(String, usize)> {
+        match term {
+            Term::Sum(terms) => self.summands(terms),
+            _ => self.factors(term, Rank::Sum),
+        }
+    }
+
+    fn summands(&self, terms: &[Term]) -> Vec<(String, usize)> {
+        let mut all = Vec::new();
+        for (index, part) in terms.iter().enumerate() {
+            let (minus, part) = part.unsigned();
+            let mut pieces = self.factors(&part, Rank::Product);
+            let sign = if minus { "-" } else { ["", "+"][usize::from(index > 0)] };
+            pieces[0].0.insert_str(0, sign);
+            all.append(&mut pieces);
+        }
+        all
+    }
+
+    /// A summand in pieces: a long factor in brackets may be broken at its signs.
+    fn factors(&self, term: &Term, needed: Rank) -> Vec<(String, usize)> {
+        let long =
+            |term: &Term| matches!(term, Term::Sum(_)) && size(term) > LINE / 2 && super::is_flat(term);
+        let factors = match term {
+            Term::Product(factors) if factors.iter().any(long) => factors,
+            _ => return vec![(self.term(term, needed), size(term))],
+        };
+        let mut pieces = vec![(String::new(), 0)];
+        for (index, factor) in factors.iter().enumerate() {
+            let mut more = match factor {
+                Term::Sum(terms) if long(factor) => {
+                    let mut inner = self.summands(terms);
+                    inner[0].0.insert(0, '(');
+                    if let Some((last, _)) = inner.last_mut() {
+                        last.push(')');
+                    }
+                    inner
+                }
+                _ => vec![(self.term(factor, Rank::Product), size(factor))],
+            };
+            let (first, symbols) = more.remove(0);
+            if let Some((text, used)) = pieces.last_mut() {
+                text.push_str(if index > 0 { " \\, " } else { "" });
+                text.push_str(&first);
+                *used += symbols;
+            }
+            pieces.append(&mut more);
+        }
+        pieces
     }
 
     fn summand(&self, index: usize, part: &Term) -> String {
