@@ -35,6 +35,17 @@ impl Path {
     }
 }
 
+/// The phases in order: `sliding, then sticking`.
+impl core::fmt::Display for Path {
+    fn fmt(&self, out: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        for (index, phase) in self.phases().iter().enumerate() {
+            out.write_str(if index > 0 { ", then " } else { "" })?;
+            out.write_str(phase)?;
+        }
+        Ok(())
+    }
+}
+
 /// The outcome of a collision, in the axes n, t, s of the input.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

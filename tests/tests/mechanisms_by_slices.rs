@@ -102,6 +102,11 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
             let state = state(at);
             let (a, b) = (everything(&*generated, &state), everything(&*interpreted, &state));
             assert!(a.iter().filter(|(_, numbers)| numbers.is_ok()).count() >= 8, "{}", module.name());
+            // At a regular state only what the model leaves open has no number: positions of points, orientations of frames.
+            for (name, numbers) in &a {
+                let open = name.starts_with("position") || name.starts_with("orientation");
+                assert!(numbers.is_ok() || open, "{} {name}: {numbers:?}", module.name());
+            }
             for ((name, a), (_, b)) in a.iter().zip(&b) {
                 assert_eq!(a, b, "{} {name}", module.name());
             }

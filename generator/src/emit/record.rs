@@ -15,6 +15,9 @@ pub struct Record {
 
 struct Field {
     name: Ident,
+    /// the name, as the model spells it
+    label: String,
+    unit: String,
     docs: String,
     default: f64,
 }
@@ -31,7 +34,14 @@ impl Record {
                     text.split_once('\n').map_or((text.as_str(), ""), |(what, more)| (what, more));
                 let docs = format!(" {}, in {}", what.trim_end_matches('.'), unit(&quantity.unit));
                 let docs = if more.is_empty() { docs } else { format!("{docs}\n{more}") };
-                Field { name: ident(&quantity.name), docs, default: quantity.value.unwrap_or(0.0) }
+                let unit = if quantity.unit.is_empty() { "1" } else { &quantity.unit };
+                Field {
+                    name: ident(&quantity.name),
+                    label: quantity.name.clone(),
+                    unit: unit.to_owned(),
+                    docs,
+                    default: quantity.value.unwrap_or(0.0),
+                }
             })
             .collect();
         Record { name: format_ident!("{name}"), docs: docs.to_string(), fields }
@@ -86,12 +96,15 @@ impl Record {
         let spelled: Vec<String> = names.iter().map(|name| name.to_string()).collect();
         let order = format!(" In the order of the fields: {}.", spelled.join(", "));
         let docs = format!(" {docs}");
+        let labels = fields.iter().map(|field| &field.label);
+        let units = fields.iter().map(|field| &field.unit);
         quote! {
             #[doc = #docs]
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct #name<T = f64> { #(#[doc = #docs_of] pub #names: T),* }
 
             #krate::generated::serialize_record! { #name #count #(#names)* }
+            #krate::generated::record! { #name #count #(#names #labels #units)* }
 
             /// The values that the model states, 0 where it states none.
             impl<T: #krate::Scalar> ::core::default::Default for #name<T> {

@@ -1,6 +1,7 @@
 //! Everything a derivation delivers, exported from algebra to nodes of a value graph.
 
 mod contact;
+mod flow;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -71,6 +72,8 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     writer.contact_tangents(&rates);
     writer.points();
     writer.orientations();
+    writer.accelerations_of_points();
+    writer.free_accelerations();
     writer.guards();
     let samples = super::samples::samples(writer.k.mechanism);
     Derived { graph: writer.graph, outputs: writer.outputs, guards: writer.guards, structures, samples }

@@ -28,6 +28,7 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
         contacts: Vec::new(),
         positions: Vec::new(),
         velocities: Vec::new(),
+        accelerations: Vec::new(),
         orientations: Vec::new(),
         angular_velocities: Vec::new(),
         configuration: Vec::new(),
@@ -43,6 +44,9 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
         out.contacts.push(contact_values(views, contact)?);
     }
     geometry(m, &views.now, &mut out)?;
+    for i in 0..m.points.len() {
+        out.accelerations.push(accelerations(views.onward.velocity(PointId(i))?));
+    }
     let finite = out.mass_matrix.iter().flatten().chain(&out.forcing).all(|v| v.is_finite());
     if finite { Ok(out) } else { Err(Failure::Unsupported("a state at which the equations are singular")) }
 }
@@ -196,6 +200,8 @@ fn contact_values(views: &Views<'_>, contact: &Contact) -> Result<ContactEvaluat
             Some(gap) => Some(views.now.scalar(gap, Level::Motion)?.re),
             None => None,
         },
+        normal_rate: accelerations(views.onward.vector(&contact.normal, Level::Motion)?),
+        acceleration: accelerations(views.onward.contact_velocity(contact)?),
     })
 }
 

@@ -63,6 +63,8 @@ pub struct Evaluation {
     pub positions: Vec<Option<[f64; 3]>>,
     /// velocities of points in N
     pub velocities: Vec<[f64; 3]>,
+    /// rates of these while the independent speeds stay
+    pub accelerations: Vec<[f64; 3]>,
     /// orientations of frames (their axes are the columns), where known
     pub orientations: Vec<Option<[[f64; 3]; 3]>>,
     /// angular velocities of frames in N
@@ -86,6 +88,10 @@ pub struct ContactEvaluation {
     pub remainder: [f64; 3],
     /// gap, m, if the model gives one
     pub gap: Option<f64>,
+    /// rate of the normal
+    pub normal_rate: [f64; 3],
+    /// rate of the relative velocity while the independent speeds stay, m/s^2
+    pub acceleration: [f64; 3],
 }
 
 /// Why there are no numbers.

@@ -17,6 +17,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::serialize_record! {
         Parameters 3 m l g
     }
+    ::hodograph::generated::record! {
+        Parameters 3 m "m" "kg" l "l" "m" g "g" "m/s^2"
+    }
     /// The values that the model states, 0 where it states none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Parameters<T> {
         #[inline]
@@ -69,6 +72,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::serialize_record! {
         Coordinates 1 q1
     }
+    ::hodograph::generated::record! {
+        Coordinates 1 q1 "q1" "rad"
+    }
     /// The values that the model states, 0 where it states none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Coordinates<T> {
         #[inline]
@@ -119,6 +125,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::serialize_record! {
         Speeds 1 u1
     }
+    ::hodograph::generated::record! {
+        Speeds 1 u1 "u1" "rad/s"
+    }
     /// The values that the model states, 0 where it states none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Speeds<T> {
         #[inline]
@@ -168,6 +177,9 @@ pub mod pendulum_in_parts {
     }
     ::hodograph::generated::serialize_record! {
         Inputs 1 tau
+    }
+    ::hodograph::generated::record! {
+        Inputs 1 tau "tau" "N*m"
     }
     /// The values that the model states, 0 where it states none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Inputs<T> {

@@ -7,6 +7,7 @@ mod checks;
 pub mod construction;
 mod contact;
 mod error;
+mod records;
 mod saltation;
 mod serial;
 mod slices;
@@ -32,7 +33,9 @@ pub use serde;
 pub use serial::{FieldIndex, FieldNames};
 
 #[doc(hidden)]
-pub use crate::{__serialize_outcome as serialize_outcome, __serialize_record as serialize_record};
+pub use crate::{
+    __record as record, __serialize_outcome as serialize_outcome, __serialize_record as serialize_record,
+};
 
 /// Generated code names this constant: where it is missing, the module was made by a generator that this runtime does not fit.
 #[doc(hidden)]
