@@ -42,6 +42,7 @@ pub enum NonSmoothness {
 /// The columns of both matrices are v_n1, v_t1, v_s1 (approach), m_nn, m_nt, m_ns, m_tt, m_ts, m_ss, mu, e; an off-diagonal entry
 /// of the reduced matrix is one input that stands twice in the matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 #[non_exhaustive]
 pub struct ImpactDerivative<T: nalgebra::Scalar> {
     /// The outcome itself.
@@ -98,6 +99,17 @@ impl<T: Scalar> ImpactDerivative<T> {
 ///
 /// The same exact solver runs on numbers that carry their derivatives: no step size, no truncation. Needs no allocator and cannot
 /// panic; the stack holds about 50 kB (`f64` on x86-64), thirteen times what [`solve`] needs.
+///
+/// ```
+/// # use hodograph::{Law, ReducedMatrix, Surface, derivative};
+/// # use nalgebra::Vector3;
+/// let matrix = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
+/// let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge };
+/// let d = derivative(&matrix, &Vector3::new(-0.946, 1.063, 0.0), &surface)?;
+/// let (impulse_by_mu, velocity_by_mu) = d.by_friction();
+/// assert!(d.non_smoothness.is_none() && impulse_by_mu.x > 0.0 && velocity_by_mu.x > 0.0);
+/// # Ok::<(), hodograph::ImpactError<f64>>(())
+/// ```
 ///
 /// # Errors
 /// What [`solve`] refuses.

@@ -29,6 +29,7 @@ use crate::{
 /// point while sliding follows the arc from its beginning with the pieces of the solver until I_n is reached, and so costs no
 /// more than a solve; nothing is stored but the outcome. A point after slip has stopped is a straight line, some twenty operations. No allocation.
 #[derive(Clone, Copy, Debug)]
+#[must_use]
 pub struct Hodograph<T: nalgebra::Scalar> {
     approach: Vector3<T>,
     matrix: ReducedMatrix<T>,

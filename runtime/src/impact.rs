@@ -47,6 +47,7 @@ impl core::fmt::Display for Path {
 }
 
 /// The outcome of a collision, in the axes n, t, s of the input.
+#[must_use]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

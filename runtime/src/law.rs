@@ -5,6 +5,7 @@
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[doc(alias = "RestitutionLaw")]
 pub enum Law {
     /// Kinematic: v_n2 = -e v_n1 (48). It may gain energy.
     Newton,

@@ -1,4 +1,6 @@
 //! A contact in the units of the solver: the rates f, g and h of (31)-(33), in their one place.
+//!
+//! Theory: docs/theory.md, section 2.
 
 use nalgebra::Vector2;
 

@@ -1,4 +1,6 @@
 //! Events of a sliding arc: a quantity reaches a target. Where the event is expected, and the next step towards it.
+//!
+//! Theory: docs/theory.md, section 8.
 
 use super::{
     restitution::{Restitution, State},

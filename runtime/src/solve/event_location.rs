@@ -1,5 +1,7 @@
 //! Locates the next event on the sliding arc: the end of compression or of restitution, a turning point of v_n, or the farthest point that one
 //! quadrature reaches.
+//!
+//! Theory: docs/theory.md, section 8.
 
 use super::{
     event::{Correction, Event},

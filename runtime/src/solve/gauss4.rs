@@ -1,6 +1,8 @@
 //! A short step along the sliding arc by collocation with four Gauss nodes: what a trial of the search still lacks.
 //!
 //! The same integrals as on a whole stretch, but for a length of a few hundredths, where four nodes are exact.
+//!
+//! Theory: docs/theory.md, section 8.5.
 
 use super::{
     lanes::{Lanes, exp},

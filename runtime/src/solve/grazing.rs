@@ -1,4 +1,6 @@
 //! Grazing: how near v_n turned to a value that ends compression or restitution. Where a turning point just reaches that value the outcome jumps.
+//!
+//! Theory: docs/theory.md, section 14.
 
 use crate::scalar::Real;
 

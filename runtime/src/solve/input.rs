@@ -1,4 +1,6 @@
 //! What an impact can be asked: the input that is refused, each with its reason, and what rounding does to a reduced matrix.
+//!
+//! Theory: docs/theory.md, section 1.3.
 
 use nalgebra::Vector3;
 

@@ -3,6 +3,8 @@
 //! In the principal axes of T, mirrored so that b = (p, q) is positive, h = q cos - p sin + delta sin cos, where delta is mu times the difference of the
 //! principal values. One stable zero lies in the first quadrant and one unstable zero in the third; the fourth may hold one of each; the
 //! second none. In all of them the slip is along b - mu T d, so that d = (p / (eta + delta), q / eta) with a number eta: a secular equation.
+//!
+//! Theory: docs/theory.md, section 3.
 
 use nalgebra::Vector2;
 

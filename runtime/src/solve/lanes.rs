@@ -1,4 +1,6 @@
 //! Four numbers that go through the same calculation: arrays that the compiler keeps in one register.
+//!
+//! Theory: docs/theory.md, section 5.
 
 use crate::scalar::{Real, constant, fma};
 

@@ -1,4 +1,6 @@
 //! The exact solver: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
+//!
+//! Theory: docs/theory.md, section 1.
 
 mod contact;
 mod event;
@@ -40,6 +42,20 @@ use crate::{
 ///
 /// t and s are any orthonormal pair in the contact plane. No slip at the start, straight hodographs, singular matrices and
 /// repeated compression are all ordinary input.
+///
+/// Every answer is held against the laws of impact before it leaves: one that rounding keeps from obeying them is an error.
+///
+/// ```
+/// # use hodograph::{Law, ReducedMatrix, Surface, solve};
+/// # use nalgebra::Vector3;
+/// // The two sleds of the paper.
+/// let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
+/// let approach = Vector3::new(-0.946108022, 1.06306701, 0.0);
+/// let hit = solve(&matrix, &approach, &Surface { mu: 0.6, e: 0.8, law: Law::Stronge })?;
+/// assert!((hit.velocity.x - 0.5115321742_f64).abs() < 1e-9);
+/// assert!((hit.contact_work + 2.232487328_f64).abs() < 1e-9);
+/// # Ok::<(), hodograph::ImpactError<f64>>(())
+/// ```
 ///
 /// # Errors
 /// Every reason is a variant of [`ImpactError`]; a result is never NaN.

@@ -1,4 +1,6 @@
 //! How a straight hodograph rate_changes: where slip begins beside a direction that stays, and when the inputs of one that begins there change.
+//!
+//! Theory: docs/theory.md, section 7.2.
 
 use nalgebra::Vector2;
 

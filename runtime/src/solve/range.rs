@@ -6,7 +6,9 @@
 //! dv_n = (1/x - (mu b/x).d) dI_n,  dv_tan = (b/y - (mu T/y) d) dI_n,  dI_tan = -d dI_n.
 //!
 //! b and mu b are no longer multiples of each other by mu, which the arc never asks for; but the balance of energy, which does, is not
-//! used: the work is integrated directly. Theory: section 1.2.
+//! used: the work is integrated directly.
+//!
+//! Theory: docs/theory.md, section 1.2.
 
 use nalgebra::Vector2;
 

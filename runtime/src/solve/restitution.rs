@@ -1,4 +1,6 @@
 //! The three laws of restitution: where each ends the collision, in units where m_nn = 1 and v_n1 = -1.
+//!
+//! Theory: docs/theory.md, section 9.
 
 use nalgebra::Vector2;
 

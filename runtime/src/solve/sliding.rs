@@ -1,4 +1,6 @@
 //! The sliding arc (34), stretch by stretch, until the law ends the collision or slip stops.
+//!
+//! Theory: docs/theory.md, section 7.1.
 
 use nalgebra::Vector2;
 

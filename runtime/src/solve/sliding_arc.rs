@@ -6,6 +6,8 @@
 //!
 //! With C + i S = a b* (b* the conjugate), h = -2 S w q / e^2 where q = (h'(a^2), 6 m S, -h'(b^2)), the coefficients of 1, w and w^2, and m is mu times
 //! the off-diagonal entry of T in axes along a b. At w = 0 and without end (34) must hold as well: k = (g(a^2), C (g(a^2) + g(b^2)) - q_1, g(b^2) - 2 q_2).
+//!
+//! Theory: docs/theory.md, section 4.
 
 use nalgebra::Vector2;
 

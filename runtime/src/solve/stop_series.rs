@@ -3,6 +3,8 @@
 //! About the stable direction slip is tau (b + a u)^2 with tau = sigma w^2, and the integrals that remain are tau R(u) (tau^2 R for the work of
 //! friction) with Q u R' - K R = w, where Q, K and w are polynomials: one recurrence with two taps, shared by four lanes. The rows are worked
 //! on in memory, which lets the compiler keep the four lanes in one register.
+//!
+//! Theory: docs/theory.md, section 6.
 
 use core::cell::Cell;
 

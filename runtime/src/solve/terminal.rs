@@ -1,4 +1,6 @@
 //! The arc after slip has stopped: sticking (45) or sliding in the direction phi_hat (46). Both are linear in I_n.
+//!
+//! Theory: docs/theory.md, section 10.
 
 use nalgebra::Vector2;
 

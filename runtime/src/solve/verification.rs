@@ -2,20 +2,22 @@
 //!
 //! Residuals are those of the answer itself, in the units of the solver, and count relative to the speeds and works of the impact.
 //! An answer of the solver is exact to a small multiple of the rounding unit times the condition of the contact; where a residual exceeds
-//! [`share`] of its scale, rounding has taken half of the digits, and the input does not determine the answer in these numbers.
+//! the root of the rounding unit, rounding has taken half of the digits, and the input does not determine the answer in these numbers.
+//!
+//! Theory: docs/theory.md, section 18.2.
 
 use nalgebra::Vector2;
 
 use super::{Contact, Restitution, State};
 use crate::{
     ImpactError, Violation,
-    scalar::{Real, constant, larger, length},
+    scalar::{Real, constant, larger, length, smaller},
 };
 
-/// The largest residual of a sound answer over its scale: half of the digits in single precision, nine of sixteen in double.
+/// The largest residual of a sound answer over its scale: the root of the rounding unit.
 #[inline(always)]
 fn share<T: Real>() -> T {
-    constant(if T::default_epsilon() > constant(1e-10) { 3.5e-4 } else { 9.4e-10 })
+    constant(if T::default_epsilon() > constant(1e-10) { 3.5e-4 } else { 1.5e-8 })
 }
 
 /// The residuals of an answer, each with its scale.
@@ -67,8 +69,10 @@ impl<T: Real> Restitution<T> {
         let n = start + end.normal + c.b.dot(i) - end.velocity;
         let t = from.x + c.b.x * end.normal + (c.tt * i.x + c.ts * i.y) - velocity.x;
         let s = from.y + c.b.y * end.normal + (c.ts * i.x + c.ss * i.y) - velocity.y;
-        let speed = T::one() + end.velocity.abs();
         let slips = T::one() + slip + velocity.x.abs() + velocity.y.abs();
+        // Where slip drives v_n, it passes through speeds of the size of slip.
+        let coupled = smaller(c.b.x.abs() + c.b.y.abs(), T::one());
+        let speed = T::one() + end.velocity.abs() + coupled * slips;
         let half = constant::<T>(0.5);
         let rubbed = i.x * (from.x + velocity.x) + i.y * (from.y + velocity.y);
         let pushed = end.normal * (start + end.velocity);

@@ -1,5 +1,7 @@
 //! Impact without collision: v_n = 0, but slip is such that a normal impulse would press the bodies together (f < 0), so that no finite
 //! force exists (Painleve).
+//!
+//! Theory: docs/theory.md, section 17.6.
 
 use nalgebra::{Vector2, Vector3};
 

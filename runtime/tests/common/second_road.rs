@@ -385,6 +385,27 @@ struct Line {
 
 /// The outcome of a collision.
 pub fn solve(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -> Result<Outcome, Failure> {
+    solve_from(m, v, -v.x, surface)
+}
+
+/// The outcome of an impact without collision: v_n1 = 0, and Newton's target with it.
+pub fn without_collision(
+    m: &ReducedMatrix<f64>,
+    slip: [f64; 2],
+    surface: &Surface<f64>,
+) -> Result<Outcome, Failure> {
+    let e = if surface.law == Law::Newton { 0.0 } else { surface.e };
+    let speed = slip[0].hypot(slip[1]);
+    solve_from(m, &Vector3::new(0.0, slip[0], slip[1]), speed, &Surface { e, ..*surface })
+}
+
+/// The same for any unit of speed.
+fn solve_from(
+    m: &ReducedMatrix<f64>,
+    v: &Vector3<f64>,
+    speed: f64,
+    surface: &Surface<f64>,
+) -> Result<Outcome, Failure> {
     let problem = Problem {
         nn: m.nn.into(),
         b: [m.nt.into(), m.ns.into()],
@@ -392,7 +413,7 @@ pub fn solve(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -
         mu: surface.mu.into(),
         law: surface.law,
         e: surface.e.into(),
-        speed: (-v.x).into(),
+        speed: speed.into(),
     };
     let mut watch = Watch { compressions: 0, target: None, least: Double::ZERO, margin: 1.0 };
     let zero = Double::ZERO;

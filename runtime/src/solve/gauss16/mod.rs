@@ -4,6 +4,8 @@
 //! integrated by collocation; at the end of the stretch (and only there) the error of all integrals falls with twice the number of nodes.
 //!
 //! The loops are plain ones over short arrays, so that the compiler turns each into a few instructions on vectors.
+//!
+//! Theory: docs/theory.md, section 5.
 
 mod tables;
 

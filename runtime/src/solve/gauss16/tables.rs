@@ -2,6 +2,8 @@
 //!
 //! The nodes come in pairs +-t; tables hold the positive ones. Made with 50 digits; the tests check them against integrals of
 //! powers.
+//!
+//! Theory: docs/theory.md, section 5.2.
 
 /// The number of pairs.
 pub(super) const HALF: usize = 8;
