@@ -134,7 +134,7 @@ fn on_surface(m: &Mechanism, gap: &Scalar, state: &State) -> Option<State> {
         }
         slopes.iter_mut().enumerate().filter(|(i, _)| in_quaternion(*i)).for_each(|(_, slope)| *slope = 0.0);
         let square: f64 = slopes.iter().map(|slope| slope * slope).sum();
-        if !(square > 0.0) || !value.is_finite() {
+        if square <= 0.0 || !square.is_finite() || !value.is_finite() {
             return None;
         }
         // a step of Newton's method along the steepest descent, no longer than 1
