@@ -6,10 +6,12 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use hodograph_arithmetic::DoubleDouble;
+use num_rational::BigRational;
 
 use super::doubles::{self, Arithmetic};
 use super::function::Function;
 use super::large_angles;
+use crate::number::Number;
 
 /// Angles up to here are reduced here, rad; larger ones need more digits of pi.
 const LARGEST: f64 = 524288.0;
@@ -32,6 +34,18 @@ impl Reproducible {
     /// The nearest double.
     pub fn rounded(self) -> f64 {
         self.0.rounded()
+    }
+
+    /// The nearest number to an exact one.
+    pub fn nearest(number: &Number) -> Self {
+        let high = number.to_f64();
+        let rest = BigRational::from_float(high).map_or(0.0, |high| Number(&number.0 - high).to_f64());
+        Self::parts(high, rest)
+    }
+
+    /// pi
+    pub fn pi() -> Self {
+        Self::half_pi() * Self::exactly(2.0)
     }
 
     fn parts(high: f64, low: f64) -> Self {

@@ -78,3 +78,5 @@ fn is_binary(function: Function) -> bool {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod vanishing;

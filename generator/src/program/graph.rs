@@ -190,7 +190,51 @@ impl Graph {
         if let [only] = rest[..] { only } else { self.intern(NodeKind::Sum(rest)) }
     }
 
-    /// The product of `factors`, numbers collected, ones dropped; 0 if one of them is 0.
+    /// Cancels a divisor against a factor that is the same, or whose parts are; says what number is left of it.
+    fn cancel(&mut self, factors: &mut Vec<Node>) -> Option<Number> {
+        for at in 0..factors.len() {
+            let &NodeKind::Power(base, exponent) = self.kind(factors[at]) else { continue };
+            if exponent > 0 {
+                continue;
+            }
+            let (mut number, mut wanted) = (Number::integer(1), vec![base]);
+            if let NodeKind::Product(parts) = self.kind(base) {
+                wanted = parts.clone();
+                if let Some(first) = self.as_number(wanted[0]).cloned() {
+                    number = first;
+                    wanted.remove(0);
+                }
+            }
+            let mut left = factors.clone();
+            left.remove(at);
+            if wanted.iter().all(|&part| self.take(&mut left, part)) {
+                let rest = self.power(base, exponent + 1);
+                left.extend(Some(rest).filter(|_| exponent + 1 != 0));
+                *factors = left;
+                return Some(Number(number.0.recip()));
+            }
+        }
+        None
+    }
+
+    /// Takes a factor out of a product once; says whether it was there.
+    fn take(&mut self, factors: &mut Vec<Node>, factor: Node) -> bool {
+        let is_power =
+            |node: Node| matches!(*self.kind(node), NodeKind::Power(base, n) if base == factor && n > 0);
+        let Some(at) = factors.iter().position(|&node| node == factor || is_power(node)) else {
+            return false;
+        };
+        let found = factors.remove(at);
+        if let &NodeKind::Power(base, exponent) = self.kind(found)
+            && found != factor
+        {
+            let rest = self.power(base, exponent - 1);
+            factors.push(rest);
+        }
+        true
+    }
+
+    /// The product of `factors`, numbers collected, ones dropped; 0 if one of them is 0. Divisors cancel against equal factors.
     pub fn product(&mut self, factors: impl IntoIterator<Item = Node>) -> Node {
         let mut constant = Number::integer(1);
         let mut rest = Vec::new();
@@ -210,6 +254,9 @@ impl Graph {
         }
         if constant.is_zero() {
             return self.integer(0);
+        }
+        while let Some(number) = self.cancel(&mut rest) {
+            constant = Number(constant.0 * number.0);
         }
         rest.sort_unstable();
         if !constant.is_one() || rest.is_empty() {

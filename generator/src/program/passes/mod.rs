@@ -11,12 +11,15 @@ mod factor;
 mod flat_sums;
 mod fold;
 mod frequent_pairs;
+mod identities;
+mod known;
 mod prune;
 mod reassociate;
 mod rewrite;
 mod terms;
 #[cfg(test)]
 mod testing;
+mod vanishing;
 
 use super::derivation::Derived;
 use super::inputs::Inputs;
@@ -41,16 +44,20 @@ enum Work {
 }
 
 /// The passes in their order.
-pub const PASSES: [Pass; 9] = [
+pub const PASSES: [Pass; 13] = [
     Pass { name: "prune", work: Work::Graph(prune::prune) },
     Pass { name: "fold", work: Work::Graph(fold::fold) },
+    Pass { name: "identities", work: Work::Graph(identities::replace) },
     Pass { name: "collect", work: Work::Graph(collect::collect) },
     Pass { name: "factor", work: Work::Graph(factor::factor) },
     Pass { name: "common subexpressions", work: Work::Graph(common_subexpressions::share) },
+    Pass { name: "identities again", work: Work::Graph(identities::replace) },
     Pass { name: "lower", work: Work::Lower(lower) },
     Pass { name: "contract", work: Work::Operations(contract::contract) },
     Pass { name: "dead code", work: Work::Operations(dead_code::remove) },
     Pass { name: "reassociate", work: Work::Weighed(reassociate::reassociate) },
+    Pass { name: "vanishing", work: Work::Operations(vanishing::drop) },
+    Pass { name: "dead code again", work: Work::Operations(dead_code::remove) },
 ];
 
 impl Program {

@@ -68,8 +68,8 @@ mod tests {
     #[test]
     fn low_powers_are_written_out_and_high_ones_and_divisors_are_not() {
         let mut g = Graph::new();
-        let [a, b, ..] = speeds(&mut g);
-        let (square, high, inverse) = (g.power(a, 2), g.power(b, 4), g.power(b, -1));
+        let [a, b, c, _] = speeds(&mut g);
+        let (square, high, inverse) = (g.power(a, 2), g.power(b, 4), g.power(c, -1));
         let product = g.product([square, high, inverse]);
         let mut expected = vec![a, a, high, inverse];
         expected.sort_unstable();

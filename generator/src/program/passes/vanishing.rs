@@ -1,0 +1,160 @@
+//! Drops operations whose result is identically 0, as partial sums may be once the terms of a sum have their order.
+//!
+//! It looks at operations as [`super::identities`] looks at nodes. What rounding takes from a sum of angles is 0 but for rounding: it stays.
+
+use super::known::{Known, PLACES, analytic, arbitrary, seed_of};
+use crate::arithmetic::reproducible::Reproducible;
+use crate::arithmetic::{Arithmetic, Function};
+use crate::program::build::Builder;
+use crate::program::operation::{Operation, Value};
+use crate::program::straight_line::Program;
+
+/// The program without what vanishes.
+pub fn drop(program: &Program) -> Program {
+    let places: Vec<Vec<Known>> = (0..PLACES).map(|place| evaluated(program, place)).collect();
+    let vanishes = |value: Value| {
+        let is_sum = matches!(
+            program.operation(value),
+            Operation::Add(..)
+                | Operation::Sub(..)
+                | Operation::MulAdd(..)
+                | Operation::MulSub(..)
+                | Operation::NegMulAdd(..)
+        );
+        is_sum && places.iter().all(|known| known[value.index()].is(0.0))
+    };
+    if !(0..program.operations.len()).any(|index| vanishes(Value(index as u32))) {
+        return program.clone();
+    }
+    let mut builder = Builder::default();
+    let mut renamed: Vec<Value> = Vec::with_capacity(program.operations.len());
+    for (index, &operation) in program.operations.iter().enumerate() {
+        let new = match vanishes(Value(index as u32)) {
+            true => builder.constant(0.0),
+            false => rebuilt(&mut builder, operation.map(|value| renamed[value.index()])),
+        };
+        renamed.push(new);
+    }
+    let of = |value: Value| renamed[value.index()];
+    let mut new = Program { operations: builder.finish(), ..program.clone() };
+    new.outputs.iter_mut().flat_map(|output| &mut output.values).for_each(|value| *value = of(*value));
+    for guard in &mut new.guards {
+        guard.value = of(guard.value);
+        guard.scale = guard.scale.map(of);
+    }
+    new
+}
+
+/// An operation on new operands, shorter where one of them is 0.
+fn rebuilt(builder: &mut Builder, operation: Operation) -> Value {
+    let is_zero = |builder: &Builder, value: Value| builder.number(value) == Some(0.0);
+    match operation {
+        Operation::Neg(a) => builder.neg(a),
+        Operation::Add(a, b) => builder.add(a, b),
+        Operation::Sub(a, b) => builder.sub(a, b),
+        Operation::Mul(a, b) => builder.mul(a, b),
+        Operation::MulAdd(a, b, c) if is_zero(builder, a) || is_zero(builder, b) => c,
+        Operation::MulAdd(a, b, c) if is_zero(builder, c) => builder.mul(a, b),
+        Operation::MulSub(a, b, c) if is_zero(builder, a) || is_zero(builder, b) => builder.neg(c),
+        Operation::MulSub(a, b, c) if is_zero(builder, c) => builder.mul(a, b),
+        Operation::NegMulAdd(a, b, c) if is_zero(builder, a) || is_zero(builder, b) => c,
+        Operation::NegMulAdd(a, b, c) if is_zero(builder, c) => {
+            let product = builder.mul(a, b);
+            builder.neg(product)
+        }
+        _ => builder.push(operation),
+    }
+}
+
+/// All values at one place.
+fn evaluated(program: &Program, place: usize) -> Vec<Known> {
+    let mut numbers: Vec<Known> = Vec::with_capacity(program.operations.len());
+    for (index, &operation) in program.operations.iter().enumerate() {
+        let of = |value: Value| numbers[value.index()];
+        let unknown = || arbitrary(1 << 40 | index as u64, place);
+        let one = || Known::exact(Reproducible::exactly(1.0));
+        let function = |function, a| analytic(function, of(a)).unwrap_or_else(unknown);
+        let number = match operation {
+            _ if is_rounding(program, operation) => unknown(),
+            Operation::Constant(bits) => Known::exact(Reproducible::exactly(bits.get())),
+            Operation::Input(input) => arbitrary(seed_of(input), place),
+            Operation::Neg(a) => of(a).opposite(),
+            Operation::Add(a, b) => Known::sum([of(a), of(b)].into_iter()),
+            Operation::Sub(a, b) => Known::sum([of(a), of(b).opposite()].into_iter()),
+            Operation::Mul(a, b) => of(a).times(of(b)),
+            Operation::Div(a, b) => of(a).times(of(b).reciprocal()),
+            Operation::Recip(a) => one().times(of(a).reciprocal()),
+            Operation::MulAdd(a, b, c) => Known::sum([of(a).times(of(b)), of(c)].into_iter()),
+            Operation::MulSub(a, b, c) => Known::sum([of(a).times(of(b)), of(c).opposite()].into_iter()),
+            Operation::NegMulAdd(a, b, c) => Known::sum([of(a).times(of(b)).opposite(), of(c)].into_iter()),
+            // the angle: sine and cosine are taken out of it below
+            Operation::SinCos(a) => of(a),
+            Operation::Sine(pair) => function(Function::Sin, pair),
+            Operation::Cosine(pair) => function(Function::Cos, pair),
+            Operation::Call(name, a) => function(name, a),
+            Operation::Call2(..) => unknown(),
+        };
+        numbers.push(number);
+    }
+    numbers
+}
+
+/// Is it a part of what rounding takes from a sum, `a - (t - (t - a))` where t is a sum with a, however its operations are fused?
+fn is_rounding(program: &Program, operation: Operation) -> bool {
+    let (first, second) = match operation {
+        Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),
+        Operation::MulAdd(_, _, c) | Operation::MulSub(_, _, c) | Operation::NegMulAdd(_, _, c) => (c, c),
+        _ => return false,
+    };
+    let returns = |term: Value, part: Value| match program.operation(part) {
+        Operation::Sub(total, other) => {
+            let mut parts = program.operation(total).operands();
+            let again = matches!(program.operation(other), Operation::Sub(t, _) if t == total);
+            again || parts.any(|part| part == term || part == other)
+        }
+        _ => false,
+    };
+    returns(first, second) || returns(second, first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{agree, operations, random, small, speeds};
+    use super::*;
+    use crate::program::lower::lower;
+
+    #[test]
+    fn meaning_is_kept() {
+        for seed in 1..150 {
+            let program = lower(&random(seed));
+            agree(&program, &drop(&program), &format!("seed {seed}"));
+        }
+    }
+
+    #[test]
+    fn a_partial_sum_that_vanishes_is_dropped() {
+        let derived = small(|graph| {
+            let [x, y, z, w] = speeds(graph);
+            let sum = graph.sum([x, y]);
+            let minus = graph.integer(-1);
+            let (whole, a, b) =
+                (graph.product([sum, z]), graph.product([minus, x, z]), graph.product([minus, y, z]));
+            let nothing = graph.sum([whole, a, b]);
+            vec![graph.sum([nothing, w])]
+        });
+        let dropped = super::super::dead_code::remove(&drop(&lower(&derived)));
+        assert_eq!(operations(&dropped), [""; 0]);
+    }
+
+    #[test]
+    fn what_rounding_takes_from_angles_stays() {
+        let derived = small(|graph| {
+            let [x, y, ..] = speeds(graph);
+            let angle = graph.sum([x, y]);
+            vec![graph.call(Function::Sin, vec![angle])]
+        });
+        let program = lower(&derived);
+        assert!(program.operations.len() > 8, "{program:?}");
+        assert_eq!(drop(&program), program);
+    }
+}
