@@ -44,14 +44,13 @@ enum Work {
 }
 
 /// The passes in their order.
-pub const PASSES: [Pass; 13] = [
+pub const PASSES: [Pass; 12] = [
     Pass { name: "prune", work: Work::Graph(prune::prune) },
     Pass { name: "fold", work: Work::Graph(fold::fold) },
     Pass { name: "identities", work: Work::Graph(identities::replace) },
     Pass { name: "collect", work: Work::Graph(collect::collect) },
     Pass { name: "factor", work: Work::Graph(factor::factor) },
     Pass { name: "common subexpressions", work: Work::Graph(common_subexpressions::share) },
-    Pass { name: "identities again", work: Work::Graph(identities::replace) },
     Pass { name: "lower", work: Work::Lower(lower) },
     Pass { name: "contract", work: Work::Operations(contract::contract) },
     Pass { name: "dead code", work: Work::Operations(dead_code::remove) },
