@@ -1,9 +1,9 @@
 //! Derivations: read where they are kept, made in a child process, written whole or not at all.
 
-use std::fs::{self, OpenOptions};
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use hodograph_generator::artifact::{self, Artifact, place};
@@ -13,6 +13,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::evaluate::Machine;
 use crate::model::{self, Model};
+use crate::output;
 use crate::stop::{Outcome, Stop};
 
 /// Name of the hidden command that the child process runs.
@@ -21,9 +22,40 @@ pub const WORKER: &str = "derive-worker";
 /// Bounds on a derivation.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Limits {
-    /// give up a derivation after this many seconds
+    /// give up deriving, or writing equations, after this many seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 600)]
     pub time_limit: u64,
+}
+
+/// Stack of work that walks expressions.
+const STACK: usize = 256 << 20;
+
+impl Limits {
+    /// Does work for at most so long; what is not done by then ends with the process. `doing` is what messages call it.
+    ///
+    /// # Errors
+    ///
+    /// [`Stop::Fault`] after the limit.
+    pub fn bound<R: Send + 'static>(
+        &self,
+        doing: &str,
+        work: impl FnOnce() -> R + Send + 'static,
+    ) -> Outcome<R> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        let worker = std::thread::Builder::new().stack_size(STACK);
+        worker
+            .spawn(move || drop(sender.send(work())))
+            .map_err(|error| Stop::Fault(format!("cannot start a thread: {error}")))?;
+        receiver.recv_timeout(Duration::from_secs(self.time_limit)).map_err(|error| match error {
+            RecvTimeoutError::Timeout => Stop::Fault(format!(
+                "{doing} took more than {} seconds: give more with --time-limit",
+                self.time_limit
+            )),
+            RecvTimeoutError::Disconnected => {
+                Stop::Fault(format!("{doing} failed: please report it with the model"))
+            }
+        })
+    }
 }
 
 /// What was found where a derivation is kept.
@@ -78,12 +110,12 @@ pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
     let program = match find(&kept, &model) {
         Found::Fresh(program) => *program,
         other => {
-            eprintln!(
+            output::say(format_args!(
                 "note: {} {}; deriving in memory, `hodograph derive {}` keeps the result",
                 kept.display(),
                 other.fault().unwrap_or_default(),
                 path.display()
-            );
+            ));
             derive(&model, limits)?.0
         }
     };
@@ -99,7 +131,10 @@ pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
 ///
 /// [`Stop::Said`] where the child process has said why; [`Stop::Fault`].
 pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
-    run(model, limits, None)
+    let answer = run(model, limits, false)?;
+    let derived = artifact::decode(&answer)
+        .map_err(|error| Stop::Fault(format!("the derivation of {}: {error}", model.source.name())))?;
+    Ok((derived.program, answer))
 }
 
 /// Derives a model to see what each pass does to it: a line per pass.
@@ -108,54 +143,59 @@ pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
 ///
 /// As [`derive()`].
 pub fn trace(model: &Model, limits: &Limits) -> Outcome<String> {
-    let file = tempfile::NamedTempFile::new()
-        .map_err(|error| Stop::Fault(format!("cannot make a temporary file: {error}")))?;
-    run(model, limits, Some(file.path()))?;
-    fs::read_to_string(file.path()).map_err(|error| Stop::unreadable(file.path(), &error))
+    run(model, limits, true)
 }
 
-fn run(model: &Model, limits: &Limits, trace: Option<&Path>) -> Outcome<(Program, String)> {
+/// What the process that derives writes before its answer: what stands above it is the engine's.
+pub const ANSWER: &str = "\nthe answer of hodograph derive-worker:\n";
+
+/// Runs the process that derives: it reads the model from standard input, and writes its answer at the end of standard output. So there
+/// is no file that could be left.
+fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
     if !cfg!(feature = "derive") {
         return Err(Stop::Fault(
             "this build of the tool reads derivations but makes none: build it with its feature `derive`"
                 .to_owned(),
         ));
     }
+    let name = model.source.name();
     let fault = |what: &str, error: std::io::Error| Stop::Fault(format!("{what}: {error}"));
-    let folder = tempfile::tempdir().map_err(|error| {
-        Stop::Fault(format!(
-            "cannot make a temporary directory: {error}; set TMPDIR to a directory that can be written"
-        ))
-    })?;
-    let (input, output) = (folder.path().join("model"), folder.path().join("derivation"));
-    let text = model.source.text().unwrap_or_default();
-    fs::write(&input, text).map_err(|error| Stop::unwritable(&input, &error))?;
     let tool =
         std::env::current_exe().map_err(|error| fault("cannot find this program's own file", error))?;
-    let child = Command::new(tool)
+    let mut child = Command::new(tool)
         .arg(WORKER)
-        .args([&input, &output])
-        .arg(model.source.name())
-        .args(trace.map(|path| [Path::new("--trace"), path]).into_iter().flatten())
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
+        .args(trace.then_some("--trace"))
+        .args(["--", name])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
         .spawn()
         .map_err(|error| fault("cannot start the process that derives", error))?;
-    let status = wait(child, model.source.name(), limits)?;
+    if let Some(mut input) = child.stdin.take() {
+        // It reads all of it before anything else; if it ends before that, its exit code says so.
+        let _ = input.write_all(model.source.text().unwrap_or_default().as_bytes());
+    }
+    let output = child.stdout.take();
+    let reader =
+        std::thread::spawn(move || output.map(|output| reading::up_to(output, 2 * artifact::MAX_BYTES)));
+    let status = wait(child, name, limits)?;
+    let written = reader.join();
     if !status.success() {
         return Err(match status.code() {
             Some(1) => Stop::Said,
             _ => Stop::Fault(format!(
-                "deriving {} ended with {status}; what was said of it is above. The algebra engine ends the process where another \
-                 program of this user holds it: then try again. If it does so alone, please report it with the model",
-                model.source.name()
+                "deriving {name} ended with {status}; what was said of it is above. The algebra engine ends the process where another \
+                 program of this user holds it: then try again. If it does so alone, please report it with the model"
             )),
         });
     }
-    let text = fs::read_to_string(&output).map_err(|error| Stop::unreadable(&output, &error))?;
-    let derived = artifact::decode(&text)
-        .map_err(|error| Stop::Fault(format!("the derivation of {}: {error}", model.source.name())))?;
-    Ok((derived.program, text))
+    let Ok(Some(Ok(written))) = written else {
+        return Err(Stop::Fault(format!("the derivation of {name} could not be read, or is too large")));
+    };
+    let written = String::from_utf8_lossy(&written);
+    match written.split_once(ANSWER) {
+        Some((_, answer)) => Ok(answer.to_owned()),
+        None => Err(Stop::Fault(format!("the process that derives {name} gave no answer"))),
+    }
 }
 
 /// Waits for the child; shows that it works after a second, and ends it at the limit.
@@ -194,33 +234,20 @@ fn wait(mut child: Child, name: &str, limits: &Limits) -> Outcome<ExitStatus> {
 
 fn show(name: &str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
-        eprintln!("deriving {name} ..");
+        output::say(format_args!("deriving {name} .."));
     }
     let style = ProgressStyle::with_template("{spinner} deriving {msg} [{elapsed}]");
     let progress = ProgressBar::new_spinner().with_message(name.to_owned());
     style.map_or(progress.clone(), |style| progress.with_style(style))
 }
 
-/// Writes a file whole or not at all: beside it first, then in its place.
+/// Writes a derivation where it is kept, whole or not at all.
 ///
 /// # Errors
 ///
 /// [`Stop::Fault`].
 pub fn write(path: &Path, text: &str) -> Outcome {
-    let fault = |error: std::io::Error| Stop::unwritable(path, &error);
-    let name = path.file_name().map_or("derivation".into(), |name| name.to_string_lossy());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    fs::create_dir_all(folder).map_err(fault)?;
-    let beside = folder.join(format!(".{name}.{}.tmp", std::process::id()));
-    let written = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(true)
-        .open(&beside)
-        .and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()))
-        .and_then(|()| fs::rename(&beside, path));
-    written.map_err(|error| {
-        let _ = fs::remove_file(&beside);
-        fault(error)
-    })
+    std::fs::create_dir_all(folder).map_err(|error| Stop::unwritable(path, &error))?;
+    output::file(path, text.as_bytes())
 }

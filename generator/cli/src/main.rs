@@ -12,6 +12,7 @@ mod evaluate;
 mod files;
 mod import;
 mod inline;
+mod interrupt;
 mod json;
 mod model;
 mod output;
@@ -53,7 +54,12 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let outcome = match Arguments::parse().command {
+    interrupt::clean_up();
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(answer) => return output::answer(&answer),
+    };
+    let outcome = match arguments.command {
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Collide(arguments) => collide::run(&arguments),

@@ -8,6 +8,7 @@ use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
+use crate::output;
 use crate::stop::{Outcome, Stop};
 
 /// A state has at most so many bytes.
@@ -41,7 +42,9 @@ pub fn load(path: &Path) -> Outcome<Model> {
 /// [`Stop::Said`] where it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
     let found = check(&source);
-    eprint!("{}", render(&found.diagnostics, &source));
+    if !found.diagnostics.is_empty() {
+        output::say(render(&found.diagnostics, &source).trim_end());
+    }
     let mechanism = found.mechanism.ok_or(Stop::Said)?;
     Ok(Model { source, mechanism })
 }

@@ -4,6 +4,7 @@ use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::interrupt::Unfinished;
 use crate::stop::{Outcome, Stop};
 
 /// Writes text and flushes it.
@@ -35,6 +36,51 @@ pub fn bytes(bytes: &[u8]) -> Outcome {
 /// As [`text`].
 pub fn line(line: &str) -> Outcome {
     text(&format!("{line}\n"))
+}
+
+/// Writes text for people to standard error, with a newline. Nobody may read it, and its disk may be full: that is no reason to fail.
+pub fn say(text: impl std::fmt::Display) {
+    let _ = writeln!(io::stderr().lock(), "{}", visible(&text.to_string()));
+}
+
+/// Text without what a terminal would obey: control characters, but for ends of lines and tabs, are shown by their numbers, and so are
+/// those that turn the direction of writing.
+pub fn visible(text: &str) -> String {
+    let shown = |c: char| {
+        let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        if turns || c.is_control() && c != '\n' && c != '\t' {
+            c.escape_unicode().to_string()
+        } else {
+            c.to_string()
+        }
+    };
+    text.chars().map(shown).collect()
+}
+
+/// Standard output whose reader may leave before the end. What comes after that is not written, but the work goes on to its exit code.
+#[derive(Default)]
+pub struct Report {
+    reader_gone: bool,
+}
+
+impl Report {
+    /// Writes text for people and flushes it.
+    ///
+    /// # Errors
+    ///
+    /// It cannot be written, for another reason than that nobody reads it.
+    pub fn text(&mut self, text: &str) -> Outcome {
+        if self.reader_gone {
+            return Ok(());
+        }
+        match self::text(&visible(text)) {
+            Err(Stop::ReaderGone) => {
+                self.reader_gone = true;
+                Ok(())
+            }
+            other => other,
+        }
+    }
 }
 
 /// Writes a value as one line of JSON.
@@ -73,7 +119,9 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     let mut file = builder.tempfile_in(folder)?;
+    let _unfinished = Unfinished::file(file.path());
     file.write_all(bytes)?;
+    file.as_file().sync_all()?;
     if let Ok(data) = std::fs::metadata(&place) {
         file.as_file().set_permissions(data.permissions())?;
     }
@@ -84,18 +132,32 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
 pub fn report(stop: Stop) -> ExitCode {
     match stop {
         Stop::Call(message) => {
-            eprintln!("error: {message}");
+            say(format_args!("error: {message}"));
             ExitCode::from(2)
         }
         Stop::Fault(message) => {
-            eprintln!("error: {message}");
+            say(format_args!("error: {message}"));
             ExitCode::from(1)
         }
         Stop::Object(failure) => {
-            let _ = line(&failure.to_line());
+            if let Err(Stop::Fault(message)) = line(&failure.to_line()) {
+                say(format_args!("error: {message}; what should stand there: {failure}"));
+            }
             ExitCode::from(1)
         }
         Stop::Said => ExitCode::from(1),
         Stop::ReaderGone => ExitCode::SUCCESS,
+    }
+}
+
+/// Writes the help that was asked for, or what is wrong with the call, and gives the exit code.
+pub fn answer(answer: &clap::Error) -> ExitCode {
+    let written = answer.print().and_then(|()| io::stdout().flush());
+    match written {
+        _ if answer.use_stderr() => ExitCode::from(2),
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            report(Stop::Fault(format!("cannot write to standard output: {error}")))
+        }
+        _ => ExitCode::SUCCESS,
     }
 }

@@ -133,9 +133,7 @@ fn a_home_that_cannot_be_written_is_named() {
     };
     let said = with("HOME");
     assert!(said.contains("home directory") && said.contains("set HOME to one"), "{said}");
-    let said = with("TMPDIR");
-    assert!(said.contains("temporary directory") && said.contains("set TMPDIR"), "{said}");
-    for said in [with("HOME"), with("TMPDIR")] {
-        assert!(!said.contains("SIGABRT") && !said.contains("report"), "{said}");
-    }
+    assert!(!said.contains("SIGABRT") && !said.contains("report"), "{said}");
+    // no temporary directory is needed
+    succeeded(&tool().arg("derive").arg(&model).env("TMPDIR", &file).output().expect("the tool runs"));
 }

@@ -34,7 +34,7 @@ fn succeeds(command: &mut Command, folder: &Path) {
 fn the_readme_is_true() {
     let folder = tempfile::tempdir().unwrap();
     let folder = folder.path();
-    let heading = "## In your own crate";
+    let heading = "## In my crate";
     let runtime = root().join("runtime").canonicalize().unwrap();
     let dependencies = block("README.md", heading, "```toml");
     assert!(dependencies.contains("\"../hodograph/runtime\""), "{dependencies}");

@@ -84,9 +84,11 @@ pub fn exclusively<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static)
 /// The engine keeps its permit below the home directory, and ends the process where it cannot: that is found out before.
 fn writable_home() -> Result<(), SessionError> {
     let Some(home) = std::env::home_dir().filter(|home| !home.as_os_str().is_empty()) else { return Ok(()) };
-    let probe = home.join(format!(".hodograph-{}", std::process::id()));
+    // A name that nobody can have put there before: a file that exists, or a link, is not opened.
+    let now = std::time::UNIX_EPOCH.elapsed().map_or(0, |since| since.as_nanos());
+    let probe = home.join(format!(".hodograph-{}-{now}", std::process::id()));
     let written = std::fs::create_dir_all(&home)
-        .and_then(|()| OpenOptions::new().write(true).create(true).truncate(true).open(&probe));
-    let _ = std::fs::remove_file(&probe);
-    written.map(drop).map_err(|error| SessionError::Home { path: home, reason: error.to_string() })
+        .and_then(|()| OpenOptions::new().write(true).create_new(true).open(&probe))
+        .and_then(|_| std::fs::remove_file(&probe));
+    written.map_err(|error| SessionError::Home { path: home, reason: error.to_string() })
 }

@@ -24,6 +24,14 @@ pub struct Explanation {
     pub right: Option<&'static str>,
 }
 
+impl Explanation {
+    /// The examples that there are, each with what it is.
+    fn examples(&self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let named = [("wrong", self.wrong), ("right", self.right)];
+        named.into_iter().filter_map(|(what, example)| Some((what, example?)))
+    }
+}
+
 /// The model whose sections the examples replace or extend.
 pub const FRAME: &str = "\
 mechanism RodAndWall;
@@ -102,11 +110,27 @@ pub fn page() -> String {
         let Some(explanation) = explanation(*code) else { continue };
         out.push_str(explanation.text);
         out.push('\n');
-        for (what, example) in [("wrong", explanation.wrong), ("right", explanation.right)] {
-            if let Some(example) = example {
-                out.push_str(&format!("\n```text\n// {what}\n{}\n```\n", example.trim_end()));
-            }
+        for (what, example) in explanation.examples() {
+            out.push_str(&format!("\n```text\n// {what}\n{}\n```\n", example.trim_end()));
         }
     }
     out
+}
+
+/// What the page says of one code, for a terminal; `None`: there is no such code.
+pub fn page_of(code: &str) -> Option<String> {
+    let (code, title) = ALL.iter().find(|(known, _)| known.0 == code)?;
+    let mut out = format!("{code}: {title}\n");
+    let Some(explanation) = explanation(*code) else { return Some(out) };
+    out.push_str(&format!("\n{}\n", explanation.text));
+    for (what, example) in explanation.examples() {
+        let lines = example.trim_end().lines().map(|line| format!("    {line}").trim_end().to_owned() + "\n");
+        out.push_str(&format!("\n{what}:\n\n{}", lines.collect::<String>()));
+    }
+    let is_whole = |(_, example): (&str, &str)| whole(example) == example;
+    if explanation.examples().any(|example| !is_whole(example)) {
+        let lines: String = FRAME.lines().map(|line| format!("    {line}\n")).collect();
+        out.push_str(&format!("\nSections stand in the place of those of this model:\n\n{lines}"));
+    }
+    Some(out)
 }

@@ -41,7 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let e = 0.8;
 
     println!(
-        "Two sleds collide: S. Djerassi, Three-dimensional, one-point collision with friction, section 5"
+        "Two sleds, each sliding on a plane of its own, collide at one point, with friction. The tables show what Hodograph computes\n\
+         from the model file beside what the paper prints (S. Djerassi, Three-dimensional, one-point collision with friction, section 5):\n\
+         the contact, its course for two coefficients of friction, then the outcomes for three, under three laws of restitution.\n"
     );
     println!("n = A.y, t along the slip of approach, s = t x n (the sign of this example in the paper)\n");
 

@@ -25,17 +25,17 @@ pub struct Arguments {
 ///
 /// [`Stop::Said`] if a model has an error.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let (mut models, mut wrong) = (0, 0);
+    let (mut models, mut wrong, mut report) = (0, 0, output::Report::default());
     for entry in collect(&arguments.models)? {
         let found = check(&entry.source);
         models += 1;
         wrong += usize::from(found.has_errors());
-        output::text(&render(&found.diagnostics, &entry.source))?;
+        report.text(&render(&found.diagnostics, &entry.source))?;
         if let Some(message) = found.mechanism.and_then(|mechanism| entry.misnamed(&mechanism.name)) {
-            output::line(&format!("{message}: `mechanism!` names its module after the file"))?;
+            report.text(&format!("{message}: `mechanism!` names its module after the file\n"))?;
         }
     }
     let model = if models == 1 { "model" } else { "models" };
-    eprintln!("{models} {model} checked, {wrong} with errors");
+    output::say(format_args!("{models} {model} checked, {wrong} with errors"));
     if wrong == 0 { Ok(()) } else { Err(Stop::Said) }
 }

@@ -39,7 +39,7 @@ pub struct Arguments {
 ///
 /// [`Stop::Said`] if a model has an error, cannot be derived or (`--check`) is stale.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let mut all_well = true;
+    let (mut all_well, mut report) = (true, output::Report::default());
     let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
     for entry in collect(&arguments.models)? {
         let done = model::checked(entry.source.clone()).and_then(|model| {
@@ -52,13 +52,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
                     path.display()
                 )));
             }
-            one(arguments, &entry, &model, path)
+            one(arguments, &entry, &model, path, &mut report)
         });
         match done {
             Ok(well) => all_well &= well,
             Err(Stop::Said) => all_well = false,
             Err(Stop::Fault(message)) => {
-                eprintln!("error: {message}");
+                output::say(format_args!("error: {message}"));
                 all_well = false;
             }
             Err(other) => return Err(other),
@@ -68,7 +68,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 /// Derives or checks one model; false if it is stale.
-fn one(arguments: &Arguments, entry: &Entry, model: &Model, path: PathBuf) -> Outcome<bool> {
+fn one(
+    arguments: &Arguments,
+    entry: &Entry,
+    model: &Model,
+    path: PathBuf,
+    report: &mut output::Report,
+) -> Outcome<bool> {
     let found = derivation::find(&path, model);
     if arguments.check || arguments.verify {
         let fault = match found.fault() {
@@ -78,16 +84,16 @@ fn one(arguments: &Arguments, entry: &Entry, model: &Model, path: PathBuf) -> Ou
         let Some(fault) = fault else { return Ok(true) };
         let (path, model) = (path.display(), entry.path.display());
         let force = if matches!(found, Found::Fresh(_)) { " --force" } else { "" };
-        output::line(&format!("{path} {fault}; run `hodograph derive{force} {model}`"))?;
+        report.text(&format!("{path} {fault}; run `hodograph derive{force} {model}`\n"))?;
         return Ok(false);
     }
     if matches!(found, Found::Fresh(_)) && !arguments.force {
-        eprintln!("{} is fresh", path.display());
+        output::say(format_args!("{} is fresh", path.display()));
         return Ok(true);
     }
     let (_, text) = derivation::derive(model, &arguments.limits)?;
     derivation::write(&path, &text)?;
-    eprintln!("{} written", path.display());
+    output::say(format_args!("{} written", path.display()));
     Ok(true)
 }
 

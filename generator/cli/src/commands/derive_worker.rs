@@ -1,21 +1,15 @@
-//! The process that uses the algebra engine. Its standard output belongs to the engine.
-
-use std::path::PathBuf;
+//! The process that uses the algebra engine. Its standard output belongs to the engine, up to the answer.
 
 use crate::stop::Outcome;
 
 /// Derive one model in a process of its own (used by the other commands)
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// a file with the text of the model
-    input: PathBuf,
-    /// where to write the derivation
-    output: PathBuf,
-    /// what to call the model in messages
+    /// what to call the model in messages; its text comes from standard input
     name: String,
-    /// where to write what each pass did
+    /// answer with what each pass did, instead of the derivation
     #[arg(long)]
-    trace: Option<PathBuf>,
+    trace: bool,
 }
 
 /// Runs the command.
@@ -26,6 +20,8 @@ pub struct Arguments {
 #[cfg(feature = "derive")]
 pub fn run(arguments: &Arguments) -> Outcome {
     use crate::commands::explain::row;
+    use crate::derivation::ANSWER;
+    use crate::output;
     use crate::stop::Stop;
     use hodograph_generator::DerivationError;
     use hodograph_generator::artifact;
@@ -35,24 +31,23 @@ pub fn run(arguments: &Arguments) -> Outcome {
     use hodograph_generator::source::Source;
 
     end_with_parent();
-    let text = std::fs::read_to_string(&arguments.input)
-        .map_err(|error| Stop::unreadable(&arguments.input, &error))?;
+    let text = std::io::read_to_string(std::io::stdin().lock())
+        .map_err(|error| Stop::Fault(format!("cannot read the model: {error}")))?;
     let source = Source::file(arguments.name.clone(), text);
     let mechanism = check(&source).mechanism.ok_or(Stop::Said)?;
     let derived = hodograph_generator::derive(&mechanism).map_err(|error| match error {
         DerivationError::Model(error) => {
-            eprint!("{}", render(&[error.diagnostic()], &source));
+            output::say(render(&[error.diagnostic()], &source).trim_end());
             Stop::Said
         }
         DerivationError::Session(error) => Stop::Fault(error.to_string()),
     })?;
-    if let Some(path) = &arguments.trace {
-        let steps = cost::trace(&derived);
-        let text: String = steps.iter().map(|step| format!("{}\t{}\n", step.pass, row(&step.cost))).collect();
-        std::fs::write(path, text).map_err(|error| Stop::unwritable(path, &error))?;
-    }
-    let text = artifact::encode(&Program::new(&derived), &artifact::model_hash(&source));
-    std::fs::write(&arguments.output, text).map_err(|error| Stop::unwritable(&arguments.output, &error))
+    let answer: String = if arguments.trace {
+        cost::trace(&derived).iter().map(|step| format!("{}\t{}\n", step.pass, row(&step.cost))).collect()
+    } else {
+        artifact::encode(&Program::new(&derived), &artifact::model_hash(&source))
+    };
+    output::text(&format!("{ANSWER}{answer}"))
 }
 
 /// Nobody waits for the result of a process whose parent is gone, but others wait for the engine.
@@ -78,10 +73,6 @@ fn end_with_parent() {}
 /// Always.
 #[cfg(not(feature = "derive"))]
 pub fn run(arguments: &Arguments) -> Outcome {
-    let Arguments { input, output, name, .. } = arguments;
-    Err(crate::stop::Stop::Fault(format!(
-        "built without the feature `derive`: cannot derive {name} from {} to {}",
-        input.display(),
-        output.display()
-    )))
+    let name = &arguments.name;
+    Err(crate::stop::Stop::Fault(format!("built without the feature `derive`: cannot derive {name}")))
 }

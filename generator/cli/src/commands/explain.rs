@@ -1,9 +1,10 @@
 //! `hodograph explain`: the equations of a model, to be read.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use hodograph_generator::explain::{Format, explain, usual};
+use hodograph_generator::explanations;
 use hodograph_generator::program::Quantity;
 use hodograph_generator::program::cost::{Cost, Count};
 
@@ -15,9 +16,11 @@ use crate::spelling;
 use crate::stop::{Outcome, Stop};
 
 /// Write the equations of a model: mass matrix, forcing, contacts, with intermediate symbols z1, z2 .. as in the paper
+///
+/// `hodograph explain E062` says what a mistake of that code is, with a wrong and a right example.
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
-    /// the model file
+    /// the model file, or the code of an error or warning
     model: PathBuf,
     /// how to write them
     #[arg(long, value_enum, default_value_t = Style::Text)]
@@ -51,6 +54,9 @@ enum Style {
 ///
 /// The model has errors, cannot be derived, or has no such quantity.
 pub fn run(arguments: &Arguments) -> Outcome {
+    if let Some(page) = code(&arguments.model)? {
+        return output::text(&page);
+    }
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let program = &machine.program;
     let known: Vec<String> = program.outputs.iter().map(|output| output.quantity.to_string()).collect();
@@ -80,7 +86,22 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Style::Latex => Format::Latex,
         Style::Html => Format::Html,
     };
-    output::text(&explain(&machine.mechanism, program, &quantities, format))
+    let Machine { mechanism, program } = machine;
+    let doing = format!("writing the equations of {}", arguments.model.display());
+    output::text(&arguments.limits.bound(&doing, move || explain(&mechanism, &program, &quantities, format))?)
+}
+
+/// The page of a code such as `E062`, if that is what is named and no file.
+fn code(path: &Path) -> Outcome<Option<String>> {
+    let Some(name) = path.to_str().filter(|_| !path.exists()).map(str::to_uppercase) else { return Ok(None) };
+    let digits = name.strip_prefix(['E', 'W']).filter(|rest| rest.len() == 3);
+    if digits.is_none_or(|rest| !rest.bytes().all(|digit| digit.is_ascii_digit())) {
+        return Ok(None);
+    }
+    match explanations::page_of(&name) {
+        Some(page) => Ok(Some(page)),
+        None => Err(Stop::Call(format!("there is no code {name}: docs/errors.md lists all"))),
+    }
 }
 
 /// Operations at construction, then per evaluation: multiplications, additions, divisions, sines and cosines, others, all.

@@ -66,18 +66,20 @@ pub fn run(arguments: &Arguments) -> Outcome {
     match import(&source, &name, &options) {
         Ok(imported) => {
             for note in imported.notes {
-                eprintln!("note: {note}");
+                output::say(format_args!("note: {note}"));
             }
             output::text(&imported.model)?;
             // What the model language refuses (a body that turns without inertia, say) is better said now than later.
             let source = Source::file("the imported model", imported.model);
             let found = check(&source);
-            eprint!("{}", render(&found.diagnostics, &source));
+            if !found.diagnostics.is_empty() {
+                output::say(render(&found.diagnostics, &source).trim_end());
+            }
             if found.has_errors() { Err(Stop::Said) } else { Ok(()) }
         }
         Err(problems) => {
             for problem in problems {
-                eprintln!("error: {problem}");
+                output::say(format_args!("error: {problem}"));
             }
             Err(Stop::Said)
         }

@@ -71,7 +71,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let traces: Vec<Trace> =
         arguments.mu.iter().map(|&mu| trace(&matrix, velocity, mu, arguments.e)).collect();
     for failure in traces.iter().flat_map(|trace| &trace.failures) {
-        eprintln!("note: {failure}");
+        output::say(format_args!("note: {failure}"));
     }
     if traces.iter().all(|trace| trace.moments.is_empty()) {
         return Err(Stop::Fault("there is nothing to draw: no collision has an outcome".to_owned()));

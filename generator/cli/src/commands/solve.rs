@@ -112,8 +112,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     arguments.check()?;
     let mut input = io::stdin().lock();
     if io::stdin().is_terminal() {
-        eprintln!(
-            "reading collisions from the terminal, one JSON object per line; `hodograph solve --help` shows one"
+        output::say(
+            "reading collisions from the terminal, one JSON object per line; `hodograph solve --help` shows one",
         );
     }
     let (mut all_solved, mut line) = (true, Vec::new());
@@ -128,12 +128,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 "the line is longer than {LONGEST_LINE} bytes: give one collision per line"
             )))
         };
-        match answer {
-            Ok(answer) => output::json(&answer)?,
-            Err(failure) => {
-                all_solved = false;
-                output::line(&failure.to_line())?;
-            }
+        all_solved &= answer.is_ok();
+        let written = match answer {
+            Ok(answer) => output::json(&answer),
+            Err(failure) => output::line(&failure.to_line()),
+        };
+        match written {
+            // There may be no end of lines: nothing more is read.
+            Err(Stop::ReaderGone) => break,
+            other => other?,
         }
     }
     if all_solved { Ok(()) } else { Err(Stop::Said) }

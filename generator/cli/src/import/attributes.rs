@@ -2,6 +2,8 @@
 
 use roxmltree::{Attribute, Node};
 
+use super::lines::Lines;
+
 /// Types of joints that URDF knows.
 const TYPES: [&str; 6] = ["fixed", "revolute", "continuous", "prismatic", "planar", "floating"];
 
@@ -11,28 +13,28 @@ const MOMENTS: [&str; 6] = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
 /// Collects faults with their places.
 pub struct Checker<'a> {
     file: &'a str,
+    lines: &'a Lines<'a>,
     /// one sentence each
     pub problems: Vec<String>,
 }
 
 impl<'a> Checker<'a> {
     /// Nothing is wrong so far.
-    pub fn new(file: &'a str) -> Self {
-        Checker { file, problems: Vec::new() }
+    pub fn new(file: &'a str, lines: &'a Lines<'a>) -> Self {
+        Checker { file, lines, problems: Vec::new() }
     }
 
-    fn problem(&mut self, node: Node, offset: usize, message: &str) {
-        let at = node.document().text_pos_at(offset);
-        self.problems.push(format!("{}:{}:{}: {message}", self.file, at.row, at.col));
+    fn problem(&mut self, offset: usize, message: &str) {
+        self.problems.push(format!("{}:{}: {message}", self.file, self.lines.place(offset)));
     }
 
     fn at_start(&mut self, node: Node, message: &str) {
-        self.problem(node, node.range().start, message);
+        self.problem(node.range().start, message);
     }
 
     fn at_value(&mut self, node: Node, attribute: Attribute, message: &str) {
         let shown = format!("`{}=\"{}\"` of {}", attribute.name(), attribute.value(), titled(node));
-        self.problem(node, attribute.range().start, &format!("{shown}: {message}"));
+        self.problem(attribute.range().start, &format!("{shown}: {message}"));
     }
 
     /// A `<link>`: its name and its `<inertial>`.

@@ -2,9 +2,11 @@
 
 use std::collections::{BTreeMap, HashMap};
 
+use quick_xml::events::Event;
 use roxmltree::{Document, Node};
 
 use super::attributes::{Checker, is};
+use super::lines::Lines;
 
 /// A robot description with the places of its elements.
 pub struct Robot {
@@ -43,14 +45,13 @@ impl Robot {
 ///
 /// What is wrong with the XML, or with it as a robot description.
 pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, Vec<String>> {
+    let lines = Lines::of(source);
+    few_attributes(source, file, &lines)?;
     let xml = Document::parse(source).map_err(|error| {
         let at = error.pos();
         vec![format!("{file}:{}:{}: this is no XML: {error}", at.row, at.col)]
     })?;
-    let at = |node: Node| {
-        let position = xml.text_pos_at(node.range().start);
-        format!("{file}:{}:{}", position.row, position.col)
-    };
+    let at = |node: Node| format!("{file}:{}", lines.place(node.range().start));
     let root = xml.root_element();
     if root.tag_name().name() != "robot" {
         let found = root.tag_name().name();
@@ -63,7 +64,7 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
             at(node)
         )]);
     }
-    let mut checker = Checker::new(file);
+    let mut checker = Checker::new(file, &lines);
     let mut places = HashMap::new();
     let (mut links, mut joints) = (0, 0);
     let mut ignored: BTreeMap<String, (usize, String)> = BTreeMap::new();
@@ -114,6 +115,30 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
         return Err(vec![format!("{file}: some links or joints could not be read")]);
     }
     Ok(Robot { file: file.to_owned(), robot, places })
+}
+
+/// An element has at most so many attributes: the robot description has none with ten, and to compare each with each takes time.
+const MOST_ATTRIBUTES: usize = 1000;
+
+/// Refuses elements with very many attributes. What is no XML is left to who reads it.
+fn few_attributes(source: &str, file: &str, lines: &Lines<'_>) -> Result<(), Vec<String>> {
+    let mut reader = quick_xml::Reader::from_str(source);
+    loop {
+        let at = reader.buffer_position();
+        match reader.read_event() {
+            Ok(Event::Start(element) | Event::Empty(element)) => {
+                let attributes = element.attributes().with_checks(false).take(MOST_ATTRIBUTES + 1).count();
+                if attributes > MOST_ATTRIBUTES {
+                    let place = lines.place(usize::try_from(at).unwrap_or(0));
+                    return Err(vec![format!(
+                        "{file}:{place}: this element has more than {MOST_ATTRIBUTES} attributes: this is no URDF"
+                    )]);
+                }
+            }
+            Ok(Event::Eof) | Err(_) => return Ok(()),
+            Ok(_) => {}
+        }
+    }
 }
 
 /// A message of another library on one line.

@@ -10,6 +10,7 @@
 
 mod attributes;
 mod document;
+mod lines;
 mod lump;
 mod names;
 mod text;

@@ -1,7 +1,7 @@
 //! The lock file: one for all processes of a user, whatever their environment says of home and temporary directories.
 
 use std::fs::{DirBuilder, File, OpenOptions, TryLockError};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::Duration;
@@ -44,10 +44,28 @@ fn open(path: &Path) -> io::Result<File> {
         #[cfg(unix)]
         std::os::unix::fs::DirBuilderExt::mode(&mut builder, 0o700);
         builder.recursive(true).create(folder)?;
+        belongs_to_user(folder)?;
     }
     // a lock needs no more than the right to read, which is what is left of a file on a medium that is read-only
     let written = OpenOptions::new().create(true).append(true).open(path);
     written.or_else(|error| File::open(path).map_err(|_| error))
+}
+
+/// Whoever made the folder could lead the file in it elsewhere.
+#[cfg(unix)]
+fn belongs_to_user(folder: &Path) -> io::Result<()> {
+    use std::os::unix::fs::MetadataExt;
+    let data = std::fs::symlink_metadata(folder)?;
+    if data.is_dir() && data.uid() == rustix::process::geteuid().as_raw() {
+        return Ok(());
+    }
+    let why = format!("{} is not a folder of this user", folder.display());
+    Err(io::Error::new(io::ErrorKind::PermissionDenied, why))
+}
+
+#[cfg(not(unix))]
+fn belongs_to_user(_folder: &Path) -> io::Result<()> {
+    Ok(())
 }
 
 fn wait(file: &File, path: &Path, said: &mut bool) -> io::Result<()> {
@@ -60,7 +78,9 @@ fn wait(file: &File, path: &Path, said: &mut bool) -> io::Result<()> {
     }
     if !*said {
         *said = true;
-        eprintln!(
+        // Whether anybody reads it does not matter.
+        let _ = writeln!(
+            io::stderr().lock(),
             "hodograph: waiting for another derivation to end: one at a time may use the algebra engine (lock {})",
             path.display()
         );
