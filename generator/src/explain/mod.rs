@@ -170,8 +170,10 @@ impl Section {
     /// Where the equations form a matrix that is worth showing: for each place the term that stands there, or else the equation
     /// that is to be written below; and the equations to be written.
     fn laid_out(&self) -> (Vec<Vec<Place<'_>>>, Vec<&Equation>) {
+        let many = self.matrix.first().is_some_and(|row| row.len() > MANY_COLUMNS);
+        let short = if many { SHORTEST } else { SHORT };
         let is_short =
-            |equation: &Equation| collect::size(&equation.right) <= SHORT && is_flat(&equation.right);
+            |equation: &Equation| collect::size(&equation.right) <= short && is_flat(&equation.right);
         let vector = self.matrix.iter().all(|row| row.len() == 1);
         if self.matrix.is_empty() || (vector && !self.equations.iter().all(is_short)) {
             return (Vec::new(), self.equations.iter().collect());
