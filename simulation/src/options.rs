@@ -16,8 +16,6 @@ pub enum Together {
     /// One after the other, the fastest approach first, until nothing approaches.
     #[default]
     Sequential,
-    /// All at once: the contacts deform in the ratio of their stiffnesses (Liu, Zhao and Brogliato 2008).
-    Lzb,
     /// The simulation ends with an error.
     Stop,
 }
@@ -39,8 +37,6 @@ pub struct Options {
     pub drive: Drive,
     /// what happens where several contacts are struck together
     pub together: Together,
-    /// stiffness of each contact relative to the others, for [`Together::Lzb`]; 1 where the list ends
-    pub stiffness: Vec<f64>,
     /// whether all orders of up to four contacts struck together are compared
     pub compare_orders: bool,
     /// functions whose zeros are events
@@ -57,7 +53,6 @@ impl Default for Options {
             surface: None,
             drive: Drive::Held,
             together: Together::Sequential,
-            stiffness: Vec::new(),
             compare_orders: true,
             events: Vec::new(),
         }

@@ -1,10 +1,11 @@
 //! Impacts: of one contact, or of several that are struck together.
 
-use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface};
+use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface, impact_without_collision};
+use nalgebra::{Vector2, Vector3};
 
 use crate::motion::Failure;
 use crate::simulation::{Leaving, Phase, Simulation};
-use crate::support::Support;
+use crate::support::{Support, free_acceleration};
 use crate::{EventKind, Reason, SimulationError, Struck, Together};
 
 /// Touching contacts approach where their normal velocity, relative to the first approach, is below minus this.
@@ -222,7 +223,7 @@ impl Simulation<'_> {
         let inputs = self.motion(&[]).inputs(self.t, &y).map_err(|failure| self.failure(failure))?;
         let state = State { time: self.t, coordinates: &y[..n], speeds, inputs: &inputs };
         let fault = |error| self.failure(Failure::State(error));
-        let beta = self.mechanism.free_acceleration(contact, &state).map_err(fault)?.x;
+        let beta = free_acceleration(self.mechanism, contact, &state).map_err(fault)?.x;
         let others: Vec<_> = self.closed().into_iter().filter(|closed| closed.contact != contact).collect();
         if others.is_empty() {
             return Ok(beta);
@@ -261,10 +262,65 @@ impl Simulation<'_> {
         Ok(Some(spread))
     }
 
-    /// A sliding contact that no finite force holds.
+    /// A sliding contact that no finite force holds suffers an impact with zero speed of approach; all that touch answer.
     pub(crate) fn impact_without_collision(&mut self, contact: usize) -> Result<(), SimulationError> {
-        let failure = hodograph::ContactError::Jam { free_acceleration: 0.0 };
-        Err(self.error(Some(contact), Reason::Contact(failure)))
+        let was = self.phases.clone();
+        self.crowd.0 += 1;
+        if self.crowd.0 > MOST {
+            return Err(self.error(Some(contact), Reason::EventsWithoutEnd(MOST)));
+        }
+        let touching = self.touching(Some(contact))?;
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let before = self.y[n..n + p].to_vec();
+        let (outcome, after) = self.without_collision(contact, &before)?;
+        self.resting = false;
+        self.y[n..n + p].copy_from_slice(&after);
+        self.energy.impacts += outcome.energy_change;
+        let struck = Struck { outcome, speeds_before: before, last_bounce: false, spread: None };
+        self.push(Some(contact), EventKind::ImpactWithoutCollision(Box::new(struck)));
+        match self.approaching(&touching, &after, Some(1.0))?.first() {
+            Some(&(other, _)) => self.strike(other),
+            None => self.part_or_stay(&touching, &after, &was),
+        }
+    }
+
+    /// The outcome along n, t, s with t along the slip, and the speeds after.
+    fn without_collision(
+        &self,
+        contact: usize,
+        speeds: &[f64],
+    ) -> Result<(CollisionOutcome<f64>, Vec<f64>), SimulationError> {
+        let n = self.mechanism.count(Kind::Coordinate);
+        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let Some(surface) = self.surfaces[contact] else {
+            return Err(self.error(Some(contact), Reason::Option("the contact has no surface".to_owned())));
+        };
+        let fault = |error| self.failure(Failure::State(error));
+        let here = self.mechanism.contact_state(contact, &state).map_err(fault)?;
+        let speed = here.velocity.y.hypot(here.velocity.z);
+        let (cos, sin) = (here.velocity.y / speed, here.velocity.z / speed);
+        let reduced = here.reduced.turned(cos, sin);
+        let impact = impact_without_collision(&reduced, &Vector2::new(speed, 0.0), &surface)
+            .map_err(|error| self.error(Some(contact), Reason::Collision(error.into())))?;
+        let (i, j) = (impact.impulse.y, impact.impulse.z);
+        let impulse = [impact.impulse.x, i * cos - j * sin, i * sin + j * cos];
+        let mut response = vec![0.0; 3 * speeds.len()];
+        self.mechanism.response(contact, &state, &mut response).map_err(fault)?;
+        let mut after = speeds.to_vec();
+        for (speed, row) in after.iter_mut().zip(response.chunks_exact(3)) {
+            *speed += row.iter().zip(&impulse).map(|(response, impulse)| response * impulse).sum::<f64>();
+        }
+        let outcome = CollisionOutcome {
+            normal: here.normal,
+            tangent: here.first * cos + here.second * sin,
+            binormal: here.second * cos - here.first * sin,
+            approach: Vector3::new(0.0, speed, 0.0),
+            reduced,
+            impulse_on_point: here.normal * impulse[0] + here.first * impulse[1] + here.second * impulse[2],
+            energy_change: impact.contact_work,
+            impact,
+        };
+        Ok((outcome, after))
     }
 
     /// Contacts at the start.

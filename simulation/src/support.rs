@@ -41,7 +41,7 @@ impl Support {
             response.view_mut((0, 3 * i), (p, 3)).copy_from(&DMatrix::from_row_slice(p, 3, &numbers));
             velocity.rows_mut(3 * i, 3).copy_from(&mechanism.contact_velocity(contact, state)?);
             if accelerate {
-                beta.rows_mut(3 * i, 3).copy_from(&mechanism.free_acceleration(contact, state)?);
+                beta.rows_mut(3 * i, 3).copy_from(&free_acceleration(mechanism, contact, state)?);
             }
         }
         let mut coupled = &partials * &response;
@@ -102,6 +102,38 @@ impl Support {
         change
     }
 }
+
+/// beta of a contact. Of a mechanism that does not give it, it is the derivative of the contact's velocity along the motion by differences of order
+/// six, good to some twelve digits.
+pub(crate) fn free_acceleration(
+    mechanism: &dyn Contacts<f64>,
+    contact: usize,
+    state: &State<'_>,
+) -> Result<Vector3<f64>, StateError> {
+    match mechanism.free_acceleration(contact, state) {
+        Err(StateError::Undefined { .. }) => {}
+        answer => return answer,
+    }
+    let (mut q_rates, mut u_rates) = (vec![0.0; state.coordinates.len()], vec![0.0; state.speeds.len()]);
+    mechanism.coordinate_rates(state, &mut q_rates)?;
+    mechanism.accelerations(state, &mut u_rates)?;
+    let moved = |numbers: &[f64], rates: &[f64], s: f64| -> Vec<f64> {
+        numbers.iter().zip(rates).map(|(number, rate)| number + s * rate).collect()
+    };
+    let mut beta = Vector3::zeros();
+    for (steps, weight) in [(1.0, 45.0), (2.0, -9.0), (3.0, 1.0)] {
+        for side in [1.0, -1.0] {
+            let s = side * steps * DIFFERENCE;
+            let (q, u) = (moved(state.coordinates, &q_rates, s), moved(state.speeds, &u_rates, s));
+            let there = State { time: state.time + s, coordinates: &q, speeds: &u, inputs: state.inputs };
+            beta += mechanism.contact_velocity(contact, &there)? * (side * weight / (60.0 * DIFFERENCE));
+        }
+    }
+    Ok(beta)
+}
+
+/// Step of the differences, s.
+const DIFFERENCE: f64 = 1e-3;
 
 /// Below this ratio to the greatest one a singular value counts as zero.
 const SINGULAR: f64 = 1e-10;

@@ -1,0 +1,135 @@
+//! Expressions of time, in the words of the model language.
+
+use std::sync::Arc;
+
+use hodograph_generator::syntax::tree::{Expr, ExprKind};
+use hodograph_generator::syntax::{lexer, parse};
+
+/// Longest expression, in characters.
+const MOST: usize = 4096;
+
+/// A step of the calculation.
+#[derive(Clone, Debug)]
+enum Node {
+    Number(f64),
+    Time,
+    Sum(Vec<(bool, Node)>),
+    Product(Vec<(bool, Node)>),
+    Power(Box<Node>, Box<Node>),
+    Neg(Box<Node>),
+    Call(fn(f64) -> f64, Box<Node>),
+    Call2(fn(f64, f64) -> f64, Box<Node>, Box<Node>),
+}
+
+/// A function of the time `t`.
+///
+/// # Errors
+///
+/// What cannot be read, in a sentence.
+pub fn read(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String> {
+    if text.len() > MOST {
+        return Err(format!("the expression is longer than {MOST} characters"));
+    }
+    if let Some(strange) = text.chars().find(|&c| matches!(c, ';' | '{' | '}' | '=')) {
+        return Err(format!("`{strange}` cannot stand in an expression of the time t"));
+    }
+    let model = format!("mechanism Input;\ndefinitions {{ x = {text}; }}\n");
+    let (tree, mistakes) = parse(&lexer::tokens(&model, usize::MAX));
+    if let Some(mistake) = mistakes.first() {
+        return Err(format!("it cannot be read: {}", mistake.message));
+    }
+    let [definition] = &tree.definitions[..] else {
+        return Err("give one expression of the time t, as in 2*sin(3*t)".to_owned());
+    };
+    let node = node(&definition.value)?;
+    Ok(Arc::new(move |t| value(&node, t)))
+}
+
+fn node(expression: &Expr) -> Result<Node, String> {
+    let many = |terms: &[(bool, Expr)]| {
+        terms.iter().map(|(inverse, term)| Ok((*inverse, node(term)?))).collect::<Result<Vec<_>, String>>()
+    };
+    Ok(match &expression.kind {
+        ExprKind::Number(text) => Node::Number(text.parse().map_err(|_| format!("`{text}` is no number"))?),
+        ExprKind::Name(name) if name == "t" => Node::Time,
+        ExprKind::Name(name) if name == "pi" => Node::Number(std::f64::consts::PI),
+        ExprKind::Name(name) => {
+            return Err(format!("`{name}` is unknown: an input is an expression of the time t alone"));
+        }
+        ExprKind::Sum(terms) => Node::Sum(many(terms)?),
+        ExprKind::Product(terms) => Node::Product(many(terms)?),
+        ExprKind::Power(base, exponent) => Node::Power(Box::new(node(base)?), Box::new(node(exponent)?)),
+        ExprKind::Neg(inner) => Node::Neg(Box::new(node(inner)?)),
+        ExprKind::Call(name, arguments) => call(&name.text, arguments)?,
+        _ => return Err("only numbers, t, pi, + - * / ^ and functions can stand in it".to_owned()),
+    })
+}
+
+fn call(name: &str, arguments: &[Expr]) -> Result<Node, String> {
+    let one: Option<fn(f64) -> f64> = match name {
+        "sin" => Some(f64::sin),
+        "cos" => Some(f64::cos),
+        "tan" => Some(f64::tan),
+        "asin" => Some(f64::asin),
+        "acos" => Some(f64::acos),
+        "atan" => Some(f64::atan),
+        "sinh" => Some(f64::sinh),
+        "cosh" => Some(f64::cosh),
+        "tanh" => Some(f64::tanh),
+        "exp" => Some(f64::exp),
+        "log" | "ln" => Some(f64::ln),
+        "sqrt" => Some(f64::sqrt),
+        "abs" => Some(f64::abs),
+        _ => None,
+    };
+    let two: Option<fn(f64, f64) -> f64> = match name {
+        "min" => Some(f64::min),
+        "max" => Some(f64::max),
+        "atan2" => Some(f64::atan2),
+        _ => None,
+    };
+    match (one, two, arguments) {
+        (Some(function), _, [argument]) => Ok(Node::Call(function, Box::new(node(argument)?))),
+        (_, Some(function), [a, b]) => Ok(Node::Call2(function, Box::new(node(a)?), Box::new(node(b)?))),
+        (None, None, _) => Err(format!("there is no function `{name}`")),
+        _ => Err(format!("`{name}` does not take {} arguments", arguments.len())),
+    }
+}
+
+fn value(node: &Node, t: f64) -> f64 {
+    match node {
+        Node::Number(number) => *number,
+        Node::Time => t,
+        Node::Sum(terms) => terms
+            .iter()
+            .fold(0.0, |sum, (minus, term)| if *minus { sum - value(term, t) } else { sum + value(term, t) }),
+        Node::Product(factors) => factors.iter().fold(1.0, |product, (divide, factor)| {
+            if *divide { product / value(factor, t) } else { product * value(factor, t) }
+        }),
+        Node::Power(base, exponent) => value(base, t).powf(value(exponent, t)),
+        Node::Neg(inner) => -value(inner, t),
+        Node::Call(function, argument) => function(value(argument, t)),
+        Node::Call2(function, a, b) => function(value(a, t), value(b, t)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::read;
+
+    #[test]
+    fn expressions_of_time_are_read() {
+        for (text, t, expected) in [
+            ("2*sin(3*t) - 1", 0.5, 2.0 * 1.5_f64.sin() - 1.0),
+            (" -t^2/4 + pi ", 3.0, std::f64::consts::PI - 2.25),
+            ("max(0, min(1, t))", 0.25, 0.25),
+            ("5", 1.0, 5.0),
+        ] {
+            let found = read(text).unwrap()(t);
+            assert!((found - expected).abs() < 1e-15, "{text}: {found}");
+        }
+        for text in ["", "2*", "q1", "sin(t, t)", "foo(t)", "1; y = 2", "t }"] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,191 @@
+//! The lines that `simulate` writes.
+
+use hodograph::{Kind as Of, Mechanism, Selection, State};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::{Event, EventKind, Struck};
+use serde::Serialize;
+
+use crate::evaluate::report::{Named, named};
+use crate::json::answer::Answer;
+use crate::output;
+use crate::stop::Outcome;
+
+/// How lines are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// a JSON object per line
+    Json,
+    /// comma-separated values: t, event, contact, coordinates, speeds
+    Csv,
+}
+
+#[derive(Serialize)]
+struct Sample<'a> {
+    t: f64,
+    q: Named<'a, f64>,
+    u: Named<'a, f64>,
+}
+
+/// An event; what does not belong to it is left out.
+#[derive(Serialize)]
+struct Line<'a> {
+    t: f64,
+    event: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<&'a str>,
+    #[serde(flatten)]
+    answer: Option<Answer>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    u_after: Option<Named<'a, f64>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kinetic_energy_change: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    last_bounce: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    spread: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mode: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    direction: Option<[f64; 2]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    several_modes: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    indeterminate: Option<bool>,
+    q: Named<'a, f64>,
+    u: Named<'a, f64>,
+}
+
+/// Writes lines.
+pub struct Lines<'m> {
+    mechanism: &'m InterpretedMechanism,
+    format: Format,
+}
+
+impl<'m> Lines<'m> {
+    /// Begins; CSV has a head.
+    ///
+    /// # Errors
+    ///
+    /// As [`output::text`].
+    pub fn new(mechanism: &'m InterpretedMechanism, format: Format) -> Outcome<Self> {
+        let lines = Lines { mechanism, format };
+        if format == Format::Csv {
+            let names = |kind| {
+                (0..mechanism.count(kind))
+                    .filter_map(move |index| mechanism.component(kind, index))
+                    .map(|component| component.name)
+            };
+            let head: Vec<&str> = ["t", "event", "contact"]
+                .into_iter()
+                .chain(names(Of::Coordinate))
+                .chain(names(Of::Speed))
+                .collect();
+            output::line(&head.join(","))?;
+        }
+        Ok(lines)
+    }
+
+    /// The state at a time.
+    ///
+    /// # Errors
+    ///
+    /// As [`output::text`].
+    pub fn sample(&self, t: f64, q: &[f64], u: &[f64]) -> Outcome {
+        match self.format {
+            Format::Json => output::json(&Sample { t, q: self.coordinates(q), u: self.speeds(u) }),
+            Format::Csv => self.row(t, "", "", q, u),
+        }
+    }
+
+    /// Something that happened.
+    ///
+    /// # Errors
+    ///
+    /// As [`output::text`].
+    pub fn event(&self, event: &Event) -> Outcome {
+        let name = |contact| self.mechanism.component(Of::Contact, contact).map(|component| component.name);
+        let contact = event.contact.and_then(name);
+        if self.format == Format::Csv {
+            return self.row(
+                event.time,
+                event.kind.name(),
+                contact.unwrap_or(""),
+                &event.coordinates,
+                &event.speeds,
+            );
+        }
+        let mut line = Line {
+            t: event.time,
+            event: event.kind.name(),
+            contact,
+            answer: None,
+            u_after: None,
+            kinetic_energy_change: None,
+            last_bounce: None,
+            spread: None,
+            mode: None,
+            direction: None,
+            several_modes: None,
+            indeterminate: None,
+            q: self.coordinates(&event.coordinates),
+            u: self.speeds(&event.speeds),
+        };
+        let mut certain = |selection: &Selection| {
+            line.several_modes = (*selection == Selection::SeveralModes).then_some(true);
+            line.indeterminate = (*selection == Selection::Indeterminate).then_some(true);
+        };
+        match &event.kind {
+            EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
+                self.struck(event, struck, &mut line)?;
+            }
+            EventKind::Contact { mode, selection } => {
+                certain(selection);
+                line.mode = Some(mode.name());
+            }
+            EventKind::Slip { direction, selection } => {
+                certain(selection);
+                line.direction = Some(*direction);
+            }
+            EventKind::LiftOff { selection } | EventKind::Stick { selection } => certain(selection),
+            _ => {}
+        }
+        output::json(&line)
+    }
+
+    /// What belongs to an impact: the fields of `collide`, and the speeds before as `u`.
+    fn struck<'a>(&'a self, event: &'a Event, struck: &'a Struck, line: &mut Line<'a>) -> Outcome {
+        let mut after = event.speeds.clone();
+        let mut dependent = vec![0.0; self.mechanism.count(Of::DependentSpeed)];
+        let state = State {
+            time: event.time,
+            coordinates: &event.coordinates,
+            speeds: &event.speeds,
+            inputs: &vec![0.0; self.mechanism.count(Of::Input)],
+        };
+        if self.mechanism.dependent_speeds(&state, &mut dependent).is_ok() {
+            after.extend(dependent);
+        }
+        line.answer = Some(Answer::try_from(&struck.outcome.impact)?);
+        line.u_after = Some(named(&self.mechanism.model().speeds, after));
+        line.kinetic_energy_change = Some(struck.outcome.energy_change + 0.0);
+        line.last_bounce = struck.last_bounce.then_some(true);
+        line.spread = struck.spread;
+        line.u = self.speeds(&struck.speeds_before);
+        Ok(())
+    }
+
+    fn coordinates(&self, q: &[f64]) -> Named<'_, f64> {
+        named(&self.mechanism.model().coordinates, q.iter().map(|value| value + 0.0))
+    }
+
+    fn speeds(&self, u: &[f64]) -> Named<'_, f64> {
+        named(&self.mechanism.model().speeds, u.iter().map(|value| value + 0.0))
+    }
+
+    fn row(&self, t: f64, event: &str, contact: &str, q: &[f64], u: &[f64]) -> Outcome {
+        let numbers = q.iter().chain(u).map(|value| (value + 0.0).to_string());
+        let cells: Vec<String> =
+            [t.to_string(), event.to_owned(), contact.to_owned()].into_iter().chain(numbers).collect();
+        output::line(&cells.join(","))
+    }
+}

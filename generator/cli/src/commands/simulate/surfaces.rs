@@ -1,0 +1,108 @@
+//! The surfaces of a motion: one for all contacts, or one for each.
+
+use hodograph::{Contacts, ImpactError, Kind as Of, State, Surface};
+
+use super::gap;
+use crate::json::{Failure, Kind};
+use crate::spelling;
+use crate::stop::{Outcome, Stop};
+use crate::surface::law;
+
+/// Surfaces as they stand on the command line.
+#[derive(Clone, Debug, clap::Args)]
+pub struct MotionSurfaces {
+    /// Coulomb's coefficient of friction, not negative
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    mu: Option<f64>,
+    /// coefficient of restitution, between 0 and 1
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    e: Option<f64>,
+    /// hypothesis of restitution: newton, poisson or stronge
+    #[arg(long, value_name = "LAW")]
+    law: Option<String>,
+    /// the surface of one contact, as `tip=0.5,0.8,stronge`; may be given several times
+    #[arg(long, value_name = "CONTACT=MU,E,LAW")]
+    surface: Vec<String>,
+}
+
+impl MotionSurfaces {
+    /// The surface of every contact that has a gap.
+    ///
+    /// # Errors
+    ///
+    /// Numbers or names that are impossible, and [`Stop::Call`] where a contact is left without a surface.
+    pub fn of(
+        &self,
+        mechanism: &dyn Contacts<f64>,
+        state: &State<'_>,
+    ) -> Outcome<Vec<(usize, Surface<f64>)>> {
+        let count = mechanism.count(Of::Contact);
+        let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
+        let law_of_all = self.law.as_deref().map(law).transpose()?;
+        let all = match (self.mu, self.e, law_of_all) {
+            (Some(mu), Some(e), Some(law)) => Some(checked(Surface { mu, e, law })?),
+            (mu, e, law) => {
+                // What is given is checked even where it is not enough.
+                let given = Surface {
+                    mu: mu.unwrap_or(0.0),
+                    e: e.unwrap_or(0.0),
+                    law: law.unwrap_or(hodograph::Law::Newton),
+                };
+                checked(given)?;
+                None
+            }
+        };
+        let mut own = vec![None; count];
+        for text in &self.surface {
+            let (contact, surface) = one(text)?;
+            let place = mechanism.index(Of::Contact, contact).ok_or_else(|| {
+                let hint = spelling::hint(contact, (0..count).map(name).collect::<Vec<_>>());
+                Failure::new(Kind::UnknownName, format!("there is no contact `{contact}`: {hint}"))
+            })?;
+            own[place] = Some(surface);
+        }
+        let mut surfaces = Vec::new();
+        for (contact, own) in own.into_iter().enumerate() {
+            if gap(mechanism, contact, state).is_none() {
+                eprintln!(
+                    "note: contact {} has no gap in the model: it is never seen to close",
+                    name(contact)
+                );
+                continue;
+            }
+            let Some(surface) = own.or(all) else {
+                let name = name(contact);
+                return Err(Stop::Call(format!(
+                    "contact {name} has no surface: give --mu, --e and --law for all contacts, or --surface {name}=MU,E,LAW"
+                )));
+            };
+            surfaces.push((contact, surface));
+        }
+        Ok(surfaces)
+    }
+}
+
+/// A surface of one contact.
+fn one(text: &str) -> Outcome<(&str, Surface<f64>)> {
+    let wrong = || Stop::Call(format!("--surface {text}: give CONTACT=MU,E,LAW, as in tip=0.5,0.8,stronge"));
+    let (contact, rest) = text.split_once('=').ok_or_else(wrong)?;
+    let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
+    let [mu, e, named] = parts[..] else { return Err(wrong()) };
+    let number = |text: &str| text.parse::<f64>().map_err(|_| wrong());
+    Ok((contact.trim(), checked(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? })?))
+}
+
+/// A surface that the solver will take.
+fn checked(surface: Surface<f64>) -> Result<Surface<f64>, Failure> {
+    let Surface { mu, e, .. } = surface;
+    let wrong = if let Some(&value) = [mu, e].iter().find(|value| !value.is_finite()) {
+        ImpactError::NotFinite { value }
+    } else if mu < 0.0 {
+        ImpactError::NegativeFriction { mu }
+    } else if !(0.0..=1.0).contains(&e) {
+        ImpactError::RestitutionOutOfRange { e }
+    } else {
+        return Ok(surface);
+    };
+    Err(wrong.into())
+}
