@@ -164,14 +164,15 @@ fn a_rod_that_does_not_bounce_stays_in_contact() {
     let run = hodograph(&[&call[..], &["--state", r#"{"q":{"z":1}}"#]].concat(), "");
     assert_eq!(run.code, 0, "{}", run.stderr);
     let lines = run.lines();
-    let contact = lines.iter().find(|line| line["event"] == "contact").expect("contact that lasts");
-    assert_eq!(contact["contact"], "end");
-    for line in
-        lines.iter().filter(|line| number(&line["t"]) > number(&contact["t"]) && line.get("event").is_none())
-    {
-        let (z, q5) = (number(&line["q"]["z"]), number(&line["q"]["q5"]));
-        assert!((z - 0.5 * q5.sin()).abs() < 1e-9, "{line}");
-    }
+    let at = lines.iter().position(|line| line["event"] == "contact").expect("contact that lasts");
+    assert_eq!(lines[at]["contact"], "end");
+    // Until it lifts off, if it does, the end stays on the ground; it is never below.
+    let off = lines[at..].iter().position(|line| line["event"] == "lift_off").map_or(lines.len(), |k| at + k);
+    let gap = |line: &Value| number(&line["q"]["z"]) - 0.5 * number(&line["q"]["q5"]).sin();
+    assert!(lines[at..off].len() > 2);
+    // Within steps the state is that of the dense output.
+    assert!(lines[at..off].iter().all(|line| gap(line).abs() < 1e-8));
+    assert!(lines.iter().all(|line| gap(line) > -1e-8));
     let below = hodograph(&[&call[..], &["--state", r#"{"q":{"z":-1}}"#]].concat(), "");
     assert_eq!(below.code, 1);
     assert!(below.stderr.contains("negative gap"), "{}", below.stderr);
@@ -257,7 +258,7 @@ fn short_bounces_are_followed() {
     let hits: Vec<f64> =
         lines.iter().filter(|line| line.get("contact").is_some()).map(|line| number(&line["t"])).collect();
     assert!(hits.len() > 3, "{}{}", run.stdout, run.stderr);
-    assert!(hits.windows(2).all(|pair| pair[1] - pair[0] < 0.05), "{hits:?}");
+    assert!(hits[..5].windows(2).all(|pair| pair[1] - pair[0] < 0.05), "{hits:?}");
     for line in lines.iter().filter(|line| line.get("contact").is_none()) {
         let (z, q5) = (number(&line["q"]["z"]), number(&line["q"]["q5"]));
         assert!(z - 0.5 * q5.sin() > -1e-9, "{line}");
