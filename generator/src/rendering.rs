@@ -8,7 +8,7 @@ use crate::diagnostics::{Diagnostic, Label, Severity, codes};
 use crate::source::Source;
 use crate::span::Span;
 
-/// So many messages are shown with their lines; the rest is counted.
+/// At most this number of messages is shown with their lines; the rest is counted.
 const MAX_SHOWN: usize = 100;
 /// Longer lines are not shown.
 const MAX_LINE: usize = 2000;

@@ -1,4 +1,4 @@
-//! The proc-macro door of Hodograph. Use it as `hodograph::mechanism!`, which says where the runtime is under whatever name.
+//! The procedural macro of Hodograph. Use it as `hodograph::mechanism!`, which says where the runtime is under whatever name.
 
 use hodograph_generator::expand::{expand, package};
 

@@ -1,4 +1,6 @@
 //! The derivative of a collision's outcome with respect to everything that it depends on.
+//!
+//! Theory: docs/theory.md, section 13.
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 

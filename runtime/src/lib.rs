@@ -1,8 +1,52 @@
-//! Impact with friction in three dimensions.
+//! Equations of motion and frictional impacts of mechanisms.
 //!
-//! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse and the velocity
-//! of separation under Coulomb's law of friction and Newton's, Poisson's or Stronge's hypothesis of restitution. The equation numbers in these
-//! pages are those of Djerassi, *Three-dimensional, one-point collision with friction* (2012).
+//! A *model file* describes a mechanism: bodies, joints, constraints, loads and contacts. [`mechanism!`] makes a Rust module of it at
+//! compile time, generic over the scalar, which allocates nothing and does not panic:
+//!
+//! ```ignore
+//! hodograph::mechanism!("models/pendulum.mech");
+//!
+//! use hodograph::{CollisionError, Law, Surface};
+//! use pendulum::{Coordinates, Pendulum, Speeds};
+//!
+//! /// The speed with which the tip leaves the wall.
+//! fn bounce(q1: f64, u1: f64) -> Result<f64, CollisionError<f64>> {
+//!     let surface = Surface { mu: 0.3, e: 0.5, law: Law::Poisson };
+//!     let hit = Pendulum::default().collide_tip_wall(&Coordinates { q1 }, &Speeds { u1 }, &surface)?;
+//!     Ok(hit.speeds.u1)
+//! }
+//! ```
+//!
+//! | to | use |
+//! | --- | --- |
+//! | make a module of a model | [`mechanism!`] |
+//! | write one integrator, controller or plot for all mechanisms | the traits [`Mechanism`] and [`Contacts`] |
+//! | solve a collision without a model | [`solve`], [`impact_without_collision`], [`structure`] |
+//! | follow a collision | [`Hodograph`], [`Phases`] |
+//! | differentiate a collision | [`derivative`], [`saltation`] |
+//! | find force and mode of a contact that lasts | [`contact_mode`], [`contact_force`] |
+//!
+//! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse and the velocity of separation in three
+//! dimensions, under Coulomb's law of friction and Newton's, Poisson's or Stronge's hypothesis of restitution:
+//!
+//! ```
+//! use hodograph::nalgebra::Vector3;
+//! use hodograph::{Law, ReducedMatrix, Surface, solve};
+//!
+//! let matrix = ReducedMatrix::new(0.25, -0.125, 0.0, 0.5, 0.0, 0.5); // 1/kg, along n, t, s
+//! let approach = Vector3::new(-1.0, 0.5, 0.0); // m/s
+//! let impact = solve(&matrix, &approach, &Surface { mu: 0.5, e: 0.5, law: Law::Poisson })?;
+//! assert!(impact.velocity.x > 0.0 && impact.contact_work < 0.0);
+//! # Ok::<(), hodograph::ImpactError<f64>>(())
+//! ```
+//!
+//! Plain equation numbers in these pages are those of Djerassi, *Three-dimensional, one-point collision with friction* (2012).
+//!
+//! # What may change
+//!
+//! [`nalgebra`] is re-exported because its types stand in signatures: use `hodograph::nalgebra` and its version always fits; a new
+//! incompatible version of it is a new incompatible version of this crate. The module `generated` is hidden: it serves code that [`mechanism!`] makes, and its
+//! contents may change in any version; generated code names the format it needs, and does not compile with a runtime of another one.
 #![no_std]
 #[cfg(feature = "std")]
 extern crate std;
@@ -53,7 +97,6 @@ pub use crate::{
     surface::Surface,
 };
 
-#[doc(hidden)]
 pub use nalgebra;
 
 #[doc(hidden)]

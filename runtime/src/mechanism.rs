@@ -92,6 +92,7 @@ pub trait Mechanism<T: Scalar = f64> {
 
     /// Rates q' of the coordinates (`n`), per second.
     fn coordinate_rates(&self, state: &State<'_, T>, rates: &mut [T]) -> Result<(), StateError>;
+    #[doc(alias = "ABA")]
     /// Rates u' of the independent speeds (`p`), per second, without contact forces.
     fn accelerations(&self, state: &State<'_, T>, accelerations: &mut [T]) -> Result<(), StateError>;
     /// Dependent speeds (`d`).
@@ -102,10 +103,12 @@ pub trait Mechanism<T: Scalar = f64> {
         state: &State<'_, T>,
         accelerations: &mut [T],
     ) -> Result<(), StateError>;
+    #[doc(alias = "CRBA")]
     /// Mass matrix M of the independent speeds (`p` x `p`).
     fn mass_matrix(&self, state: &State<'_, T>, matrix: &mut [T]) -> Result<(), StateError>;
     /// Forcing (`p`): M u' = forcing.
     fn forcing(&self, state: &State<'_, T>, forcing: &mut [T]) -> Result<(), StateError>;
+    #[doc(alias = "RNEA")]
     /// Generalized forces (`p`) that must be added to the loads for the independent speeds to have the rates `accelerations` (`p`).
     fn inverse_dynamics(
         &self,

@@ -147,7 +147,8 @@ fn fitting(m: &Matrix3<f64>, beta: &Vector3<f64>, mu: f64) -> usize {
     count
 }
 
-/// The theory's table: without slip exactly one mode fits where mu |b| < m_nn; elsewhere at least one, and rarely several.
+/// Random contacts without slip (theory, section 17.3): where mu |b| < m_nn one mode fits, but for rare contacts near that bound, of which none is drawn
+/// here; elsewhere at least one fits, and rarely several.
 #[test]
 fn one_mode_fits_where_friction_is_moderate() {
     let mut random = Random(7);

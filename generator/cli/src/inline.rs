@@ -9,7 +9,7 @@ use proc_macro2::{TokenStream, TokenTree};
 
 use crate::stop::{Outcome, Stop};
 
-/// A Rust file with models has at most so many bytes.
+/// Largest size of a Rust file with models, in bytes.
 const MAX_BYTES: usize = 16 << 20;
 
 /// What a `mechanism!` in a Rust file names.

@@ -11,7 +11,7 @@ use hodograph_generator::source::Source;
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// A state has at most so many bytes.
+/// Largest size of a state, in bytes.
 const MAX_STATE: usize = 16 << 20;
 
 /// A model without mistakes.

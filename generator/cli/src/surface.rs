@@ -4,7 +4,7 @@ use hodograph::{Law, Surface};
 
 use crate::json::{Failure, Kind};
 
-/// The names of the laws, as the JSON door spells them.
+/// The names of the laws, as the JSON interface spells them.
 pub const LAWS: [(&str, Law); 3] =
     [("newton", Law::Newton), ("poisson", Law::Poisson), ("stronge", Law::Stronge)];
 

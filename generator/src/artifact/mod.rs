@@ -36,7 +36,7 @@ pub const FORMAT: u32 = 2;
 /// What the last line begins with.
 const DIGEST: &str = "digest ";
 
-/// A file with a derivation has at most so many bytes: a thousand times what shipped models have.
+/// Largest size of a derivation, in bytes: a thousand times what shipped models have.
 pub const MAX_BYTES: usize = 128 << 20;
 
 /// A derivation as read.

@@ -1,4 +1,4 @@
-//! Vector constraints whose components depend on each other: the derivation needs axes along which those that say nothing are
+//! Vector constraints whose components depend on each other: the derivation needs axes along which the components without content are
 //! identically 0.
 
 use super::states::Seen;

@@ -9,7 +9,7 @@ use super::Emitter;
 use super::values::{Place, local};
 use crate::program::operation::{Operation, Stage, Value};
 
-/// The runtime takes so many angles at once.
+/// The largest number of angles that the runtime takes at once.
 const MOST: usize = 8;
 
 impl Emitter<'_> {

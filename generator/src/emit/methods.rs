@@ -105,7 +105,7 @@ impl Emitter<'_> {
             }
             Quantity::MassMatrix => plain(
                 "mass_matrix",
-                "Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite; the paper's -M.",
+                "Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite.",
             ),
             Quantity::Forcing => {
                 plain("forcing", "Forcing: M u' = forcing. Loads and inertia terms quadratic in the speeds.")

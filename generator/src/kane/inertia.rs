@@ -3,7 +3,7 @@
 //! The kinetic energy is a quadratic form in the velocities of mass centres and the angular velocities of bodies. Each
 //! relation of the graph (velocity = that of the base + ..) is inserted in turn, leaves first, until only the speeds are
 //! left: their coefficients are the mass matrix. On the way the form gathers masses, first moments and inertias of what
-//! moves together, which is the composite-body method, found here for any graph and not only for trees of joints.
+//! moves together, which is the composite-rigid-body algorithm (CRBA), found here for any graph and not only for trees of joints.
 
 use std::collections::BTreeMap;
 

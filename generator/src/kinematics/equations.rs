@@ -1,6 +1,6 @@
 //! Equations as forms linear in the speeds: left minus right, without what is identically 0.
 //!
-//! A vector equation may say nothing in some direction: a point of a ball that rolls on a plane has no velocity along the
+//! A vector equation may be void in some direction: a point of a ball that rolls on a plane has no velocity along the
 //! normal whatever the speeds. That shows only along axes to which the direction belongs, and after it has been turned to other
 //! axes not to the algebra; so axes are looked for along which the equation has as few components as it has independent ones.
 
@@ -16,7 +16,7 @@ use crate::program::graph::Input;
 
 /// States at which it is decided whether something is identically 0.
 const SAMPLES: u64 = 12;
-/// So many of them that have a value are enough to judge by.
+/// This number of samples with a value is enough.
 pub(crate) const ENOUGH: usize = 4;
 
 impl Kinematics<'_> {

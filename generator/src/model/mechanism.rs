@@ -104,7 +104,7 @@ pub struct Variable {
     /// a size that such a quantity commonly has, in that unit; all quantities of a unit have the same
     pub typical: f64,
     /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it appears as
-    /// its number; it is kept here so that doors can name it.
+    /// its number; it is kept here so that callers can refer to it by name.
     pub fixed: bool,
     /// `dependent` (of a coordinate or a speed)
     pub dependent: bool,

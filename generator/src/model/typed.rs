@@ -15,7 +15,7 @@ pub enum TypedValue {
     Scalar(Scalar),
     /// a vector
     Vector(Vector),
-    /// a mistake that is reported already; says nothing more
+    /// a mistake that is already reported; causes no further message
     Poison,
 }
 
@@ -104,7 +104,7 @@ pub struct Typed {
 }
 
 impl Typed {
-    /// Says nothing more.
+    /// An expression that is already reported: it causes no further message.
     pub fn poison(span: Span) -> Self {
         let traits = Traits::default();
         Typed {

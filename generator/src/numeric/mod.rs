@@ -1,5 +1,5 @@
-//! A mechanism in numbers, without algebra: the second road against which derived equations are held, and the ground of the
-//! checks that need numbers.
+//! Evaluates a mechanism numerically at one state, without algebra. It is an independent check of the derived equations, and `check` finds
+//! mistakes with it that only numbers show.
 //!
 //! Positions and orientations are evaluated with numbers that carry derivatives, velocities are their rates, accelerations
 //! the rates of velocities; rates of coordinates and dependent speeds are solved for numerically. Everything is in SI units

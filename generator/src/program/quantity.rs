@@ -10,14 +10,17 @@ pub enum Quantity {
     CoordinateRates,
     /// dependent speeds (d)
     DependentSpeeds,
+    #[doc(alias = "CRBA")]
     /// M (p x p), all entries
     MassMatrix,
     /// forcing (p): M u' = forcing
     Forcing,
+    #[doc(alias = "ABA")]
     /// u' of the independent speeds (p)
     Accelerations,
     /// u' of the dependent speeds (d)
     DependentAccelerations,
+    #[doc(alias = "RNEA")]
     /// generalized forces (p) that must be added to the loads for the given u' (inputs `Acceleration`): M u' - forcing
     InverseDynamics,
     /// derivative of the rates of the independent coordinates and of the accelerations along a direction (inputs
@@ -58,6 +61,7 @@ pub enum ContactQuantity {
     FreeAcceleration,
     /// v_t^R in the contact basis (3)
     Remainder,
+    #[doc(alias = "Delassus")]
     /// reduced matrix V M^-1 V^T in the contact basis: nn, n1, n2, 11, 12, 22 (6)
     Reduced,
     /// change of the independent speeds per unit impulse, M^-1 V^T (p x 3)

@@ -11,7 +11,7 @@ use crate::span::Span;
 
 /// Brackets, signs and exponents may be nested this deep.
 pub const MAX_DEPTH: usize = 64;
-/// After so many messages of the parser it gives up.
+/// The parser gives up after this number of messages.
 const MAX_ERRORS: usize = 200;
 
 /// Reads a model. The tree holds all that could be read.

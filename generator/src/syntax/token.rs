@@ -62,7 +62,7 @@ impl Token {
         self.kind == TokenKind::Name && self.text == word
     }
 
-    /// How a message speaks of it.
+    /// Its name in messages.
     pub fn describe(&self) -> String {
         match self.kind {
             TokenKind::Name | TokenKind::Number | TokenKind::Bad(_) => format!("`{}`", self.text),

@@ -417,7 +417,7 @@ pub mod pendulum_in_parts {
             }
             ::core::result::Result::Ok(Coordinates { q1: v4 })
         }
-        /// Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite; the paper's -M.
+        /// Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite.
         ///
         /// # Errors
         ///

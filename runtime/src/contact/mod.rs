@@ -11,8 +11,10 @@
 //! | begin to slip (no slip yet) | as slide, d along the acceleration | lambda_n >= 0, acceleration along d positive |
 //!
 //! with f = m_nn - mu b.d (31) and b = (m_nt, m_ns). [`contact_mode`] selects the mode at an event; between events [`contact_force`]
-//! keeps the mode and its margins tell when it ends. Where mu |b| < m_nn exactly one mode fits. Elsewhere several may fit, and while the contact
-//! slides no finite force may exist (Painleve): both are said, never guessed.
+//! keeps the mode and its margins tell when it ends. Where mu |b| < m_nn at least one mode fits, and well below that bound only one. Where several fit,
+//! or where a sliding contact has no finite force (Painleve), the answer says so.
+//!
+//! Theory: docs/theory.md, section 17.
 
 mod begin;
 mod error;

@@ -12,7 +12,7 @@ use crate::import::{Options, import};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// A robot description has at most so many bytes.
+/// Largest size of a robot description, in bytes.
 const MAX_BYTES: usize = 64 << 20;
 
 /// Turn a robot description (URDF) into a model file, written to standard output

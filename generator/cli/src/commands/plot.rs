@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
 }
 
-/// A collision in JSON has at most so many bytes.
+/// Largest size of a collision in JSON, in bytes.
 const MAX_BYTES: usize = 1 << 20;
 
 /// What collides: a title, the reduced matrix and the velocity of approach.

@@ -31,7 +31,7 @@ pub struct Form {
     matrix: Products,
 }
 
-/// A component is much smaller than another that is so many times as large at common sizes of parameters. Forward dynamics of the
+/// A component is much smaller than another if their ratio exceeds this at common sizes of parameters. Forward dynamics of the
 /// seven-joint arm rounds the least from 1 to 4, and takes fewer operations the larger this is.
 const MUCH: f64 = 3.0;
 

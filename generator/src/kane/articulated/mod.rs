@@ -28,7 +28,7 @@ use acting::Acting;
 use eliminated::Eliminated;
 use form::{Form, OfFrame, OfPoint};
 
-/// A factorised mechanism: what is done to velocities and derivatives of speeds, from the leaves to the ground.
+/// A factorised mechanism (the articulated-body algorithm, ABA): what is done to velocities and derivatives of speeds, from the leaves to the ground.
 pub struct Articulated {
     steps: Vec<Step>,
 }

@@ -37,7 +37,7 @@ impl Contradiction {
         self.provenance.names().iter().filter(|(symbol, _)| !evidence.contains_key(symbol))
     }
 
-    /// The name whose declaration is wrong, if nothing speaks for it, but for all others in it.
+    /// The only name in it whose declaration no use agrees with, if there is just one.
     pub fn plain(&self, evidence: &HashMap<Symbol, usize>) -> Option<(Symbol, Exponent)> {
         let mut doubtful = self.doubtful(evidence);
         doubtful.next().copied().filter(|_| doubtful.next().is_none())

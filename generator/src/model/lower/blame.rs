@@ -1,7 +1,7 @@
 //! Which declaration is wrong where dimensions contradict each other.
 //!
 //! A name that is declared in a wrong unit contradicts all of its uses. They are collected, and where another dimension of one name
-//! resolves several of them, and no use speaks for the one that is declared, the declaration is the mistake: it is reported once.
+//! resolves several of them, and no use agrees with the declared one, the declaration is wrong: it is reported once.
 
 use std::collections::{HashMap, HashSet};
 
@@ -13,16 +13,16 @@ use super::dimensions::{Declared, in_words};
 use crate::diagnostics::{Diagnostic, Label, codes};
 use crate::dimension::Dimension;
 
-/// So many declarations are looked for; nobody reads so many messages.
+/// At most this number of wrong declarations is looked for; nobody reads more messages.
 const MOST_DECLARATIONS: usize = 100;
-/// So many times a contradiction is looked at, for the same reason.
+/// Bound on the number of contradictions examined in all, for the same reason.
 const MOST_LOOKS: usize = 200_000;
-/// So many uses of one are shown.
+/// At most this number of uses is shown for one declaration.
 const MOST_USES: usize = 5;
-/// So many uses must speak against a declaration for each that speaks for it.
+/// A declaration counts as wrong where this number of uses contradicts it for each use that agrees with it.
 const MAJORITY: usize = 4;
 
-/// What speaks for one declaration makes another one trustworthy, and so on: so many steps are gone.
+/// A use that agrees with one declaration makes others in it trustworthy, and so on: at most this number of steps.
 const MOST_PASSES: usize = 8;
 
 /// A declaration that would resolve several contradictions if it were of another dimension.
@@ -32,7 +32,7 @@ struct Culprit {
     needed: Dimension,
     /// contradictions that it would resolve, in order
     resolved: Vec<usize>,
-    /// so many of them speak of no other name in doubt
+    /// number of these that contain no other doubtful name
     certain: usize,
     /// counts those most in which few other names are in doubt
     weight: f64,
@@ -118,7 +118,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// The declaration that most contradictions speak against, and others that would explain the same.
+    /// The declaration that would resolve most contradictions, and others that would resolve the same ones.
     fn culprit(
         &self,
         open: &[Contradiction],
@@ -205,7 +205,8 @@ impl Lowering<'_> {
     }
 }
 
-/// How many uses speak for the declarations of names. A use speaks for a name if it holds no other, or others for which uses speak.
+/// Number of uses that agree with the declaration of each name. A use counts for a name if it contains no other name, or only names that
+/// other uses agree with.
 fn evidence(agreements: &[Provenance]) -> HashMap<Symbol, usize> {
     let mut evidence: HashMap<Symbol, usize> = HashMap::new();
     for _ in 0..MOST_PASSES {

@@ -18,7 +18,7 @@ use crate::syntax::tree::{Expr, ExprKind, Name};
 
 /// Constant exponents are at most this large.
 const MAX_EXPONENT: i32 = 100;
-/// A number has at most so many digits.
+/// Largest number of digits of a number.
 const MAX_DIGITS: usize = 60;
 
 impl Lowering<'_> {

@@ -73,7 +73,7 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable,
     (lowering.out, lowering.readable, lowering.diagnostics)
 }
 
-/// So many unknown names are compared with the declared ones.
+/// At most this number of unknown names is compared with the declared ones.
 const MAX_SUGGESTIONS: usize = 20;
 
 /// What is known of a quantity besides what the mechanism holds.

@@ -1,4 +1,4 @@
-//! Which rates of coordinates the kinematical equations speak of, and `d(q..)/dt = u..` for the others.
+//! Finds the coordinates whose rates appear in the kinematical equations, and adds `d(q..)/dt = u..` for the others.
 
 use std::collections::HashMap;
 

@@ -30,7 +30,7 @@ impl Pair {
     }
 }
 
-/// Longer lists are left as they are: so many pairs would take longer than they save.
+/// Longer lists are left as they are: the search would take longer than it saves.
 const LONGEST: usize = 1000;
 
 /// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` names the item of a pair.

@@ -4,13 +4,13 @@ use crate::arithmetic::reproducible::Reproducible;
 use crate::arithmetic::{Arithmetic, Function};
 use crate::program::graph::Input;
 
-/// At so many places nodes are evaluated.
+/// Number of places at which nodes are evaluated.
 pub const PLACES: usize = 4;
 /// Rounding of an operation, relatively: less than this.
 const ROUNDING: f64 = 1e-30;
 /// What cancels to less than this part of its terms is looked at.
 const CANCELLED: f64 = 1e-20;
-/// So many times the bound of its error a number may be off.
+/// A number may differ by this multiple of its error bound.
 const SLACK: f64 = 16.0;
 
 /// A number, a bound of its error, and the size of what it was added up from.

@@ -1,6 +1,7 @@
-//! The passes, in one list: each keeps what every output means, the interpreter is the referee.
+//! The passes that optimise a program, in one list. No pass changes what an output means: tests compare the interpreter's results before and
+//! after each.
 //!
-//! A derivation is a graph until it is lowered to operations; the list says where.
+//! The first passes work on the graph of a derivation; one lowers it to operations; the others work on those.
 
 mod adjoint;
 mod collect;

@@ -12,9 +12,9 @@ use crate::program::inputs::Inputs;
 use crate::program::operation::{Stage, Value};
 use crate::program::straight_line::Program;
 
-/// Of so many terms all orders are compared; of more, the order is chosen from the end, term by term.
+/// Up to this number of terms all orders are compared; of more, the order is chosen from the end, term by term.
 const MOST: usize = 10;
-/// Of more than so many terms the order stays: the work grows with their square.
+/// Beyond this number of terms the order stays: the work grows with their square.
 const MANY: usize = 1000;
 /// A sum that is at most this times its largest term at all states is what rounding leaves: its order is its meaning.
 const ROUNDING: f64 = 1e-10;

@@ -1,4 +1,4 @@
-//! What the tests of the passes share: derivations small and random, and the interpreter as referee.
+//! What the tests of the passes share: small and random derivations, and the comparison of programs by the interpreter.
 
 use super::lower;
 use crate::arithmetic::Function;
@@ -78,7 +78,7 @@ pub fn bits(program: &Program) -> Option<Vec<u64>> {
     Some(numbers(program)?.into_iter().map(f64::to_bits).collect())
 }
 
-/// The referee: both programs answer the same but for rounding.
+/// Both programs give the same numbers but for rounding.
 pub fn agree(before: &Program, after: &Program, context: &str) {
     let Some(expected) = numbers(before) else { return };
     let found = numbers(after).unwrap_or_else(|| panic!("{context}: no number any more"));
