@@ -43,7 +43,7 @@ pub mod rendering;
 pub mod rust_names;
 pub mod source;
 pub mod span;
-mod suggest;
+pub mod suggest;
 pub mod syntax;
 mod vocabulary;
 

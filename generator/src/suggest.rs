@@ -18,7 +18,7 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
                 return None;
             }
             let same_but_for_case = candidate.eq_ignore_ascii_case(word);
-            let distance = if same_but_for_case { 0 } else { distance(&letters, &other) };
+            let distance = if same_but_for_case { 0 } else { between(&letters, &other) };
             // two names of one letter have nothing in common
             (distance <= allowed && distance < letters.len().max(other.len()))
                 .then_some((distance, candidate))
@@ -27,8 +27,14 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .map(|(_, candidate)| candidate)
 }
 
-/// How many letters must be put in, taken out, exchanged with their neighbour or replaced.
-fn distance(a: &[char], b: &[char]) -> usize {
+/// The distance of two words by optimal string alignment: how many letters must be put in, taken out, exchanged with their neighbour or replaced. At most
+/// 64 letters of each are looked at.
+pub fn distance(a: &str, b: &str) -> usize {
+    let letters = |word: &str| word.chars().take(64).collect::<Vec<char>>();
+    between(&letters(a), &letters(b))
+}
+
+fn between(a: &[char], b: &[char]) -> usize {
     let mut before: Vec<usize> = Vec::new();
     let mut last: Vec<usize> = (0..=b.len()).collect();
     for i in 0..a.len() {

@@ -1,5 +1,7 @@
 //! "Did you mean": the name most like one that is not there.
 
+use hodograph_generator::suggest::distance;
+
 /// The name in `names` that is most like `name`, if one is near enough to be what was meant.
 pub fn nearest<'a>(name: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let limit = match name.chars().count() {
@@ -31,26 +33,6 @@ pub fn hint<'a>(name: &str, names: impl IntoIterator<Item = &'a str> + Clone) ->
         1..=12 => format!("there are: {}", all.join(", ")),
         more => format!("there are: {}, and {} more", all[..10].join(", "), more - 10),
     }
-}
-
-/// How many letters must be put in, taken out, changed or swapped with their neighbour.
-fn distance(a: &str, b: &str) -> usize {
-    let (a, b): (Vec<char>, Vec<char>) = (a.chars().take(64).collect(), b.chars().take(64).collect());
-    let mut before: Vec<usize> = vec![0; b.len() + 1];
-    let mut last: Vec<usize> = (0..=b.len()).collect();
-    for i in 1..=a.len() {
-        let mut now = vec![i];
-        for j in 1..=b.len() {
-            let change = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut least = change.min(last[j] + 1).min(now[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                least = least.min(before[j - 2] + 1);
-            }
-            now.push(least);
-        }
-        before = std::mem::replace(&mut last, now);
-    }
-    last[b.len()]
 }
 
 #[cfg(test)]
