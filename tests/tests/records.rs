@@ -6,6 +6,7 @@ use hodograph_models::two_sleds::{Coordinates, Speeds, TwoSleds};
 
 /// A step written with records is the step written with arrays.
 #[test]
+#[allow(clippy::assign_op_pattern)] // the sum of records is tried too
 fn a_step_of_a_loop() {
     let sleds = TwoSleds::<f64>::default();
     let (mut q, mut u) = (Coordinates::default(), Speeds { u1: 1.0, u3: 0.1, u4: 1.0, u6: 0.1 });

@@ -2,7 +2,6 @@
 
 #[path = "common/browser.rs"]
 mod browser;
-#[allow(dead_code)] // each test has its own use of it
 mod common;
 
 use std::path::PathBuf;

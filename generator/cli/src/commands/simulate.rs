@@ -150,15 +150,10 @@ fn follow(
     let progress = bar(until - state.time);
     for count in 1_u64.. {
         let end = (state.time + count as f64 * step).min(until);
-        loop {
-            match simulation.advance(end).map_err(fault)? {
-                Progress::Event(event) => {
-                    lines.event(&event)?;
-                    if let Some(curves) = curves.as_deref_mut() {
-                        curves.add(&simulation);
-                    }
-                }
-                Progress::Reached => break,
+        while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
+            lines.event(&event)?;
+            if let Some(curves) = curves.as_deref_mut() {
+                curves.add(&simulation);
             }
         }
         if end > state.time {
