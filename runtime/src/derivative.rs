@@ -103,13 +103,16 @@ impl<T: Scalar> ImpactDerivative<T> {
 /// panic; the stack holds about 50 kB (`f64` on x86-64), thirteen times what [`solve`] needs.
 ///
 /// ```
-/// # use hodograph::{Law, ReducedMatrix, Surface, derivative};
+/// # use hodograph::{Law, ReducedMatrix, Surface, derivative, solve};
 /// # use nalgebra::Vector3;
 /// let matrix = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
-/// let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge };
-/// let d = derivative(&matrix, &Vector3::new(-0.946, 1.063, 0.0), &surface)?;
-/// let (impulse_by_mu, velocity_by_mu) = d.by_friction();
-/// assert!(d.non_smoothness.is_none() && impulse_by_mu.x > 0.0 && velocity_by_mu.x > 0.0);
+/// let approach = Vector3::new(-0.946, 1.063, 0.0);
+/// let surface = |mu| Surface { mu, e: 0.8, law: Law::Stronge };
+/// let d = derivative(&matrix, &approach, &surface(0.6))?;
+/// let (by_mu, _) = d.by_friction();
+/// let impulse = |mu| solve(&matrix, &approach, &surface(mu)).map(|impact| impact.impulse);
+/// let difference = (impulse(0.6 + 1e-5)? - impulse(0.6 - 1e-5)?) / 2e-5;
+/// assert!(d.non_smoothness.is_none() && (by_mu - difference).norm() < 1e-6 * by_mu.norm());
 /// # Ok::<(), hodograph::ImpactError<f64>>(())
 /// ```
 ///

@@ -90,7 +90,7 @@ mod tests {
     #[test]
     fn samples_do_not_depend_on_defaults() {
         let other = MODEL
-            .replace("l: m = 7", "l: m = 0")
+            .replace("l: m = 7", "l: m = 0.001")
             .replace("q1: rad = 0.1", "q1: rad")
             .replace("u2: mm/s = 3", "u2: mm/s = -1");
         assert_eq!(samples(&mechanism(MODEL)), samples(&mechanism(&other)));

@@ -252,7 +252,11 @@ impl Lowering<'_> {
                 }
             }
         }
-        let coordinates: [_; 4] = coordinates.try_into().ok().filter(|_| !unread)?;
+        if unread {
+            self.unread_quaternions.extend(coordinates.iter().map(|coordinate| coordinate.0));
+            return None;
+        }
+        let coordinates: [_; 4] = coordinates.try_into().ok()?;
         Some((Orientation::Quaternion(coordinates), Traits { moves: true, ..Traits::default() }))
     }
 

@@ -128,6 +128,8 @@ pub(super) struct Lowering<'a> {
     pub names: Names,
     pub diagnostics: Vec<Diagnostic>,
     pub used: HashSet<Symbol>,
+    /// coordinates of quaternions whose units are wrong: their frames say nothing of their rates
+    pub unread_quaternions: HashSet<usize>,
     /// unknown names that are reported already
     pub unknown: HashSet<String>,
     pub out: Mechanism,
@@ -171,6 +173,7 @@ impl<'a> Lowering<'a> {
             names,
             diagnostics,
             used: HashSet::new(),
+            unread_quaternions: HashSet::new(),
             unknown: HashSet::new(),
             out,
             parameters: Vec::new(),

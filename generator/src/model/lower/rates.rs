@@ -80,7 +80,7 @@ impl Lowering<'_> {
         let mut defaults = Vec::new();
         let mut missing = Vec::new();
         for (i, coordinate) in self.out.coordinates.iter().enumerate() {
-            if stated.contains(i) {
+            if stated.contains(i) || self.unread_quaternions.contains(&i) {
                 continue;
             }
             let speed = coordinate.name.strip_prefix('q').map(|rest| format!("u{rest}"));
