@@ -178,6 +178,20 @@ fn a_rod_that_does_not_bounce_stays_in_contact() {
     assert!(below.stderr.contains("negative gap"), "{}", below.stderr);
 }
 
+/// The head of a module and `explain --cost` count the same operations in the same way.
+#[test]
+fn the_head_of_a_module_counts_as_explain_does() {
+    for name in ["rolling_disc", "planar_double_pendulum"] {
+        let table = hodograph(&["explain", &model(name), "--cost"], "").stdout;
+        let line = table.lines().find(|line| line.starts_with("all together")).expect("a row for all");
+        let numbers: Vec<&str> = line.split_whitespace().skip(2).collect();
+        let (once, each) = (numbers[0], numbers[8]);
+        let module = hodograph(&["expand", &model(name)], "").stdout;
+        let head = format!("take {once} operations at construction and {each} per evaluation");
+        assert!(module.contains(&head), "{name}: {head}\n{}", &module[..600]);
+    }
+}
+
 #[test]
 fn costs_are_a_table() {
     let run = hodograph(&["explain", &model("rolling_disc"), "--cost"], "");
