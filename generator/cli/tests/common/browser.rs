@@ -53,7 +53,7 @@ fn complaints_at(width: u32, page: &str, script: &str) -> Vec<String> {
           document.body.replaceChildren(result);
         }})();
         </script></body>",
-        text(page),
+        text(&page.replacen("<script", &format!("{FRAMES}<script"), 1)),
         text(&format!("{SHARED}\n{script}")),
     );
     let path = folder.path().join("page.html");
@@ -74,6 +74,9 @@ fn complaints_at(width: u32, page: &str, script: &str) -> Vec<String> {
     let result = result.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
     serde_json::from_str(&result).unwrap_or_else(|error| panic!("{error}: {result}"))
 }
+
+/// Frames by the clock: without a window the browser need not draw any, and a page that waits for one would wait for ever.
+const FRAMES: &str = "<script>window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);</script>";
 
 /// What holds for every page: nothing is wider than the window unless it scrolls by itself.
 const SHARED: &str = r#"
