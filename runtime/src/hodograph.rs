@@ -80,7 +80,7 @@ impl<T: Scalar> Hodograph<T> {
         if normal_impulse >= self.impact.impulse.x {
             return self.end(after);
         }
-        let contact = Contact::new(&self.matrix, self.mu);
+        let (contact, share) = Contact::limited(&self.matrix, self.mu);
         let speed = -self.approach.x;
         let scale = speed / self.matrix.nn;
         let units = Units { approach: &self.approach, scale, speed, contact };
@@ -98,11 +98,13 @@ impl<T: Scalar> Hodograph<T> {
         let from = match slip_end {
             None if !slides => State::before(-T::one()),
             Some(end) if stop >= end.normal => end,
-            _ => match slide(&contact, tangential, slip, &mut Restitution::until(stop)) {
-                Slide::Ended(state, velocity) => return units.snapshot(&state, &velocity, first),
+            _ => match slide(&contact, tangential, slip, &mut Restitution::until(stop / share)) {
+                Slide::Ended(state, velocity) => {
+                    return units.snapshot(&state.in_units(share, T::one()), &velocity, first);
+                }
                 // Rounding alone tells this from the end of slip.
                 Slide::Stopped(state) | Slide::Endless(state) => {
-                    return units.snapshot(&state, &Vector2::zeros(), first);
+                    return units.snapshot(&state.in_units(share, T::one()), &Vector2::zeros(), first);
                 }
             },
         };

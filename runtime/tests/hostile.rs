@@ -6,8 +6,11 @@
 mod common;
 
 use common::double_double::Double;
+use common::second_road::{self, condition};
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar, solve_structured};
-use hodograph::{Characteristics, Impact, ImpactError, Law, ReducedMatrix, Scalar, Surface, solve};
+use hodograph::{
+    Characteristics, Hodograph, Impact, ImpactError, Law, ReducedMatrix, Scalar, Surface, solve,
+};
 use nalgebra::{Matrix3, Vector3, convert};
 use std::collections::BTreeMap;
 
@@ -333,6 +336,153 @@ fn closed_forms() {
     }
     for (tally, what) in tallies.iter().zip(["planar", "balanced", "diagonal", "isotropic"]) {
         tally.report(what);
+    }
+}
+
+/// A contact that sticks with hardly any mobility along n takes an impulse of the inverse of that mobility: its balance of momentum consists of
+/// terms of that size, each with its rounding, and is met as well as they allow. Such an answer is right, and leaves.
+///
+/// Outcomes in numbers of 32 digits (`common::second_road`): I_n and v_n2.
+#[test]
+fn great_impulses_are_no_error() {
+    let cases = [
+        (
+            [
+                0.21025714813560442,
+                -0.06867637639755157,
+                0.3194261781560483,
+                0.08662134781243938,
+                -0.15195074243369164,
+                0.5205999453169415,
+            ],
+            [-1.3537540435791016, -0.26169681549072266, 0.12002849578857422],
+            (2.3681945457700704, 1.0, Law::Stronge),
+        ),
+        (
+            [
+                0.30196891879832616,
+                0.20711223293722175,
+                0.34961140516900313,
+                0.7535808538305236,
+                0.3018066283506842,
+                0.411060067632061,
+            ],
+            [-1.3878231048583984, 0.5890769958496094, 1.09857177734375],
+            (1.7880334979205352, 0.34097167031925724, Law::Newton),
+        ),
+        (
+            [
+                0.021527155445118448,
+                -0.043954441407099025,
+                -0.04889381175139923,
+                0.0897467906707861,
+                0.09983204769309352,
+                0.11105068009565472,
+            ],
+            [-0.38282203674316406, -0.9336633682250977, 0.24482345581054688],
+            (0.5678090379472598, 1.0, Law::Poisson),
+        ),
+    ];
+    for (m, v, (mu, e, law)) in cases {
+        let (m, v, surface) = (ReducedMatrix::from(m), Vector3::from(v), Surface { mu, e, law });
+        let road = second_road::solve(&m, &v, &surface).expect("a second road");
+        let hit = solve(&m, &v, &surface).unwrap_or_else(|error| panic!("{error}"));
+        let bound = 32.0 * condition(&m) * f64::EPSILON;
+        assert!(road.impulse.x > 1e8, "{road:?}");
+        assert!(
+            bound < 1e-5 && road.error(&hit, &v) < bound,
+            "{} {bound}\n{hit:?}\n{road:?}",
+            road.error(&hit, &v)
+        );
+    }
+}
+
+/// Friction up to the largest number: the limit is that of friction that stops slip at once, in every structure and for every rank.
+#[test]
+fn friction_to_the_end_of_the_range() {
+    let mut random = Random(24);
+    let (mut compared, mut small) = (0, 0);
+    for _ in 0..400 {
+        let rank = 1 + random.pick(3);
+        let scale = random.power(3.0);
+        let b = Matrix3::from_fn(|_, j| if j < rank { scale * random.next() } else { 0.0 });
+        let mut v = b * Vector3::from_fn(|_, _| random.next());
+        v.x = -v.x.abs();
+        let m = ReducedMatrix::from(b * b.transpose());
+        let (n, t) = (v.x, v.y);
+        if n > -1e-3 * v.norm() || m.nn < 1e-2 * m.tt.max(m.ss) || (rank == 3 && condition(&m) > 1e6) {
+            continue;
+        }
+        let law = LAWS[random.pick(3)];
+        let variants = [
+            (m, v),
+            (ReducedMatrix { ns: 0.0, ts: 0.0, ..m }, Vector3::new(n, t, 0.0)),
+            (ReducedMatrix { nt: 0.0, ns: 0.0, ..m }, v),
+            (ReducedMatrix { nt: 0.0, ns: 0.0, ts: 0.0, ..m }, v),
+            (ReducedMatrix { tt: m.tt.max(m.ss), ts: 0.0, ss: m.tt.max(m.ss), ..m }, v),
+        ];
+        for (kind, (m, v)) in variants.into_iter().enumerate() {
+            let at = |mu: f64| {
+                let surface = Surface { mu, e: 0.5, law };
+                match kind {
+                    0 => solve(&m, &v, &surface),
+                    1 => solve_structured::<Planar, _>(&m, &v, &surface),
+                    2 => solve_structured::<Balanced, _>(&m, &v, &surface),
+                    3 => solve_structured::<Diagonal, _>(&m, &v, &surface),
+                    _ => solve_structured::<Isotropic, _>(&m, &v, &surface),
+                }
+            };
+            // Singular contacts may wedge or lose their digits at any friction.
+            let Ok(limit) = at(1e20) else { continue };
+            for mu in [1e150, 1e200, 1e290, 1e300, 1e304, 1e306, 1e307, 1e308, 1.7e308, f64::MAX] {
+                // A collision that friction ends takes an I_n of the order of 1/mu.
+                let by_friction = limit.impulse.x < 1e-10 * limit.impulse.amax();
+                let normal = if by_friction { limit.impulse.x * 1e20 / mu } else { limit.impulse.x };
+                let hit = match at(mu) {
+                    Ok(hit) => hit,
+                    Err(ImpactError::NotFinite { value }) if normal < 2.3e-308 => {
+                        assert!((value - normal).abs() < 1e-9 * normal + 1e-320, "{value:e} {normal:e}");
+                        small += 1;
+                        continue;
+                    }
+                    Err(error) => panic!("{kind} {mu:e} {law:?} {error} {m:?} {v:?}"),
+                };
+                assert!((hit.impulse.x - normal).abs() <= 1e-9 * normal + 1e-320, "{kind} {mu:e} {hit:?}");
+                let (impulse, velocity) = (limit.impulse.amax(), v.amax() + limit.velocity.amax());
+                let error = ((hit.impulse - limit.impulse).amax() / impulse)
+                    .max((hit.velocity - limit.velocity).amax() / velocity)
+                    .max((hit.normal_work - limit.normal_work).abs() / (impulse * velocity));
+                assert!(error < 1e-9, "{kind} {mu:e} {law:?} {error:e} {m:?} {v:?}\n{hit:?}\n{limit:?}");
+                assert_eq!(hit.path, limit.path, "{kind} {mu:e} {law:?} {m:?} {v:?}");
+                compared += 1;
+                if kind == 0 {
+                    let surface = Surface { mu, e: 0.5, law };
+                    let middle =
+                        Hodograph::new(&m, &v, &surface).expect("an outcome").at(0.5 * hit.impulse.x);
+                    let balance = v + Matrix3::from(m) * middle.impulse - middle.velocity;
+                    assert!(
+                        balance.amax() < 1e-9 * v.amax().max(middle.velocity.amax()),
+                        "{mu:e} {middle:?} {hit:?}"
+                    );
+                }
+            }
+        }
+    }
+    println!("{compared} compared, {small} normal impulses out of range");
+    assert!(compared > 5_000, "{compared}");
+    assert!(small > 20 && 20 * small < compared, "{small}");
+    for mu in [1e10_f32, 1e20, 1e30, 1e37, 3e38, f32::MAX] {
+        for law in LAWS {
+            let m = ReducedMatrix::new(0.2251_f32, -0.1094, 0.1258, 22.360, 0.1158, 20.2702);
+            let at = |mu| {
+                solve(&m, &Vector3::new(-0.946, 1.063, 0.3), &Surface { mu, e: 0.5, law })
+                    .unwrap_or_else(|error| panic!("{mu:e} {error}"))
+            };
+            let (hit, limit) = (at(mu), at(1e7));
+            assert!(
+                (hit.velocity - limit.velocity).amax() < 1e-5 && (hit.impulse - limit.impulse).amax() < 1e-4
+            );
+        }
     }
 }
 

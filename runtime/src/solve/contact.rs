@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::{
     ReducedMatrix,
-    scalar::{Real, constant},
+    scalar::{Real, constant, larger, smaller},
 };
 
 /// The reduced matrix and mu, in units where m_nn = 1: b = (m_nt, m_ns) and the tangential block T.
@@ -34,6 +34,30 @@ impl<T: Real> Contact<T> {
         let b = Vector2::new(matrix.nt / nn, matrix.ns / nn);
         let (tt, ts, ss) = (matrix.tt / nn, matrix.ts / nn, matrix.ss / nn);
         Self { nn: T::one(), mu, b, tt, ts, ss, mu_b: b * mu, mu_tt: mu * tt, mu_ts: mu * ts, mu_ss: mu * ss }
+    }
+
+    /// The contact to calculate with, and the share that its mu is of the true one: below one where products of mu leave the range.
+    ///
+    /// So great a friction stops slip, or ends the collision, after an I_n of the order of 1/mu, during which nothing but friction acts:
+    /// a smaller mu gives the same arc, with a larger I_n. docs/theory.md, section 1.2.
+    #[inline]
+    pub fn limited(matrix: &ReducedMatrix<T>, mu: T) -> (Self, T) {
+        if mu < constant(if single::<T>() { WIDE.0 } else { WIDE.1 }) {
+            return (Self::new(matrix, mu), T::one());
+        }
+        Self::with_less_friction(matrix, mu)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn with_less_friction(matrix: &ReducedMatrix<T>, mu: T) -> (Self, T) {
+        let most = constant::<T>(if single::<T>() { MOST.0 } else { MOST.1 });
+        let Self { b, tt, ss, .. } = Self::new(matrix, T::one());
+        let size = larger(larger(b.x.abs(), b.y.abs()), larger(tt, ss));
+        // A quotient may leave the range, and is then no limit.
+        let limit = most / larger(size, T::one() / most);
+        let used = smaller(mu, limit);
+        (Self::new(matrix, used), used / mu)
     }
 
     /// b - mu T d: the rate of the tangential velocity by I_n while slip has the direction d.
@@ -85,13 +109,22 @@ impl<T: Real> Contact<T> {
     /// Whether sixth powers of the rates stay within the range of the number type.
     #[inline]
     pub fn is_ordinary(&self) -> bool {
-        // Known while compiling: 2^20 for single precision, 2^160 for double.
-        let single = T::default_epsilon() > constant(1e-10);
-        let (most, least) = if single { (1_048_576.0, 1.0 / 1_048_576.0) } else { (WIDE, 1.0 / WIDE) };
+        // Known while compiling.
+        let most = if single::<T>() { WIDE.0 } else { WIDE.1 };
+        let least = 1.0 / most;
         let size = self.slip_size();
         size < constant(most) && size > constant(least) && self.normal_size() < constant(most)
     }
 }
 
-/// 2^160.
-const WIDE: f64 = 1_461_501_637_330_902_918_203_684_832_716_283_019_655_932_542_976.0;
+/// Whether numbers are of single precision.
+#[inline(always)]
+fn single<T: Real>() -> bool {
+    T::default_epsilon() > constant(1e-10)
+}
+
+/// The largest ordinary rate, in single and in double precision: 2^20 and 2^160.
+const WIDE: (f64, f64) = (1_048_576.0, 1_461_501_637_330_902_918_203_684_832_716_283_019_655_932_542_976.0);
+
+/// The largest product of mu and an entry, whose square is a number still.
+const MOST: (f64, f64) = (1e18, 1e150);

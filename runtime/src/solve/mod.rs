@@ -97,7 +97,7 @@ pub(crate) fn collide<T: Real>(
     mut restitution: Restitution<T>,
     slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Restitution<T>) -> Slide<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
-    let contact = Contact::new(matrix, surface.mu);
+    let (contact, share) = Contact::limited(matrix, surface.mu);
     let tangential = Vector2::new(approach.y, approach.z) / speed;
     let mut slip = length(&tangential);
     if !slip.is_finite() {
@@ -121,7 +121,7 @@ pub(crate) fn collide<T: Real>(
     if ended.is_none() && !endless {
         ended = after_slip(&contact, &mut state, slips, &mut restitution, &mut sensitivity);
     }
-    let Some((end, velocity, path)) = ended else {
+    let Some((mut end, velocity, path)) = ended else {
         let normal_velocity = state.velocity * speed;
         return Err(if normal_velocity.is_finite() {
             ImpactError::Wedged { normal_velocity, law: surface.law }
@@ -132,7 +132,16 @@ pub(crate) fn collide<T: Real>(
     restitution.verify(&contact, &tangential, slip, &end, &velocity)?;
     let slides = path == Path::Sliding && !stops;
     sensitivity.ended(&contact, &mut restitution, &end, slides.then_some(&velocity));
-    let slip_end = stops.then_some(state);
+    let mut slip_end = stops.then_some(state);
+    if share < T::one() && slips {
+        // A normal impulse that does nothing by itself is what friction needed.
+        let least = T::default_epsilon() * T::default_epsilon();
+        let all =
+            [Some(&mut end), slip_end.as_mut(), restitution.first.as_mut(), restitution.latest.as_mut()];
+        for state in all.into_iter().flatten().filter(|state| state.normal <= least) {
+            *state = state.in_units(share, T::one());
+        }
+    }
     let scale = speed / matrix.nn;
     let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
     let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;

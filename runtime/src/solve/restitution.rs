@@ -31,6 +31,7 @@ impl<T: Real> State<T> {
     }
 
     /// The same state in other units of normal and tangential impulse.
+    #[inline]
     pub fn in_units(self, normal: T, tangential: T) -> Self {
         Self {
             normal: self.normal * normal,

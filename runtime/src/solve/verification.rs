@@ -20,6 +20,12 @@ fn share<T: Real>() -> T {
     constant(if T::default_epsilon() > constant(1e-10) { 3.5e-4 } else { 1.5e-8 })
 }
 
+/// How many rounding units of its terms the balance of momentum may miss.
+const ROUNDINGS: f64 = 16.0;
+
+/// The most that these roundings may take of the speeds.
+const LEFT: f64 = 1e-3;
+
 /// The residuals of an answer, each with its scale.
 struct Residuals<T> {
     momentum: [(T, T); 2],
@@ -105,10 +111,17 @@ impl<T: Real> Restitution<T> {
             self.residuals(c, from, slip, end, velocity);
         let broken = |violated: Violation, residual: T| Err(ImpactError::Inaccurate { violated, residual });
         let within = |residual: T, scale: T| residual <= share * scale;
-        if !within(n, speed) {
+        // The roundings of the terms of the balance, which may be far larger than the speeds.
+        let rounding = constant::<T>(ROUNDINGS) * T::default_epsilon();
+        let along = end.normal + c.b.x.abs() * i.x.abs() + c.b.y.abs() * i.y.abs();
+        let (b, rubbed) = (larger(c.b.x.abs(), c.b.y.abs()), larger(i.x.abs(), i.y.abs()));
+        let across = b * end.normal + (larger(c.tt, c.ss) + c.ts.abs()) * rubbed;
+        // But where they leave no digits of the speeds, any answer would do.
+        let known = |terms: T, scale: T| smaller(rounding * terms, scale * constant(LEFT));
+        if !within(n - known(along, speed), speed) {
             return broken(Violation::Momentum, n / speed);
         }
-        if !within(t, slips) {
+        if !within(t - known(across, slips), slips) {
             return broken(Violation::Momentum, t / slips);
         }
         if end.normal < T::zero() {
