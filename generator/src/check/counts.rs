@@ -26,7 +26,9 @@ pub fn counts(m: &Mechanism) -> Vec<Diagnostic> {
         section: "configuration",
         declare: "put `dependent` before a coordinate for each equation",
     };
-    out.extend(constraint.check());
+    if m.determining_constraints.is_none() {
+        out.extend(constraint.check());
+    }
     out.extend(configuration.check());
     out
 }

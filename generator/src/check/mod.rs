@@ -5,6 +5,7 @@ mod body_points;
 mod contacts;
 mod counts;
 mod gaps;
+mod independent_constraints;
 mod loads;
 mod loops;
 mod motion;
@@ -58,6 +59,7 @@ pub fn check(source: &Source) -> Checked {
     // what could not be read stands in for something else, so only what rests on none of it is looked at
     if let Some((mechanism, readable)) = &mut mechanism {
         if readable.motion {
+            mechanism.determining_constraints = physics::determining_constraints(mechanism, readable);
             let counts = counts::counts(mechanism);
             readable.motion = counts.is_empty();
             diagnostics.extend(counts);

@@ -3,11 +3,12 @@
 
 use super::states::Seen;
 use super::{
-    bodies, body_points, contacts, gaps, loads, loops, motion, states, unit_vectors, vector_constraints,
+    bodies, body_points, contacts, gaps, independent_constraints, loads, loops, motion, states, unit_vectors,
+    vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
-use crate::model::mechanism::Mechanism;
+use crate::model::mechanism::{Equation, Mechanism};
 use crate::numeric::{self, Failure, State, Views};
 use crate::span::Span;
 
@@ -16,22 +17,37 @@ pub const MOST_PARTS: usize = 2000;
 
 /// Mistakes that show in numbers, in what could be read of the mechanism; `name` is where it is named.
 pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
-    let parts = m.points.len() + m.frames.len() + m.definitions.len() + m.bodies.len() + m.contacts.len();
+    let parts = parts(m);
     if parts > MOST_PARTS {
         let message = format!("a mechanism of {parts} parts is not looked at in numbers");
         let help = "what shows in numbers alone (impossible inertias, singular constraints, normals that are no unit vectors) is not found \
                     in more than 2000 points, frames, definitions, bodies and contacts";
         return vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
     }
-    // names may refer to names deeply: a stack of its own, and the thread's end is the end of any trouble
-    let look = || look(m, readable);
+    with_room(|| look(m, readable))
+}
+
+/// The velocity constraints that determine the dependent speeds, where more are stated than are needed.
+pub fn determining_constraints(m: &Mechanism, readable: &Readable) -> Option<Vec<Equation>> {
+    if !readable.is_whole() || parts(m) > MOST_PARTS {
+        return None;
+    }
+    with_room(|| independent_constraints::determining(m))
+}
+
+fn parts(m: &Mechanism) -> usize {
+    m.points.len() + m.frames.len() + m.definitions.len() + m.bodies.len() + m.contacts.len()
+}
+
+/// Runs what follows names that refer to names deeply: on a stack of its own, and the thread's end is the end of any trouble.
+fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, look);
         match thread.map(|thread| thread.join()) {
             Ok(Ok(found)) => found,
             // tests and the fuzzer must see trouble; a build must go on
             Ok(Err(panic)) if cfg!(debug_assertions) => std::panic::resume_unwind(panic),
-            Ok(Err(_)) | Err(_) => Vec::new(),
+            Ok(Err(_)) | Err(_) => T::default(),
         }
     })
 }

@@ -6,6 +6,10 @@ use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual}
 /// How far the states lie from the initial values.
 const DISTANCES: [f64; 5] = [0.7, 0.4, 0.2, 0.05, 0.0];
 
+/// How far, and how many, those are that go all round.
+const FARTHEST: f64 = 3.2;
+const FAR: u64 = 16;
+
 /// What is seen at a state.
 pub struct Seen<'m> {
     /// the state
@@ -19,6 +23,11 @@ pub struct Seen<'m> {
 /// States away from the initial one, the most general first. The numbers are arbitrary but always the same.
 pub fn arbitrary(m: &Mechanism) -> Vec<State> {
     DISTANCES.iter().enumerate().map(|(i, distance)| state(m, *distance, i as u64)).collect()
+}
+
+/// States all over the ranges of the coordinates.
+pub fn far(m: &Mechanism) -> Vec<State> {
+    (0..FAR).map(|i| state(m, FARTHEST, DISTANCES.len() as u64 + i)).collect()
 }
 
 fn state(m: &Mechanism, distance: f64, seed: u64) -> State {

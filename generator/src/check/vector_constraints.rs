@@ -16,6 +16,9 @@ type Rows = [Vec<f64>; 3];
 /// The vector constraints that no frame takes apart, by what they are at some states.
 pub fn inseparable(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
+    if m.determining_constraints.is_some() {
+        return out;
+    }
     let at: Option<Vec<Vec<Vec<f64>>>> =
         seen.iter().map(|seen| numeric::constraint_coefficients(m, seen.state).ok()).collect();
     let Some(at) = at else { return out };

@@ -9,6 +9,7 @@ use crate::program::{ContactQuantity, PointQuantity, Quantity};
 /// Checks that every input, contact, point and frame exists and that every quantity has its shape.
 pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
     let independent = mechanism.speeds.iter().filter(|speed| !speed.dependent).count();
+    let overdetermined = mechanism.determining_constraints.is_some();
     for operation in &program.operations {
         let Operation::Input(input) = *operation else { continue };
         let exists = match input {
@@ -33,6 +34,10 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
     for output in &program.outputs {
         let shape = shape(mechanism, output.quantity);
         let right = match shape {
+            // of a loop with more constraints than it needs all are looked at
+            Some((least, 1)) if output.quantity == Quantity::ConstraintResidual && overdetermined => {
+                output.columns == 1 && output.rows >= least && output.rows <= 3 * mechanism.constraints.len()
+            }
             Some((rows, columns)) => output.rows * output.columns == rows * columns,
             None => false,
         };

@@ -70,6 +70,7 @@ fn mechanism() -> Mechanism {
         loads: vec![],
         kinematics: vec![],
         constraints: vec![],
+        determining_constraints: None,
         configuration: vec![],
         contacts: vec![Contact {
             name: "TipWall".into(),

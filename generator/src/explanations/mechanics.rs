@@ -90,7 +90,7 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: CONSTRAINT_COUNT,
-        text: "As many independent constraints as dependent speeds. An equation of vectors counts its components that are not identically zero.",
+        text: "As many independent constraints as dependent speeds. An equation of vectors counts its components that are not identically zero. More are allowed in a loop whose `configuration` makes them agree wherever it is closed, whatever the parameters that are not `fixed`.",
         wrong: Some("speeds { u1: rad/s }\ndependent { u2: rad/s }"),
         right: Some(SLED),
     },

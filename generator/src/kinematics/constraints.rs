@@ -13,7 +13,7 @@ impl Kinematics<'_> {
         let mechanism = self.mechanism;
         let mut equations = Vec::new();
         let mut entangled = None;
-        for equation in &mechanism.constraints {
+        for equation in mechanism.constraints_of_dependent_speeds() {
             let forms = self.equation_forms(&equation.sides);
             if self.rank(&forms) < forms.len() {
                 entangled = entangled.or(Some(equation));

@@ -77,6 +77,9 @@ pub struct Mechanism {
     pub kinematics: Vec<Equation>,
     /// velocity constraints
     pub constraints: Vec<Equation>,
+    /// where `constraints` say more at arbitrary states than there are dependent speeds, and just as much wherever the loops are
+    /// closed: scalar equations among them that determine the dependent speeds
+    pub determining_constraints: Option<Vec<Equation>>,
     /// configuration constraints
     pub configuration: Vec<Equation>,
     /// contacts in file order
@@ -84,6 +87,11 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
+    /// The velocity constraints that determine the dependent speeds; others follow from them wherever the loops are closed.
+    pub fn constraints_of_dependent_speeds(&self) -> &[Equation] {
+        self.determining_constraints.as_deref().unwrap_or(&self.constraints)
+    }
+
     /// Number of independent coordinates and speeds: the states of the linearised equations.
     pub fn independent_states(&self) -> usize {
         self.coordinates.iter().chain(&self.speeds).filter(|quantity| !quantity.dependent).count()

@@ -164,6 +164,7 @@ impl<'a> Lowering<'a> {
             loads: Vec::new(),
             kinematics: Vec::new(),
             constraints: Vec::new(),
+            determining_constraints: None,
             configuration: Vec::new(),
             contacts: Vec::new(),
         };
