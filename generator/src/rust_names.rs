@@ -21,6 +21,7 @@ pub const RECORDS: &[&str] = &[
     "Inputs",
     "Collision",
     "CollisionDerivative",
+    "ClosedContact",
     "Linearisation",
 ];
 

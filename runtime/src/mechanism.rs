@@ -3,9 +3,11 @@
 //! Every generated module implements [`Mechanism`] and [`Contacts`], and so does the interpreter of derivations. Both traits can be used as
 //! trait objects (`&dyn Contacts`). Nothing here allocates: the caller brings the slices.
 
+mod closed;
 mod contacts;
 mod description;
 
+pub use closed::ContactOutcome;
 pub use contacts::{CollisionOutcome, ContactState, Contacts};
 pub use description::{Component, Kind};
 

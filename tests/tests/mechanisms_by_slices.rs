@@ -6,7 +6,10 @@ use common::Model;
 use common::emitted::{Emitted, emitted, routine};
 use common::random::samples;
 use hodograph::nalgebra::Vector3;
-use hodograph::{CollisionError, Contacts, Kind, Law, ParameterError, State, StateError, Surface};
+use hodograph::{
+    ClosedContactError, CollisionError, ContactMode, Contacts, Kind, Law, ParameterError, State, StateError,
+    Surface,
+};
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use hodograph_interpreter::InterpretedMechanism;
 
@@ -118,6 +121,32 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
                         m.collide(contact, &state, &surface, &mut speeds).map(|hit| (speeds, hit))
                     };
                     assert_eq!(collide(&*generated), collide(&*interpreted), "{} {law:?}", module.name());
+                    let jump = |m: &dyn Contacts| {
+                        let mut speeds = vec![0.0; at.speeds.len()];
+                        m.impact_without_collision(contact, &state, &surface, &mut speeds)
+                            .map(|hit| (speeds, hit))
+                    };
+                    assert_eq!(jump(&*generated), jump(&*interpreted), "{} {law:?}", module.name());
+                    let mode = |m: &dyn Contacts, kept: Option<ContactMode>| {
+                        let mut rates = vec![0.0; at.speeds.len()];
+                        let answer = match kept {
+                            None => m.contact_mode(contact, &state, &surface, &mut rates),
+                            Some(mode) => m.contact_force(contact, mode, &state, &surface, &mut rates),
+                        };
+                        answer.map(|answer| (rates, answer))
+                    };
+                    let kept = [
+                        ContactMode::Separate,
+                        ContactMode::Slide,
+                        ContactMode::Stick,
+                        ContactMode::BeginSlip,
+                    ];
+                    for kept in [None].into_iter().chain(kept.map(Some)) {
+                        let [a, b] = [mode(&*generated, kept), mode(&*interpreted, kept)];
+                        assert_eq!(a, b, "{} {kept:?}", module.name());
+                        // Undefined would be as equal.
+                        assert!(!matches!(a, Err(ClosedContactError::State(_))), "{}: {a:?}", module.name());
+                    }
                 }
             }
         }

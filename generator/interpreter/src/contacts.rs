@@ -1,17 +1,20 @@
 //! The trait `Contacts` by interpretation.
 
-use hodograph::generated::{Contact, Resolved, check_length, resolve, resolve_structured};
+use hodograph::generated::{
+    Contact, Resolved, check_length, closed_contact, kept_contact, resolve, resolve_structured,
+    resolve_without_collision, slip_noise,
+};
 use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
-    CollisionError, CollisionOutcome, ContactState, Contacts, ImpactError, Kind, ReducedMatrix, State,
-    StateError, Surface,
+    ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome, ContactState,
+    Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, Surface,
 };
 use hodograph_generator::program::operation::Operation;
 use hodograph_generator::program::{ContactQuantity, Quantity, Structure};
 
 use crate::InterpretedMechanism;
-use crate::routines::{COLLISION, OfContact, Request};
+use crate::routines::{CLOSED, COLLISION, OfContact, Request};
 
 /// Normal, first, second, velocity and reduced matrix.
 const CORE: usize = 3 + 3 + 3 + 3 + 6;
@@ -72,6 +75,107 @@ impl InterpretedMechanism {
             }
         }
     }
+
+    /// What the runtime reads of a contact, of the numbers of `COLLISION`.
+    fn known(&self, contact: usize, numbers: &[f64]) -> Contact<f64> {
+        let remainder = CORE + self.size(contact, ContactQuantity::Response);
+        let prescribed = remainder + self.size(contact, ContactQuantity::Remainder);
+        let there = |quantity, at| match self.size(contact, quantity) {
+            3 => three(numbers, at),
+            _ => Vector3::zeros(),
+        };
+        Contact {
+            normal: three(numbers, 0),
+            first: three(numbers, 3),
+            second: three(numbers, 6),
+            velocity: three(numbers, 9),
+            reduced: six(numbers, 12),
+            remainder: there(ContactQuantity::Remainder, remainder),
+            prescribed_work: there(ContactQuantity::PrescribedWork, prescribed),
+        }
+    }
+
+    /// The numbers of a request of a contact that needs all of `quantities`; `what` is undefined without them.
+    fn numbers(
+        &self,
+        contact: usize,
+        of: OfContact,
+        quantities: &[ContactQuantity],
+        state: &State<'_>,
+        what: &'static str,
+    ) -> Result<Vec<f64>, StateError> {
+        self.exists(Kind::Contact, contact)?;
+        if quantities.iter().any(|&quantity| self.size(contact, quantity) == 0) {
+            return Err(StateError::Undefined { what });
+        }
+        self.check(state)?;
+        let mut numbers = Vec::new();
+        self.compute(Request::Contact(contact, of), state, &[], |_, number| numbers.push(number))?;
+        Ok(numbers)
+    }
+
+    /// A collision that `resolve` solves.
+    fn struck(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        speeds: &mut [f64],
+        what: &'static str,
+        resolve: impl FnOnce(&Contact<f64>) -> Result<Resolved<f64>, ImpactError<f64>>,
+    ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
+        let numbers = self.numbers(contact, OfContact::Collision, &COLLISION[..6], state, what)?;
+        let known = self.known(contact, &numbers);
+        let hit = resolve(&known)?;
+        check_length(speeds, state.speeds.len(), "the speeds after the collision")?;
+        speeds.iter_mut().zip(state.speeds).for_each(|(after, &before)| *after = before);
+        let response = CORE + self.size(contact, ContactQuantity::Response);
+        self.after(contact, speeds, numbers.get(CORE..response).unwrap_or(&[]), hit.impulse.into());
+        Ok(CollisionOutcome {
+            normal: known.normal,
+            tangent: hit.tangent,
+            binormal: hit.binormal,
+            approach: hit.approach,
+            reduced: hit.reduced,
+            impulse_on_point: hit.impulse_on_point,
+            energy_change: hit.energy_change,
+            impact: hit.impact,
+        })
+    }
+
+    /// A closed contact of which `decide` finds mode and force.
+    fn touching(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        accelerations: &mut [f64],
+        what: &'static str,
+        decide: impl FnOnce(&Touching) -> Result<ContactOutcome<f64>, ClosedContactError<f64>>,
+    ) -> Result<ContactOutcome<f64>, ClosedContactError<f64>> {
+        let needed = [&COLLISION[..6], &CLOSED].concat();
+        let numbers = self.numbers(contact, OfContact::Closed, &needed, state, what)?;
+        let known = self.known(contact, &numbers);
+        let sizes = COLLISION[5..].iter().map(|&quantity| self.size(contact, quantity));
+        let free = CORE + sizes.sum::<usize>();
+        let partial = free + 3;
+        let rates = partial + self.size(contact, ContactQuantity::PartialVelocities);
+        let noise = slip_noise(numbers.get(partial..rates).unwrap_or(&[]), state.speeds, &known.remainder);
+        let outcome = decide(&Touching { known, free: three(&numbers, free), noise })?;
+        check_length(accelerations, state.speeds.len(), "the accelerations")?;
+        accelerations.iter_mut().zip(numbers.iter().skip(rates)).for_each(|(slot, &rate)| *slot = rate);
+        let response = CORE + self.size(contact, ContactQuantity::Response);
+        let force = outcome.answer.force.into();
+        self.after(contact, accelerations, numbers.get(CORE..response).unwrap_or(&[]), force);
+        Ok(outcome)
+    }
+}
+
+/// What the mode of a closed contact is decided from.
+struct Touching {
+    known: Contact<f64>,
+    /// free acceleration along the contact basis
+    free: Vector3<f64>,
+    /// slip below counts as none
+    noise: f64,
 }
 
 fn three(numbers: &[f64], at: usize) -> Vector3<f64> {
@@ -143,42 +247,43 @@ impl Contacts for InterpretedMechanism {
         surface: &Surface<f64>,
         speeds: &mut [f64],
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
-        self.exists(Kind::Contact, contact)?;
-        if COLLISION[..6].iter().any(|&quantity| self.size(contact, quantity) == 0) {
-            return Err(StateError::Undefined { what: "collision of this contact" }.into());
-        }
-        self.check(state)?;
-        let mut numbers = Vec::new();
-        let request = Request::Contact(contact, OfContact::Collision);
-        self.compute(request, state, &[], |_, number| numbers.push(number))?;
-        let remainder = CORE + self.size(contact, ContactQuantity::Response);
-        let prescribed = remainder + self.size(contact, ContactQuantity::Remainder);
-        let there = |quantity, at| match self.size(contact, quantity) {
-            3 => three(&numbers, at),
-            _ => Vector3::zeros(),
-        };
-        let known = Contact {
-            normal: three(&numbers, 0),
-            first: three(&numbers, 3),
-            second: three(&numbers, 6),
-            velocity: three(&numbers, 9),
-            reduced: six(&numbers, 12),
-            remainder: there(ContactQuantity::Remainder, remainder),
-            prescribed_work: there(ContactQuantity::PrescribedWork, prescribed),
-        };
-        let hit = self.resolve(contact, &known, surface)?;
-        check_length(speeds, state.speeds.len(), "the speeds after the collision")?;
-        speeds.iter_mut().zip(state.speeds).for_each(|(after, &before)| *after = before);
-        self.after(contact, speeds, numbers.get(CORE..remainder).unwrap_or(&[]), hit.impulse.into());
-        Ok(CollisionOutcome {
-            normal: known.normal,
-            tangent: hit.tangent,
-            binormal: hit.binormal,
-            approach: hit.approach,
-            reduced: hit.reduced,
-            impulse_on_point: hit.impulse_on_point,
-            energy_change: hit.energy_change,
-            impact: hit.impact,
+        let what = "collision of this contact";
+        self.struck(contact, state, speeds, what, |known| self.resolve(contact, known, surface))
+    }
+
+    fn impact_without_collision(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        surface: &Surface<f64>,
+        speeds: &mut [f64],
+    ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
+        let what = "impact without collision of this contact";
+        self.struck(contact, state, speeds, what, |known| resolve_without_collision(known, surface))
+    }
+
+    fn contact_mode(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        surface: &Surface<f64>,
+        accelerations: &mut [f64],
+    ) -> Result<ContactOutcome<f64>, ClosedContactError<f64>> {
+        self.touching(contact, state, accelerations, "mode of this contact", |touch| {
+            closed_contact(&touch.known, &touch.free, touch.noise, surface.mu)
+        })
+    }
+
+    fn contact_force(
+        &self,
+        contact: usize,
+        mode: ContactMode,
+        state: &State<'_>,
+        surface: &Surface<f64>,
+        accelerations: &mut [f64],
+    ) -> Result<ContactOutcome<f64>, ClosedContactError<f64>> {
+        self.touching(contact, state, accelerations, "force of this contact", |touch| {
+            kept_contact(mode, &touch.known, &touch.free, surface.mu)
         })
     }
 }

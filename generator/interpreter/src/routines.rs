@@ -27,7 +27,7 @@ const POINT: [PointQuantity; 4] =
     [PointQuantity::Position, PointQuantity::Velocity, PointQuantity::Jacobian, PointQuantity::Acceleration];
 
 /// What is asked of a contact.
-const CONTACT: [OfContact; 7] = [
+const CONTACT: [OfContact; 8] = [
     OfContact::State,
     OfContact::One(ContactQuantity::Gap),
     OfContact::One(ContactQuantity::Velocity),
@@ -35,6 +35,7 @@ const CONTACT: [OfContact; 7] = [
     OfContact::One(ContactQuantity::PartialVelocities),
     OfContact::One(ContactQuantity::Response),
     OfContact::Collision,
+    OfContact::Closed,
 ];
 
 /// What is asked of a contact.
@@ -44,6 +45,8 @@ pub enum OfContact {
     State,
     /// what a collision is computed from
     Collision,
+    /// what the mode of a closed contact is computed from
+    Closed,
     /// one quantity
     One(ContactQuantity),
 }
@@ -69,6 +72,10 @@ pub const COLLISION: [ContactQuantity; 8] = [
     ContactQuantity::Remainder,
     ContactQuantity::PrescribedWork,
 ];
+
+/// What the mode of a closed contact is computed from beside that, in this order; the accelerations follow.
+pub const CLOSED: [ContactQuantity; 2] =
+    [ContactQuantity::FreeAcceleration, ContactQuantity::PartialVelocities];
 
 /// What is asked of a mechanism.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +104,15 @@ impl Request {
                     OfContact::Collision => {
                         let mut all = COLLISION.map(of).to_vec();
                         all.extend([of(ContactQuantity::DependentResponse), Quantity::DependentSpeeds]);
+                        all
+                    }
+                    // Last what only must not be singular: the generated module gives the rates of the dependent speeds, too.
+                    OfContact::Closed => {
+                        let mut all = COLLISION.map(of).to_vec();
+                        all.extend(CLOSED.map(of));
+                        all.push(Quantity::Accelerations);
+                        all.extend([of(ContactQuantity::DependentResponse), Quantity::DependentSpeeds]);
+                        all.push(Quantity::DependentAccelerations);
                         all
                     }
                     OfContact::One(quantity) => vec![of(quantity)],

@@ -66,10 +66,6 @@ impl Emitter<'_> {
         quote! {
             /// The equations linearised about a state, exactly (by differentiation, not by differences). Dependent
             /// coordinates and speeds follow the independent ones; parameters and time are held.
-            ///
-            /// # Errors
-            ///
-            /// Where the state is singular, or a result is not finite.
             pub fn linearise(#signature) -> ::core::result::Result<Linearisation<T>, #krate::StateError> {
                 let mut a = #krate::nalgebra::SMatrix::<T, #n, #n>::zeros();
                 let mut b = #krate::nalgebra::SMatrix::<T, #n, #m>::zeros();

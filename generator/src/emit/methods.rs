@@ -38,9 +38,7 @@ impl Emitter<'_> {
     ) -> TokenStream {
         let krate = self.krate;
         let name = crate::rust_names::ident(name);
-        let docs = crate::rust_names::docs(&format!(
-            "{docs}\n\n# Errors\n\nWhere the state is singular, or a result is not finite."
-        ));
+        let docs = crate::rust_names::docs(docs);
         let signature = self.signature(self.arguments(quantities));
         let body = self.compute(quantities);
         quote! {

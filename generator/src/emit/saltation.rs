@@ -85,8 +85,7 @@ impl Emitter<'_> {
         let (_, response) = self.matrix(response);
         let name = ident(&format!("{}_derivative", self.contact_method("collide", contact)));
         let docs = docs(&format!(
-            "Solves the collision at {} and differentiates its outcome.\n\n# Errors\n\n\
-             Where the state is singular, or the collision has no outcome. Where the outcome has no derivative, `outcome.non_smoothness` says why.",
+            "Solves the collision at {} and differentiates its outcome. Where the outcome has no derivative, `outcome.non_smoothness` says why.",
             self.contact_words(contact)
         ));
         let mut arguments = self.arguments(&quantities);
@@ -178,8 +177,7 @@ impl Emitter<'_> {
             .collect();
         let docs = docs(&format!(
             "The saltation matrix of the collision at {}: to first order, deviation after = matrix * deviation before, of {} (in this order) \
-             at the same time, for trajectories that meet the surface a little earlier or later.\n\n# Errors\n\n\
-             Where the state is singular, or the collision has no outcome. Where there is no derivative, `non_smoothness` says why.",
+             at the same time, for trajectories that meet the surface a little earlier or later. Where there is no derivative, `non_smoothness` says why.",
             self.contact_words(contact),
             states.join(", ")
         ));

@@ -86,8 +86,28 @@ pub struct Margins<T> {
     pub s: Option<T>,
 }
 
+impl<T: Copy> Margins<T> {
+    /// The margins with their names `lambda_n` (N), `f` (1/kg), `cone` (N), `s` (m/s); `None` where the mode does not have one.
+    #[inline]
+    pub const fn named(&self) -> [(&'static str, Option<T>); 4] {
+        [("lambda_n", self.lambda_n), ("f", self.f), ("cone", self.cone), ("s", self.s)]
+    }
+}
+
+impl<T: Scalar> Margins<T> {
+    /// The name of the first margin that is not positive; `None` while the mode holds.
+    #[inline]
+    pub fn ended(&self) -> Option<&'static str> {
+        let over = |margin: &(&'static str, Option<T>)| margin.1.is_some_and(|margin| margin <= T::zero());
+        self.named().into_iter().find(over).map(|(name, _)| name)
+    }
+}
+
 /// Mode, force and acceleration of a closed contact, along n, t, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use]
 #[non_exhaustive]
 pub struct ContactForce<T: nalgebra::Scalar> {
     /// What the contact does.

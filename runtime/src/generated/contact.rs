@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::number;
 use crate::{
-    Impact, ImpactError, ReducedMatrix, Scalar, Surface, solve,
+    Impact, ImpactError, ReducedMatrix, Scalar, Surface, impact_without_collision, solve,
     structure::{Structure, solve_structured},
 };
 
@@ -84,6 +84,25 @@ pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<
     let slip = (velocity.y * velocity.y + velocity.z * velocity.z).sqrt();
     let approach = Vector3::new(velocity.x, slip, T::zero());
     let impact = solve(&reduced, &approach, surface)?;
+    Ok(resolved(contact, (cos, sin), reduced, approach, impact))
+}
+
+/// Solves the impact without collision of a contact; its normal velocity counts as zero.
+///
+/// # Errors
+///
+/// What [`impact_without_collision`] refuses.
+#[inline]
+pub fn resolve_without_collision<T: Scalar>(
+    contact: &Contact<T>,
+    surface: &Surface<T>,
+) -> Result<Resolved<T>, ImpactError<T>> {
+    let (cos, sin) = contact_axes(contact);
+    let Contact { velocity, .. } = contact;
+    let reduced = contact.reduced.turned(cos, sin);
+    let slip = (velocity.y * velocity.y + velocity.z * velocity.z).sqrt();
+    let impact = impact_without_collision(&reduced, &Vector2::new(slip, T::zero()), surface)?;
+    let approach = Vector3::new(T::zero(), slip, T::zero());
     Ok(resolved(contact, (cos, sin), reduced, approach, impact))
 }
 

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::{ImpactError, Kind};
+use crate::{ContactError, ImpactError, Kind};
 
 /// Why a mechanism has no answer in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -198,5 +198,50 @@ impl<T> From<StateError> for CollisionError<T> {
 impl<T> From<ImpactError<T>> for CollisionError<T> {
     fn from(error: ImpactError<T>) -> Self {
         Self::Impact(error)
+    }
+}
+
+/// Why a closed contact of a mechanism has no force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum ClosedContactError<T> {
+    /// The mechanism has no equations of motion there.
+    State(StateError),
+    /// No finite force agrees with Coulomb's law.
+    Contact(ContactError<T>),
+}
+
+impl<T> ClosedContactError<T> {
+    /// A stable lower-case name.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::State(error) => error.kind(),
+            Self::Contact(error) => error.kind(),
+        }
+    }
+}
+
+impl<T: fmt::Display> fmt::Display for ClosedContactError<T> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::State(error) => error.fmt(out),
+            Self::Contact(error) => error.fmt(out),
+        }
+    }
+}
+
+impl<T: fmt::Debug + fmt::Display> core::error::Error for ClosedContactError<T> {}
+
+impl<T> From<StateError> for ClosedContactError<T> {
+    fn from(error: StateError) -> Self {
+        Self::State(error)
+    }
+}
+
+impl<T> From<ContactError<T>> for ClosedContactError<T> {
+    fn from(error: ContactError<T>) -> Self {
+        Self::Contact(error)
     }
 }

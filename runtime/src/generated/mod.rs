@@ -3,6 +3,7 @@
 mod angles;
 mod arithmetic;
 mod checks;
+mod closed;
 #[doc(hidden)]
 pub mod construction;
 mod contact;
@@ -18,8 +19,10 @@ pub use angles::sines_cosines;
 pub use arithmetic::*;
 #[doc(hidden)]
 pub use checks::*;
-pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured};
-pub use error::{CollisionError, ParameterError, StateError};
+#[doc(hidden)]
+pub use closed::{closed_contact, kept_contact, slip_noise};
+pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured, resolve_without_collision};
+pub use error::{ClosedContactError, CollisionError, ParameterError, StateError};
 #[doc(hidden)]
 pub use saltation::{by_coordinate, reset, salted, state};
 #[doc(hidden)]

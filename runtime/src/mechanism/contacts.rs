@@ -2,9 +2,11 @@
 
 use nalgebra::Vector3;
 
-use super::{Mechanism, State};
+use super::{ContactOutcome, Mechanism, State};
 use crate::generated::{check_length, check_room};
-use crate::{CollisionError, Impact, ReducedMatrix, Scalar, StateError, Surface};
+use crate::{
+    ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError, Surface,
+};
 
 /// What a contact is like in a state. The contact basis is `normal`, `first`, `second`: unit vectors, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,7 +50,7 @@ pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
     pub impact: Impact<T>,
 }
 
-/// The contacts of a mechanism, by number. A mechanism without contacts has the trait too, and its count is 0.
+/// The contacts of a mechanism, by number; [`Mechanism::index`] with [`Kind::Contact`](crate::Kind::Contact) gives the number of a name. A mechanism without contacts has the trait too, and its count is 0.
 ///
 /// `p` is the number of independent speeds; matrices are written by rows; components along the contact basis stand in the order normal,
 /// first, second (see [`ContactState`]).
@@ -64,7 +66,8 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     /// Velocity of the striking point relative to what it strikes, along the contact basis, m/s.
     fn contact_velocity(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
     /// beta: rates of the three components of the contact velocity without contact forces, m/s^2. It is the derivative of these components,
-    /// as functions of (t, q, u), along (1, q', u'), so that the turning of the contact basis counts.
+    /// as functions of (t, q, u), along (1, q', u'), so that the turning of the contact basis counts. Named inputs are held: where a velocity
+    /// depends on an input, the input's own rate is not in beta.
     fn free_acceleration(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
     /// V (3 x `p`): partial velocities along the contact basis (rows) for the independent speeds (columns).
     fn partial_velocities(
@@ -88,8 +91,60 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         speeds: &mut [T],
     ) -> Result<CollisionOutcome<T>, CollisionError<T>>;
 
+    /// Selects the mode of a closed contact (stick, slide, begin to slip, separate) with its force, coming from no contact force. The gap
+    /// and v_n count as zero: neither is looked at. Of the surface only `mu` is read. Slip that rounding alone may make of zero counts as none.
+    /// `accelerations` (`p`) receives the rates u' of the independent speeds under that force.
+    ///
+    /// # Errors
+    ///
+    /// [`ClosedContactError::Contact`] where no finite force exists: an impact without collision follows, or no mode fits.
+    /// [`StateError::Undefined`] where the mechanism does not tell it.
+    fn contact_mode(
+        &self,
+        contact: usize,
+        state: &State<'_, T>,
+        surface: &Surface<T>,
+        accelerations: &mut [T],
+    ) -> Result<ContactOutcome<T>, ClosedContactError<T>> {
+        let _ = (contact, state, surface, accelerations);
+        Err(StateError::Undefined { what: "mode of this contact" }.into())
+    }
+    /// Force of a closed contact in a mode that is kept, as [`Contacts::contact_mode`] gives it for the mode that it selects. A margin that is not
+    /// positive says that the mode has ended; the force is then the one that would keep it.
+    ///
+    /// # Errors
+    ///
+    /// As [`Contacts::contact_mode`].
+    fn contact_force(
+        &self,
+        contact: usize,
+        mode: ContactMode,
+        state: &State<'_, T>,
+        surface: &Surface<T>,
+        accelerations: &mut [T],
+    ) -> Result<ContactOutcome<T>, ClosedContactError<T>> {
+        let _ = (contact, mode, state, surface, accelerations);
+        Err(StateError::Undefined { what: "force of this contact" }.into())
+    }
+    /// Solves the impact without collision of a contact that slides with f < 0 and is pressed together; v_n counts as zero. See
+    /// [`impact_without_collision`](crate::impact_without_collision). `speeds` (`p`) receives the independent speeds after it.
+    ///
+    /// # Errors
+    ///
+    /// [`CollisionError::Impact`] where f > 0 or nothing slips: then a finite force exists.
+    fn impact_without_collision(
+        &self,
+        contact: usize,
+        state: &State<'_, T>,
+        surface: &Surface<T>,
+        speeds: &mut [T],
+    ) -> Result<CollisionOutcome<T>, CollisionError<T>> {
+        let _ = (contact, state, surface, speeds);
+        Err(StateError::Undefined { what: "impact without collision of this contact" }.into())
+    }
+
     /// W (3k x 3k) of the k `contacts`, symmetric: forces along their contact bases accelerate the contact velocities by W times the forces.
-    /// The blocks are W_ij = V_i M^-1 V_j^T. `workspace` needs 3 p (k + 1) numbers.
+    /// The blocks are W_ij = V_i M^-1 V_j^T, also called the Delassus matrix. `workspace` needs 3 p (k + 1) numbers.
     #[doc(alias = "Delassus")]
     fn coupled_matrix(
         &self,

@@ -4,10 +4,10 @@
 
 use core::hint::black_box;
 
-use hodograph::nalgebra::{SMatrix, Vector3};
+use hodograph::nalgebra::{SMatrix, Vector2, Vector3};
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Structure, solve_structured};
 use hodograph::{
-    CollisionError, Hodograph, Impact, ImpactDerivative, ImpactError, Law, ReducedMatrix, Saltation, StateError, Surface,
+    ClosedContactError, CollisionError, ContactError, ContactForce, ContactMode, Hodograph, Impact, ImpactDerivative, ImpactError, Law, ReducedMatrix, Saltation, StateError, Surface,
 };
 use no_panic::no_panic;
 
@@ -15,7 +15,7 @@ mod memory;
 
 hodograph::mechanism!("../downstream/models/hopper.mech");
 
-use hopper::{Collision, CollisionDerivative, Coordinates, Hopper, Inputs, Parameters, Speeds};
+use hopper::{ClosedContact, Collision, CollisionDerivative, Coordinates, Hopper, Inputs, Parameters, Speeds};
 
 #[no_panic]
 #[inline(never)]
@@ -98,6 +98,66 @@ fn collide_f32(
 
 #[no_panic]
 #[inline(never)]
+fn contact_mode(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+    surface: &Surface<f64>,
+) -> Result<ClosedContact, ClosedContactError<f64>> {
+    hopper.contact_mode_foot_ground(q, u, inputs, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn contact_mode_f32(
+    hopper: &Hopper<f32>,
+    q: &Coordinates<f32>,
+    u: &Speeds<f32>,
+    inputs: &Inputs<f32>,
+    surface: &Surface<f32>,
+) -> Result<ClosedContact<f32>, ClosedContactError<f32>> {
+    hopper.contact_mode_foot_ground(q, u, inputs, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn contact_force(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+    mode: ContactMode,
+    surface: &Surface<f64>,
+) -> Result<ClosedContact, ClosedContactError<f64>> {
+    hopper.contact_force_foot_ground(q, u, inputs, mode, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn impact_without_collision(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    surface: &Surface<f64>,
+) -> Result<Collision, CollisionError<f64>> {
+    hopper.impact_without_collision_foot_ground(q, u, surface)
+}
+
+#[no_panic]
+#[inline(never)]
+fn mode_after(
+    m: &ReducedMatrix<f64>,
+    beta: &Vector3<f64>,
+    slip: &Vector2<f64>,
+    mu: f64,
+    before: &Vector3<f64>,
+) -> Result<ContactForce<f64>, ContactError<f64>> {
+    hodograph::contact_mode_after(m, beta, slip, mu, before)
+}
+
+#[no_panic]
+#[inline(never)]
 fn accelerations(hopper: &Hopper, q: &Coordinates, u: &Speeds, inputs: &Inputs) -> Result<Speeds, StateError> {
     hopper.accelerations(q, u, inputs)
 }
@@ -124,15 +184,20 @@ extern "C" fn _start() -> ! {
         black_box(saltation(&hopper, &q, &u, &Inputs::default(), &surface).is_ok());
         black_box(accelerations(&hopper, &q, &u, &Inputs::default()).is_ok());
         black_box(mass_matrix(&hopper, &q).is_ok());
+        black_box(contact_mode(&hopper, &q, &u, &Inputs::default(), &surface).is_ok());
+        black_box(contact_force(&hopper, &q, &u, &Inputs::default(), black_box(ContactMode::Stick), &surface).is_ok());
+        black_box(impact_without_collision(&hopper, &q, &u, &surface).is_ok());
     }
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Poisson });
     let (q, u) = (black_box(Coordinates::default()), black_box(Speeds { u1: -2.0, u2: 0.1 }));
     black_box(collide_f32(&black_box(Hopper::default()), &q, &u, &surface).is_ok());
+    black_box(contact_mode_f32(&black_box(Hopper::default()), &q, &u, &Inputs::default(), &surface).is_ok());
     let m = black_box(ReducedMatrix::new(1.0, 0.1, 0.2, 1.0, 0.1, 1.0));
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Newton });
     black_box(solve(&m, &black_box(Vector3::new(-1.0, 0.5, 0.1)), &surface).is_ok());
     let v = black_box(Vector3::new(-1.0, 0.5, 0.1));
     black_box(derivative(&m, &v, &surface).is_ok());
+    black_box(mode_after(&m, &v, &black_box(v.yz()), surface.mu, &black_box(v)).is_ok());
     black_box(closed::<Balanced>(&m, &v, &surface).is_ok());
     black_box(closed::<Diagonal>(&m, &v, &surface).is_ok());
     black_box(closed::<Isotropic>(&m, &v, &surface).is_ok());

@@ -29,7 +29,12 @@ impl Emitter<'_> {
             "the partial velocities",
         );
         let response = self.contact_matrix(ContactQuantity::Response, "response", "the response");
-        let collide = self.collisions();
+        let collide = self.collisions("collide", "collision of this contact");
+        let without = self.collisions("impact_without_collision", "impact without collision of this contact");
+        let mode = self.closed_contacts("contact_mode", "mode of this contact", &quote!());
+        let force = self.closed_contacts("contact_force", "force of this contact", &quote!(mode,));
+        let outcome =
+            quote!(::core::result::Result<#krate::ContactOutcome<T>, #krate::ClosedContactError<T>>);
         quote! {
             /// The methods for each contact, by its number, with slices.
             impl<T: #krate::Scalar> #krate::Contacts<T> for #name<T> {
@@ -86,6 +91,34 @@ impl Emitter<'_> {
                 ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
                     #collide
                 }
+                fn impact_without_collision(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    speeds: &mut [T],
+                ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
+                    #without
+                }
+                fn contact_mode(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    accelerations: &mut [T],
+                ) -> #outcome {
+                    #mode
+                }
+                fn contact_force(
+                    &self,
+                    contact: usize,
+                    mode: #krate::ContactMode,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    accelerations: &mut [T],
+                ) -> #outcome {
+                    #force
+                }
             }
         }
     }
@@ -138,21 +171,41 @@ impl Emitter<'_> {
         })
     }
 
-    fn collisions(&self) -> TokenStream {
+    fn collisions(&self, prefix: &str, what: &str) -> TokenStream {
         let krate = self.krate;
         let size = Literal::usize_unsuffixed(self.speeds.len());
         self.by_contact(|contact| {
             if !self.collides(contact) {
-                return self.undefined("collision of this contact");
+                return self.undefined(what);
             }
             let arguments = self.collision_arguments(contact);
             let (unpack, passed) = (self.unpack(arguments), self.passed(arguments));
-            let method = ident(&self.contact_method("collide", contact));
+            let method = ident(&self.contact_method(prefix, contact));
             quote! {
                 #unpack
                 let hit = Self::#method(self, #passed surface)?;
                 #krate::generated::write_array::<T, #size>(speeds, hit.speeds, "the speeds after the collision")?;
                 ::core::result::Result::Ok(hit.outcome())
+            }
+        })
+    }
+
+    /// `contact_mode` or `contact_force`, which takes the mode before the surface.
+    fn closed_contacts(&self, prefix: &str, what: &str, mode: &TokenStream) -> TokenStream {
+        let krate = self.krate;
+        let size = Literal::usize_unsuffixed(self.speeds.len());
+        self.by_contact(|contact| {
+            if !self.closes(contact) {
+                return self.undefined(what);
+            }
+            let arguments = self.closed_arguments(contact);
+            let (unpack, passed) = (self.unpack(arguments), self.passed(arguments));
+            let method = ident(&self.contact_method(prefix, contact));
+            quote! {
+                #unpack
+                let closed = Self::#method(self, #passed #mode surface)?;
+                #krate::generated::write_array::<T, #size>(accelerations, closed.accelerations, "the accelerations")?;
+                ::core::result::Result::Ok(closed.outcome)
             }
         })
     }
