@@ -5,10 +5,10 @@
 //! Where going round does not settle, all combinations of modes of few contacts are tried.
 
 use hodograph::{ContactError, ContactMode, Selection, contact_mode, contact_mode_after};
-use nalgebra::{DVector, Vector2};
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use crate::forces::{Forces, Hold, Lacking, hold_good, shared};
-use crate::support::Support;
+use crate::support::{Support, least_squares};
 
 /// Rounds at most.
 const ROUNDS: usize = 3000;
@@ -30,6 +30,8 @@ pub(crate) struct Choice {
     pub decisions: Vec<Decision>,
     pub forces: Vec<nalgebra::Vector3<f64>>,
     pub selection: Vec<Selection>,
+    /// With which the forces were found where others are possible.
+    pub weights: Vec<f64>,
     pub unique: bool,
 }
 
@@ -106,6 +108,7 @@ fn one(
         decisions: vec![decision(answer.mode, answer.direction)],
         forces: vec![answer.force],
         selection: vec![answer.selection],
+        weights: vec![1.0],
         unique: answer.force_is_unique,
     })
 }
@@ -176,35 +179,29 @@ fn polished(
     let part = part(support, &pressed);
     let friction: Vec<f64> = pressed.iter().map(|&i| mu[i]).collect();
     let weights: Vec<f64> = pressed.iter().map(|&i| about.map_or(1.0, |all| all[3 * i])).collect();
-    let mut found: Option<(Forces, Vec<Hold>)> = None;
-    for _ in 0..60 {
+    let begin: Vec<(usize, usize)> = pressed
+        .iter()
+        .enumerate()
+        .filter(|&(_, &i)| slips[i].is_none() && directions[i].is_some())
+        .map(|(place, &i)| (place, i))
+        .collect();
+    let solved = |directions: &[Option<Vector2<f64>>]| -> Option<(Forces, Vec<f64>, Vec<Hold>)> {
         let holds: Vec<Hold> =
             pressed.iter().map(|&i| directions[i].map_or(Hold::Stick, Hold::Slide)).collect();
-        let forces = if pressed.is_empty() {
-            Forces { lambda: DVector::zeros(0), acceleration: DVector::zeros(0), unique: true, f: 1.0 }
+        let (forces, weights) = if pressed.is_empty() {
+            let none =
+                Forces { lambda: DVector::zeros(0), acceleration: DVector::zeros(0), unique: true, f: 1.0 };
+            (none, Vec::new())
         } else {
             shared(&part, &holds, &friction, weights.clone()).ok()?
         };
-        // Slip begins along the acceleration.
-        let mut turned = 0.0_f64;
-        for (place, &i) in pressed.iter().enumerate() {
-            if slips[i].is_none() && directions[i].is_some() {
-                let rate =
-                    Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
-                let next = rate / rate.norm();
-                if !next.x.is_finite() {
-                    return None;
-                }
-                turned = turned.max((next - directions[i].unwrap_or(next)).norm());
-                directions[i] = Some(next);
-            }
-        }
-        found = Some((forces, holds));
-        if turned <= 1e-14 {
-            break;
-        }
-    }
-    let (found, holds) = found?;
+        Some((forces, weights, holds))
+    };
+    begin_along(&begin, &mut directions, |directions| solved(directions).map(|(forces, ..)| forces))?;
+    let found = solved(&directions);
+    let (found, weights, holds) = found?;
+    let mut all_weights = vec![0.0; k];
+    pressed.iter().zip(&weights).for_each(|(&i, &weight)| all_weights[i] = weight);
     if !hold_good(&found, &holds, &friction) {
         return None;
     }
@@ -237,9 +234,82 @@ fn polished(
         decisions: result,
         forces: (0..k).map(|i| Support::three(&lambda, i)).collect(),
         selection: vec![Selection::Unique; k],
+        weights: all_weights,
         unique: found.unique,
     })
 }
+
+/// Turns the directions in which slip begins until each is that of the acceleration: Newton's method for the angles. `begin` are these contacts, by their
+/// place in the forces and in the directions.
+fn begin_along(
+    begin: &[(usize, usize)],
+    directions: &mut [Option<Vector2<f64>>],
+    forces: impl Fn(&[Option<Vector2<f64>>]) -> Option<Forces>,
+) -> Option<()> {
+    if begin.is_empty() {
+        return Some(());
+    }
+    let m = begin.len();
+    // Across each direction, relative to the size of the acceleration.
+    let across = |directions: &[Option<Vector2<f64>>]| -> Option<DVector<f64>> {
+        let found = forces(directions)?;
+        let mut residual = DVector::zeros(m);
+        for (row, &(place, i)) in begin.iter().enumerate() {
+            let d = directions[i]?;
+            let rate = Vector2::new(found.acceleration[3 * place + 1], found.acceleration[3 * place + 2]);
+            residual[row] = d.x * rate.y - d.y * rate.x;
+            if rate.dot(&d) < 0.0 {
+                // The other way round is no zero.
+                residual[row] += if residual[row] < 0.0 { rate.dot(&d) } else { -rate.dot(&d) };
+            }
+        }
+        Some(residual)
+    };
+    let turned = |directions: &[Option<Vector2<f64>>], by: &DVector<f64>| {
+        let mut directions = directions.to_vec();
+        for (by, &(_, i)) in by.iter().zip(begin) {
+            let (sin, cos) = by.sin_cos();
+            directions[i] =
+                directions[i].map(|d| Vector2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y).normalize());
+        }
+        directions
+    };
+    let mut residual = across(directions)?;
+    for _ in 0..TURNS {
+        let mut jacobian = DMatrix::zeros(m, m);
+        for column in 0..m {
+            let mut by = DVector::zeros(m);
+            by[column] = TURN;
+            let there = across(&turned(directions, &by))?;
+            by[column] = -TURN;
+            let here = across(&turned(directions, &by))?;
+            jacobian.set_column(column, &((there - here) / (2.0 * TURN)));
+        }
+        let step = -least_squares(&jacobian, &residual);
+        // Shorter where it does not help.
+        let mut share = 1.0;
+        let next = loop {
+            let by = &step * (share * (1.0 / step.amax().max(1.0)));
+            let next = turned(directions, &by);
+            match across(&next) {
+                Some(left) if left.amax() < residual.amax() => break Some((next, left, by.amax())),
+                _ if share < 1e-3 => break None,
+                _ => share *= 0.5,
+            }
+        };
+        let Some((next, left, size)) = next else { break };
+        directions.copy_from_slice(&next);
+        residual = left;
+        if size <= 1e-15 {
+            break;
+        }
+    }
+    Some(())
+}
+
+/// Steps of Newton's method at most, and the difference by which its derivatives are formed, rad.
+const TURNS: usize = 30;
+const TURN: f64 = 1e-6;
 
 /// The support by some of the contacts.
 pub(crate) fn part(support: &Support, places: &[usize]) -> Support {

@@ -86,20 +86,20 @@ pub(crate) fn forces(
     let acceleration = &support.coupled * &lambda + &support.beta;
     let left = (0..m).map(|a| acceleration[row(a)].abs()).fold(0.0, f64::max);
     let size = support.beta.amax() + (support.coupled.abs() * lambda.abs()).amax();
-    if !lambda.iter().all(|value| value.is_finite()) || left > 1e-8 * size {
+    if !lambda.iter().all(|value| value.is_finite()) || left > INCONSISTENT * size {
         return Err(Lacking::Together);
     }
     Ok(Forces { lambda, acceleration, unique, f: 1.0 })
 }
 
-/// The forces of an overdetermined support with their own normal forces as weights, so that all contacts use their friction alike; `weights`
-/// are a first guess.
+/// The forces of an overdetermined support with nearly their own normal forces as weights, so that all contacts use their friction alike, and the weights
+/// with which they were found; `weights` are a first guess.
 pub(crate) fn shared(
     support: &Support,
     holds: &[Hold],
     mu: &[f64],
     mut weights: Vec<f64>,
-) -> Result<Forces, Lacking> {
+) -> Result<(Forces, Vec<f64>), Lacking> {
     let mut answer = forces(support, holds, mu, Some(&weights))?;
     for _ in 0..SHARING {
         if answer.unique {
@@ -108,8 +108,11 @@ pub(crate) fn shared(
         weights.iter_mut().enumerate().for_each(|(i, weight)| *weight = answer.lambda[3 * i].max(0.0));
         answer = forces(support, holds, mu, Some(&weights))?;
     }
-    Ok(answer)
+    Ok((answer, weights))
 }
+
+/// Accelerations that forces should cancel may be left in this ratio to their terms: see the bound of pivots.
+const INCONSISTENT: f64 = 1e-6;
 
 /// Rounds of sharing.
 const SHARING: usize = 3;

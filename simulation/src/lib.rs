@@ -18,6 +18,7 @@ mod locate;
 mod motion;
 mod options;
 mod proceed;
+mod rattle;
 mod settle;
 mod simulation;
 mod slip_end;

@@ -10,6 +10,15 @@ const DEGREES: [usize; 3] = [8, 16, 32];
 /// Most halvings of a step where a function is not smooth.
 const DEPTH: usize = 24;
 
+/// Most evaluations of the functions in a step.
+const MOST: usize = 20_000;
+/// A step in so many halves, at least, before what seems to be rounding is taken for it.
+const HALVED: usize = 3;
+
+/// The functions have no values somewhere in the step, or it is too long for what they do: a shorter one must be looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Unresolved;
+
 /// Where a function falls below zero.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing {
@@ -107,16 +116,25 @@ impl Chebyshev {
 
 /// The first crossing of `count` functions over the fractions [0, 1] of a step. `values` gives all functions at a fraction, or nothing where they
 /// cannot be evaluated; `noise` is what rounding may do to each.
+///
+/// # Errors
+///
+/// [`Unresolved`] where functions have no values, or too many evaluations were needed.
 pub(crate) fn first_crossing(
     count: usize,
     noise: &[f64],
     values: &mut dyn FnMut(f64) -> Option<Vec<f64>>,
-) -> Option<Crossing> {
+) -> Result<Option<Crossing>, Unresolved> {
     if count == 0 {
-        return None;
+        return Ok(None);
     }
     let active: Vec<usize> = (0..count).collect();
-    within(&active, noise, values, 0.0, 1.0, DEPTH)
+    let mut left = MOST;
+    let mut counted = |place| {
+        left = left.checked_sub(1)?;
+        values(place)
+    };
+    within(&active, noise, &mut counted, 0.0, 1.0, DEPTH)
 }
 
 fn within(
@@ -126,7 +144,7 @@ fn within(
     low: f64,
     high: f64,
     depth: usize,
-) -> Option<Crossing> {
+) -> Result<Option<Crossing>, Unresolved> {
     let mut points: Vec<Option<Vec<f64>>> = Vec::new();
     let mut unresolved: Vec<usize> = active.to_vec();
     let mut found: Option<Crossing> = None;
@@ -150,10 +168,8 @@ fn within(
             *slot = known.or_else(|| values(place));
         }
         points = next;
-        let Some(rows) = points.iter().map(Option::as_ref).collect::<Option<Vec<&Vec<f64>>>>() else {
-            // Somewhere there are no values: a shorter part may have them.
-            break;
-        };
+        let rows: Vec<&Vec<f64>> =
+            points.iter().map(Option::as_ref).collect::<Option<_>>().ok_or(Unresolved)?;
         let mut left = Vec::new();
         for function in unresolved {
             let column: Vec<f64> = rows.iter().map(|row| row[function]).collect();
@@ -166,7 +182,8 @@ fn within(
             if polynomial.coefficients[0] > 0.0 && rest + 8.0 * error < 0.0 {
                 continue;
             }
-            if error > fine && !(error <= 1e-9 * size && degree == 32 && depth == 0) {
+            let rounding = degree == DEGREES[2] && depth + HALVED <= DEPTH && error <= 1e-9 * size;
+            if error > fine && !rounding {
                 left.push(function);
                 continue;
             }
@@ -179,7 +196,7 @@ fn within(
         }
         unresolved = left;
         if unresolved.is_empty() {
-            return found;
+            return Ok(found);
         }
     }
     if depth == 0 || high - low < 1e-12 {
@@ -193,22 +210,22 @@ fn within(
                 }
             }
         }
-        return found;
+        return Ok(found);
     }
     let middle = 0.5 * (low + high);
     let rest = unresolved;
-    let first = within(&rest, noise, values, low, middle, depth - 1);
+    let first = within(&rest, noise, values, low, middle, depth - 1)?;
     let earliest = |a: Option<Crossing>, b: Option<Crossing>| match (a, b) {
         (Some(a), Some(b)) => Some(if b.place < a.place { b } else { a }),
         (a, b) => a.or(b),
     };
     if let Some(first) = first {
-        return earliest(found, Some(first));
+        return Ok(earliest(found, Some(first)));
     }
     if found.is_some_and(|crossing| crossing.place <= middle) {
-        return found;
+        return Ok(found);
     }
-    earliest(found, within(&rest, noise, values, middle, high, depth - 1))
+    Ok(earliest(found, within(&rest, noise, values, middle, high, depth - 1)?))
 }
 
 #[cfg(test)]
@@ -216,7 +233,7 @@ mod tests {
     use super::*;
 
     fn first(f: impl Fn(f64) -> f64) -> Option<f64> {
-        first_crossing(1, &[0.0], &mut |x| Some(vec![f(x)])).map(|crossing| crossing.place)
+        first_crossing(1, &[0.0], &mut |x| Some(vec![f(x)])).unwrap().map(|crossing| crossing.place)
     }
 
     #[test]
@@ -246,6 +263,31 @@ mod tests {
         assert!((place - x).abs() < 2e-7, "{place} {x}");
         assert!(first(|x| 1.0001 + (300.0 * x).cos()).is_none());
         assert!(first(|x: f64| (x - 0.3).powi(2)).is_none());
+    }
+
+    /// Rounding that no polynomial resolves, and functions without values, cost a bounded number of evaluations.
+    #[test]
+    fn the_work_is_bounded() {
+        let mut count = 0;
+        let mut evaluated = |f: &dyn Fn(f64) -> Option<f64>| {
+            count = 0;
+            let found = first_crossing(1, &[0.0], &mut |x| {
+                count += 1;
+                f(x).map(|value| vec![value])
+            });
+            (found.map(|crossing| crossing.map(|crossing| crossing.place)), count)
+        };
+        let rough = |x: f64| 1e-10 * ((1e9 * x).sin() * 1e6).sin();
+        let (found, count) = evaluated(&|x| Some(1.5 - x + rough(x)));
+        assert_eq!(found, Ok(None));
+        assert!(count < 1000, "{count}");
+        let (found, count) = evaluated(&|x| Some(0.625 - x + rough(x)));
+        assert!((found.unwrap().unwrap() - 0.625).abs() < 1e-8 && count < 1000, "{count}");
+        let (found, count) = evaluated(&|x| (x < 0.7).then_some(1.0));
+        assert!(found == Err(Unresolved) && count < 100, "{count}");
+        // As rough as it is large.
+        let (_, count) = evaluated(&|x| Some(1.0001 + (1e9 * x).sin()));
+        assert!(count <= MOST, "{count}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use hodograph::{ContactError, Contacts, Kind, State, StateError};
 use nalgebra::Vector2;
 
 use crate::Drive;
-use crate::forces::{Forces, Hold, Lacking, shared};
+use crate::forces::{Forces, Hold, Lacking, forces, shared};
 use crate::support::Support;
 
 /// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
@@ -15,10 +15,19 @@ const DIRECTION: f64 = 1e-10;
 pub(crate) struct Closed {
     pub contact: usize,
     pub mu: f64,
-    /// its normal force when its mode was decided
+    /// its weight where forces are not unique, as found when its mode was decided
     pub weight: f64,
     /// none while it sticks; else the direction in which slip began, for as long as slip is too small to have one
     pub slides: Option<Vector2<f64>>,
+}
+
+/// What stays the same during a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Modes {
+    pub closed: Vec<Closed>,
+    /// the inputs that are held
+    pub held: Vec<f64>,
+    pub resting: bool,
 }
 
 /// Why the rates cannot be evaluated.
@@ -120,7 +129,13 @@ impl Motion<'_> {
                 Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
                 Lacking::Together => Failure::Together,
             };
-            let answer = shared(&support, &holds, &mu, weights).map_err(lacking)?;
+            // Where something slides its share of the normal forces decides how it is slowed down, and must not change between two decisions.
+            let answer = if holds.iter().all(|hold| *hold == Hold::Stick) {
+                shared(&support, &holds, &mu, weights).map(|(answer, _)| answer)
+            } else {
+                forces(&support, &holds, &mu, Some(&weights))
+            };
+            let answer = answer.map_err(lacking)?;
             let greatest = answer.lambda.amax();
             for (i, rate) in rates[n..n + p].iter_mut().enumerate() {
                 let mut size = rate.abs();

@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 
 use crate::forces::{Hold, margins};
 use crate::locate::{Crossing, first_crossing};
-use crate::motion::{Closed, Evaluation, Failure};
+use crate::motion::{Closed, Evaluation, Failure, Modes, Motion};
 use crate::simulation::{Leaving, Phase, Simulation};
 use crate::slip_end::{Fate, fate};
 use crate::stepper::{self, Step, Tolerances};
@@ -116,6 +116,10 @@ impl Simulation<'_> {
                 let y = step.at(fraction);
                 self.values(closed, &watched, step.h * fraction, &y).ok()
             });
+            let Ok(found) = found else {
+                most = 0.5 * step.h;
+                continue;
+            };
             let found = found.map(|crossing| (watched[crossing.function], crossing));
             return Ok(Some((step, found)));
         }
@@ -247,12 +251,7 @@ impl Simulation<'_> {
 
     /// A part of the step from the front, integrated anew.
     fn part(&self, closed: &[Closed], h: f64) -> Option<Step> {
-        let motion = self.motion(closed);
-        let rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
-            Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
-            Err(_) => rates.fill(f64::NAN),
-        };
-        stepper::part(&rates, self.t, &self.y, h)
+        part_of(&self.motion(closed), self.t, &self.y, h)
     }
 
     /// Gap and normal velocity of a contact at the end of a step.
@@ -338,6 +337,7 @@ impl Simulation<'_> {
 
     /// Takes the end of a step as the new front.
     pub(crate) fn commit(&mut self, step: &mut Step) -> Result<(), SimulationError> {
+        self.past = self.modes();
         self.t = step.t + step.h;
         self.y.copy_from_slice(&step.end);
         self.correct()?;
@@ -358,32 +358,57 @@ impl Simulation<'_> {
 
     /// Puts right what drifted.
     pub(crate) fn correct(&mut self) -> Result<(), SimulationError> {
+        let mut y = std::mem::take(&mut self.y);
+        let modes = self.modes();
+        let done = self.put_right(&modes, self.t, &mut y);
+        self.y = y;
+        done
+    }
+
+    /// The modes at the front.
+    pub(crate) fn modes(&self) -> Modes {
+        Modes { closed: self.closed(), held: self.held.clone(), resting: self.resting }
+    }
+
+    /// Puts right what drifted while these modes lasted.
+    fn put_right(&self, modes: &Modes, t: f64, y: &mut [f64]) -> Result<(), SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
         let p = self.mechanism.count(Kind::Speed);
-        let closed: Vec<(usize, bool)> = self
-            .phases
-            .iter()
-            .enumerate()
-            .filter(|(_, phase)| phase.is_closed())
-            .map(|(contact, phase)| (contact, *phase == Phase::Stick))
-            .collect();
-        let mut q = self.y[..n].to_vec();
-        let mut u = self.y[n..n + p].to_vec();
+        let closed: Vec<(usize, bool)> =
+            modes.closed.iter().map(|closed| (closed.contact, closed.slides.is_none())).collect();
+        let mut q = y[..n].to_vec();
+        let mut u = y[n..n + p].to_vec();
         let moved = (|| {
-            drift::close_loops(self.mechanism, self.t, &mut q, &u, &self.held)?;
-            drift::hold_velocities(self.mechanism, self.t, &q, &mut u, &self.held, &closed)?;
-            if !self.resting {
+            drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
+            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
+            if !modes.resting {
                 let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-                drift::close_gaps(self.mechanism, self.t, &mut q, &u, &self.held, &contacts)?;
+                drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)?;
             }
             Ok(())
         })();
         moved.map_err(|error| self.failure(Failure::State(error)))?;
-        self.y[..n].copy_from_slice(&q);
-        if !self.resting {
-            self.y[n..n + p].copy_from_slice(&u);
+        y[..n].copy_from_slice(&q);
+        if !modes.resting {
+            y[n..n + p].copy_from_slice(&u);
         }
         Ok(())
+    }
+
+    /// The state at a time in the last step, integrated anew up to it: as exact as the step itself.
+    pub(crate) fn within_step(&self, time: f64) -> Option<Vec<f64>> {
+        let step = self.step.as_ref()?;
+        let motion = Motion {
+            mechanism: self.mechanism,
+            drive: &self.options.drive,
+            held: &self.past.held,
+            closed: &self.past.closed,
+            resting: self.past.resting,
+        };
+        let part = part_of(&motion, step.t, step.start(), time - step.t)?;
+        let mut y = part.end;
+        self.put_right(&self.past, time, &mut y).ok()?;
+        Some(y)
     }
 
     /// Contacts that were about to leave are apart once their gaps are open.
@@ -507,6 +532,15 @@ impl Simulation<'_> {
         self.slip_ended(&stopped)?;
         self.arm()
     }
+}
+
+/// The motion from a state on, over exactly so long.
+fn part_of(motion: &Motion<'_>, t: f64, y: &[f64], h: f64) -> Option<Step> {
+    let rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
+        Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
+        Err(_) => rates.fill(f64::NAN),
+    };
+    stepper::part(&rates, t, y, h)
 }
 
 /// The coefficients of friction.

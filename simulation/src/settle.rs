@@ -172,7 +172,10 @@ impl Simulation<'_> {
     }
 
     /// The directions of slip; none where there is none.
-    fn slips_of(&self, candidates: &[usize]) -> Result<Vec<Option<Vector2<f64>>>, SimulationError> {
+    pub(crate) fn slips_of(
+        &self,
+        candidates: &[usize],
+    ) -> Result<Vec<Option<Vector2<f64>>>, SimulationError> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
         let speeds = &self.y[n..n + p];
         let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
@@ -198,6 +201,7 @@ impl Simulation<'_> {
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection[place];
             self.forces[contact] = choice.forces[place];
+            self.weights[contact] = choice.weights[place];
             match choice.decisions[place] {
                 Decision::Separate => {
                     self.phases[contact] = Phase::Open(Leaving::Lifted);

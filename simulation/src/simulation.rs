@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use hodograph::{Contacts, Kind, State, Surface};
 use nalgebra::{Vector2, Vector3};
 
-use crate::motion::{Closed, Failure, Motion, WORKS};
+use crate::motion::{Closed, Failure, Modes, Motion, WORKS};
 use crate::stepper::Step;
 use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
 
@@ -57,6 +57,8 @@ pub struct Simulation<'m> {
     pub(crate) phases: Vec<Phase>,
     /// force of each contact when its mode was last decided
     pub(crate) forces: Vec<Vector3<f64>>,
+    /// weight of each contact where forces are not unique: the same from one decision to the next
+    pub(crate) weights: Vec<f64>,
     /// whether the forces of the closed contacts were the only possible ones
     pub(crate) unique: bool,
     /// time, coordinates, speeds and works at the front: the end of the last step, after its events
@@ -64,6 +66,8 @@ pub struct Simulation<'m> {
     pub(crate) y: Vec<f64>,
     pub(crate) held: Vec<f64>,
     pub(crate) step: Option<Step>,
+    /// the modes during that step
+    pub(crate) past: Modes,
     pub(crate) next: f64,
     pub(crate) queue: VecDeque<Event>,
     /// contacts whose bounces end at a time
@@ -127,12 +131,14 @@ impl<'m> Simulation<'m> {
             surfaces: Vec::new(),
             phases: vec![Phase::Open(Leaving::Apart); count],
             forces: vec![Vector3::zeros(); count],
+            weights: vec![1.0; count],
             unique: true,
             t: state.time,
             view: (state.time, y.clone()),
             y,
             held: state.inputs.to_vec(),
             step: None,
+            past: Modes::default(),
             next: 1e-3,
             queue: VecDeque::new(),
             chatter: Vec::new(),
@@ -206,11 +212,12 @@ impl<'m> Simulation<'m> {
             self.view = (self.t, self.y.clone());
             return;
         }
-        if let Some(step) = &mut self.step {
-            let y = step.at((time - step.t) / step.h);
+        let exact = self.within_step(time);
+        let between = |step: &mut Step| step.at((time - step.t) / step.h);
+        if let Some(y) = exact.or_else(|| self.step.as_mut().map(between)) {
             self.view = (time, y);
         }
-        // Integration lets quaternions drift; they are put right at the end of a step only.
+        // Integration lets quaternions drift.
         let n = self.mechanism.count(Kind::Coordinate);
         let _ = self.mechanism.normalize(&mut self.view.1[..n]);
     }
@@ -301,7 +308,7 @@ impl<'m> Simulation<'m> {
                     Phase::Stick => None,
                     Phase::Slide(direction) => Some(*direction),
                 };
-                Some(Closed { contact, mu: self.mu(contact), weight: self.forces[contact].x, slides })
+                Some(Closed { contact, mu: self.mu(contact), weight: self.weights[contact], slides })
             })
             .collect()
     }

@@ -32,6 +32,11 @@ impl Step {
         Self { t, h, next: h, end: state.to_vec(), start: state.to_vec(), method: None }
     }
 
+    /// The state at the beginning.
+    pub fn start(&self) -> &[f64] {
+        &self.start
+    }
+
     /// The state at a fraction of the step.
     pub fn at(&mut self, fraction: f64) -> Vec<f64> {
         if fraction >= 1.0 {

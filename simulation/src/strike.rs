@@ -49,6 +49,9 @@ impl Simulation<'_> {
             let names = names(&list);
             return Err(self.error(Some(first), Reason::Together(names)));
         }
+        if self.comes_to_lie(first)? {
+            return Ok(());
+        }
         let hits = self.sequence(&touching, &speeds, None)?;
         let spread = self.spread(&touching, &speeds, &hits)?;
         let mut last = speeds;

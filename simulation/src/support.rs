@@ -135,8 +135,9 @@ pub(crate) fn free_acceleration(
 /// Step of the differences, s.
 const DIFFERENCE: f64 = 1e-3;
 
-/// Below this ratio to the greatest one a singular value counts as zero.
-const SINGULAR: f64 = 1e-10;
+/// Below this ratio to the greatest one a pivot counts as zero. Within a step the contacts of an overdetermined support lie in their plane but
+/// for the errors of the step, and the pivots that vanish in the plane must count as zero there too.
+const SINGULAR: f64 = 1e-7;
 
 /// The least x with A x = b as nearly as possible.
 pub(crate) fn least_squares(matrix: &DMatrix<f64>, right: &DVector<f64>) -> DVector<f64> {
@@ -155,7 +156,7 @@ pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64
     }
     let lu = matrix.clone().full_piv_lu();
     let diagonal = lu.u().diagonal().abs();
-    if diagonal.min() > 1e-7 * diagonal.max()
+    if diagonal.min() > 10.0 * SINGULAR * diagonal.max()
         && let Some(mut x) = lu.solve(right)
     {
         // One refinement.
@@ -164,14 +165,61 @@ pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64
         }
         return (x, true);
     }
-    let svd = matrix.clone().svd(true, true);
-    let cutoff = SINGULAR * svd.singular_values.max();
-    let unique = svd.singular_values.min() > cutoff;
-    match svd.solve(right, cutoff) {
-        Ok(x) => {
-            let more = svd.solve(&(right - matrix * &x), cutoff);
-            (more.map_or_else(|_| x.clone(), |more| &x + more), unique)
+    let (x, unique) = least(matrix, right);
+    // One refinement.
+    let (more, _) = least(matrix, &(right - matrix * &x));
+    (x + more, unique)
+}
+
+/// The least x that solves the equations of a singular matrix as far as its rank goes: A P = Q R with pivots, and the least solution of R' x = Q' b
+/// where R' are the rows of R up to the rank. (A singular value decomposition by shifts may lose half the digits next to a zero.)
+fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
+    let n = matrix.ncols();
+    let qr = matrix.clone().col_piv_qr();
+    let r = qr.r();
+    let greatest = r[(0, 0)].abs();
+    let rank = (0..r.nrows().min(n)).take_while(|&i| r[(i, i)].abs() > SINGULAR * greatest).count();
+    if rank == 0 {
+        return (DVector::zeros(n), false);
+    }
+    let rows = r.rows(0, rank).into_owned();
+    let projected = (qr.q().transpose() * right).rows(0, rank).into_owned();
+    // The least solution of rows x = projected lies in the span of the rows: rows^T = Q2 R2, x = Q2 R2^-T projected.
+    let second = rows.transpose().qr();
+    let mut x = match second.r().transpose().solve_lower_triangular(&projected) {
+        Some(inner) => second.q() * inner,
+        None => DVector::zeros(n),
+    };
+    qr.p().inv_permute_rows(&mut x);
+    (x, rank == n)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Four corners that slide: the matrix has rank three, and the equations are consistent.
+    #[test]
+    fn singular_systems_are_solved_to_rounding() {
+        for k in 0..200 {
+            let angle = 0.03 * f64::from(k);
+            let corners = [[-1.0, -0.5], [1.0, -0.5], [-1.0, 0.5], [1.0, 0.5]];
+            let arm = DMatrix::from_fn(3, 4, |row, i| match row {
+                0 => 1.0,
+                1 => 2.0 * corners[i][1] + 0.3 * (angle * (i as f64 + 1.0)).sin(),
+                _ => 1.5 * corners[i][0] + 0.2 * (angle * (i as f64 + 2.0)).cos(),
+            });
+            let plane = DMatrix::from_fn(4, 3, |i, row| [1.0, corners[i][1], corners[i][0]][row]);
+            let matrix = &plane * arm;
+            let right = DVector::from_element(4, 9.81);
+            let (x, unique) = solve(&matrix, &right);
+            assert!(!unique);
+            assert!((&matrix * &x - right).amax() < 1e-13, "{k}");
+            // The least: no part of it lies in the null space.
+            let svd = matrix.clone().transpose() * &matrix;
+            let null = svd.symmetric_eigen();
+            let (least, _) = null.eigenvalues.argmin();
+            assert!(null.eigenvectors.column(least).dot(&x).abs() < 1e-6, "{k}");
         }
-        Err(_) => (DVector::zeros(n), false),
     }
 }

@@ -1,6 +1,8 @@
 //! Planar bodies written by hand, for tests of the simulation.
 #![allow(dead_code)]
 
+pub mod random;
+
 use hodograph::{
     CollisionError, CollisionOutcome, Component, ContactState, Contacts, Kind, Law, Mechanism,
     ParameterError, ReducedMatrix, State, StateError, Surface, solve,

@@ -1,0 +1,129 @@
+//! The end of rattling: several contacts of a body that strike in turn, ever faster and ever lower.
+//!
+//! A block that rocks, or a box that falls flat on its corners, strikes the ground infinitely often in a finite time, also with e = 0. The speeds vanish with
+//! the heights. To the first order in the speeds that are left, the impulses p of the series and of gravity over its time T satisfy W p = -v - beta T with
+//! friction along one direction: p = p0 + lambda T, where p0 makes the velocities vanish at once and lambda are the forces of lasting contact. So: where the
+//! heights are below the tolerance, and lasting contact presses everywhere, give the impulses p0 and go on in contact. It is the rule of one contact for several.
+
+use hodograph::{Kind, State};
+use nalgebra::DVector;
+
+use crate::SimulationError;
+use crate::forces::{Hold, forces};
+use crate::motion::Failure;
+use crate::simulation::{Leaving, Phase, Simulation};
+use crate::support::Support;
+
+/// Contacts nearer than so many times the tolerance take part.
+const NEAR: f64 = 8.0;
+
+impl Simulation<'_> {
+    /// A contact has closed: whether it and others near it now stay, because they would rattle below the tolerance only.
+    pub(crate) fn comes_to_lie(&mut self, first: usize) -> Result<bool, SimulationError> {
+        let mut near = self.near(first)?;
+        if near.len() < 2 || !self.quiet(&near)? {
+            return Ok(false);
+        }
+        let before = self.clone();
+        while near.len() > 1 && near.contains(&first) {
+            let lies = self.lie(&near);
+            if lies == Ok(true) {
+                return Ok(true);
+            }
+            let closed = |contact: &usize| lies.is_ok() && self.phases[*contact].is_closed();
+            let left: Vec<usize> = near.iter().copied().filter(closed).collect();
+            self.clone_from(&before);
+            if left.len() == near.len() || left.is_empty() {
+                break;
+            }
+            near = left;
+        }
+        Ok(false)
+    }
+
+    /// The contacts that are closed or nearly so.
+    fn near(&self, first: usize) -> Result<Vec<usize>, SimulationError> {
+        let state = self.here();
+        let reach = NEAR * self.options.absolute_tolerance;
+        let mut near = Vec::new();
+        for contact in 0..self.phases.len() {
+            if self.surfaces[contact].is_none() {
+                continue;
+            }
+            let gap =
+                || self.mechanism.gap(contact, &state).map_err(|error| self.failure(Failure::State(error)));
+            if contact == first || self.phases[contact].is_closed() || gap()?.is_some_and(|gap| gap <= reach)
+            {
+                near.push(contact);
+            }
+        }
+        Ok(near)
+    }
+
+    /// Whether the normal velocities are so small that falls as high as the tolerance explain them.
+    fn quiet(&self, near: &[usize]) -> Result<bool, SimulationError> {
+        let support = self.support(near, true)?;
+        let pull = (0..near.len()).map(|i| support.beta[3 * i].abs()).fold(0.0, f64::max);
+        let most = 2.0 * self.options.absolute_tolerance * pull;
+        Ok((0..near.len()).all(|i| support.velocity[3 * i].powi(2) <= most))
+    }
+
+    /// Makes contacts stay; whether they do, and would not have risen above the tolerance.
+    fn lie(&mut self, near: &[usize]) -> Result<bool, SimulationError> {
+        let was = self.phases.clone();
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let mut support = self.support(near, false)?;
+        let rates: Vec<f64> = (0..near.len()).map(|i| support.velocity[3 * i]).collect();
+        let mu: Vec<f64> = near.iter().map(|&contact| self.mu(contact)).collect();
+        let holds: Vec<Hold> =
+            self.slips_of(near)?.into_iter().map(|slip| slip.map_or(Hold::Stick, Hold::Slide)).collect();
+        support.beta.copy_from(&support.velocity);
+        let kinetic = self.kinetic()?;
+        let start = self.y.clone();
+        let change = match forces(&support, &holds, &mu, None) {
+            Ok(impulses) => impulses.rates(&support),
+            Err(_) => DVector::zeros(p),
+        };
+        self.y[n..n + p].iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
+        if self.kinetic()? > kinetic {
+            // Without friction energy cannot grow.
+            self.y = start;
+            let rows: Vec<usize> = (0..near.len()).map(|i| 3 * i).collect();
+            let change = support.without(&rows, &support.velocity);
+            self.y[n..n + p].iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
+        }
+        for &contact in near {
+            if !self.phases[contact].is_closed() {
+                self.phases[contact] = Phase::Open(Leaving::Lifted);
+            }
+        }
+        self.energy.impacts += self.kinetic()? - kinetic;
+        self.decide(near, &was)?;
+        let support = self.support(near, false)?;
+        let low = |(i, &contact): (usize, &usize)| {
+            let pull = self.forces[contact].x * support.coupled[(3 * i, 3 * i)];
+            self.phases[contact].is_closed()
+                && rates[i].powi(2) <= 2.0 * self.options.absolute_tolerance * pull
+        };
+        if !near.iter().enumerate().all(low) {
+            return Ok(false);
+        }
+        self.look_for_rest()?;
+        Ok(true)
+    }
+
+    fn support(&self, contacts: &[usize], accelerate: bool) -> Result<Support, SimulationError> {
+        Support::new(self.mechanism, &self.here(), contacts, accelerate)
+            .map_err(|error| self.failure(Failure::State(error)))
+    }
+
+    fn kinetic(&self) -> Result<f64, SimulationError> {
+        self.mechanism.kinetic_energy(&self.here()).map_err(|error| self.failure(Failure::State(error)))
+    }
+
+    /// The state at the front.
+    fn here(&self) -> State<'_> {
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &self.held }
+    }
+}
