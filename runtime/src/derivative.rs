@@ -2,14 +2,14 @@
 //!
 //! Theory: docs/theory.md, section 13.
 
-use nalgebra::{Matrix3, SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector2, Vector3};
 
 use crate::{
     Impact, ImpactError, Law, Path, ReducedMatrix, Scalar, Surface,
     dual::Dual,
     scalar::constant,
     solve,
-    solve::{Contact, solve_real},
+    solve::{Contact, impact_without_collision, solve_real, without_collision},
 };
 
 /// Inputs: approach velocity (3), reduced matrix (6), mu, e.
@@ -123,10 +123,60 @@ pub fn derivative<T: Scalar>(
     approach: &Vector3<T>,
     surface: &Surface<T>,
 ) -> Result<ImpactDerivative<T>, ImpactError<T>> {
+    differentiate(matrix, approach, surface, solve, solve_real)
+}
+
+/// Solves an impact without collision, as [`impact_without_collision`] does, and differentiates its outcome.
+///
+/// v_n1 is zero and stays so: its column is zero and means nothing.
+///
+/// ```
+/// # use hodograph::{Law, ReducedMatrix, Surface, derivative_without_collision, impact_without_collision};
+/// # use nalgebra::Vector2;
+/// let (matrix, slip) = (ReducedMatrix::new(1.6, 1.2, 0.1, 3.4, 0.2, 0.5), Vector2::new(1.0, 0.2));
+/// let surface = |mu| Surface { mu, e: 0.5, law: Law::Stronge };
+/// let d = derivative_without_collision(&matrix, &slip, &surface(1.6))?;
+/// let (by_mu, _) = d.by_friction();
+/// let impulse = |mu| impact_without_collision(&matrix, &slip, &surface(mu)).map(|impact| impact.impulse);
+/// let difference = (impulse(1.6 + 1e-5)? - impulse(1.6 - 1e-5)?) / 2e-5;
+/// assert!(d.non_smoothness.is_none() && (by_mu - difference).norm() < 1e-6 * by_mu.norm());
+/// # Ok::<(), hodograph::ImpactError<f64>>(())
+/// ```
+///
+/// # Errors
+/// What [`impact_without_collision`] refuses.
+pub fn derivative_without_collision<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    slip: &Vector2<T>,
+    surface: &Surface<T>,
+) -> Result<ImpactDerivative<T>, ImpactError<T>> {
+    let approach = Vector3::new(T::zero(), slip.x, slip.y);
+    differentiate(
+        matrix,
+        &approach,
+        surface,
+        |matrix, approach, surface| impact_without_collision(matrix, &approach.yz(), surface),
+        |matrix, approach, surface| without_collision(matrix, &Vector2::new(approach.y, approach.z), surface),
+    )
+}
+
+/// The derivative of what `solve` answers; `lifted` is the same on numbers that carry derivatives.
+#[inline(always)]
+fn differentiate<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+    solve: impl Fn(&ReducedMatrix<T>, &Vector3<T>, &Surface<T>) -> Result<Impact<T>, ImpactError<T>>,
+    lifted: impl FnOnce(
+        &ReducedMatrix<Dual<T, INPUTS>>,
+        &Vector3<Dual<T, INPUTS>>,
+        &Surface<Dual<T, INPUTS>>,
+    ) -> Result<Impact<Dual<T, INPUTS>>, ImpactError<Dual<T, INPUTS>>>,
+) -> Result<ImpactDerivative<T>, ImpactError<T>> {
     let impact = solve(matrix, approach, surface)?;
     let input = Dual::<T, INPUTS>::input;
     let [nn, nt, ns, tt, ts, ss] = <[T; 6]>::from(*matrix);
-    let hit = solve_real(
+    let hit = lifted(
         &ReducedMatrix::new(
             input(nn, 3),
             input(nt, 4),
@@ -155,7 +205,7 @@ pub fn derivative<T: Scalar>(
     if surface.e <= T::zero() {
         plastic(matrix, approach, surface, &mut result);
     }
-    result.non_smoothness = non_smoothness(matrix, approach, surface, &result);
+    result.non_smoothness = non_smoothness(matrix, approach, surface, &result, solve);
     Ok(result)
 }
 
@@ -199,6 +249,7 @@ fn non_smoothness<T: Scalar>(
     approach: &Vector3<T>,
     surface: &Surface<T>,
     result: &ImpactDerivative<T>,
+    solve: impl Fn(&ReducedMatrix<T>, &Vector3<T>, &Surface<T>) -> Result<Impact<T>, ImpactError<T>>,
 ) -> Option<NonSmoothness> {
     let here = &result.impact;
     if matches!(here.path, Path::Sticking | Path::Renewal) {

@@ -23,7 +23,7 @@
 //! | write one integrator, controller or plot for all mechanisms | the traits [`Mechanism`] and [`Contacts`] |
 //! | solve a collision without a model | [`solve`], [`impact_without_collision`], [`structure`] |
 //! | follow a collision | [`Hodograph`], [`Phases`] |
-//! | differentiate a collision | [`derivative`], [`saltation`] |
+//! | differentiate a collision | [`derivative`], [`derivative_without_collision`], [`saltation`] |
 //! | find force and mode of a contact that lasts | [`contact_mode`], [`contact_force`] |
 //!
 //! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse and the velocity of separation in three
@@ -80,7 +80,7 @@ pub use crate::{
         ContactError, ContactForce, ContactMode, Margins, Selection, contact_force, contact_mode,
         contact_mode_after,
     },
-    derivative::{ImpactDerivative, NonSmoothness, derivative},
+    derivative::{ImpactDerivative, NonSmoothness, derivative, derivative_without_collision},
     error::{ImpactError, Violation},
     generated::{ClosedContactError, CollisionError, ParameterError, StateError},
     hodograph::Hodograph,

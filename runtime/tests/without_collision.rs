@@ -3,7 +3,10 @@
 mod common;
 
 use common::second_road::{self, condition};
-use hodograph::{ImpactError, Law, ReducedMatrix, Surface, impact_without_collision, rates, solve};
+use hodograph::{
+    Impact, ImpactError, Law, ReducedMatrix, Surface, derivative_without_collision, impact_without_collision,
+    rates, solve,
+};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
 const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
@@ -181,4 +184,58 @@ fn nothing_happens_without_painleve() {
     assert_eq!(kind([f64::NAN, 0.0], &surface), Some("not_finite"));
     assert_eq!(kind([1.0, 0.0], &Surface { mu: -1.0, ..surface }), Some("negative_friction"));
     assert_eq!(kind([1.0, 0.0], &Surface { mu: 5.0, ..surface }), None);
+}
+
+/// The derivative against differences of fourth order, and against numbers of another crate that carry derivatives.
+#[test]
+fn derivatives_are_those_of_differences() {
+    use num_dual::Dual64;
+    let mut compared = 0;
+    for (m, slip, surface) in painleve(77, 3, 150) {
+        let Ok(d) = derivative_without_collision(&m, &slip, &surface) else { continue };
+        assert_eq!(d.impact.impulse, impact_without_collision(&m, &slip, &surface).unwrap().impulse);
+        assert_eq!(d.impulse.column(0).amax(), 0.0, "v_n1 stays zero");
+        let entries: [f64; 6] = m.into();
+        // Input j moved by h.
+        let moved = |j: usize, h: f64| {
+            let mut entries = entries;
+            let mut slip = slip;
+            let mut surface = surface;
+            match j {
+                1 | 2 => slip[j - 1] += h,
+                3..9 => entries[j - 3] += h,
+                9 => surface.mu += h,
+                _ => surface.e += h,
+            }
+            impact_without_collision(&ReducedMatrix::from(entries), &slip, &surface).ok()
+        };
+        for j in 1..11 {
+            // At the ends of its range e has no difference on both sides.
+            if d.non_smoothness.is_some() || (j == 10 && (surface.e == 0.0 || surface.e == 1.0)) {
+                continue;
+            }
+            let column = d.impulse.column(j).into_owned();
+            // Large steps truncate, small ones round: the best of four must agree.
+            let differences = [1e-4, 1e-5, 1e-6, 1e-7].into_iter().filter_map(|h| {
+                let [a, b, c, e] = [moved(j, -2.0 * h)?, moved(j, -h)?, moved(j, h)?, moved(j, 2.0 * h)?];
+                let same =
+                    |x: &Impact<f64>| x.path == d.impact.path && x.compressions == d.impact.compressions;
+                let impulse = ((c.impulse - b.impulse) * 8.0 - (e.impulse - a.impulse)) / (12.0 * h);
+                [a, b, c, e].iter().all(same).then_some((column - impulse).amax())
+            });
+            let Some(off) = differences.reduce(f64::min) else { continue };
+            let size = 1.0 + column.amax() + d.impact.impulse.amax();
+            assert!(off <= 1e-7 * size, "{j}: {off:e} of {size:e} {:e}", d.impact.impulse.amax());
+            let carry = |x: f64, k: usize| if k == j { Dual64::new(x, 1.0) } else { Dual64::from_re(x) };
+            let dual = impact_without_collision(
+                &ReducedMatrix::from(std::array::from_fn(|k| carry(entries[k], k + 3))),
+                &Vector2::new(carry(slip.x, 1), carry(slip.y, 2)),
+                &Surface { mu: carry(surface.mu, 9), e: carry(surface.e, 10), law: surface.law },
+            );
+            let dual = dual.unwrap().impulse.map(|x| x.eps);
+            assert!((column - dual).amax() <= 1e-10 * (1.0 + column.amax()), "{j}: {column} {dual}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 500, "{compared}");
 }

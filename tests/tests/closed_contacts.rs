@@ -244,7 +244,8 @@ fn every_state_of_every_contact_has_an_answer_or_a_reason() {
                     let answer = one(&*m, contact, &at, rests, &surface, &mut met);
                     if let Some(answer) = answer.filter(|_| case < 4) {
                         let mut rates = vec![0.0; speeds.len()];
-                        m.contact_mode(contact, &at, &surface, &mut rates).expect("as before").force_on_point;
+                        let again = m.contact_mode(contact, &at, &surface, &mut rates).expect("as before");
+                        assert_eq!(again, answer);
                         let force = answer.force_on_point;
                         let worst = second_road(&model, &sample, contact, &speeds, &rates, &force);
                         met.second_road = met.second_road.max(worst);

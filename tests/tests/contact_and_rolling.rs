@@ -149,3 +149,57 @@ fn a_rattleback_rolls_on_a_contact() {
     println!("{met:?}");
     assert!(met.worst < 1e-10 && met.holds > 100, "{met:?}");
 }
+
+/// Mode and force in single precision, and with derivatives by the lean of the disc: against differences of fourth order.
+#[test]
+fn the_force_is_as_generic_as_the_module() {
+    use num_dual::Dual64;
+    let mut random = Random::new("duals");
+    let mut modes = [0; 4];
+    for case in 0..300 {
+        let numbers: [f64; 6] = std::array::from_fn(|_| random.number());
+        let speeds: [f64; 6] = std::array::from_fn(|_| 0.3 * random.number());
+        // Slip, or none: then the force has derivatives along states without slip only, and all speeds rest.
+        let speeds = if case % 3 == 0 { [0.0; 6] } else { speeds };
+        let mu = 0.3 + 0.25 * random.number();
+        let disc = disc_on_contact::DiscOnContact::<f64>::default();
+        let ask = |h: f64| {
+            let mut q = numbers;
+            q[1] += h;
+            disc.contact_mode_ground(&q.into(), &speeds.into(), &Surface { mu, ..ROUGH })
+        };
+        let Ok(answer) = ask(0.0) else { continue };
+        let h = 1e-4;
+        let near = [-2.0, -1.0, 1.0, 2.0].map(|k| ask(k * h));
+        if near.iter().any(|near| near.as_ref().map(|near| near.mode) != Ok(answer.mode)) {
+            continue;
+        }
+        let [a, b, c, d] = near.map(|near| near.unwrap().force_on_point);
+        let difference = ((c - b) * 8.0 - (d - a)) / (12.0 * h);
+
+        let lift = |x: f64| Dual64::from_re(x);
+        let mut q = numbers.map(lift);
+        q[1].eps = 1.0;
+        let surface = Surface { mu: lift(mu), e: lift(0.0), law: Law::Poisson };
+        let dual = disc_on_contact::DiscOnContact::<Dual64>::default();
+        let dual = dual.contact_mode_ground(&q.into(), &speeds.map(lift).into(), &surface).unwrap();
+        assert_eq!(dual.mode, answer.mode);
+        let derivative = dual.force_on_point.map(|x| x.eps);
+        let size = 1.0 + answer.force.amax() + derivative.amax();
+        assert!((derivative - difference).amax() <= 1e-6 * size, "{case}: {derivative} {difference}");
+
+        let single = disc_on_contact::DiscOnContact::<f32>::default();
+        let surface = Surface { mu: mu as f32, e: 0.0, law: Law::Poisson };
+        let single = single.contact_mode_ground(
+            &numbers.map(|x| x as f32).into(),
+            &speeds.map(|x| x as f32).into(),
+            &surface,
+        );
+        let single = single.unwrap();
+        let off = (single.force_on_point.cast::<f64>() - answer.force_on_point).amax();
+        assert!(single.mode != answer.mode || off <= 1e-4 * size, "{case}: {off:e}");
+        modes[answer.mode as usize] += 1;
+    }
+    println!("{modes:?}");
+    assert!(modes[1] > 50 && modes[2] + modes[3] > 50, "{modes:?}");
+}

@@ -24,6 +24,7 @@ mod without_collision;
 use nalgebra::{Vector2, Vector3};
 
 pub use self::without_collision::impact_without_collision;
+pub(crate) use self::without_collision::without_collision;
 pub(crate) use self::{
     contact::Contact,
     event::Event,
