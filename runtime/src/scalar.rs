@@ -122,6 +122,12 @@ pub(crate) fn fma<T: Real>(a: T, b: T, c: T) -> T {
     if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
 }
 
+/// `a * b + c * d`, of which one product is rounded.
+#[inline(always)]
+pub(crate) fn dot<T: Real>(a: T, b: T, c: T, d: T) -> T {
+    fma(a, b, c * d)
+}
+
 /// The larger of two numbers, by comparison alone (no order is defined beyond `PartialOrd`).
 #[inline(always)]
 pub(crate) fn larger<T: Real>(a: T, b: T) -> T {
@@ -137,5 +143,5 @@ pub(crate) fn smaller<T: Real>(a: T, b: T) -> T {
 /// The length of a vector in the contact plane.
 #[inline(always)]
 pub(crate) fn length<T: Real>(v: &Vector2<T>) -> T {
-    (v.x * v.x + v.y * v.y).sqrt()
+    dot(v.x, v.x, v.y, v.y).sqrt()
 }

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::{
     ReducedMatrix,
-    scalar::{Real, constant, larger, smaller},
+    scalar::{Real, constant, dot, fma, larger, smaller},
 };
 
 /// The reduced matrix and mu, in units where m_nn = 1: b = (m_nt, m_ns) and the tangential block T.
@@ -64,34 +64,35 @@ impl<T: Real> Contact<T> {
     #[inline]
     pub fn slip_rate(&self, d: &Vector2<T>) -> Vector2<T> {
         Vector2::new(
-            self.b.x - (self.mu_tt * d.x + self.mu_ts * d.y),
-            self.b.y - (self.mu_ts * d.x + self.mu_ss * d.y),
+            self.b.x - dot(self.mu_tt, d.x, self.mu_ts, d.y),
+            self.b.y - dot(self.mu_ts, d.x, self.mu_ss, d.y),
         )
     }
 
     /// f (31): the rate of v_n by I_n.
     #[inline]
     pub fn normal_rate(&self, d: &Vector2<T>) -> T {
-        self.nn - self.mu_b.dot(d)
+        self.nn - dot(self.mu_b.x, d.x, self.mu_b.y, d.y)
     }
 
     /// f, g and h (31)-(33).
     #[inline]
     pub fn rates(&self, d: &Vector2<T>) -> [T; 3] {
         let rate = self.slip_rate(d);
-        [self.normal_rate(d), rate.dot(d), rate.y * d.x - rate.x * d.y]
+        [self.normal_rate(d), dot(rate.x, d.x, rate.y, d.y), dot(rate.y, d.x, -rate.x, d.y)]
     }
 
     /// g + h' = -mu d'.T d', with d' a right angle ahead of d: h' is the derivative of h by phi.
     #[inline]
     pub fn convergence(&self, d: &Vector2<T>) -> T {
-        -(self.mu_tt * d.y * d.y - (self.mu_ts + self.mu_ts) * d.x * d.y + self.mu_ss * d.x * d.x)
+        let twice = self.mu_ts + self.mu_ts;
+        -dot(fma(self.mu_tt, d.y, -twice * d.x), d.y, self.mu_ss * d.x, d.x)
     }
 
     /// mu T x.
     #[inline]
     pub fn dragged(&self, x: &Vector2<T>) -> Vector2<T> {
-        Vector2::new(self.mu_tt * x.x + self.mu_ts * x.y, self.mu_ts * x.x + self.mu_ss * x.y)
+        Vector2::new(dot(self.mu_tt, x.x, self.mu_ts, x.y), dot(self.mu_ts, x.x, self.mu_ss, x.y))
     }
 
     /// The size of the terms of f, which is known to this times the rounding unit.

@@ -6,7 +6,10 @@ use super::{
     restitution::{Restitution, State},
     sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc, rough_ln},
 };
-use crate::{Law, scalar::Real, scalar::constant, scalar::larger, scalar::smaller};
+use crate::{
+    Law,
+    scalar::{Real, constant, dot, fma, larger, smaller},
+};
 
 /// An event: v_n, I_n or the normal work since compression ended reaches a target.
 #[derive(Clone, Copy)]
@@ -75,7 +78,7 @@ impl<T: Real> Event<T> {
             // v_n rises from zero, about, to where the work is done.
             Self::Work(_) => {
                 let v = point.state.velocity;
-                let square = v * v + (missing + missing) * slope;
+                let square = dot(v, v, missing + missing, slope);
                 if square <= zero {
                     return zero;
                 }
@@ -85,7 +88,7 @@ impl<T: Real> Event<T> {
             }
             Self::Velocity(_) => missing,
         };
-        let square = slope * slope + (v + v) * bend;
+        let square = dot(slope, slope, v + v, bend);
         if square <= zero { zero } else { (v + v) / (slope + square.sqrt()) }
     }
 
@@ -118,12 +121,12 @@ impl<T: Real> Event<T> {
             last / (one + larger(late, zero) * half)
         } else {
             let RateChanges { shape, .. } = arc.rate_changes(point, rates);
-            let pull = (rates.change + shape + rate * (pole - rates.shape)) * lag * per;
-            g + pull * impulse * half
+            let pull = fma(rate, pole - rates.shape, rates.change + shape) * lag * per;
+            fma(pull * half, impulse, g)
         };
         let ratio = larger((impulse * mean / slip).primal(), constant(-0.97));
         let part =
-            if ratio.abs() <= constant(1e-3) { one - ratio * half } else { rough_ln_1p(ratio) / ratio };
+            if ratio.abs() <= constant(1e-3) { fma(ratio, -half, one) } else { rough_ln_1p(ratio) / ratio };
         let part = part * impulse / slip.primal();
         let (w, first) = (point.w.primal(), lag.primal());
         let mut length = first * part;
@@ -155,7 +158,7 @@ impl<T: Real> Correction<T> {
         let newton = -event.at(point) / slope;
         let bent = newton * bend;
         let step = if bent.abs() <= half {
-            newton / (one + bent * half)
+            newton / fma(bent, half, one)
         } else if bent > half {
             square(newton, bent)
         } else if bent > constant(-0.999) {
@@ -179,7 +182,7 @@ impl<T: Real> Correction<T> {
         // Halley's step misses by its third power.
         let missed = self.slope.primal().abs() * length;
         let square = steep * steep * constant(1.0 / 24.0);
-        let moved = (point.sigma * rates.e).primal() * steep + rates.impulse.primal().abs() * length;
+        let moved = dot((point.sigma * rates.e).primal(), steep, rates.impulse.primal().abs(), length);
         let rough = (moved + missed) * square * constant(4.0);
         (rough, if let Event::Work(_) = event { rough } else { moved * steep * square })
     }
@@ -202,8 +205,8 @@ impl<T: Real> Correction<T> {
         let newton = -event.at(point) / slope;
         let mut step = self.step;
         for _ in 0..2 {
-            let curve = bend + (bend * bend + rate_changes.weight + change) * step * constant(1.0 / 3.0);
-            step = newton / (T::one() + curve * step * constant(0.5));
+            let curve = fma(fma(bend, bend, rate_changes.weight + change), step * constant(1.0 / 3.0), bend);
+            step = newton / fma(curve, step * constant(0.5), T::one());
         }
         step
     }

@@ -8,7 +8,7 @@
 
 use nalgebra::Vector2;
 
-use crate::scalar::{Real, constant, fma, larger, length};
+use crate::scalar::{Real, constant, dot, fma, larger, length};
 
 /// Steps of a search; a handful suffices unless zeros are about to merge.
 const STEPS: u32 = 32;
@@ -37,7 +37,7 @@ pub(super) fn neighbours<T: Real>(
     } else {
         Vector2::new(T::one(), zero)
     };
-    let seen = |v: &Vector2<T>| Vector2::new(axis.x * v.x + axis.y * v.y, axis.x * v.y - axis.y * v.x);
+    let seen = |v: &Vector2<T>| over(v, &axis);
     let (pull, slip) = (seen(b), seen(d));
     let sign = |x: T| if x < zero { -T::one() } else { T::one() };
     let (sx, sy) = (sign(pull.x), sign(pull.y));
@@ -65,7 +65,7 @@ pub(super) fn neighbours<T: Real>(
         Vector2::new(x, -y)
     };
     // h' tells the two ends of the fourth quadrant apart: there it changes sign once, between the zeros.
-    let slope = delta * (slip.x * slip.x - slip.y * slip.y) - pull.x.abs() * slip.x - pull.y.abs() * slip.y;
+    let slope = fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
     let found = if forward && crowded(p, q, delta) {
         if slip.y >= zero || (slip.x > zero && slope > zero) {
             [fourth_unstable(), first()]
@@ -79,14 +79,14 @@ pub(super) fn neighbours<T: Real>(
     };
     found.map(|v| {
         let (x, y) = (v.x * sx, v.y * sy);
-        Vector2::new(axis.x * x - axis.y * y, axis.x * y + axis.y * x)
+        times(&axis, &Vector2::new(x, y))
     })
 }
 
 /// Whether the fourth quadrant holds zeros: b lies within the astroid p^(2/3) + q^(2/3) = delta^(2/3).
 #[inline]
 fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
-    let inside = delta * delta - p * p - q * q;
+    let inside = fma(delta, delta, -dot(p, p, q, q));
     let product = p * q * delta;
     inside > T::zero() && inside * inside * inside > constant::<T>(27.0) * product * product
 }
@@ -96,7 +96,8 @@ fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
 fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
     // The root is convex in delta, so that its tangent at zero lies below.
-    let (pp, square) = (p * p, p * p + q * q);
+    let pp = p * p;
+    let square = fma(q, q, pp);
     let mut eta = larger(q, square.sqrt() - delta * pp / square);
     let (mut x, mut y) = (one, one);
     for _ in 0..STEPS {
@@ -104,9 +105,9 @@ fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
         (x, y) = (p * a, q * b);
         let (xx, yy) = (x * x, y * y);
         let square = xx + yy;
-        let step = (square.sqrt() - one) * square / (xx * a + yy * b);
+        let step = (square.sqrt() - one) * square / dot(xx, a, yy, b);
         if step <= constant::<T>(ROUGH) * eta {
-            return (x - x * a * step, y - y * b * step);
+            return (fma(-x * a, step, x), fma(-y * b, step, y));
         }
         eta += step;
     }
@@ -123,13 +124,13 @@ fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
         let (a, b) = (one / eta, one / (delta - eta));
         (x, y) = (p * a, q * b);
         let (xx, yy) = (x * x, y * y);
-        let slope = xx * a - yy * b;
+        let slope = dot(xx, a, -yy, b);
         if slope <= T::zero() {
             break;
         }
         let step = (xx + yy - one) * constant(0.5) / slope;
         if step <= constant::<T>(ROUGH) * eta {
-            return (x - x * a * step, y + y * b * step);
+            return (fma(-x * a, step, x), fma(y * b, step, y));
         }
         eta += step;
     }
@@ -139,13 +140,13 @@ fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
 /// a b, of complex numbers.
 #[inline(always)]
 pub(super) fn times<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
-    Vector2::new(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x)
+    Vector2::new(dot(a.x, b.x, -a.y, b.y), dot(a.x, b.y, a.y, b.x))
 }
 
 /// a over b, if b is of length one.
 #[inline(always)]
 pub(super) fn over<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
-    Vector2::new(a.x * b.x + a.y * b.y, a.y * b.x - a.x * b.y)
+    Vector2::new(dot(a.x, b.x, a.y, b.y), dot(a.y, b.x, -a.x, b.y))
 }
 
 /// A zero of h.
@@ -168,15 +169,15 @@ impl<T: Real> Zero<T> {
             let h = along.y - double.y;
             slope = (double.x + double.x - along.x) * sign;
             pull = along.x - double.x;
-            let bend = constant::<T>(4.0) * double.y - along.y;
+            let bend = fma(constant::<T>(4.0), double.y, -along.y);
             let turn = to_zero(h * sign, slope, bend * sign);
             let size = turn.abs();
             // Not a number, or another zero. Where zeros merge all steps are rounding, and the last one is not taken.
             if size <= constant(0.1) && left > 0 {
-                let half = turn * turn * constant(0.5);
-                v = Vector2::new(v.x - v.x * half - v.y * turn, v.y - v.y * half + v.x * turn);
+                let along = fma(turn * turn, constant(-0.5), T::one());
+                v = Vector2::new(dot(v.x, along, -v.y, turn), dot(v.y, along, v.x, turn));
                 if size > enough {
-                    v /= (v.x * v.x + v.y * v.y).sqrt();
+                    v /= length(&v);
                     continue;
                 }
                 slope += bend * turn * sign;
@@ -245,7 +246,7 @@ impl<T: Real> Near<T> {
 #[inline(always)]
 fn to_zero<T: Real>(value: T, slope: T, bend: T) -> T {
     let two = constant::<T>(2.0);
-    let square = slope * slope - two * value * bend;
+    let square = dot(slope, slope, -two * value, bend);
     if square.primal() <= T::zero() {
         -slope / bend
     } else if slope > T::zero() {

@@ -36,7 +36,7 @@ pub(crate) use self::{
 use crate::{
     Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
     phases::{Units, phases},
-    scalar::{Real, constant, larger, length},
+    scalar::{Real, constant, dot, fma, larger, length},
 };
 
 /// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
@@ -216,7 +216,7 @@ fn after_slip<T: Real>(
     let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
     // Where slip and normal velocity stop together, rounding must not tell them apart: most of all where little moves the contact afterwards,
     // or where compression has just ended.
-    let scale = T::one() + state.normal * contact.normal_size();
+    let scale = fma(state.normal, contact.normal_size(), T::one());
     let again = restitution.compressions > 0 && state.velocity < T::zero();
     let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
     if slips && state.velocity.abs() <= few * eps * scale {
@@ -251,7 +251,7 @@ fn after_slip<T: Real>(
 /// Both real roots of a x^2 + b x + c, without cancellation; roots that do not exist come out as zero.
 #[inline]
 pub(crate) fn quadratic<T: Real>(a: T, b: T, c: T) -> [T; 2] {
-    let disc = b * b - constant::<T>(4.0) * a * c;
+    let disc = dot(b, b, constant::<T>(-4.0) * a, c);
     if disc < T::zero() {
         return [T::zero(); 2];
     }

@@ -16,7 +16,7 @@ use super::{
     invariant_directions::{Near, Zero, halved, neighbours, over, times},
     restitution::State,
 };
-use crate::scalar::{Real, constant, fma, larger, smaller};
+use crate::scalar::{Real, constant, dot, fma, larger, length, smaller};
 
 /// The three integrals along a stretch of the arc.
 pub(super) type Integrals<T> = [T; 3];
@@ -105,10 +105,10 @@ impl<T: Real> SlidingArc<T> {
             neighbours(&b.map(T::primal), &nu.map(T::primal), &ahead, h.primal()).map(|v| v.map(T::primal));
         let noise = T::default_epsilon() * (mean + b.x.abs() + b.y.abs());
         let near =
-            Near { h: [h, four * nu.x - two * b.x, six * nu.y, -four * nu.x - two * b.x, -b.y - nu.y] };
+            Near { h: [h, fma(four, nu.x, -two * b.x), six * nu.y, fma(-four, nu.x, -two * b.x), -b.y - nu.y] };
         // Half the angle to a zero of h, its direction, and h' and g there.
         let exact = |rough: Vector2<T>, side: T, sign: T| {
-            let rough = rough / (rough.x * rough.x + rough.y * rough.y).sqrt();
+            let rough = rough / length(&rough);
             let Zero { mut direction, mut slope, mut pull } = Zero::close(&b, &nu, rough, sign);
             let half = if direction.x > zero && direction.y.abs() <= constant(0.125) {
                 let (half, exact) = near.beside(&direction, side, sign);
@@ -127,8 +127,8 @@ impl<T: Real> SlidingArc<T> {
         let (a, u, q0, g_u) = exact(u, -forward, one);
         let (z, s, q2, g_s) = exact(s, forward, -one);
         let start = -a.y / z.y;
-        let cos = a.x * z.x + a.y * z.y;
-        let sin = a.y * z.x - a.x * z.y;
+        let turn = over(&a, &z);
+        let (cos, sin) = (turn.x, turn.y);
         let product = times(&a, &z);
         let q1 = six * over(&over(&nu, &product), &product).y * sin;
         let mu_b = over(&c.mu_b, d);
@@ -136,9 +136,9 @@ impl<T: Real> SlidingArc<T> {
         let mean_root = (q0 * q2).sqrt().primal();
         let lean = -(q1 * half).primal() / mean_root;
         let modulus = (q0 / q2).sqrt().primal();
-        let factor = if lean < -one { (lean * lean - one).sqrt() - lean } else { one };
-        let f = [c.nn - over(&mu_b, &u).x, two * (c.nn * cos - cross), c.nn - over(&mu_b, &s).x];
-        let k = [g_u, cos * (g_u + g_s) - q1, g_s - q2 - q2];
+        let factor = if lean < -one { fma(lean, lean, -one).sqrt() - lean } else { one };
+        let f = [c.nn - over(&mu_b, &u).x, two * fma(c.nn, cos, -cross), c.nn - over(&mu_b, &s).x];
+        let k = [g_u, fma(cos, g_u + g_s, -q1), fma(-two, q2, g_s)];
         let slip = [times(&u, d), times(&product, d) * two, times(&s, d)];
         let arc = Self {
             mu: c.mu,
@@ -190,7 +190,7 @@ impl<T: Real> SlidingArc<T> {
     /// g at the stable end: the rate of slip there.
     #[inline(always)]
     pub fn last_rate(&self) -> T {
-        self.k[2] + self.q[2] + self.q[2]
+        fma(constant::<T>(2.0), self.q[2], self.k[2])
     }
 
     /// All rates at a point.
@@ -212,7 +212,7 @@ impl<T: Real> SlidingArc<T> {
             slope: fall / e,
             growth,
             weight: growth + shape - pole,
-            change: steep(self.k[1], self.k[2]) * inverse - growth * pole,
+            change: dot(steep(self.k[1], self.k[2]), inverse, -growth, pole),
             shape,
             turn: steep(self.f[1], self.f[2]) / fall,
         }
@@ -227,12 +227,12 @@ impl<T: Real> SlidingArc<T> {
         let ([_, q1, q2], [_, k1, k2], [_, f1, f2]) = (self.q, self.k, self.f);
         let inverse = rates.inverse;
         let (pole, rising) = (first(q1, q2) * inverse, second(q1, q2) * inverse);
-        let shape = second(self.middle, T::one()) / rates.e - rates.shape * rates.shape;
+        let shape = fma(-rates.shape, rates.shape, second(self.middle, T::one()) / rates.e);
         RateChanges {
-            growth: second(k1, k2) * inverse - (rates.change + rates.change) * pole - rates.growth * rising,
-            weight: rates.change + shape - (rising - pole * pole),
+            growth: dot(second(k1, k2), inverse, -(rates.change + rates.change), pole) - rates.growth * rising,
+            weight: rates.change + shape - fma(-pole, pole, rising),
             shape,
-            turn: second(f1, f2) / (rates.slope * rates.e) - rates.turn * rates.turn,
+            turn: fma(-rates.turn, rates.turn, second(f1, f2) / (rates.slope * rates.e)),
         }
     }
 
@@ -253,8 +253,8 @@ impl<T: Real> SlidingArc<T> {
         // Here the map of the nodes comes as near to its own poles.
         const MOST: f64 = 9.0;
         let to = |d: T| {
-            let away = (d * d + self.angle * self.angle).sqrt();
-            (constant::<T>(2.0 * SUM) * away + constant::<T>(4.0) * d) * constant(1.0 / (SUM * SUM - 4.0))
+            let away = dot(d, d, self.angle, self.angle).sqrt();
+            fma(constant::<T>(2.0 * SUM), away, constant::<T>(4.0) * d) * constant(1.0 / (SUM * SUM - 4.0))
         };
         let before = self.beyond(point);
         let mut poles = to(before - self.spread);
@@ -364,7 +364,8 @@ impl<T: Real> ArcPoint<T> {
     pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {
         let (one, half) = (T::one(), constant::<T>(0.5));
         let first = self.sigma * rates.e * rates.inverse * step;
-        let bent = |extra: T| one + (rates.weight + extra) * step * half;
+        let halved = step * half;
+        let bent = |extra: T| fma(rates.weight + extra, halved, one);
         let second = first * self.w;
         let from = self.state;
         arc.add(
@@ -375,8 +376,8 @@ impl<T: Real> ArcPoint<T> {
         self.state.work += done;
         self.since += done;
         self.sigma *=
-            one + step * (rates.growth + step * half * (rates.growth * rates.growth + rates.change));
-        self.w *= one + step * (one + step * half);
+            fma(step, fma(halved, fma(rates.growth, rates.growth, rates.change), rates.growth), one);
+        self.w *= fma(step, one + halved, one);
     }
 
     /// Goes a small step of lambda further: the error is of fourth order.
@@ -393,7 +394,7 @@ impl<T: Real> ArcPoint<T> {
         let first = self.sigma * rates.e * rates.inverse * step;
         let bent = |extra: T| {
             let rate = rates.weight + extra;
-            one + step * half * (rate + step * third * (rate * rate + rate_changes.weight))
+            fma(step * half, fma(step * third, fma(rate, rate, rate_changes.weight), rate), one)
         };
         let second = first * w;
         let from = self.state;
@@ -405,9 +406,10 @@ impl<T: Real> ArcPoint<T> {
         self.state.work += done;
         self.since += done;
         let (g, change) = (rates.growth, rates.change);
-        let cubed = g * (g * g + constant::<T>(3.0) * change) + rate_changes.growth;
-        self.sigma *= one + step * (g + step * half * (g * g + change + step * third * cubed));
-        self.w *= one + step * (one + step * half * (one + step * third));
+        let cubed = fma(g, fma(g, g, constant::<T>(3.0) * change), rate_changes.growth);
+        let square = fma(step * third, cubed, fma(g, g, change));
+        self.sigma *= fma(step, fma(step * half, square, g), one);
+        self.w *= fma(step, fma(step * half, fma(step, third, one), one), one);
     }
 }
 
@@ -427,7 +429,7 @@ pub(super) fn rough_ln<T: Real>(x: T) -> T {
     // 2 atanh((x - 1) / (x + 1))
     let u = (x - T::one()) / (x + T::one());
     let z = u * u;
-    (u + u) * (constant::<T>(15.0) - constant::<T>(4.0) * z) / (constant::<T>(15.0) - constant::<T>(9.0) * z)
+    (u + u) * fma(constant::<T>(-4.0), z, constant(15.0)) / fma(constant::<T>(-9.0), z, constant(15.0))
 }
 
 /// The angle with this cosine, to a few per cent; pi below -1.
@@ -436,6 +438,6 @@ fn angle<T: Real>(cos: T) -> T {
     let one = T::one();
     let x = cos.abs();
     let x = if x < one { x } else { one };
-    let acute = (one - x).sqrt() * (constant::<T>(core::f64::consts::FRAC_PI_2) - constant::<T>(0.1565) * x);
+    let acute = (one - x).sqrt() * fma(constant::<T>(-0.1565), x, constant(core::f64::consts::FRAC_PI_2));
     if cos >= T::zero() { acute } else { constant::<T>(core::f64::consts::PI) - acute }
 }

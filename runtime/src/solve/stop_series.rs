@@ -12,7 +12,7 @@ use super::{
     restitution::State,
     sliding_arc::{ArcPoint, SlidingArc},
 };
-use crate::scalar::{Real, constant, fma, larger};
+use crate::scalar::{Real, constant, dot, fma, larger};
 
 /// One coefficient of the four lanes: the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and the work of friction.
 type Row<T> = [T; 4];
@@ -104,10 +104,14 @@ impl<T: Real> SlidingArc<T> {
         let from = &point.state;
         let mut state = *from;
         self.add([first * tau, second * tau, third * tau], &mut state);
+        let (slip, pushed) = (self.slip(point), state.tangential - from.tangential);
         let done = fma(
             constant::<T>(0.5),
-            (from.velocity + state.velocity) * (state.normal - from.normal)
-                + self.slip(point).dot(&(state.tangential - from.tangential)),
+            fma(
+                from.velocity + state.velocity,
+                state.normal - from.normal,
+                dot(slip.x, pushed.x, slip.y, pushed.y),
+            ),
             self.mu * tau * tau * rubbed,
         );
         state.work += done;

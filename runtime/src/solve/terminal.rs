@@ -5,7 +5,7 @@
 use nalgebra::Vector2;
 
 use super::Contact;
-use crate::scalar::{Real, constant, larger, length};
+use crate::scalar::{Real, constant, dot, fma, larger, length};
 
 impl<T: Real> Contact<T> {
     /// The least-norm solution of T x = b by elimination from the larger pivot; a pivot lost to rounding counts as zero if b lies in the range of T.
@@ -42,9 +42,10 @@ impl<T: Real> Contact<T> {
     /// hardly resists in the direction of `hold`. Below that a rate means nothing, and depends on how the axes are turned.
     #[inline]
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
-        let pulled = Vector2::new(self.tt * hold.x + self.ts * hold.y, self.ts * hold.x + self.ss * hold.y);
-        let rate = T::one() - (self.b + self.b - pulled).dot(hold);
-        let known = T::one() + (self.tt + self.ss) * hold.dot(hold);
+        let pulled = Vector2::new(dot(self.tt, hold.x, self.ts, hold.y), dot(self.ts, hold.x, self.ss, hold.y));
+        let left = self.b + self.b - pulled;
+        let rate = T::one() - dot(left.x, hold.x, left.y, hold.y);
+        let known = fma(self.tt + self.ss, dot(hold.x, hold.x, hold.y, hold.y), T::one());
         if rate <= constant::<T>(32.0) * T::default_epsilon() * known { T::zero() } else { rate }
     }
 
@@ -65,13 +66,13 @@ impl<T: Real> Contact<T> {
         let mut settled = false;
         for _ in 0..48 {
             let (p, q) = (tt + g, ss + g);
-            let det = p * q - ts * ts;
-            let y = Vector2::new(q * b.x - ts * b.y, p * b.y - ts * b.x) / det;
+            let det = dot(p, q, -ts, ts);
+            let y = Vector2::new(dot(q, b.x, -ts, b.y), dot(p, b.y, -ts, b.x)) / det;
             let norm = length(&y);
             d = y / norm;
             // d|y|/dg = -d . (mu T + g)^-1 y
-            let z = Vector2::new(q * d.x - ts * d.y, p * d.y - ts * d.x) / det;
-            let step = (norm - T::one()) / (norm * d.dot(&z));
+            let z = Vector2::new(dot(q, d.x, -ts, d.y), dot(p, d.y, -ts, d.x)) / det;
+            let step = (norm - T::one()) / (norm * dot(d.x, z.x, d.y, z.y));
             if settled {
                 break;
             }

@@ -11,7 +11,7 @@ use nalgebra::Vector2;
 use super::{Contact, Restitution, State};
 use crate::{
     ImpactError, Violation,
-    scalar::{Real, constant, larger, length, smaller},
+    scalar::{Real, constant, dot, fma, larger, length, smaller},
 };
 
 /// The largest residual of a sound answer over its scale: the root of the rounding unit.
@@ -55,7 +55,7 @@ impl<T: Real> Restitution<T> {
             && t <= share * slips
             && end.normal >= T::zero()
             && end.velocity >= -share * speed
-            && i.x * i.x + i.y * i.y <= most * most * (T::one() + share)
+            && dot(i.x, i.x, i.y, i.y) <= most * most * (T::one() + share)
             && work <= share * energy
             && self.is_ended(end, share);
         if sound { Ok(()) } else { self.violation(c, from, slip, end, velocity) }
@@ -72,20 +72,19 @@ impl<T: Real> Restitution<T> {
         velocity: &Vector2<T>,
     ) -> Residuals<T> {
         let (i, start) = (&end.tangential, self.start().velocity);
-        let n = start + end.normal + c.b.dot(i) - end.velocity;
-        let t = from.x + c.b.x * end.normal + (c.tt * i.x + c.ts * i.y) - velocity.x;
-        let s = from.y + c.b.y * end.normal + (c.ts * i.x + c.ss * i.y) - velocity.y;
+        let n = dot(c.b.x, i.x, c.b.y, i.y) + (start + end.normal) - end.velocity;
+        let t = fma(c.b.x, end.normal, from.x) + dot(c.tt, i.x, c.ts, i.y) - velocity.x;
+        let s = fma(c.b.y, end.normal, from.y) + dot(c.ts, i.x, c.ss, i.y) - velocity.y;
         let slips = T::one() + slip + velocity.x.abs() + velocity.y.abs();
         // Where slip drives v_n, it passes through speeds of the size of slip.
         let coupled = smaller(c.b.x.abs() + c.b.y.abs(), T::one());
-        let speed = T::one() + end.velocity.abs() + coupled * slips;
+        let speed = fma(coupled, slips, T::one() + end.velocity.abs());
         let half = constant::<T>(0.5);
-        let rubbed = i.x * (from.x + velocity.x) + i.y * (from.y + velocity.y);
-        let pushed = end.normal * (start + end.velocity);
+        let rubbed = dot(i.x, from.x + velocity.x, i.y, from.y + velocity.y);
         Residuals {
             momentum: [(n.abs(), speed), (larger(t.abs(), s.abs()), slips)],
-            work: (rubbed + pushed) * half - end.work,
-            energy: end.normal * speed + (i.x.abs() + i.y.abs()) * slips,
+            work: fma(fma(end.normal, start + end.velocity, rubbed), half, -end.work),
+            energy: dot(end.normal, speed, i.x.abs() + i.y.abs(), slips),
         }
     }
 

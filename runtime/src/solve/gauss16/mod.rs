@@ -14,7 +14,7 @@ use super::{
     lanes::exp,
     sliding_arc::{ArcPoint, SlidingArc},
 };
-use crate::scalar::{Real, constant, fma};
+use crate::scalar::{Real, constant, dot, fma};
 
 /// The coefficients of a quadratic that is divided by w, where w counts in units of `middle`.
 #[inline(always)]
@@ -113,8 +113,8 @@ impl<T: Real> SlidingArc<T> {
         // s = tanh(length / 32)
         let y = length * constant(1.0 / 32.0);
         let z = y * y;
-        let s = y * (constant::<T>(945.0) + z * (constant::<T>(105.0) + z))
-            / (constant::<T>(945.0) + z * (constant::<T>(420.0) + z * constant(15.0)));
+        let s = y * fma(z, constant::<T>(105.0) + z, constant(945.0))
+            / fma(z, fma(z, constant(15.0), constant(420.0)), constant(945.0));
         let ratio = (one + s) / (one - s);
         let ratio = ratio * ratio;
         let ratio = ratio * ratio;
@@ -145,10 +145,14 @@ impl<T: Real> SlidingArc<T> {
     #[inline]
     pub fn balance(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &Panel<T>) -> T {
         let slips = self.slip(from) + self.slip(to);
+        let pushed = to.state.tangential - from.state.tangential;
         fma(
             constant::<T>(0.5),
-            (from.state.velocity + to.state.velocity) * (to.state.normal - from.state.normal)
-                + slips.dot(&(to.state.tangential - from.state.tangential)),
+            fma(
+                from.state.velocity + to.state.velocity,
+                to.state.normal - from.state.normal,
+                dot(slips.x, pushed.x, slips.y, pushed.y),
+            ),
             self.mu * panel.central * panel.central * panel.rubbed,
         )
     }
