@@ -83,7 +83,7 @@ impl<T: Scalar> Hodograph<T> {
         let (contact, share) = Contact::limited(&self.matrix, self.mu);
         let speed = -self.approach.x;
         let scale = speed / self.matrix.nn;
-        let units = Units { approach: &self.approach, scale, speed, contact };
+        let units = Units { approach: &self.approach, scale, speed, contact: &contact };
         let tangential = Vector2::new(self.approach.y, self.approach.z) / speed;
         let slip = tangential.norm();
         let slides = slips(slip);

@@ -90,7 +90,7 @@ pub(crate) struct Units<'a, T: Real> {
     /// Of impulse and of velocity.
     pub scale: T,
     pub speed: T,
-    pub contact: Contact<T>,
+    pub contact: &'a Contact<T>,
 }
 
 impl<T: Real> Units<'_, T> {
@@ -111,7 +111,7 @@ impl<T: Real> Units<'_, T> {
     /// The tangential velocity that the impulses give: (21), (22).
     #[inline]
     fn tangential(&self, state: &State<T>) -> Vector2<T> {
-        let c = &self.contact;
+        let c = self.contact;
         let i = &state.tangential;
         Vector2::new(self.approach.y, self.approach.z) / self.speed
             + c.b * state.normal

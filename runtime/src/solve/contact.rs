@@ -40,24 +40,23 @@ impl<T: Real> Contact<T> {
     ///
     /// So great a friction stops slip, or ends the collision, after an I_n of the order of 1/mu, during which nothing but friction acts:
     /// a smaller mu gives the same arc, with a larger I_n. docs/theory.md, section 1.2.
-    #[inline]
+    #[inline(always)]
     pub fn limited(matrix: &ReducedMatrix<T>, mu: T) -> (Self, T) {
-        if mu < constant(if single::<T>() { WIDE.0 } else { WIDE.1 }) {
-            return (Self::new(matrix, mu), T::one());
+        let mut used = mu;
+        if mu > constant(if single::<T>() { WIDE.0 } else { WIDE.1 }) {
+            used = Self::most_friction(matrix, mu);
         }
-        Self::with_less_friction(matrix, mu)
+        (Self::new(matrix, used), if used < mu { used / mu } else { T::one() })
     }
 
     #[cold]
     #[inline(never)]
-    fn with_less_friction(matrix: &ReducedMatrix<T>, mu: T) -> (Self, T) {
+    fn most_friction(matrix: &ReducedMatrix<T>, mu: T) -> T {
         let most = constant::<T>(if single::<T>() { MOST.0 } else { MOST.1 });
         let Self { b, tt, ss, .. } = Self::new(matrix, T::one());
         let size = larger(larger(b.x.abs(), b.y.abs()), larger(tt, ss));
         // A quotient may leave the range, and is then no limit.
-        let limit = most / larger(size, T::one() / most);
-        let used = smaller(mu, limit);
-        (Self::new(matrix, used), used / mu)
+        smaller(mu, most / larger(size, T::one() / most))
     }
 
     /// b - mu T d: the rate of the tangential velocity by I_n while slip has the direction d.

@@ -33,6 +33,8 @@ struct Nodes<T> {
     e: Lanes<T>,
     log: Lanes<T>,
     sums: [Lanes<T>; 4],
+    /// By what sigma and w grow over the step, twice.
+    ends: Lanes<T>,
 }
 
 impl<T: Real> SlidingArc<T> {
@@ -40,9 +42,9 @@ impl<T: Real> SlidingArc<T> {
     #[inline(never)]
     pub fn short_step(&self, point: &mut ArcPoint<T>, length: T) {
         let any = [length; 4];
-        let mut nodes = Nodes { w: any, rate: any, value: any, e: any, log: any, sums: [any; 4] };
+        let mut nodes = Nodes { w: any, rate: any, value: any, e: any, log: any, sums: [any; 4], ends: any };
         let scale = length * point.sigma;
-        let grown = self.approach(point, length, &mut nodes);
+        self.approach(point, length, &mut nodes);
         let [first, second, third, _] = nodes.sums.map(sum);
         let from = point.state;
         self.add([first * scale, second * scale, third * scale], &mut point.state);
@@ -51,17 +53,17 @@ impl<T: Real> SlidingArc<T> {
         let done = fma(from.velocity, point.state.normal - from.normal, scale * scale * pushed);
         point.state.work += done;
         point.since += done;
-        let [sigma, w, ..] = exp([grown, length, length, length]);
+        let [sigma, w, ..] = nodes.ends;
         point.sigma *= sigma;
         point.w *= w;
     }
 
-    /// Fills the nodes; returns the growth of ln sigma.
+    /// Fills the nodes and the ends.
     #[inline(never)]
-    fn approach(&self, from: &ArcPoint<T>, length: T, nodes: &mut Nodes<T>) -> T {
+    fn approach(&self, from: &ArcPoint<T>, length: T, nodes: &mut Nodes<T>) {
         let ([q0, q1, q2], [k0, k1, k2]) = (self.q, self.k);
         let (one, middle) = (T::one(), self.middle);
-        let Nodes { w, rate, value, e, log, sums } = nodes;
+        let Nodes { w, rate, value, e, log, sums, ends } = nodes;
         let [s0, s1, s2, s3] = sums;
         *w = exp(NODES.map(|t| constant::<T>(t) * length));
         for ((((w, rate), value), e), s3) in
@@ -88,14 +90,15 @@ impl<T: Real> SlidingArc<T> {
             *s2 = second * *w;
             *rate *= weight;
         }
-        sum(*rate)
+        let grown = sum(*rate);
+        *ends = exp([grown, length, grown, length]);
     }
 
     /// The integral of v_n less its value at the beginning over I_n, over sigma squared.
     #[inline(never)]
     fn push(&self, nodes: &mut Nodes<T>) -> T {
         let [f0, f1, f2] = self.f;
-        let Nodes { w, rate, value, e, log, sums: [first, ..] } = nodes;
+        let Nodes { w, rate, value, e, log, sums: [first, ..], .. } = nodes;
         for ((w, rate), value) in w.iter().zip(rate.iter_mut()).zip(value.iter()) {
             *rate = *value * fma(fma(f2, *w, f1), *w, f0);
         }

@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 use crate::{
     ImpactError, ReducedMatrix, Surface,
-    scalar::{Real, constant, larger},
+    scalar::{Real, constant, dot, fma, larger},
 };
 
 /// How many rounding units, times the largest diagonal entry, an entry of a reduced matrix is known to.
@@ -50,7 +50,8 @@ fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
     // Below this a product may have lost what it is compared with.
     let least = T::default_epsilon() * T::default_epsilon() * T::default_epsilon() * T::default_epsilon();
     let minor = c - m.ts * m.ts;
-    let det = m.nn * minor - m.nt * (m.nt * m.ss - m.ns * m.ts) + m.ns * (m.nt * m.ts - m.tt * m.ns);
+    let (t, s) = (dot(m.nt, m.ss, -m.ns, m.ts), dot(m.nt, m.ts, -m.tt, m.ns));
+    let det = fma(m.nn, minor, dot(-m.nt, t, m.ns, s));
     m.nn > zero
         && a > least
         && b > least

@@ -65,7 +65,8 @@ pub(super) fn neighbours<T: Real>(
         Vector2::new(x, -y)
     };
     // h' tells the two ends of the fourth quadrant apart: there it changes sign once, between the zeros.
-    let slope = fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
+    let slope =
+        fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
     let found = if forward && crowded(p, q, delta) {
         if slip.y >= zero || (slip.x > zero && slope > zero) {
             [fourth_unstable(), first()]
@@ -191,7 +192,7 @@ impl<T: Real> Zero<T> {
 
 /// Half the angle of a direction, on the side of the axis that `side` tells.
 #[inline(always)]
-pub(super) fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
+fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
     let (one, half) = (T::one(), constant::<T>(0.5));
     if v.x < T::zero() {
         let sin = ((one - v.x) * half).sqrt() * side;
@@ -209,6 +210,20 @@ pub(super) struct Near<T> {
 }
 
 impl<T: Real> Near<T> {
+    /// Half the angle to the zero close to a rough one, and the zero. `b` and `nu` as for [`neighbours`].
+    #[inline(always)]
+    pub fn exact(&self, [b, nu, rough]: [&Vector2<T>; 3], side: T, sign: T) -> (Vector2<T>, Zero<T>) {
+        let zero = Zero::close(b, nu, rough / length(rough), sign);
+        let direction = &zero.direction;
+        if direction.x > T::zero() && direction.y.abs() <= constant(0.125) {
+            let (half, exact) = self.beside(direction, side, sign);
+            let (along, double) = (over(b, &exact), over(&over(nu, &exact), &exact));
+            let (slope, pull) = ((double.x + double.x - along.x) * sign, along.x - double.x);
+            return (half, Zero { direction: exact, slope, pull });
+        }
+        (halved(direction, side), zero)
+    }
+
     /// The same for a zero beside the axis, and its direction: as exact as h itself.
     #[inline(always)]
     pub fn beside(&self, v: &Vector2<T>, side: T, sign: T) -> (Vector2<T>, Vector2<T>) {

@@ -160,7 +160,7 @@ pub(crate) fn collide<T: Real>(
         normal_work,
         path,
         compressions: restitution.compressions,
-        phases: phases(&Units { approach, scale, speed, contact }, &restitution, slip_end, path),
+        phases: phases(&Units { approach, scale, speed, contact: &contact }, &restitution, slip_end, path),
         sensitivity,
     })
 }

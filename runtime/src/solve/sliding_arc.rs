@@ -13,10 +13,10 @@ use nalgebra::Vector2;
 
 use super::{
     Contact,
-    invariant_directions::{Near, Zero, halved, neighbours, over, times},
+    invariant_directions::{Near, Zero, neighbours, over, times},
     restitution::State,
 };
-use crate::scalar::{Real, constant, dot, fma, larger, length, smaller};
+use crate::scalar::{Real, constant, dot, fma, larger, smaller};
 
 /// The three integrals along a stretch of the arc.
 pub(super) type Integrals<T> = [T; 3];
@@ -104,28 +104,15 @@ impl<T: Real> SlidingArc<T> {
         let rough =
             neighbours(&b.map(T::primal), &nu.map(T::primal), &ahead, h.primal()).map(|v| v.map(T::primal));
         let noise = T::default_epsilon() * (mean + b.x.abs() + b.y.abs());
-        let near =
-            Near { h: [h, fma(four, nu.x, -two * b.x), six * nu.y, fma(-four, nu.x, -two * b.x), -b.y - nu.y] };
-        // Half the angle to a zero of h, its direction, and h' and g there.
-        let exact = |rough: Vector2<T>, side: T, sign: T| {
-            let rough = rough / length(&rough);
-            let Zero { mut direction, mut slope, mut pull } = Zero::close(&b, &nu, rough, sign);
-            let half = if direction.x > zero && direction.y.abs() <= constant(0.125) {
-                let (half, exact) = near.beside(&direction, side, sign);
-                let (along, double) = (over(&b, &exact), over(&over(&nu, &exact), &exact));
-                (slope, pull) = ((double.x + double.x - along.x) * sign, along.x - double.x);
-                direction = exact;
-                half
-            } else {
-                halved(&direction, side)
-            };
-            (half, direction, larger(slope, noise), pull - mean)
+        let near = Near {
+            h: [h, fma(four, nu.x, -two * b.x), six * nu.y, fma(-four, nu.x, -two * b.x), -b.y - nu.y],
         };
         let [u, s] = rough;
         // Half the angles from here: behind in the first, ahead in the second.
         let forward = if h > zero { one } else { -one };
-        let (a, u, q0, g_u) = exact(u, -forward, one);
-        let (z, s, q2, g_s) = exact(s, forward, -one);
+        let (a, Zero { direction: u, slope: q0, pull: g_u }) = near.exact([&b, &nu, &u], -forward, one);
+        let (z, Zero { direction: s, slope: q2, pull: g_s }) = near.exact([&b, &nu, &s], forward, -one);
+        let (q0, q2, g_u, g_s) = (larger(q0, noise), larger(q2, noise), g_u - mean, g_s - mean);
         let start = -a.y / z.y;
         let turn = over(&a, &z);
         let (cos, sin) = (turn.x, turn.y);
@@ -229,7 +216,8 @@ impl<T: Real> SlidingArc<T> {
         let (pole, rising) = (first(q1, q2) * inverse, second(q1, q2) * inverse);
         let shape = fma(-rates.shape, rates.shape, second(self.middle, T::one()) / rates.e);
         RateChanges {
-            growth: dot(second(k1, k2), inverse, -(rates.change + rates.change), pole) - rates.growth * rising,
+            growth: dot(second(k1, k2), inverse, -(rates.change + rates.change), pole)
+                - rates.growth * rising,
             weight: rates.change + shape - fma(-pole, pole, rising),
             shape,
             turn: fma(-rates.turn, rates.turn, second(f1, f2) / (rates.slope * rates.e)),

@@ -42,7 +42,8 @@ impl<T: Real> Contact<T> {
     /// hardly resists in the direction of `hold`. Below that a rate means nothing, and depends on how the axes are turned.
     #[inline]
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
-        let pulled = Vector2::new(dot(self.tt, hold.x, self.ts, hold.y), dot(self.ts, hold.x, self.ss, hold.y));
+        let pulled =
+            Vector2::new(dot(self.tt, hold.x, self.ts, hold.y), dot(self.ts, hold.x, self.ss, hold.y));
         let left = self.b + self.b - pulled;
         let rate = T::one() - dot(left.x, hold.x, left.y, hold.y);
         let known = fma(self.tt + self.ss, dot(hold.x, hold.x, hold.y, hold.y), T::one());

@@ -11,7 +11,7 @@ mod tables;
 
 use self::tables::{END, EVEN, HALF, NODES, ODD, WEIGHTS};
 use super::{
-    lanes::exp,
+    lanes::{Lanes, exp},
     sliding_arc::{ArcPoint, SlidingArc},
 };
 use crate::scalar::{Real, constant, dot, fma};
@@ -38,8 +38,10 @@ pub(super) struct Panel<T> {
     /// d ln(sigma w) / dt and ln(sigma w), and then the terms of the four sums.
     rate: Nodes<T>,
     log: Nodes<T>,
-    /// sigma w, then sigma e / q, where sigma w = 1 in the middle.
+    /// sigma w, where it is one in the middle.
     grown: Nodes<T>,
+    /// The growth of ln(sigma w) from either end to the middle, then of sigma w, twice.
+    ends: Lanes<T>,
     /// w and sigma w in the middle, and the sum of the work of friction.
     middle: T,
     central: T,
@@ -58,6 +60,7 @@ impl<T: Real> Panel<T> {
             rate: nodes,
             log: nodes,
             grown: nodes,
+            ends: [any; 4],
             middle: any,
             central: any,
             rubbed: any,
@@ -67,7 +70,7 @@ impl<T: Real> Panel<T> {
 
 impl<T: Real> SlidingArc<T> {
     /// Fills a panel about w = `middle`. `s` is the parameter of the map.
-    #[inline(never)]
+    #[inline(always)]
     fn survey(&self, [middle, unit]: [T; 2], s: T, panel: &mut Panel<T>) {
         let one = T::one();
         let Panel { w, inverse, .. } = panel;
@@ -125,10 +128,11 @@ impl<T: Real> SlidingArc<T> {
         self.survey([middle, unit], s, panel);
         let [begin, end] = integrals(&panel.rate, &mut panel.log);
         // Small numbers by their inverses, to keep their digits.
-        let [before, after, ..] = exp([begin.abs(), end.abs(), end, end]);
+        panel.ends = [begin.abs(), end.abs(), begin.abs(), end.abs()];
+        Self::total(panel);
+        let [before, after, ..] = panel.ends;
         let before = if begin > T::zero() { one / before } else { before };
         let after = if end < T::zero() { one / after } else { after };
-        Self::total(panel);
         let Panel { rate, log, .. } = &*panel;
         let [first, second, third, rubbed] =
             [sum(rate.ahead), sum(rate.behind), sum(log.ahead), sum(log.behind)];
@@ -161,24 +165,30 @@ impl<T: Real> SlidingArc<T> {
     #[inline(never)]
     pub fn direct(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &mut Panel<T>) -> T {
         let [f0, f1, f2] = about(self.f, panel.middle, T::one() / panel.middle);
-        let Panel { w, e, grown, rate, log, central, .. } = panel;
-        let halves =
-            [(&w.ahead, &grown.ahead, &mut rate.ahead), (&w.behind, &grown.behind, &mut rate.behind)];
-        for (w, grown, rate) in halves {
-            for ((w, grown), rate) in w.iter().zip(grown).zip(rate) {
-                *rate = *grown * fma(fma(f2, *w, f1), *w, f0);
+        let Panel { w, inverse, e, grown, rate, log, central, .. } = panel;
+        // sigma e / q takes the place of dlambda/dt over q.
+        let halves = [
+            ([&w.ahead, &w.behind, &grown.ahead, &e.ahead], &mut inverse.ahead, &mut rate.ahead),
+            ([&w.behind, &w.ahead, &grown.behind, &e.behind], &mut inverse.behind, &mut rate.behind),
+        ];
+        for ([w, opposite, grown, e], value, rate) in halves {
+            for (((((w, opposite), grown), e), value), rate) in
+                w.iter().zip(opposite).zip(grown).zip(e).zip(value).zip(rate)
+            {
+                *value *= *grown * *e * *opposite;
+                *rate = *value * fma(fma(f2, *w, f1), *w, f0);
             }
         }
         let [begin, _] = integrals(rate, log);
         let halves = [
-            (&log.ahead, &grown.ahead, &e.ahead, &mut rate.ahead),
-            (&log.behind, &grown.behind, &e.behind, &mut rate.behind),
+            (&log.ahead, &inverse.ahead, &e.ahead, &mut rate.ahead),
+            (&log.behind, &inverse.behind, &e.behind, &mut rate.behind),
         ];
-        for (velocity, grown, e, terms) in halves {
-            for ((((velocity, grown), e), weight), term) in
-                velocity.iter().zip(grown).zip(e).zip(&WEIGHTS).zip(terms)
+        for (velocity, value, e, terms) in halves {
+            for ((((velocity, value), e), weight), term) in
+                velocity.iter().zip(value).zip(e).zip(&WEIGHTS).zip(terms)
             {
-                *term = (*velocity - begin) * *grown * *e * constant(*weight);
+                *term = (*velocity - begin) * *value * *e * constant(*weight);
             }
         }
         let pushed = sum(rate.ahead) + sum(rate.behind);
@@ -187,10 +197,11 @@ impl<T: Real> SlidingArc<T> {
 
     /// The terms of the sums of sigma e / q over pairs of nodes, times 1, w and w^2, and of sigma^2 e^3 / q, where sigma w = 1 in the middle.
     ///
-    /// `grown` is sigma w in and sigma e / q out, without weights. 1 / w is w at the other node of a pair.
-    #[inline(never)]
+    /// 1 / w is w at the other node of a pair.
+    #[inline(always)]
     fn total(panel: &mut Panel<T>) {
-        let Panel { w, inverse, e, log, grown, rate, .. } = panel;
+        let Panel { w, inverse, e, log, grown, rate, ends, .. } = panel;
+        *ends = exp(*ends);
         for (log, grown) in [(&log.ahead, &mut grown.ahead), (&log.behind, &mut grown.behind)] {
             for (log, grown) in log.as_chunks::<4>().0.iter().zip(grown.as_chunks_mut::<4>().0) {
                 *grown = exp(*log);
@@ -198,17 +209,12 @@ impl<T: Real> SlidingArc<T> {
         }
         let (Nodes { ahead: s0, behind: s1 }, Nodes { ahead: s2, behind: s3 }) = (rate, log);
         let mut sums = [s0, s1, s2, s3];
-        gather([&w.ahead, &w.behind, &inverse.ahead, &e.ahead], &mut grown.ahead, &mut sums, |sum, term| {
+        gather([&w.ahead, &w.behind, &inverse.ahead, &e.ahead], &grown.ahead, &mut sums, |sum, term| {
             *sum = term
         });
-        gather(
-            [&w.behind, &w.ahead, &inverse.behind, &e.behind],
-            &mut grown.behind,
-            &mut sums,
-            |sum, term| {
-                *sum += term;
-            },
-        );
+        gather([&w.behind, &w.ahead, &inverse.behind, &e.behind], &grown.behind, &mut sums, |sum, term| {
+            *sum += term;
+        });
     }
 }
 
@@ -216,15 +222,14 @@ impl<T: Real> SlidingArc<T> {
 #[inline(always)]
 fn gather<T: Real>(
     [w, opposite, inverse, e]: [&[T; HALF]; 4],
-    grown: &mut [T; HALF],
+    grown: &[T; HALF],
     [s0, s1, s2, s3]: &mut [&mut [T; HALF]; 4],
     take: impl Fn(&mut T, T),
 ) {
     let known = w.iter().zip(opposite).zip(inverse).zip(e).zip(grown).zip(&WEIGHTS);
     let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
     for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
-        let [value, first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
-        *grown = value;
+        let [first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
         take(s0, first);
         take(s1, second);
         take(s2, third);
@@ -232,14 +237,14 @@ fn gather<T: Real>(
     }
 }
 
-/// sigma e / q at a node, and what it adds to the four sums.
+/// What a node adds to the four sums.
 #[inline(always)]
-fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) -> [T; 5] {
+fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) -> [T; 4] {
     let slip = grown * e;
     let value = slip * inverse;
     let second = value * constant(weight);
     let first = second * opposite;
-    [value * opposite, first, second, second * w, first * (slip * opposite * e)]
+    [first, second, second * w, first * (slip * opposite * e)]
 }
 
 /// The sum over the pairs.
@@ -249,7 +254,7 @@ fn sum<T: Real>([a, b, c, d, e, f, g, h]: [T; HALF]) -> T {
 }
 
 /// The integrals of a function from the middle to each node, and to either end.
-#[inline(never)]
+#[inline(always)]
 fn integrals<T: Real>(rate: &Nodes<T>, log: &mut Nodes<T>) -> [T; 2] {
     let zero = T::zero();
     let (mut even, mut odd) = ([zero; HALF], [zero; HALF]);
