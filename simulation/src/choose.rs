@@ -197,7 +197,9 @@ fn polished(
         };
         Some((forces, weights, holds))
     };
-    begin_along(&begin, &mut directions, |directions| solved(directions).map(|(forces, ..)| forces))?;
+    begin_along(&begin, &mut directions, &vec![0.0; begin.len()], |directions| {
+        solved(directions).map(|(forces, ..)| forces)
+    })?;
     let found = solved(&directions);
     let (found, weights, holds) = found?;
     let mut all_weights = vec![0.0; k];
@@ -239,17 +241,20 @@ fn polished(
     })
 }
 
-/// Turns the directions in which slip begins until each is that of the acceleration: Newton's method for the angles. `begin` are these contacts, by their
-/// place in the forces and in the directions.
-fn begin_along(
+/// Turns the directions in which slip begins until the acceleration across each is that given, 0 where it is along it: Newton's method for the angles.
+/// `begin` are these contacts, by their place in the forces and in the directions.
+pub(crate) fn begin_along(
     begin: &[(usize, usize)],
     directions: &mut [Option<Vector2<f64>>],
+    wanted: &[f64],
     forces: impl Fn(&[Option<Vector2<f64>>]) -> Option<Forces>,
 ) -> Option<()> {
     if begin.is_empty() {
         return Some(());
     }
     let m = begin.len();
+    // Slip that begins cannot be against the acceleration; slip that there is may.
+    let starts = wanted.iter().all(|wanted| *wanted == 0.0);
     // Across each direction, relative to the size of the acceleration.
     let across = |directions: &[Option<Vector2<f64>>]| -> Option<DVector<f64>> {
         let found = forces(directions)?;
@@ -257,8 +262,8 @@ fn begin_along(
         for (row, &(place, i)) in begin.iter().enumerate() {
             let d = directions[i]?;
             let rate = Vector2::new(found.acceleration[3 * place + 1], found.acceleration[3 * place + 2]);
-            residual[row] = d.x * rate.y - d.y * rate.x;
-            if rate.dot(&d) < 0.0 {
+            residual[row] = d.x * rate.y - d.y * rate.x - wanted[row];
+            if rate.dot(&d) < 0.0 && starts {
                 // The other way round is no zero.
                 residual[row] += if residual[row] < 0.0 { rate.dot(&d) } else { -rate.dot(&d) };
             }

@@ -22,6 +22,7 @@ mod rattle;
 mod settle;
 mod simulation;
 mod slip_end;
+mod slow;
 mod stepper;
 mod strike;
 mod support;

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 
 use crate::Drive;
 use crate::forces::{Forces, Hold, Lacking, forces, shared};
+use crate::slow;
 use crate::support::Support;
 
 /// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
@@ -19,6 +20,8 @@ pub(crate) struct Closed {
     pub weight: f64,
     /// none while it sticks; else the direction in which slip began, for as long as slip is too small to have one
     pub slides: Option<Vector2<f64>>,
+    /// rate at which its direction of slip turns, rad/s, where that follows from the state
+    pub omega: Option<f64>,
 }
 
 /// What stays the same during a step.
@@ -120,7 +123,7 @@ impl Motion<'_> {
         self.mechanism.accelerations(&state, &mut rates[n..n + p])?;
         let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
         let support = Support::new(self.mechanism, &state, &contacts, true)?;
-        let holds = self.holds(&support, u);
+        let mut holds = self.holds(&support, u);
         let mut found = None;
         if !contacts.is_empty() {
             let mu: Vec<f64> = self.closed.iter().map(|closed| closed.mu).collect();
@@ -130,10 +133,12 @@ impl Motion<'_> {
                 Lacking::Together => Failure::Together,
             };
             // Where something slides its share of the normal forces decides how it is slowed down, and must not change between two decisions.
+            let solve = |holds: &[Hold]| forces(&support, holds, &mu, Some(&weights));
+            slow::settle_directions(&support, self.closed, &mut holds, &solve);
             let answer = if holds.iter().all(|hold| *hold == Hold::Stick) {
                 shared(&support, &holds, &mu, weights).map(|(answer, _)| answer)
             } else {
-                forces(&support, &holds, &mu, Some(&weights))
+                solve(&holds)
             };
             let answer = answer.map_err(lacking)?;
             let greatest = answer.lambda.amax();

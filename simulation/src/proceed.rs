@@ -10,6 +10,7 @@ use crate::locate::{Crossing, first_crossing};
 use crate::motion::{Closed, Evaluation, Failure, Modes, Motion};
 use crate::simulation::{Leaving, Phase, Simulation};
 use crate::slip_end::{Fate, fate};
+use crate::slow::settled;
 use crate::stepper::{self, Step, Tolerances};
 use crate::{Drive, Event, EventKind, Reason, SimulationError, drift};
 
@@ -43,7 +44,8 @@ impl Simulation<'_> {
     /// Makes one step.
     pub(crate) fn proceed(&mut self) -> Result<(), SimulationError> {
         self.sample()?;
-        let closed = self.closed();
+        self.omegas.fill(None);
+        let mut closed = self.closed();
         let here = self.motion(&closed).evaluate(self.t, &self.y).map_err(|failure| self.failure(failure))?;
         let mut most = self.next.min(self.options.max_step);
         if let Some(limit) = self.limit() {
@@ -60,6 +62,11 @@ impl Simulation<'_> {
                 return self.end_slip(&closed, &here, i, time);
             }
             most = most.min((SHARE * left).max(ENDING));
+        }
+        let omegas = settled(&self.motion(&closed), self.t, &self.y, &here);
+        for (contact, omega) in closed.iter_mut().zip(omegas) {
+            contact.omega = omega;
+            self.omegas[contact.contact] = omega;
         }
         let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
         match crossing {

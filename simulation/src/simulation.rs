@@ -59,6 +59,8 @@ pub struct Simulation<'m> {
     pub(crate) forces: Vec<Vector3<f64>>,
     /// weight of each contact where forces are not unique: the same from one decision to the next
     pub(crate) weights: Vec<f64>,
+    /// rate at which the direction of small slip turns where it follows from the state
+    pub(crate) omegas: Vec<Option<f64>>,
     /// whether the forces of the closed contacts were the only possible ones
     pub(crate) unique: bool,
     /// time, coordinates, speeds and works at the front: the end of the last step, after its events
@@ -132,6 +134,7 @@ impl<'m> Simulation<'m> {
             phases: vec![Phase::Open(Leaving::Apart); count],
             forces: vec![Vector3::zeros(); count],
             weights: vec![1.0; count],
+            omegas: vec![None; count],
             unique: true,
             t: state.time,
             view: (state.time, y.clone()),
@@ -308,7 +311,13 @@ impl<'m> Simulation<'m> {
                     Phase::Stick => None,
                     Phase::Slide(direction) => Some(*direction),
                 };
-                Some(Closed { contact, mu: self.mu(contact), weight: self.weights[contact], slides })
+                Some(Closed {
+                    contact,
+                    mu: self.mu(contact),
+                    weight: self.weights[contact],
+                    omega: slides.and(self.omegas[contact]),
+                    slides,
+                })
             })
             .collect()
     }

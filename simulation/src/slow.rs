@@ -1,0 +1,124 @@
+//! Slip that is small and whose direction has settled.
+//!
+//! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration across it: while s is small the direction settles
+//! in the time s / |h_phi|, and an explicit integration would have to follow it in steps of that size. Once it has settled it is known from the state:
+//! h(phi) = s omega, with omega the rate at which the settled direction turns. What is dropped is of the second order in s / |h_phi| times that rate.
+
+use hodograph::State;
+use nalgebra::Vector2;
+
+use crate::choose::begin_along;
+use crate::forces::{Forces, Hold, Lacking, forces};
+use crate::motion::{Closed, Evaluation, Motion};
+use crate::support::Support;
+
+/// The direction counts as known from the state where it settles within this time, s.
+const SETTLES: f64 = 5e-6;
+/// By so much, in m/s, the slip may differ from the settled one.
+const SETTLED: f64 = 1e-12;
+/// Difference by which the rate of the settled direction is formed, s.
+const AHEAD: f64 = 1e-5;
+/// Difference of angles, rad.
+const TURN: f64 = 1e-5;
+
+/// The modes of contacts with the directions that follow from the state: `omega` of those that have settled.
+pub(crate) fn settle_directions(
+    support: &Support,
+    closed: &[Closed],
+    holds: &mut [Hold],
+    solve: &dyn Fn(&[Hold]) -> Result<Forces, Lacking>,
+) -> Option<()> {
+    let settled: Vec<(usize, usize)> =
+        (0..closed.len()).filter(|&i| closed[i].omega.is_some()).map(|i| (i, i)).collect();
+    if settled.is_empty() {
+        return Some(());
+    }
+    let mut directions = directions(holds);
+    let across: Vec<f64> =
+        settled.iter().map(|&(i, _)| closed[i].omega.unwrap_or(0.0) * support.slip(i).norm()).collect();
+    begin_along(&settled, &mut directions, &across, |directions| solve(&with(directions)).ok())?;
+    holds.copy_from_slice(&with(&directions));
+    Some(())
+}
+
+fn directions(holds: &[Hold]) -> Vec<Option<Vector2<f64>>> {
+    holds
+        .iter()
+        .map(|hold| match hold {
+            Hold::Slide(d) => Some(*d),
+            Hold::Stick => None,
+        })
+        .collect()
+}
+
+fn with(directions: &[Option<Vector2<f64>>]) -> Vec<Hold> {
+    directions.iter().map(|d| d.map_or(Hold::Stick, Hold::Slide)).collect()
+}
+
+/// The contacts whose direction of slip has settled, with the rate at which it turns, rad/s.
+pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation) -> Vec<Option<f64>> {
+    let closed = motion.closed;
+    let mut omegas = vec![None; closed.len()];
+    if closed.iter().all(|contact| contact.slides.is_none()) {
+        return omegas;
+    }
+    let mu: Vec<f64> = closed.iter().map(|closed| closed.mu).collect();
+    let weights: Vec<f64> = closed.iter().map(|closed| closed.weight).collect();
+    let solve = |support: &Support, holds: &[Hold]| forces(support, holds, &mu, Some(&weights));
+    let candidates: Vec<usize> = (0..closed.len())
+        .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES))
+        .collect();
+    if candidates.is_empty() {
+        return omegas;
+    }
+    // The settled directions here and a little ahead.
+    let at = |support: &Support, holds: &[Hold], rates: Option<&[f64]>| -> Option<Vec<Hold>> {
+        let mut trial = closed.to_vec();
+        for (place, &i) in candidates.iter().enumerate() {
+            trial[i].omega = Some(rates.map_or(0.0, |rates| rates[place]));
+        }
+        let mut holds = holds.to_vec();
+        settle_directions(support, &trial, &mut holds, &|holds| solve(support, holds))?;
+        Some(holds)
+    };
+    let Some(first) = at(&here.support, &here.holds, None) else { return omegas };
+    let ahead: Vec<f64> = y.iter().zip(&here.rates).map(|(value, rate)| value + AHEAD * rate).collect();
+    let (q, u) = motion.split(&ahead);
+    let Ok(inputs) = motion.inputs(t + AHEAD, &ahead) else { return omegas };
+    let state = State { time: t + AHEAD, coordinates: q, speeds: u, inputs: &inputs };
+    let contacts: Vec<usize> = closed.iter().map(|closed| closed.contact).collect();
+    let Ok(support) = Support::new(motion.mechanism, &state, &contacts, true) else { return omegas };
+    let Some(second) = at(&support, &first, None) else { return omegas };
+    let turn = |a: &Hold, b: &Hold| match (a, b) {
+        (Hold::Slide(a), Hold::Slide(b)) => (a.x * b.y - a.y * b.x).atan2(a.dot(b)),
+        _ => 0.0,
+    };
+    let rates: Vec<f64> = candidates.iter().map(|&i| turn(&first[i], &second[i]) / AHEAD).collect();
+    let Some(exact) = at(&here.support, &here.holds, Some(&rates)) else { return omegas };
+    for (&i, &rate) in candidates.iter().zip(&rates) {
+        let off = turn(&exact[i], &here.holds[i]).abs() * here.support.slip(i).norm();
+        if off < SETTLED {
+            omegas[i] = Some(rate);
+        }
+    }
+    omegas
+}
+
+/// The time in which the direction of slip of a contact settles; `None` where it does not.
+fn relaxation(
+    here: &Evaluation,
+    i: usize,
+    solve: &dyn Fn(&Support, &[Hold]) -> Result<Forces, Lacking>,
+) -> Option<f64> {
+    let Hold::Slide(d) = here.holds[i] else { return None };
+    let across = |angle: f64| -> Option<f64> {
+        let (sin, cos) = angle.sin_cos();
+        let d = Vector2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y);
+        let mut holds = here.holds.clone();
+        holds[i] = Hold::Slide(d);
+        let a = solve(&here.support, &holds).ok()?.acceleration;
+        Some(d.x * a[3 * i + 2] - d.y * a[3 * i + 1])
+    };
+    let slope = (across(TURN)? - across(-TURN)?) / (2.0 * TURN);
+    (slope < 0.0).then(|| here.support.slip(i).norm() / -slope)
+}

@@ -1,0 +1,121 @@
+//! Every shipped model with a gap runs for ten seconds from random starts.
+//!
+//! 100 starts of each: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test shipped -- --nocapture`
+
+mod common;
+
+use common::names;
+use common::random::{Random, starts};
+use hodograph::{Contacts, Kind, Law, State, StateError, Surface};
+use hodograph_simulation::{Event, Options, Progress, Reason, Simulation, SimulationError};
+
+/// What became of the starts of a model.
+#[derive(Debug, Default)]
+struct Count {
+    whole: u64,
+    events: usize,
+    poles: u64,
+}
+
+/// A start at which all contacts that have a gap are open.
+fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
+    let count = |kind| model.count(kind);
+    let (mut q, mut u) = (vec![0.0; count(Kind::Coordinate)], vec![0.0; count(Kind::Speed)]);
+    let mut inputs = vec![0.0; count(Kind::Input)];
+    model.initial_state(&mut q, &mut u, &mut inputs).unwrap();
+    let (middle, rates) = (q, u);
+    for _ in 0..10_000 {
+        let mut q: Vec<f64> = middle.iter().map(|q| q + random.between(-0.4, 0.4)).collect();
+        let u: Vec<f64> = rates.iter().map(|u| u + random.between(-1.0, 1.0)).collect();
+        if model.normalize(&mut q).is_err() {
+            continue;
+        }
+        let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
+        let open = |contact| !matches!(model.gap(contact, &state), Ok(Some(gap)) if gap < 1e-3);
+        if (0..count(Kind::Contact)).all(open) && model.kinetic_energy(&state).is_ok() {
+            return (q, u);
+        }
+    }
+    panic!("no start of {}", model.name());
+}
+
+/// Runs one; true where it reached the end, false where the description of the model fails (a pole of its angles).
+fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> bool {
+    let mut random = Random(seed);
+    let (q, u) = open_start(model, &mut random);
+    let law = [Law::Newton, Law::Poisson, Law::Stronge][random.place(3)];
+    let surface = Surface { mu: random.between(0.0, 1.2), e: random.between(0.0, 0.9), law };
+    let options = Options { surface: Some(surface), ..Options::default() };
+    let inputs = vec![0.0; model.count(Kind::Input)];
+    let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
+    let mut simulation = Simulation::new(model, &state, options).unwrap();
+    let mut seen: Vec<Event> = Vec::new();
+    let what = |error: &SimulationError, seen: &[Event]| {
+        format!(
+            "{} start {seed}, {surface:?}: {error} after {:?}",
+            model.name(),
+            names(&seen[seen.len().saturating_sub(8)..])
+        )
+    };
+    let mut reached = true;
+    for k in 1..=100 {
+        loop {
+            match simulation.advance(0.1 * f64::from(k)) {
+                Ok(Progress::Event(event)) => seen.push(event),
+                Ok(Progress::Reached) => break,
+                // The angles of the model have poles, as its text says.
+                Err(SimulationError { reason: Reason::State(StateError::Singular { .. }), .. }) => {
+                    reached = false
+                }
+                Err(error) => panic!("{}", what(&error, &seen)),
+            }
+            if !reached {
+                break;
+            }
+        }
+        if !reached {
+            break;
+        }
+        let numbers = simulation.coordinates().iter().chain(simulation.speeds());
+        assert!(numbers.clone().all(|x| x.is_finite()), "{} start {seed}", model.name());
+        // Nothing sinks in, and what is closed stays so.
+        let state = State {
+            time: simulation.time(),
+            coordinates: simulation.coordinates(),
+            speeds: simulation.speeds(),
+            inputs: &inputs,
+        };
+        for contact in 0..model.count(Kind::Contact) {
+            if let Some(gap) = model.gap(contact, &state).unwrap() {
+                assert!(
+                    gap > -1e-10,
+                    "{} start {seed}, t = {}: gap {gap:e}",
+                    model.name(),
+                    simulation.time()
+                );
+            }
+        }
+    }
+    *events += seen.len();
+    reached
+}
+
+#[test]
+fn shipped_models_run_from_random_starts() {
+    let models: Vec<Box<dyn Contacts<f64>>> = vec![
+        Box::new(hodograph_models::ball_on_turntable::BallOnTurntable::<f64>::default()),
+        Box::new(hodograph_models::free_box_corner::FreeBoxCorner::<f64>::default()),
+        Box::new(hodograph_models::free_box_quaternion::FreeBoxQuaternion::<f64>::default()),
+        Box::new(hodograph_models::slender_rod_5dof::SlenderRod5dof::<f64>::default()),
+        Box::new(hodograph_models::stanford_arm::StanfordArm::<f64>::default()),
+    ];
+    let count = starts(1);
+    for model in models {
+        let mut result = Count::default();
+        for seed in 0..count {
+            if run(&*model, seed, &mut result.events) { result.whole += 1 } else { result.poles += 1 }
+        }
+        println!("{}: {result:?} of {count}", model.name());
+        assert!(10 * result.poles <= count, "{}: {result:?}", model.name());
+    }
+}
