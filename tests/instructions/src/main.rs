@@ -1,0 +1,153 @@
+//! Counts the instructions of every routine in `measured`, and holds them against `counts.txt`: more than 3 % above it is an error.
+//! With `HODOGRAPH_UPDATE=1` the table is written anew instead.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, ExitCode};
+
+/// A routine may take this much more than the table says: compilers and their versions differ a little.
+const SLACK: f64 = 0.03;
+/// A few instructions are no matter, however short the routine.
+const FEW: f64 = 8.0;
+
+/// So many routines may be left out because valgrind does not know one of their instructions: which, changes with the compiler's choices.
+const MISSING: usize = 12;
+
+type Counts = BTreeMap<String, f64>;
+
+fn main() -> ExitCode {
+    match run() {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(message) => {
+            eprintln!("error: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Is nothing above the table?
+fn run() -> Result<bool, String> {
+    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("counts.txt");
+    let counted = count()?;
+    if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
+        let lines: Vec<String> = counted.iter().map(|(name, count)| format!("{name} {count:.0}\n")).collect();
+        std::fs::write(&table, lines.concat()).map_err(|error| format!("{}: {error}", table.display()))?;
+        println!("{} counts written to {}", counted.len(), table.display());
+        return Ok(true);
+    }
+    let stored = std::fs::read_to_string(&table).map_err(|error| format!("{}: {error}", table.display()))?;
+    let stored: Counts = stored.lines().filter_map(entry).collect();
+    let mut right = true;
+    let missing: Vec<&str> =
+        stored.keys().filter(|name| !counted.contains_key(*name)).map(String::as_str).collect();
+    if !missing.is_empty() {
+        println!("in the table, but not counted: {}", missing.join(", "));
+        right = missing.len() <= MISSING;
+    }
+    for (name, now) in &counted {
+        let Some(before) = stored.get(name) else {
+            println!("{name}: {now:.0}, not in the table");
+            right = false;
+            continue;
+        };
+        let more = now - before;
+        if more > FEW && more > SLACK * before {
+            println!("{name}: {now:.0}, {:.1} % above {before:.0}", 100.0 * more / before);
+            right = false;
+        }
+    }
+    let sum = |counts: &Counts| counts.values().sum::<f64>();
+    println!(
+        "{} routines, together {:.2} % of the table",
+        counted.len(),
+        100.0 * sum(&counted) / sum(&stored)
+    );
+    if !right {
+        println!("where this is meant: HODOGRAPH_UPDATE=1 writes the table anew");
+    }
+    Ok(right)
+}
+
+/// A line of the table: a name and a count.
+fn entry(line: &str) -> Option<(String, f64)> {
+    let (name, count) = line.split_once(' ')?;
+    Some((name.to_owned(), count.trim().parse().ok()?))
+}
+
+fn count() -> Result<Counts, String> {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let target = here.join("target/measured");
+    execute(
+        Command::new("cargo")
+            .args(["build", "--release", "--locked", "--package", "measured", "--manifest-path"])
+            .arg(here.join("Cargo.toml"))
+            .arg("--target-dir")
+            .arg(&target)
+            // valgrind executes no AVX-512.
+            .env("RUSTFLAGS", "-C target-cpu=x86-64-v3"),
+    )?;
+    let measured = target.join("release/measured");
+    let subjects = execute(&mut Command::new(&measured))?;
+    let mut counts = Counts::new();
+    for subject in subjects.lines() {
+        let profile = target.join("callgrind.out");
+        let counted = execute(
+            Command::new("valgrind")
+                .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
+                .arg(format!("--callgrind-out-file={}", profile.display()))
+                .arg(&measured)
+                .arg(subject),
+        );
+        match counted {
+            Ok(_) => {}
+            // what was counted before it is kept
+            Err(message) if message.contains("Unrecognised instruction") || message.contains("SIGILL") => {
+                println!("{subject}: counted in part, for valgrind does not know one of its instructions");
+            }
+            Err(message) => return Err(message),
+        }
+        let profile =
+            std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
+        counts.extend(per_call(&profile));
+    }
+    if counts.is_empty() { Err("valgrind counted none of the routines".to_owned()) } else { Ok(counts) }
+}
+
+/// What a command prints.
+fn execute(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| format!("{command:?}: {error}"))?;
+    if output.status.success() {
+        Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    } else {
+        Err(format!("{command:?}: {}\n{}", output.status, String::from_utf8_lossy(&output.stderr)))
+    }
+}
+
+/// Instructions per call of each routine, with all that it calls: a line `cfn=` names the callee, the line after `calls=` ends with
+/// the cost.
+fn per_call(profile: &str) -> Counts {
+    let mut totals: BTreeMap<String, (f64, f64)> = BTreeMap::new();
+    let (mut callee, mut lines) = (None, profile.lines());
+    while let Some(line) = lines.next() {
+        if let Some(name) = line.strip_prefix("cfn=") {
+            callee = routine(name);
+        } else if let (Some(calls), Some(name)) = (line.strip_prefix("calls="), callee.take()) {
+            let word = |text: &str, place| {
+                text.split_whitespace().nth(place).and_then(|word| word.parse::<f64>().ok()).unwrap_or(0.0)
+            };
+            let total = totals.entry(name).or_default();
+            total.0 += word(calls, 0);
+            total.1 += lines.next().map_or(0.0, |line| word(line, 1));
+        }
+    }
+    totals.into_iter().map(|(name, (calls, cost))| (name, cost / calls)).collect()
+}
+
+/// The name of a measured routine, `model::routine`, from that of a function: `measured::model::routine`, and what the compiler adds.
+fn routine(function: &str) -> Option<String> {
+    let rest = function.split("measured::").nth(1)?;
+    let mut parts = rest.split("::").map(|part| part.split([' ', '\'']).next().unwrap_or(part));
+    let (model, name) = (parts.next()?, parts.next()?);
+    (model != "Bench" && !matches!(name, "run" | "{{closure}}")).then(|| format!("{model}::{name}"))
+}
