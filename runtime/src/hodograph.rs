@@ -4,9 +4,8 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::{
     Impact, ImpactError, Motion, ReducedMatrix, Scalar, Snapshot, Surface,
-    phases::{Units, after_slip},
     scalar::constant,
-    solve::{Contact, Restitution, Slide, State, Terminal, checked, collide, slide, slips},
+    solve::{Contact, Restitution, Slide, State, Terminal, Units, checked, collide, slide, slips},
 };
 
 /// A solved collision that can be evaluated at any normal impulse, exactly: the curve of v_s over v_t that the paper calls hodograph, with the
@@ -53,7 +52,7 @@ impl<T: Scalar> Hodograph<T> {
         let mut restitution = Restitution::new(surface.law, surface.e);
         restitution.thorough = true;
         let impact = collide(matrix, approach, -approach.x, surface, restitution, slide)?;
-        let terminal = (after_slip(impact.path) != Motion::Sliding).then(|| {
+        let terminal = (impact.path.last() != Motion::Sliding).then(|| {
             let Terminal { push, gain, rate, .. } = Terminal::of(&Contact::new(matrix, surface.mu));
             (push, gain, rate)
         });
@@ -76,7 +75,7 @@ impl<T: Scalar> Hodograph<T> {
     #[inline]
     pub fn at(&self, normal_impulse: T) -> Snapshot<T> {
         let zero = T::zero();
-        let after = after_slip(self.impact.path);
+        let after = self.impact.path.last();
         if normal_impulse >= self.impact.impulse.x {
             return self.end(after);
         }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{Phases, Sensitivity};
+use crate::{Motion, Phases, Sensitivity};
 
 /// The phases a collision went through. A phase that lasts no impulse is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -31,6 +31,15 @@ impl Path {
             Self::SlidingThenRenewal => &["sliding", "renewal"],
             Self::Sticking => &["sticking"],
             Self::Renewal => &["renewal"],
+        }
+    }
+
+    /// The last phase.
+    pub(crate) const fn last(self) -> Motion {
+        match self {
+            Self::Sliding => Motion::Sliding,
+            Self::SlidingThenSticking | Self::Sticking => Motion::Sticking,
+            Self::SlidingThenRenewal | Self::Renewal => Motion::Renewal,
         }
     }
 }

@@ -1,12 +1,8 @@
 //! Snapshots of a collision: all quantities at one normal impulse, and where a phase begins or ends.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
-use crate::{
-    Path, Scalar,
-    scalar::{Real, constant},
-    solve::{Contact, Restitution, State},
-};
+use crate::Scalar;
 
 /// What the contact does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -82,80 +78,4 @@ pub struct Phases<T: nalgebra::Scalar> {
     pub last_compression_end: Option<Snapshot<T>>,
     /// Where slip stopped (index S in the paper); `None` if it never did, or there was none at the start.
     pub slip_end: Option<Snapshot<T>>,
-}
-
-/// From the units of the solver, where m_nn = 1 and v_n1 = -1, to those of the input.
-pub(crate) struct Units<'a, T: Real> {
-    pub approach: &'a Vector3<T>,
-    /// Of impulse and of velocity.
-    pub scale: T,
-    pub speed: T,
-    pub contact: &'a Contact<T>,
-}
-
-impl<T: Real> Units<'_, T> {
-    /// The snapshot of a state with its tangential velocity.
-    #[inline]
-    pub fn snapshot(&self, state: &State<T>, tangential: &Vector2<T>, motion: Motion) -> Snapshot<T> {
-        let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * self.scale;
-        let velocity = Vector3::new(state.velocity, tangential.x, tangential.y) * self.speed;
-        Snapshot {
-            impulse,
-            velocity,
-            contact_work: impulse.dot(&(velocity + self.approach)) * constant(0.5),
-            normal_work: state.work * self.scale * self.speed,
-            motion,
-        }
-    }
-
-    /// The tangential velocity that the impulses give: (21), (22).
-    #[inline]
-    fn tangential(&self, state: &State<T>) -> Vector2<T> {
-        let c = self.contact;
-        let i = &state.tangential;
-        Vector2::new(self.approach.y, self.approach.z) / self.speed
-            + c.b * state.normal
-            + Vector2::new(c.tt * i.x + c.ts * i.y, c.ts * i.x + c.ss * i.y)
-    }
-}
-
-/// The snapshots of the states that the solver recorded.
-#[inline]
-pub(crate) fn phases<T: Real>(
-    units: &Units<'_, T>,
-    restitution: &Restitution<T>,
-    slip_end: Option<State<T>>,
-    path: Path,
-) -> Phases<T> {
-    let after = after_slip(path);
-    let compression = |state: State<T>| {
-        let slides = match &slip_end {
-            Some(end) => state.normal < end.normal,
-            None => path == Path::Sliding,
-        };
-        if slides {
-            units.snapshot(&state, &units.tangential(&state), Motion::Sliding)
-        } else if after == Motion::Renewal {
-            units.snapshot(&state, &units.tangential(&state), after)
-        } else {
-            units.snapshot(&state, &Vector2::zeros(), after)
-        }
-    };
-    let compression_end = restitution.first.map(compression);
-    let last_compression_end =
-        if restitution.compressions == 1 { compression_end } else { restitution.latest.map(compression) };
-    Phases {
-        compression_end,
-        last_compression_end,
-        slip_end: slip_end.map(|state| units.snapshot(&state, &Vector2::zeros(), after)),
-    }
-}
-
-/// What follows slip on a path.
-pub(crate) fn after_slip(path: Path) -> Motion {
-    match path {
-        Path::Sliding => Motion::Sliding,
-        Path::SlidingThenSticking | Path::Sticking => Motion::Sticking,
-        Path::SlidingThenRenewal | Path::Renewal => Motion::Renewal,
-    }
 }

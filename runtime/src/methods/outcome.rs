@@ -6,12 +6,12 @@ use super::{
     equations::{I_N, I_S, I_T, NORMAL_WORK, PHI, Problem, S, State, V_N, WORK},
     law::Ending,
 };
-use crate::{Impact, Motion, Path, Phases, Sensitivity, Snapshot, phases::after_slip};
+use crate::{Impact, Motion, Path, Phases, Sensitivity, Snapshot};
 
 impl Problem {
     /// The outcome in the units of the input.
     pub fn outcome(&self, end: &State, path: Path, ending: &Ending) -> Impact<f64> {
-        let after = after_slip(path);
+        let after = path.last();
         let compression = |state: State| {
             let slides = ending.slip_end.is_none_or(|end| state[I_N] < end[I_N]) && self.slip > 0.0;
             self.snapshot(&state, if slides { Motion::Sliding } else { after })

@@ -1,46 +1,15 @@
-//! How a straight hodograph rate_changes: where slip begins beside a direction that stays, and when the inputs of one that begins there change.
+//! Slip that begins beside a direction in which it would stay: the arc to first order in the angle by which it turns.
 //!
 //! Theory: docs/theory.md, section 7.2.
 
 use nalgebra::Vector2;
 
 use super::{
-    Contact,
+    contact::Contact,
     restitution::{LinearArc, Restitution, State},
-    sliding::Slide,
+    straight::{Slide, deviation},
 };
 use crate::scalar::{Real, constant, larger};
-
-/// The integral over I_n of the deviation of phi from a zero of h, where h is `turn` = 0 up to its derivatives.
-///
-/// To first order phi' = h + h' phi along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'.
-/// `impulse` is I_n since the beginning, or `None` for all I_n until slip stops.
-#[inline]
-pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
-    let [_, g, turn] = c.rates(d);
-    let sum = c.convergence(d);
-    let left = |i: &T| slip + g * *i > T::default_epsilon() * slip;
-    let Some(impulse) = impulse.filter(left) else {
-        return if sum < T::zero() && g < T::zero() { turn * slip / (g * sum) } else { T::zero() };
-    };
-    let (one, half, small) = (T::one(), constant::<T>(0.5), T::default_epsilon().sqrt());
-    let ratio = impulse / slip;
-    // tau = ln(1 + g I / s) / g
-    let x = g * ratio;
-    let tau = if x.abs() <= small { ratio * (one - x * half) } else { x.ln_1p() / g };
-    if tau <= T::zero() {
-        return T::zero();
-    }
-    // (e^(k tau) - 1) / k
-    let grown = |k: T| {
-        let y = k * tau;
-        if y.abs() <= small { tau * (one + y * half) } else { y.exp_m1() / k }
-    };
-    // Where h' vanishes too, a small value gives the limit.
-    let slope = sum - g;
-    let slope = if (slope * tau).abs() <= small { small / tau } else { slope };
-    turn * slip * (grown(slope + g) - ratio) / slope
-}
 
 /// The arc from a direction where h is nearly zero, to first order in the angle by which slip turns; `None` where first order is not exact.
 ///

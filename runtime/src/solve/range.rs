@@ -13,15 +13,31 @@
 use nalgebra::Vector2;
 
 use super::{
-    Contact, Restitution, Slide, State,
-    sliding::{arc, straight},
+    contact::Contact,
+    restitution::{Restitution, State},
+    sliding::arc,
+    straight::{Slide, straight},
 };
 use crate::scalar::{Real, constant};
 
-/// [`super::slide`] in units of the contact's own rates.
+/// Slides from the given tangential velocity.
+#[inline]
+pub(crate) fn slide<T: Real>(
+    c: &Contact<T>,
+    from: Vector2<T>,
+    speed: T,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
+    if c.is_ordinary() {
+        return arc(c, from, speed, restitution);
+    }
+    rescaled(c, from, speed, restitution)
+}
+
+/// [`slide`] in units of the contact's own rates.
 #[cold]
 #[inline(never)]
-pub(super) fn rescaled<T: Real>(
+fn rescaled<T: Real>(
     c: &Contact<T>,
     from: Vector2<T>,
     speed: T,

@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use super::{Contact, grazing::Grazing};
+use super::{contact::Contact, grazing::Grazing};
 use crate::{Law, scalar::Real, scalar::constant, scalar::larger};
 
 /// Slip over |v_n1| (times mu if that is above one) beyond which the balance of energy would lose digits of the work.

@@ -12,11 +12,11 @@
 use nalgebra::Vector2;
 
 use super::{
-    Contact,
+    contact::Contact,
     invariant_directions::{Near, Zero, neighbours, over, times},
     restitution::State,
 };
-use crate::scalar::{Real, constant, dot, fma, larger, smaller};
+use crate::scalar::{Real, constant, dot, fma, larger};
 
 /// The three integrals along a stretch of the arc.
 pub(super) type Integrals<T> = [T; 3];
@@ -39,18 +39,18 @@ pub(super) struct SlidingArc<T: Real> {
     /// F = f e (31).
     pub f: [T; 3],
     /// The terms of which f is made.
-    size: T,
+    pub size: T,
     /// |h| = bend w q / e^2.
     bend: T,
     /// The larger of the moduli of the zeros of q.
     pub outer: T,
     /// The angle between a zero of q and the positive axis, and how far the logarithms of real zeros lie from their mean.
-    angle: T,
-    spread: T,
+    pub angle: T,
+    pub spread: T,
     /// The inverse of the zeros' mean modulus.
-    scale: T,
+    pub scale: T,
     /// Whether f may change sign.
-    may_turn: bool,
+    pub may_turn: bool,
 }
 
 /// A point of the arc.
@@ -224,116 +224,6 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// How far in lambda a point lies beyond the zeros of q, at least; negative before them.
-    #[inline(always)]
-    pub fn beyond(&self, point: &ArcPoint<T>) -> T {
-        rough_ln(point.w.primal() * self.scale)
-    }
-
-    /// How far in lambda one quadrature may reach from here.
-    ///
-    /// With all zeros of q outside an ellipse whose foci are the ends, and a constant rate of growth, the error is about
-    /// e^(c (rho + 1 / rho - 2) / 2) rho^(-2 n), where rho is the sum of the semi-axes and c half of the rate times the length.
-    #[inline]
-    pub fn reach(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
-        // rho + 1 / rho with an error of 1e-15 but for growth.
-        const SUM: f64 = 3.28;
-        // Here the map of the nodes comes as near to its own poles.
-        const MOST: f64 = 9.0;
-        let to = |d: T| {
-            let away = dot(d, d, self.angle, self.angle).sqrt();
-            fma(constant::<T>(2.0 * SUM), away, constant::<T>(4.0) * d) * constant(1.0 / (SUM * SUM - 4.0))
-        };
-        let before = self.beyond(point);
-        let mut poles = to(before - self.spread);
-        if self.spread > T::zero() {
-            poles = smaller(poles, to(before + self.spread));
-        }
-        let poles = smaller(poles, constant(0.5 * MOST));
-        let one = T::one();
-        let mut rate = larger((rates.growth + one).abs(), (rates.weight + rates.shape).abs()).primal();
-        let slip = point.sigma * rates.e;
-        let works = slip > constant(0.06) || (slip > constant(1e-3) && poles * rate > constant(12.0));
-        if works {
-            // The work goes with slip times the impulse.
-            rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().primal());
-        }
-        // Growth that changes shows zeros of q with large powers; there the distance must be greater.
-        let bent = (rates.change.abs().primal() * constant(0.06)).sqrt();
-        let limited = |rate: T| {
-            // How much growth shortens it: a fit.
-            let c = poles * rate;
-            let fit = fma(fma(c, constant(3e-5), constant(1.2e-3)), c, constant(0.01));
-            let steep = smaller(poles, constant::<T>(7.0) / rate);
-            larger(poles / fma(fit, c, fma(bent, poles, one)), steep / fma(bent, steep, one))
-        };
-        let both = limited(rate);
-        let both = both + both;
-        if self.central[2].abs().primal() <= (rate + rate) * self.q[2].primal() {
-            return both.primal();
-        }
-        let both = both * constant(0.5);
-        // About the growth at the far end, where it may be steeper. Where it rises it rises on beyond.
-        let near = (rates.growth + one).abs().primal();
-        let far = |both: T| {
-            let part = both * constant(0.125);
-            let w = (one + part) / (one - part);
-            let w = w * w;
-            let w = w * w;
-            let w = point.w * w * w;
-            let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
-            let far = (poly(self.central) / poly(self.q)).abs().primal();
-            let far = far + larger(far - near, T::zero());
-            if works { far + far } else { far }
-        };
-        let steepest = far(both);
-        if steepest <= rate + rate {
-            return (both + both).primal();
-        }
-        // Shorter, and then as long again as the growth at that end allows.
-        let (mut least, mut most) = (smaller(both, limited(steepest)), both);
-        for _ in 0..4 {
-            let middle = (least + most) * constant(0.5);
-            let allowed = limited(larger(far(middle), rate));
-            if allowed >= middle {
-                least = middle;
-            } else {
-                (least, most) = (larger(least, allowed), middle);
-            }
-        }
-        (least + least).primal()
-    }
-
-    /// Whether v_n rises from here, and the length in lambda after which f changes sign, if it does.
-    #[inline]
-    pub fn turning_point(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> (bool, Option<T>) {
-        if !self.may_turn {
-            return (rates.slope > T::zero(), None);
-        }
-        let [_, f1, f2] = self.f;
-        let zero = T::zero();
-        // F(w (1 + x)) = c + b x + a x^2
-        let w = point.w;
-        let mut c = (rates.slope * rates.e).primal();
-        let tiny = constant::<T>(64.0) * T::default_epsilon();
-        let a = (f2 * w * w).primal();
-        let b = (f1 * w).primal() + a + a;
-        let mut rising = c > zero;
-        // A zero at the beginning is behind, as well as f can be known.
-        if c.abs() <= tiny * self.size * rates.e {
-            c = zero;
-            rising = b > zero;
-        }
-        let mut best = None;
-        for x in super::quadratic(a, b, c) {
-            let x = x.primal();
-            if x > tiny && best.is_none_or(|y| x < y) {
-                best = Some(x);
-            }
-        }
-        (rising, best.map(|x| (T::one() + x).ln().primal()))
-    }
-
     /// Adds integrals to a state, but for the work.
     #[inline(always)]
     pub fn add(&self, [m0, m1, m2]: Integrals<T>, state: &mut State<T>) {
@@ -343,61 +233,6 @@ impl<T: Real> SlidingArc<T> {
         state.tangential.x = fma(a.x, m0, fma(ab.x, m1, fma(b.x, m2, state.tangential.x)));
         state.tangential.y = fma(a.y, m0, fma(ab.y, m1, fma(b.y, m2, state.tangential.y)));
         state.velocity += fma(f0, m0, fma(f1, m1, f2 * m2));
-    }
-}
-
-impl<T: Real> ArcPoint<T> {
-    /// Goes a tiny step of lambda further: the error is of third order.
-    #[inline]
-    pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {
-        let (one, half) = (T::one(), constant::<T>(0.5));
-        let first = self.sigma * rates.e * rates.inverse * step;
-        let halved = step * half;
-        let bent = |extra: T| fma(rates.weight + extra, halved, one);
-        let second = first * self.w;
-        let from = self.state;
-        arc.add(
-            [first * bent(T::zero()), second * bent(one), second * self.w * bent(one + one)],
-            &mut self.state,
-        );
-        let done = (from.velocity + self.state.velocity) * half * (self.state.normal - from.normal);
-        self.state.work += done;
-        self.since += done;
-        self.sigma *=
-            fma(step, fma(halved, fma(rates.growth, rates.growth, rates.change), rates.growth), one);
-        self.w *= fma(step, one + halved, one);
-    }
-
-    /// Goes a small step of lambda further: the error is of fourth order.
-    #[inline(never)]
-    pub fn third_order_step(
-        &mut self,
-        arc: &SlidingArc<T>,
-        rates: &Rates<T>,
-        rate_changes: &RateChanges<T>,
-        step: T,
-    ) {
-        let (one, half, third) = (T::one(), constant::<T>(0.5), constant::<T>(1.0 / 3.0));
-        let w = self.w;
-        let first = self.sigma * rates.e * rates.inverse * step;
-        let bent = |extra: T| {
-            let rate = rates.weight + extra;
-            fma(step * half, fma(step * third, fma(rate, rate, rate_changes.weight), rate), one)
-        };
-        let second = first * w;
-        let from = self.state;
-        arc.add([first * bent(T::zero()), second * bent(one), second * w * bent(one + one)], &mut self.state);
-        // The trapezoid, and the bend of v_n over I_n.
-        let pushed = self.state.normal - from.normal;
-        let bow = rates.slope * (rates.turn - rates.shape) * step * pushed * constant(1.0 / 6.0);
-        let done = (from.velocity + self.state.velocity - bow) * half * pushed;
-        self.state.work += done;
-        self.since += done;
-        let (g, change) = (rates.growth, rates.change);
-        let cubed = fma(g, fma(g, g, constant::<T>(3.0) * change), rate_changes.growth);
-        let square = fma(step * third, cubed, fma(g, g, change));
-        self.sigma *= fma(step, fma(step * half, square, g), one);
-        self.w *= fma(step, fma(step * half, fma(step, third, one), one), one);
     }
 }
 

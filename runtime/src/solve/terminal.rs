@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use super::Contact;
+use super::contact::Contact;
 use crate::scalar::{Real, constant, dot, fma, larger, length};
 
 impl<T: Real> Contact<T> {

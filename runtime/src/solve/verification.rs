@@ -8,7 +8,10 @@
 
 use nalgebra::Vector2;
 
-use super::{Contact, Restitution, State};
+use super::{
+    contact::Contact,
+    restitution::{Restitution, State},
+};
 use crate::{
     ImpactError, Violation,
     scalar::{Real, constant, dot, fma, larger, length, smaller},

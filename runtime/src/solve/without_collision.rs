@@ -5,7 +5,13 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Contact, Restitution, collide, input::check_closely, long, slide};
+use super::{
+    collision::{collide, long},
+    contact::Contact,
+    input::check_closely,
+    range::slide,
+    restitution::Restitution,
+};
 use crate::{
     Impact, ImpactError, ReducedMatrix, Surface,
     scalar::{Real, constant, length},

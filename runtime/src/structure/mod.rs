@@ -17,20 +17,25 @@ mod frictionless;
 mod isotropic;
 mod planar;
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 pub(crate) use self::implementation::Shape;
 use crate::{
     Impact, ImpactError, ReducedMatrix, Scalar, Surface,
-    scalar::Real,
-    solve::{Contact, Restitution, Slide, checked, collide, slide},
+    solve::{Restitution, checked, collide},
 };
 
 /// A structure of the reduced matrix and the approach: one of the marker types of this module.
 pub trait Structure: implementation::Shape {}
 
 mod implementation {
-    use super::*;
+    use nalgebra::{Vector2, Vector3};
+
+    use crate::{
+        ReducedMatrix, Surface,
+        scalar::Real,
+        solve::{Contact, Restitution, Slide, slide},
+    };
 
     /// What a structure does; not to be implemented elsewhere.
     pub trait Shape {

@@ -1,0 +1,228 @@
+//! One collision from its input to its outcome: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
+//!
+//! Theory: docs/theory.md, sections 1 and 10.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{
+    contact::Contact,
+    input::checked,
+    range::slide,
+    restitution::{LinearArc, Restitution, State},
+    snapshots::{Units, phases},
+    straight::Slide,
+    terminal::Terminal,
+};
+use crate::{
+    Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
+    scalar::{Real, constant, fma, larger, length},
+};
+
+/// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
+///
+/// t and s are any orthonormal pair in the contact plane. No slip at the start, straight hodographs, singular matrices and
+/// repeated compression are all ordinary input.
+///
+/// Every answer is held against the laws of impact before it leaves: one that rounding keeps from obeying them is an error.
+///
+/// ```
+/// # use hodograph::{Law, ReducedMatrix, Surface, solve};
+/// # use nalgebra::Vector3;
+/// // The two sleds of the paper.
+/// let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
+/// let approach = Vector3::new(-0.946108022, 1.06306701, 0.0);
+/// let hit = solve(&matrix, &approach, &Surface { mu: 0.6, e: 0.8, law: Law::Stronge })?;
+/// assert!((hit.velocity.x - 0.5115321742_f64).abs() < 1e-9);
+/// assert!((hit.contact_work + 2.232487328_f64).abs() < 1e-9);
+/// # Ok::<(), hodograph::ImpactError<f64>>(())
+/// ```
+///
+/// # Errors
+/// Every reason is a variant of [`ImpactError`]; a result is never NaN.
+#[inline]
+pub fn solve<T: crate::Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<Impact<T>, ImpactError<T>> {
+    solve_real(matrix, approach, surface)
+}
+
+/// The same for everything that the solver can calculate with.
+#[inline]
+pub(crate) fn solve_real<T: Real>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<Impact<T>, ImpactError<T>> {
+    let cleaned;
+    let matrix = match checked(matrix, approach, surface)? {
+        None => matrix,
+        Some(matrix) => {
+            cleaned = matrix;
+            &cleaned
+        }
+    };
+    let restitution = Restitution::new(surface.law, surface.e);
+    collide(matrix, approach, -approach.x, surface, restitution, slide)
+}
+
+/// Solves an impact whose input is checked, in units of `speed`, with any way of following the sliding arc.
+#[inline(always)]
+pub(crate) fn collide<T: Real>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    speed: T,
+    surface: &Surface<T>,
+    mut restitution: Restitution<T>,
+    slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Restitution<T>) -> Slide<T>,
+) -> Result<Impact<T>, ImpactError<T>> {
+    let (contact, share) = Contact::limited(matrix, surface.mu);
+    let tangential = Vector2::new(approach.y, approach.z) / speed;
+    let mut slip = length(&tangential);
+    if !slip.is_finite() {
+        slip = long(&tangential);
+    }
+    let slips = slips(slip);
+    let mut sensitivity = Sensitivity::of_start(&contact, &tangential, slip);
+    let mut state = restitution.start();
+    let mut ended = None;
+    let (mut stops, mut endless) = (false, false);
+    if slips {
+        match slide(&contact, tangential, slip, &mut restitution) {
+            Slide::Ended(end, velocity) => ended = Some((end, velocity, Path::Sliding)),
+            Slide::Stopped(stopped) => {
+                restitution.grazing.moved(stopped.velocity);
+                (state, stops) = (stopped, true);
+            }
+            Slide::Endless(stopped) => (state, endless) = (stopped, true),
+        }
+    }
+    if ended.is_none() && !endless {
+        ended = after_slip(&contact, &mut state, slips, &mut restitution, &mut sensitivity);
+    }
+    let Some((mut end, velocity, path)) = ended else {
+        let normal_velocity = state.velocity * speed;
+        return Err(if normal_velocity.is_finite() {
+            ImpactError::Wedged { normal_velocity, law: surface.law }
+        } else {
+            ImpactError::NotFinite { value: normal_velocity }
+        });
+    };
+    restitution.verify(&contact, &tangential, slip, &end, &velocity)?;
+    let slides = path == Path::Sliding && !stops;
+    sensitivity.ended(&contact, &mut restitution, &end, slides.then_some(&velocity));
+    let mut slip_end = stops.then_some(state);
+    if share < T::one() && slips {
+        // A normal impulse that does nothing by itself is what friction needed.
+        let least = T::default_epsilon() * T::default_epsilon();
+        let all =
+            [Some(&mut end), slip_end.as_mut(), restitution.first.as_mut(), restitution.latest.as_mut()];
+        for state in all.into_iter().flatten().filter(|state| state.normal <= least) {
+            *state = state.in_units(share, T::one());
+        }
+    }
+    let scale = speed / matrix.nn;
+    let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
+    let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
+    let normal_work = end.work * scale * speed;
+    let contact_work = impulse.dot(&(separation + approach)) * constant(0.5);
+    // One look at all of them suffices where nothing is wrong.
+    let sum = impulse.x + impulse.y + impulse.z + separation.x + separation.y + separation.z;
+    if !(sum + (contact_work + normal_work)).is_finite() || impulse.x < least() {
+        in_range(&impulse, &separation, [contact_work, normal_work])?;
+    }
+    Ok(Impact {
+        impulse,
+        velocity: separation,
+        contact_work,
+        normal_work,
+        path,
+        compressions: restitution.compressions,
+        phases: phases(&Units { approach, scale, speed, contact: &contact }, &restitution, slip_end, path),
+        sensitivity,
+    })
+}
+
+/// Names the quantity of an outcome that left the range of the number type, if one did: too large, or an impulse too small to have digits.
+#[cold]
+#[inline(never)]
+fn in_range<T: Real>(
+    impulse: &Vector3<T>,
+    separation: &Vector3<T>,
+    [contact_work, normal_work]: [T; 2],
+) -> Result<(), ImpactError<T>> {
+    let [n, t, s] = [impulse.x, impulse.y, impulse.z];
+    for value in [n, t, s, separation.x, separation.y, separation.z, contact_work, normal_work] {
+        if !value.is_finite() {
+            return Err(ImpactError::NotFinite { value });
+        }
+    }
+    if n < least() { Err(ImpactError::NotFinite { value: n }) } else { Ok(()) }
+}
+
+/// About the smallest number with all its digits.
+#[inline(always)]
+fn least<T: Real>() -> T {
+    constant(if T::default_epsilon() > constant(1e-10) { 1.2e-38 } else { 2.3e-308 })
+}
+
+/// The length of a vector whose square may be beyond the range of the number type.
+#[cold]
+#[inline(never)]
+pub(super) fn long<T: Real>(v: &Vector2<T>) -> T {
+    let size = larger(v.x.abs(), v.y.abs()).primal();
+    if size > T::zero() { length(&(v / size)) * size } else { T::zero() }
+}
+
+/// Whether there is slip at all, where v_n1 = -1.
+#[inline]
+pub(crate) fn slips<T: Real>(slip: T) -> bool {
+    let eps = T::default_epsilon();
+    slip > eps * eps * eps * eps
+}
+
+/// The arc after slip has stopped; nothing if the law never ends it.
+#[inline]
+fn after_slip<T: Real>(
+    contact: &Contact<T>,
+    state: &mut State<T>,
+    slips: bool,
+    restitution: &mut Restitution<T>,
+    sensitivity: &mut Sensitivity,
+) -> Option<(State<T>, Vector2<T>, Path)> {
+    let eps = T::default_epsilon();
+    let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
+    // Where slip and normal velocity stop together, rounding must not tell them apart: most of all where little moves the contact afterwards,
+    // or where compression has just ended.
+    let scale = fma(state.normal, contact.normal_size(), T::one());
+    let again = restitution.compressions > 0 && state.velocity < T::zero();
+    let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
+    if slips && state.velocity.abs() <= few * eps * scale {
+        state.velocity = T::zero();
+        if restitution.compressions == 0 && restitution.compressed(state) {
+            return Some((*state, Vector2::zeros(), Path::Sliding));
+        }
+    }
+    sensitivity.stopped(contact.mu, mu_c);
+    let path = match (slips, sticks) {
+        (true, true) => Path::SlidingThenSticking,
+        (true, false) => Path::SlidingThenRenewal,
+        (false, true) => Path::Sticking,
+        (false, false) => Path::Renewal,
+    };
+    match restitution.follow_linear(state, rate, &push, None) {
+        LinearArc::Ended { impulse, velocity, work } => {
+            let end = State {
+                normal: state.normal + impulse,
+                tangential: state.tangential - push * impulse,
+                velocity,
+                work,
+            };
+            // A phase that lasts no impulse is no phase.
+            let path = if slips && impulse <= T::zero() { Path::Sliding } else { path };
+            Some((end, gain * impulse, path))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,96 @@
+//! Slip that keeps its direction, and how the sliding arc ends.
+//!
+//! Theory: docs/theory.md, sections 7.1 and 7.2.
+
+use nalgebra::Vector2;
+
+use super::{
+    contact::Contact,
+    restitution::{LinearArc, Restitution, State},
+};
+use crate::scalar::{Real, constant};
+
+/// How the sliding arc ends.
+pub(crate) enum Slide<T: Real> {
+    /// The law ended the collision while the contact slid with this velocity.
+    Ended(State<T>, Vector2<T>),
+    /// Slip stopped first.
+    Stopped(State<T>),
+    /// Neither happens: slip goes on for ever.
+    Endless(State<T>),
+}
+
+/// Slip along a fixed direction: everything is linear in I_n.
+#[inline]
+pub(crate) fn straight<T: Real>(
+    c: &Contact<T>,
+    d: Vector2<T>,
+    slip: T,
+    state: State<T>,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
+    let noise = constant::<T>(1024.0) * T::default_epsilon();
+    let [mut f, g, h] = c.rates(&d);
+    if f.abs() <= noise * c.normal_size() {
+        f = T::zero();
+    }
+    // Slip that no longer changes while v_n does not either goes on for ever.
+    let dead = f == T::zero() && g.abs() <= noise * c.slip_size();
+    let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
+    let across = Vector2::new(-d.y, d.x);
+    let turned = |impulse: Option<T>| if T::refined() { deviation(c, &d, slip, impulse) } else { T::zero() };
+    let moved = |impulse: T, velocity: T, work: T, deviation: T| {
+        let mut push = d * impulse;
+        if T::refined() {
+            push += across * deviation;
+        }
+        State { normal: state.normal + impulse, tangential: state.tangential - push * c.mu, velocity, work }
+    };
+    match restitution.follow_linear(&state, f, &(d * c.mu), length) {
+        LinearArc::Ended { impulse, velocity, work } => {
+            let mut left = d * (slip + g * impulse);
+            let deviation = turned(Some(impulse));
+            if T::refined() {
+                left += across * (h * impulse) - c.dragged(&across) * deviation;
+            }
+            Slide::Ended(moved(impulse, velocity, work, deviation), left)
+        }
+        LinearArc::Passed(impulse) => {
+            let velocity = state.velocity + f * impulse;
+            let work = state.work + (state.velocity + velocity) * impulse * constant(0.5);
+            Slide::Stopped(moved(impulse, velocity, work, turned(None)))
+        }
+        LinearArc::Endless => Slide::Endless(state),
+    }
+}
+
+/// The integral over I_n of the deviation of phi from a zero of h, where h is `turn` = 0 up to its derivatives.
+///
+/// To first order phi' = h + h' phi along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'.
+/// `impulse` is I_n since the beginning, or `None` for all I_n until slip stops.
+#[inline]
+pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
+    let [_, g, turn] = c.rates(d);
+    let sum = c.convergence(d);
+    let left = |i: &T| slip + g * *i > T::default_epsilon() * slip;
+    let Some(impulse) = impulse.filter(left) else {
+        return if sum < T::zero() && g < T::zero() { turn * slip / (g * sum) } else { T::zero() };
+    };
+    let (one, half, small) = (T::one(), constant::<T>(0.5), T::default_epsilon().sqrt());
+    let ratio = impulse / slip;
+    // tau = ln(1 + g I / s) / g
+    let x = g * ratio;
+    let tau = if x.abs() <= small { ratio * (one - x * half) } else { x.ln_1p() / g };
+    if tau <= T::zero() {
+        return T::zero();
+    }
+    // (e^(k tau) - 1) / k
+    let grown = |k: T| {
+        let y = k * tau;
+        if y.abs() <= small { tau * (one + y * half) } else { y.exp_m1() / k }
+    };
+    // Where h' vanishes too, a small value gives the limit.
+    let slope = sum - g;
+    let slope = if (slope * tau).abs() <= small { small / tau } else { slope };
+    turn * slip * (grown(slope + g) - ratio) / slope
+}

@@ -1,0 +1,61 @@
+//! Very short steps along the sliding arc, by Taylor's series.
+//!
+//! Theory: docs/theory.md, section 8.5.
+
+use super::sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc};
+use crate::scalar::{Real, constant, fma};
+
+impl<T: Real> ArcPoint<T> {
+    /// Goes a tiny step of lambda further: the error is of third order.
+    #[inline]
+    pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {
+        let (one, half) = (T::one(), constant::<T>(0.5));
+        let first = self.sigma * rates.e * rates.inverse * step;
+        let halved = step * half;
+        let bent = |extra: T| fma(rates.weight + extra, halved, one);
+        let second = first * self.w;
+        let from = self.state;
+        arc.add(
+            [first * bent(T::zero()), second * bent(one), second * self.w * bent(one + one)],
+            &mut self.state,
+        );
+        let done = (from.velocity + self.state.velocity) * half * (self.state.normal - from.normal);
+        self.state.work += done;
+        self.since += done;
+        self.sigma *=
+            fma(step, fma(halved, fma(rates.growth, rates.growth, rates.change), rates.growth), one);
+        self.w *= fma(step, one + halved, one);
+    }
+
+    /// Goes a small step of lambda further: the error is of fourth order.
+    #[inline(never)]
+    pub fn third_order_step(
+        &mut self,
+        arc: &SlidingArc<T>,
+        rates: &Rates<T>,
+        rate_changes: &RateChanges<T>,
+        step: T,
+    ) {
+        let (one, half, third) = (T::one(), constant::<T>(0.5), constant::<T>(1.0 / 3.0));
+        let w = self.w;
+        let first = self.sigma * rates.e * rates.inverse * step;
+        let bent = |extra: T| {
+            let rate = rates.weight + extra;
+            fma(step * half, fma(step * third, fma(rate, rate, rate_changes.weight), rate), one)
+        };
+        let second = first * w;
+        let from = self.state;
+        arc.add([first * bent(T::zero()), second * bent(one), second * w * bent(one + one)], &mut self.state);
+        // The trapezoid, and the bend of v_n over I_n.
+        let pushed = self.state.normal - from.normal;
+        let bow = rates.slope * (rates.turn - rates.shape) * step * pushed * constant(1.0 / 6.0);
+        let done = (from.velocity + self.state.velocity - bow) * half * pushed;
+        self.state.work += done;
+        self.since += done;
+        let (g, change) = (rates.growth, rates.change);
+        let cubed = fma(g, fma(g, g, constant::<T>(3.0) * change), rate_changes.growth);
+        let square = fma(step * third, cubed, fma(g, g, change));
+        self.sigma *= fma(step, fma(step * half, square, g), one);
+        self.w *= fma(step, fma(step * half, fma(step, third, one), one), one);
+    }
+}
