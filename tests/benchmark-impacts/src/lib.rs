@@ -1,6 +1,7 @@
-//! What is measured: collisions, methods, and the error of an answer.
+//! What is measured: collisions, methods, the error of an answer, and the modes of closed contacts.
 
 mod hostile;
+pub mod modes;
 mod ode;
 
 use std::hint::black_box;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-use hodograph_benchmark_impacts::{METHODS, set};
+use hodograph_benchmark_impacts::{METHODS, modes, set};
 
 fn main() -> ExitCode {
     match run() {
@@ -28,19 +28,34 @@ fn run() -> Result<(), String> {
             // valgrind executes no AVX-512.
             .env("RUSTFLAGS", "-C target-cpu=x86-64-v3"),
     )?;
-    for name in ["nine", "random", "all"] {
-        let profile = target.join(format!("{name}.callgrind"));
-        execute(
-            Command::new("valgrind")
-                .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
-                .arg(format!("--callgrind-out-file={}", profile.display()))
-                .arg(target.join("release/measured"))
-                .arg(name),
-        )?;
-        let counts = counts(&std::fs::read_to_string(&profile).map_err(|error| error.to_string())?);
-        table(name, &counts);
+    // `modes` alone: the last table only.
+    if std::env::args().nth(1).is_none_or(|only| only != "modes") {
+        for name in ["nine", "random", "all"] {
+            let names: Vec<_> = METHODS.iter().map(|method| method.1).collect();
+            table(name, &counts(&profile(&target, name)?, &names));
+        }
+        worst(&target)?;
     }
-    worst(&target)
+    let names: Vec<_> = modes::ROWS.iter().map(|row| row.1).collect();
+    let counts = counts(&profile(&target, "modes")?, &names);
+    println!("\nclosed contacts\n\n| call | instructions |\n| --- | --- |");
+    for (label, function, ..) in modes::ROWS {
+        println!("| {label} | {:.0} |", counts.get(function).copied().unwrap_or(f64::NAN));
+    }
+    Ok(())
+}
+
+/// What callgrind writes of a set.
+fn profile(target: &Path, name: &str) -> Result<String, String> {
+    let profile = target.join(format!("{name}.callgrind"));
+    execute(
+        Command::new("valgrind")
+            .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
+            .arg(format!("--callgrind-out-file={}", profile.display()))
+            .arg(target.join("release/measured"))
+            .arg(name),
+    )?;
+    std::fs::read_to_string(&profile).map_err(|error| error.to_string())
 }
 
 /// Instructions of each collision of the set `hostile`: callgrind writes down what it has counted whenever the next one begins.
@@ -91,12 +106,12 @@ fn execute(command: &mut Command) -> Result<(), String> {
 }
 
 /// Instructions per call of each measured function, with all that it calls: a line `cfn=` names the callee, the line after `calls=` ends with the cost.
-fn counts(profile: &str) -> BTreeMap<&'static str, f64> {
+fn counts(profile: &str, names: &[&'static str]) -> BTreeMap<&'static str, f64> {
     let mut totals: BTreeMap<&'static str, (f64, f64)> = BTreeMap::new();
     let (mut callee, mut lines) = (None, profile.lines());
     while let Some(line) = lines.next() {
         if let Some(name) = line.strip_prefix("cfn=") {
-            callee = METHODS.iter().find(|method| name.contains(method.1)).map(|method| method.1);
+            callee = names.iter().find(|known| name.contains(**known)).copied();
         } else if let (Some(calls), Some(function)) = (line.strip_prefix("calls="), callee.take()) {
             let number = |text: &str, place| {
                 text.split_whitespace().nth(place).and_then(|word| word.parse::<f64>().ok()).unwrap_or(0.0)

@@ -1,9 +1,15 @@
-//! What valgrind executes: every method, or the one named, once over every collision of a set.
+//! What valgrind executes: every method, or the one named, once over every collision of a set; or the modes of closed contacts.
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
     let set = arguments.next().unwrap_or_default();
     let only = arguments.next();
+    if set == "modes" {
+        for row in hodograph_benchmark_impacts::modes::ROWS {
+            hodograph_benchmark_impacts::modes::contacts(row).iter().for_each(row.2);
+        }
+        return;
+    }
     let cases = hodograph_benchmark_impacts::set(&set);
     for (_, name, method) in hodograph_benchmark_impacts::METHODS {
         if only.as_deref().is_some_and(|only| only != *name) {
