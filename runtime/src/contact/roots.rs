@@ -30,30 +30,38 @@ impl<T: Real> Zeros<T> {
 
 /// The zeros in [-1, 1] of a polynomial with these coefficients, constant first, and the places where it touches zero up to rounding.
 ///
-/// Between two zeros of its derivative a polynomial is monotone, so that bisection finds what is there: from the fourth derivative
-/// down to the polynomial itself. At most 16 bisections.
+/// Between two zeros of its derivative a polynomial is monotone, so that a bracket finds what is there: from the third derivative
+/// down to the polynomial itself. At most 10 brackets.
 pub(super) fn zeros<T: Real>(p: &[T; 5]) -> Zeros<T> {
     let mut size = T::zero();
     for coefficient in p {
         size += coefficient.abs().primal();
     }
     let mut found = Zeros::none();
-    if size <= T::zero() {
+    // The constant outweighs the rest on all of [-1, 1]; or nothing is there.
+    let constant_part = p.first().map_or(T::zero(), |first| first.abs().primal());
+    if size <= T::zero() || constant_part > (size - constant_part) * constant(1.0625) {
         return found;
     }
-    for order in (0..4_usize).rev() {
+    let first = derivative(p);
+    let second = derivative(&first);
+    let third = derivative(&second);
+    let fourth = derivative(&third);
+    let chain =
+        [(&third, &fourth, false), (&second, &third, false), (&first, &second, false), (p, &first, true)];
+    for (q, slope, last) in chain {
         let mut next = Zeros::none();
         let mut low = -T::one();
         for high in found.iter().chain(core::iter::once(T::one())) {
-            if let Some(zero) = between(p, order, low, high) {
-                next.push(zero);
+            if let Some(zero) = between(q, slope, low, high) {
+                next.push(if last { polished(p, &first, zero) } else { zero });
             }
             low = high;
         }
-        if order == 0 {
+        if last {
             let noise = constant::<T>(16.0) * T::default_epsilon() * size;
             for place in found.iter().chain([-T::one(), T::one()]) {
-                if derivative(p, 0, place).abs() <= noise {
+                if value(p, place).abs() <= noise {
                     next.push(place);
                 }
             }
@@ -63,46 +71,67 @@ pub(super) fn zeros<T: Real>(p: &[T; 5]) -> Zeros<T> {
     found
 }
 
-/// A derivative of the polynomial at x.
-fn derivative<T: Real>(p: &[T; 5], order: usize, x: T) -> T {
-    let mut total = T::zero();
-    for (power, coefficient) in p.iter().enumerate().skip(order).rev() {
-        let factor = (power - order + 1..=power).map(|k| k as f64).product::<f64>();
-        total = total * x + *coefficient * constant(factor);
-    }
-    total
+/// The polynomial at x.
+#[inline]
+fn value<T: Real>([a, b, c, d, e]: &[T; 5], x: T) -> T {
+    (((*e * x + *d) * x + *c) * x + *b) * x + *a
 }
 
-/// The zero of a derivative between two places, between which it is monotone.
-fn between<T: Real>(p: &[T; 5], order: usize, low: T, high: T) -> Option<T> {
-    let zero = T::zero();
+/// The coefficients of the derivative.
+#[inline]
+fn derivative<T: Real>([_, b, c, d, e]: &[T; 5]) -> [T; 5] {
+    let two = constant::<T>(2.0);
+    [*b, two * *c, constant::<T>(3.0) * *d, constant::<T>(4.0) * *e, T::zero()]
+}
+
+/// The zero of a polynomial between two places, between which it is monotone: Newton's method, and halves where that leaves the bracket
+/// or gains too little.
+fn between<T: Real>(q: &[T; 5], slope: &[T; 5], low: T, high: T) -> Option<T> {
+    let (zero, half) = (T::zero(), constant::<T>(0.5));
     let (mut low, mut high) = (low.primal(), high.primal());
-    let rises = derivative(p, order, low) < zero;
-    if (derivative(p, order, high) < zero) == rises {
+    let rises = value(q, low) < zero;
+    if (value(q, high) < zero) == rises {
         return None;
     }
-    for _ in 0..64 {
-        let middle = (low + high) * constant(0.5);
-        if (derivative(p, order, middle) < zero) == rises {
-            low = middle;
+    // Steps of Newton's method do not fall below rounding.
+    let enough = T::default_epsilon() * constant(4.0);
+    let mut place = (low + high) * half;
+    let mut last = high - low;
+    // Every step is at most half of the one before, or halves the bracket.
+    for _ in 0..128 {
+        let here = value(q, place).primal();
+        if (here < zero) == rises {
+            low = place;
         } else {
-            high = middle;
+            high = place;
         }
-        if high - low <= T::default_epsilon() * constant(0.25) {
+        if high - low <= enough {
             break;
         }
-    }
-    // Two steps of Newton's method carry derivatives of the coefficients to the zero.
-    let mut place = (low + high) * constant(0.5);
-    if order == 0 {
-        for _ in 0..2 {
-            let slope = derivative(p, 1, place);
-            let step = derivative(p, 0, place) / slope;
-            // Else two zeros are about to merge.
-            if step.abs() <= constant(1e-6) {
-                place -= step;
+        let step = here / value(slope, place).primal();
+        let next = place - step;
+        if next > low && next < high && step.abs() <= last * half {
+            last = step.abs();
+            place = next;
+            if last <= enough {
+                break;
             }
+        } else {
+            last = (high - low) * half;
+            place = low + last;
         }
     }
     Some(place)
+}
+
+/// Two more steps of Newton's method, which carry derivatives of the coefficients to the zero.
+fn polished<T: Real>(p: &[T; 5], slope: &[T; 5], mut place: T) -> T {
+    for _ in 0..2 {
+        let step = value(p, place) / value(slope, place);
+        // Else two zeros are about to merge.
+        if step.abs() <= constant(1e-6) {
+            place -= step;
+        }
+    }
+    place
 }

@@ -108,7 +108,18 @@ impl<T: Scalar> Answering<'_, T> {
 
     /// The contact does not slip.
     fn resting(&self, before: &Vector3<T>) -> Result<ContactForce<T>, ContactError<T>> {
+        // f > 0 in all directions: what is free to part parts, and nothing else fits.
+        let moderate = self.closed.mu * length(&self.closed.b) < T::one() - self.closed.f_noise();
+        if moderate && self.beta.x > T::zero() {
+            return Ok(self.separate());
+        }
         let stuck = stuck(&self.closed);
+        if moderate
+            && self.closed.one_mode()
+            && let Some(stuck) = stuck.filter(Stuck::fits)
+        {
+            return Ok(self.stick(&stuck));
+        }
         let ways = beginnings(&self.closed, stuck.is_some_and(|stuck| !stuck.unique));
         let sticks = stuck.filter(Stuck::fits).map(|stuck| self.stick(&stuck));
         let separates = (self.beta.x > T::zero()).then(|| self.separate());

@@ -58,6 +58,21 @@ impl<T: Real> Closed<T> {
         T::one() - self.mu * self.b.dot(d)
     }
 
+    /// Whether at most one mode fits without slip where f > 0 in all directions: A = T - beta_tan b^T / beta_n has a positive definite
+    /// symmetric part (theory, 17.3).
+    pub fn one_mode(&self) -> bool {
+        if self.normal >= T::zero() {
+            return false;
+        }
+        let pull = self.tangential / self.normal;
+        let tt = self.tt - pull.x * self.b.x;
+        let ss = self.ss - pull.y * self.b.y;
+        let ts = self.ts - (pull.x * self.b.y + pull.y * self.b.x) * constant(0.5);
+        let size = self.tt + self.ss + length(&pull) * length(&self.b);
+        let noise = constant::<T>(64.0) * T::default_epsilon() * size;
+        tt > noise && ss > noise && tt * ss - ts * ts > noise * size
+    }
+
     /// What rounding may do to f.
     #[inline]
     pub fn f_noise(&self) -> T {
