@@ -129,7 +129,7 @@ pub struct ContactForce<T: nalgebra::Scalar> {
 /// Selects the mode of a closed contact with v_n = 0, coming from no contact force (free flight, or an impact).
 ///
 /// `free_acceleration` is beta (n, t, s), `slip` the tangential velocity (t, s); the contact counts as not slipping where it is exactly zero.
-/// Bounded work: at most some 20 000 operations, where there is no slip.
+/// Where there is no slip all directions in which it may begin are sought: some 10 000 instructions, and bounded.
 ///
 /// # Errors
 /// Every reason is a variant of [`ContactError`].
