@@ -1,6 +1,5 @@
 //! What a body brings: mass and central inertia.
 
-use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, ENTRIES, Symmetric};
 use crate::kinematics::linear_forms;
@@ -26,9 +25,4 @@ pub fn central_inertia(k: &mut Kinematics<'_>, body: &Body) -> Option<(Symmetric
         }
     }
     Some((components.map(|c| k.z.name(c)), axes))
-}
-
-/// Is the expression made of numbers and parameters only?
-pub fn is_constant(k: &mut Kinematics<'_>, expr: &Expr) -> bool {
-    k.change(expr).is_zero()
 }

@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 
 use crate::algebra::{Direction, Expr, Intermediates, Sample, SymbolId, View};
 use crate::diagnostics::{Code, Diagnostic};
-use crate::model::mechanism::{CoordinateId, FrameId, Mechanism, PointId};
+use crate::model::mechanism::{FrameId, Mechanism, PointId};
 use crate::program::graph::Input;
 use crate::span::Span;
 
@@ -209,11 +209,6 @@ impl<'m> Kinematics<'m> {
         Ok(kinematics)
     }
 
-    /// Number of independent speeds.
-    pub fn independent(&self) -> usize {
-        self.mechanism.speeds.iter().filter(|speed| !speed.dependent).count()
-    }
-
     /// A speed as an expression.
     pub fn speed(&self, slot: usize) -> Expr {
         Expr::symbol(self.speeds[slot])
@@ -337,11 +332,6 @@ impl<'m> Kinematics<'m> {
         let names = self.mechanism.coordinates.iter().map(|coordinate| coordinate.name.as_str());
         let depends = |symbol: SymbolId| self.z.depends(expr, &mut |s| s == symbol);
         names.zip(&self.coordinates).filter(|&(_, &symbol)| depends(symbol)).map(|(name, _)| name).collect()
-    }
-
-    /// A coordinate's name.
-    pub fn coordinate_name(&self, id: CoordinateId) -> &str {
-        &self.mechanism.coordinates[id.0].name
     }
 }
 
