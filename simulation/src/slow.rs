@@ -104,12 +104,11 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
     omegas
 }
 
+/// Forces for modes.
+type Solve<'a> = dyn Fn(&Support, &[Hold]) -> Result<Forces, Lacking> + 'a;
+
 /// The time in which the direction of slip of a contact settles; `None` where it does not.
-fn relaxation(
-    here: &Evaluation,
-    i: usize,
-    solve: &dyn Fn(&Support, &[Hold]) -> Result<Forces, Lacking>,
-) -> Option<f64> {
+fn relaxation(here: &Evaluation, i: usize, solve: &Solve<'_>) -> Option<f64> {
     let Hold::Slide(d) = here.holds[i] else { return None };
     let across = |angle: f64| -> Option<f64> {
         let (sin, cos) = angle.sin_cos();

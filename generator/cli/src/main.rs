@@ -4,7 +4,6 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-#[allow(dead_code)] // until a command uses it
 mod animation;
 mod commands;
 mod derivation;

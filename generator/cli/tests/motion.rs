@@ -116,3 +116,90 @@ fn rows_and_figures_are_written() {
     let drawn = std::fs::read_to_string(&figure).unwrap();
     assert!(drawn.starts_with("<svg") || drawn.contains("<svg"), "{drawn:.80}");
 }
+
+/// Where a motion cannot be followed, the lines before it are there, and the error says when, where and why.
+#[test]
+fn no_line_before_an_error_is_lost() {
+    let surface = ["--mu", "0.5", "--e", "0", "--law", "poisson"];
+    let times = |run: &Run| -> Vec<f64> {
+        run.lines().iter().filter(|line| line["event"].is_null()).map(|line| number(&line["t"])).collect()
+    };
+    // An input that is no number from some time on.
+    let call = [&["--until", "1", "--step", "0.1", "--input", "F=sqrt(0.35-t)"], &surface[..]].concat();
+    let run = simulate("incline", &call);
+    assert_eq!(run.code, 1);
+    assert_eq!(times(&run), [0.0, 0.1, 0.2, 0.1 * 3.0]);
+    assert!(run.stderr.contains("at t = 0.3") && run.stderr.contains("the input F is NaN"), "{}", run.stderr);
+    // From the start on.
+    let run = simulate("incline", &[&["--until", "1", "--input", "F=log(t)"], &surface[..]].concat());
+    assert_eq!((run.code, run.stdout.as_str()), (1, ""));
+    assert!(run.stderr.contains("at t = 0: the input F is -inf"), "{}", run.stderr);
+    // Several contacts struck together, where that is to be an error.
+    let model = root().join("simulation/models/tumbling_box.mech").display().to_string();
+    let flat = r#"{"q":{"e0":1,"e1":0,"e2":0,"e3":0},"u":{"u1":0,"u4":0,"u5":0,"u6":0}}"#;
+    let call = ["simulate", &model, "--until", "1", "--step", "0.3", "--together", "stop", "--state", flat];
+    let run = hodograph(&[&call[..], &surface[..]].concat(), "");
+    assert_eq!(run.code, 1);
+    assert_eq!(times(&run), [0.0, 0.3]);
+    let fall = (2.0_f64 * 0.65 / 9.81).sqrt();
+    assert!(run.stderr.contains(&format!("at t = {fall:.9}")), "{} {fall}", run.stderr);
+    assert!(run.stderr.contains("c1, c2, c3, c4 are struck together"), "{}", run.stderr);
+}
+
+#[test]
+fn starts_inside_a_wall_are_refused() {
+    let call = [&["--until", "1", "--state", r#"{"q":{"z":-0.1}}"#], &BALL[..]].concat();
+    let run = simulate("bouncing_ball", &call);
+    assert_eq!((run.code, run.stdout.as_str()), (1, ""));
+    assert!(run.stderr.contains("at t = 0, contact floor: the negative gap -0.1"), "{}", run.stderr);
+}
+
+/// A contact without gap is told, and needs no surface.
+#[test]
+fn missing_gaps_are_told() {
+    let model = common::model("rolling_disc");
+    let run = hodograph(&["simulate", &model, "--until", "0.1", "--step", "0.1"], "");
+    assert_eq!((run.code, run.lines().len()), (0, 2), "{}", run.stderr);
+    assert!(run.stderr.contains("contact rim_wall has no gap in the model"), "{}", run.stderr);
+}
+
+/// The page holds the points where the lines say that they are, every event, and what acts; also where the motion ends with an error.
+#[test]
+fn pages_show_the_motion() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = folder.path().join("ball.html").display().to_string();
+    let data = |page: &str| -> Value {
+        let text = std::fs::read_to_string(page).unwrap();
+        let data = text.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+        serde_json::from_str(data).unwrap()
+    };
+    let run =
+        simulate("bouncing_ball", &[&["--until", "3", "--step", "0.1", "--html", &page], &BALL[..]].concat());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let (lines, shown) = (run.lines(), data(&page));
+    assert_eq!(shown["times"].as_array().unwrap().len(), lines.len());
+    assert_eq!(shown["up"][2], 1.0);
+    let ball = shown["points"].as_array().unwrap().iter().find(|point| point["name"] != "O").unwrap();
+    for (line, (time, place)) in
+        lines.iter().zip(shown["times"].as_array().unwrap().iter().zip(ball["places"].as_array().unwrap()))
+    {
+        assert_eq!(line["t"], *time);
+        assert!((number(&line["q"]["z"]) - number(&place[2])).abs() < 1e-12, "{line} {place}");
+    }
+    let told: Vec<String> =
+        lines.iter().filter_map(|line| line["event"].as_str().map(|event| event.replace('_', " "))).collect();
+    let marked: Vec<&str> =
+        shown["events"].as_array().unwrap().iter().map(|event| event["label"].as_str().unwrap()).collect();
+    assert_eq!(told, marked);
+    let hit = lines.iter().find(|line| line["event"] == "collision").unwrap();
+    assert!((number(&hit["impulse"][0]) - number(&shown["events"][0]["impulse"][2])).abs() < 1e-12);
+    // At rest its weight presses on the floor, and the force is that of the model: m g.
+    let force = shown["forces"][0]["force"].as_array().unwrap().last().unwrap();
+    let weight = shown["series"].as_array().unwrap().iter().find(|series| series["panel"] == "normal force");
+    let pressed = number(weight.unwrap()["values"].as_array().unwrap().last().unwrap());
+    assert!((number(&force[2]) - pressed).abs() < 1e-9 && pressed > 1.0, "{force} {pressed}");
+    let call = ["--until", "1", "--step", "0.1", "--input", "F=sqrt(0.35-t)", "--html", &page];
+    let surface = ["--mu", "0.5", "--e", "0", "--law", "poisson"];
+    assert_eq!(simulate("incline", &[&call[..], &surface[..]].concat()).code, 1);
+    assert!(data(&page)["times"].as_array().unwrap().iter().any(|time| (number(time) - 0.3).abs() < 1e-9));
+}

@@ -9,7 +9,6 @@ mod tests;
 
 use serde::Serialize;
 
-#[allow(unused_imports)] // until a command uses it
 pub use segments::segments;
 
 use crate::plot::svg::escaped;

@@ -2,6 +2,7 @@
 
 mod curves;
 mod expression;
+mod film;
 mod inputs;
 mod lines;
 mod surfaces;
@@ -16,6 +17,7 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Options, Progress, Simulation, SimulationError, Together};
 
 use self::curves::Curves;
+use self::film::Film;
 use self::lines::{Format, Lines};
 use self::surfaces::MotionSurfaces;
 use crate::derivation::{self, Limits};
@@ -64,6 +66,9 @@ pub struct Arguments {
     /// a figure of coordinates, speeds, gaps and contact forces over time, as SVG or PNG
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// a page for browsers in which the mechanism moves: needs neither scripts from elsewhere nor a network
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
     #[command(flatten)]
     limits: Limits,
 }
@@ -128,12 +133,36 @@ pub fn run(arguments: &Arguments) -> Outcome {
         ..Options::default()
     };
     let mut lines = Lines::new(&mechanism, arguments.format)?;
-    let mut curves = arguments.plot.as_ref().map(|_| Curves::new(&mechanism));
-    let done = follow(&mechanism, &state, options, (until, step), &mut lines, curves.as_mut());
-    if let (Some(curves), Some(path)) = (curves, &arguments.plot) {
+    let mut shown = Shown {
+        curves: arguments.plot.as_ref().map(|_| Curves::new(&mechanism)),
+        film: arguments.html.as_ref().map(|_| Film::new(&mechanism, &state)),
+    };
+    let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut shown);
+    // What was seen before the motion ended is worth seeing, above all where it ended with an error.
+    if let (Some(curves), Some(path)) = (shown.curves, &arguments.plot) {
         curves.save(path)?;
     }
+    if let (Some(film), Some(path)) = (shown.film, &arguments.html) {
+        film.save(path)?;
+    }
     done
+}
+
+/// What is kept of a motion for figures and pages.
+struct Shown<'m> {
+    curves: Option<Curves<'m>>,
+    film: Option<Film<'m>>,
+}
+
+impl Shown<'_> {
+    fn add(&mut self, simulation: &Simulation<'_>) {
+        if let Some(curves) = &mut self.curves {
+            curves.add(simulation);
+        }
+        if let Some(film) = &mut self.film {
+            film.add(simulation);
+        }
+    }
 }
 
 /// Follows the motion and writes it.
@@ -143,25 +172,25 @@ fn follow(
     options: Options,
     (until, step): (f64, f64),
     lines: &mut Lines<'_>,
-    mut curves: Option<&mut Curves<'_>>,
+    shown: &mut Shown<'_>,
 ) -> Outcome {
     let mut simulation = Simulation::new(mechanism, &borrowed(state), options).map_err(fault)?;
     lines.sample(state.time, &state.coordinates, &state.speeds)?;
+    shown.add(&simulation);
     let progress = bar(until - state.time);
     for count in 1_u64.. {
         let end = (state.time + count as f64 * step).min(until);
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
             lines.event(&event)?;
-            if let Some(curves) = curves.as_deref_mut() {
-                curves.add(&simulation);
+            shown.add(&simulation);
+            if let Some(film) = &mut shown.film {
+                film.event(&event);
             }
         }
         if end > state.time {
             lines.sample(end, simulation.coordinates(), simulation.speeds())?;
         }
-        if let Some(curves) = curves.as_deref_mut() {
-            curves.add(&simulation);
-        }
+        shown.add(&simulation);
         progress.set_position(((end - state.time) * 1e3) as u64);
         if end >= until {
             break;

@@ -144,7 +144,7 @@ impl<'m> Lines<'m> {
             }
             EventKind::Slip { direction, selection } => {
                 certain(selection);
-                line.direction = Some(*direction);
+                line.direction = Some(direction.map(|part| part + 0.0));
             }
             EventKind::LiftOff { selection } | EventKind::Stick { selection } => certain(selection),
             _ => {}

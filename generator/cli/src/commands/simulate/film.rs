@@ -1,0 +1,192 @@
+//! The page in which a motion is seen: what is kept of it while it is followed.
+
+use std::path::Path;
+
+use hodograph::{Contacts, Kind as Of, Mechanism, State as Borrowed};
+use hodograph_generator::model::mechanism::{LoadKind, Place, Vector};
+use hodograph_generator::numeric::views::values;
+use hodograph_generator::numeric::{Level, Views};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::{Event, EventKind, Simulation};
+use nalgebra::Vector3;
+
+use super::gap;
+use crate::animation::{self, Animation, Force, Frame, Point, Series, segments};
+use crate::json::state::State;
+use crate::output;
+use crate::stop::Outcome;
+
+/// A motion as it will be shown.
+pub struct Film<'m> {
+    mechanism: &'m InterpretedMechanism,
+    shown: Animation,
+    /// kinetic, potential and total energy, J
+    energies: [Vec<f64>; 3],
+    /// per contact, m and N; empty without a gap
+    gaps: Vec<Vec<f64>>,
+    pressures: Vec<Vec<f64>>,
+}
+
+impl<'m> Film<'m> {
+    /// Nothing yet, of a motion from a state.
+    pub fn new(mechanism: &'m InterpretedMechanism, state: &State) -> Self {
+        let model = mechanism.model();
+        let from: Vec<Option<usize>> = model
+            .points
+            .iter()
+            .map(|point| match &point.place {
+                Place::Offset { from, .. } | Place::Material { from, .. } => Some(from.0),
+                Place::Origin | Place::Velocity(_) => None,
+            })
+            .collect();
+        // A point defined from O moves by itself: no line leads there.
+        let from: Vec<Option<usize>> = from.into_iter().map(|from| from.filter(|&from| from != 0)).collect();
+        let bodies: Vec<(usize, Vec<usize>)> = model
+            .contacts
+            .iter()
+            .filter_map(|contact| {
+                contact.body.map(|body| (model.bodies[body.0].centre.0, vec![contact.point.0]))
+            })
+            .collect();
+        let shown = Animation {
+            title: model.name.clone(),
+            points: model
+                .points
+                .iter()
+                .map(|point| Point { name: point.name.clone(), places: Vec::new() })
+                .collect(),
+            frames: model
+                .bodies
+                .iter()
+                .filter_map(|body| {
+                    let name = model.frames[body.frame?.0].name.clone();
+                    Some(Frame { name, at: body.centre.0, axes: Vec::new() })
+                })
+                .collect(),
+            segments: segments(&from, &bodies),
+            forces: model
+                .contacts
+                .iter()
+                .map(|contact| Force { name: contact.name.clone(), at: Vec::new(), force: Vec::new() })
+                .collect(),
+            up: up(mechanism, state),
+            ..Animation::default()
+        };
+        let none = || vec![Vec::new(); mechanism.count(Of::Contact)];
+        Film { mechanism, shown, energies: [const { Vec::new() }; 3], gaps: none(), pressures: none() }
+    }
+
+    /// The state of a simulation.
+    pub fn add(&mut self, simulation: &Simulation<'_>) {
+        let mechanism = self.mechanism;
+        let state = Borrowed {
+            time: simulation.time(),
+            coordinates: simulation.coordinates(),
+            speeds: simulation.speeds(),
+            inputs: simulation.inputs(),
+        };
+        self.shown.times.push(state.time);
+        for (index, point) in self.shown.points.iter_mut().enumerate() {
+            point.places.push(place(mechanism, index, &state));
+        }
+        let mut frames = self.shown.frames.iter_mut();
+        for body in &mechanism.model().bodies {
+            if let (Some(frame), Some(shown)) = (body.frame, body.frame.and_then(|_| frames.next())) {
+                // Its columns are the axes along N.
+                let turned = mechanism.orientation(frame.0, &state).unwrap_or_default();
+                shown.axes.push([0, 1, 2].map(|axis| turned.column(axis).into_owned().into()));
+            }
+        }
+        let forces = simulation.contact_forces().map_or(Vec::new(), |(forces, _)| forces);
+        for (contact, shown) in self.shown.forces.iter_mut().enumerate() {
+            let here = mechanism.contact_state(contact, &state);
+            let force = forces.iter().find(|(index, _)| *index == contact).zip(here.ok());
+            shown.at.push(place(mechanism, mechanism.model().contacts[contact].point.0, &state));
+            shown.force.push(force.map(|((_, force), here)| {
+                (here.normal * force.x + here.first * force.y + here.second * force.z).into()
+            }));
+            let pressure = force.map_or(0.0, |((_, force), _)| force.x);
+            if let Some(gap) = gap(mechanism, contact, &state) {
+                self.gaps[contact].push(gap);
+                self.pressures[contact].push(pressure);
+            }
+        }
+        let kinetic = mechanism.kinetic_energy(&state).unwrap_or(f64::NAN);
+        let potential = mechanism.potential_energy(&state).ok().flatten().unwrap_or(0.0);
+        for (curve, value) in self.energies.iter_mut().zip([kinetic, potential, kinetic + potential]) {
+            curve.push(value);
+        }
+    }
+
+    /// Something that happened, where the simulation now is.
+    pub fn event(&mut self, event: &Event) {
+        let mechanism = self.mechanism;
+        let state = Borrowed {
+            time: event.time,
+            coordinates: &event.coordinates,
+            speeds: &event.speeds,
+            inputs: &vec![0.0; mechanism.count(Of::Input)],
+        };
+        let struck = match &event.kind {
+            EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => Some(struck),
+            _ => None,
+        };
+        let contact = event.contact.and_then(|contact| mechanism.model().contacts.get(contact));
+        self.shown.events.push(animation::Event {
+            time: event.time,
+            contact: contact.map_or(String::new(), |contact| contact.name.clone()),
+            label: event.kind.name().replace('_', " "),
+            at: contact.map(|contact| place(mechanism, contact.point.0, &state)),
+            impulse: struck.map(|struck| struck.outcome.impulse_on_point.into()),
+        });
+    }
+
+    /// Writes the page.
+    ///
+    /// # Errors
+    ///
+    /// Where the file cannot be written.
+    pub fn save(mut self, path: &Path) -> Outcome {
+        let series = |panel: &str, name: &str, unit: &str, values| Series {
+            panel: panel.to_owned(),
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+            values,
+        };
+        let names = ["kinetic", "potential", "sum"];
+        for (name, values) in names.into_iter().zip(self.energies) {
+            self.shown.series.push(series("energy", name, "J", values));
+        }
+        for (panel, unit, curves) in [("gap", "m", self.gaps), ("normal force", "N", self.pressures)] {
+            for (contact, values) in self.mechanism.model().contacts.iter().zip(curves) {
+                if !values.is_empty() {
+                    self.shown.series.push(series(panel, &contact.name, unit, values));
+                }
+            }
+        }
+        output::file(path, animation::page(&self.shown).as_bytes())
+    }
+}
+
+/// Where a point is, along N.x, N.y, N.z; no number where it cannot be known.
+fn place(mechanism: &InterpretedMechanism, point: usize, state: &Borrowed<'_>) -> [f64; 3] {
+    mechanism.position(point, state).unwrap_or(Vector3::repeat(f64::NAN)).into()
+}
+
+/// Against gravity at the start; N.z where the model has none.
+fn up(mechanism: &InterpretedMechanism, state: &State) -> [f64; 3] {
+    let model = mechanism.model();
+    let gravity = model.loads.iter().find_map(|load| match &load.kind {
+        LoadKind::Gravity(vector) => Some(vector),
+        _ => None,
+    });
+    let known = |vector: &Vector| -> Option<Vector3<f64>> {
+        let state = state.to_numeric();
+        let views = Views::at(model, &state).ok()?;
+        Some(Vector3::from(values(views.now.vector(vector, Level::Motion).ok()?)))
+    };
+    match gravity.and_then(known) {
+        Some(down) if down.norm() > 0.0 => (-down / down.norm()).into(),
+        _ => [0.0, 0.0, 1.0],
+    }
+}
