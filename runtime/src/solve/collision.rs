@@ -114,13 +114,8 @@ pub(crate) fn collide<T: Real>(
     sensitivity.ended(&contact, &mut restitution, &end, slides.then_some(&velocity));
     let mut slip_end = stops.then_some(state);
     if share < T::one() && slips {
-        // A normal impulse that does nothing by itself is what friction needed.
-        let least = T::default_epsilon() * T::default_epsilon();
-        let all =
-            [Some(&mut end), slip_end.as_mut(), restitution.first.as_mut(), restitution.latest.as_mut()];
-        for state in all.into_iter().flatten().filter(|state| state.normal <= least) {
-            *state = state.in_units(share, T::one());
-        }
+        let Restitution { first, latest, .. } = &mut restitution;
+        in_true_friction(share, [Some(&mut end), slip_end.as_mut(), first.as_mut(), latest.as_mut()]);
     }
     let scale = speed / matrix.nn;
     let impulse = Vector3::new(end.normal, end.tangential.x, end.tangential.y) * scale;
@@ -142,6 +137,16 @@ pub(crate) fn collide<T: Real>(
         phases: phases(&Units { approach, scale, speed, contact: &contact }, &restitution, slip_end, path),
         sensitivity,
     })
+}
+
+/// Counts normal impulses that do nothing by themselves, but are what friction needed, in the true friction; it is `1 / share` of the one calculated with.
+#[cold]
+#[inline(never)]
+fn in_true_friction<T: Real>(share: T, states: [Option<&mut State<T>>; 4]) {
+    let least = T::default_epsilon() * T::default_epsilon();
+    for state in states.into_iter().flatten().filter(|state| state.normal <= least) {
+        *state = state.in_units(share, T::one());
+    }
 }
 
 /// Names the quantity of an outcome that left the range of the number type, if one did: too large, or an impulse too small to have digits.
@@ -182,6 +187,13 @@ pub(crate) fn slips<T: Real>(slip: T) -> bool {
     slip > eps * eps * eps * eps
 }
 
+/// Slip and normal velocity stop together: true if the collision ends with it.
+#[cold]
+#[inline(never)]
+fn stop_together<T: Real>(restitution: &mut Restitution<T>, state: &State<T>) -> bool {
+    restitution.compressed(state)
+}
+
 /// The arc after slip has stopped; nothing if the law never ends it.
 #[inline]
 fn after_slip<T: Real>(
@@ -200,7 +212,7 @@ fn after_slip<T: Real>(
     let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
     if slips && state.velocity.abs() <= few * eps * scale {
         state.velocity = T::zero();
-        if restitution.compressions == 0 && restitution.compressed(state) {
+        if restitution.compressions == 0 && stop_together(restitution, state) {
             return Some((*state, Vector2::zeros(), Path::Sliding));
         }
     }

@@ -151,10 +151,11 @@ fn plain(hit: Result<Impact<f64>, MethodError>) -> Answer {
     hit.ok().map(Outcome::from)
 }
 
-/// The set of collisions of a name: `nine`, `random`, `all` or `hostile`.
+/// The set of collisions of a name: `nine`, `nine and the last again`, `random`, `all` or `hostile`.
 pub fn set(name: &str) -> Vec<Case> {
     match name {
         "nine" => nine(),
+        "nine and the last again" => nine().into_iter().chain(nine().pop()).collect(),
         "hostile" => hostile::hostile(),
         "random" => reference(Some("random")),
         _ => reference(None),

@@ -34,6 +34,7 @@ fn run() -> Result<(), String> {
             let names: Vec<_> = METHODS.iter().map(|method| method.1).collect();
             table(name, &counts(&profile(&target, name)?, &names));
         }
+        by_cases(&target)?;
         worst(&target)?;
     }
     let names: Vec<_> = modes::ROWS.iter().map(|row| row.1).collect();
@@ -58,9 +59,9 @@ fn profile(target: &Path, name: &str) -> Result<String, String> {
     std::fs::read_to_string(&profile).map_err(|error| error.to_string())
 }
 
-/// Instructions of each collision of the set `hostile`: callgrind writes down what it has counted whenever the next one begins.
-fn worst(target: &Path) -> Result<(), String> {
-    let folder = target.join("hostile");
+/// Instructions of each collision of a set by the exact solver: callgrind writes down what it has counted whenever the next one begins.
+fn each(target: &Path, name: &str) -> Result<Vec<u64>, String> {
+    let folder = target.join(name);
     std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
     for entry in std::fs::read_dir(&folder).map_err(|error| error.to_string())?.flatten() {
         std::fs::remove_file(entry.path()).map_err(|error| error.to_string())?;
@@ -70,17 +71,34 @@ fn worst(target: &Path) -> Result<(), String> {
             .args(["--tool=callgrind", "--dump-before=*measured_exact*", "--dump-line=no"])
             .arg(format!("--callgrind-out-file={}", folder.join("profile").display()))
             .arg(target.join("release/measured"))
-            .args(["hostile", "measured_exact"]),
+            .args([name, "measured_exact"]),
     )?;
-    let cases = set("hostile");
-    // The first profile is what came before the first collision.
-    let mut counts: Vec<(u64, usize)> = Vec::new();
-    for number in 1..cases.len() {
+    // The first profile is what came before the first collision; what came after the last one is in the last.
+    let mut counts = Vec::new();
+    for number in 1..set(name).len() {
         let path = folder.join(format!("profile.{}", number + 1));
         let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let total = text.lines().rev().find_map(|line| line.strip_prefix("totals: ")?.trim().parse().ok());
-        counts.push((total.ok_or("a profile without total")?, number - 1));
+        counts.push(total.ok_or("a profile without total")?);
     }
+    Ok(counts)
+}
+
+/// The nine collisions of two sleds one by one; the set has the last of them twice, so that each is followed by another.
+fn by_cases(target: &Path) -> Result<(), String> {
+    println!("\nnine, one by one: exact\n");
+    println!("| mu | Newton | Poisson | Stronge |");
+    println!("| --- | --- | --- | --- |");
+    let counts = each(target, "nine and the last again")?;
+    for (mu, laws) in ["0.6", "1.1", "1.6"].into_iter().zip(counts.as_chunks::<3>().0) {
+        println!("| {mu} | {} | {} | {} |", laws[0], laws[1], laws[2]);
+    }
+    Ok(())
+}
+
+fn worst(target: &Path) -> Result<(), String> {
+    let cases = set("hostile");
+    let mut counts: Vec<(u64, usize)> = each(target, "hostile")?.into_iter().zip(0..).collect();
     counts.sort_unstable();
     let at = |part: f64| counts.get((part * (counts.len() - 1) as f64) as usize).map_or(0, |count| count.0);
     println!("\nhostile: {} collisions, exact\n", counts.len());
