@@ -110,6 +110,8 @@ fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &s
                 "<[f64; 6]>::from(value).to_vec()"
             } else if ["Coordinates", "Speeds"].iter().any(|record| result.contains(record)) {
                 "<[f64; _]>::from(value).to_vec()"
+            } else if result.contains("Derivatives") {
+                "beside!(value)"
             } else if result.contains("Linearisation") {
                 "[by_rows(value.a), by_rows(value.b)].concat()"
             } else if result.contains("Result < T ,") {

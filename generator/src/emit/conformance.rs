@@ -62,6 +62,12 @@ pub fn shape(mechanism: &Mechanism, quantity: Quantity) -> Option<(usize, usize)
         Quantity::MassMatrix => (p, p),
         Quantity::Forcing | Quantity::Accelerations | Quantity::InverseDynamics => (p, 1),
         Quantity::StateTangent => (mechanism.independent_states(), 1),
+        Quantity::AccelerationsDerivatives | Quantity::InverseDynamicsDerivatives => {
+            (p, 1 + mechanism.independent_states() + mechanism.inputs.len())
+        }
+        Quantity::RatesDerivatives => {
+            (mechanism.coordinates.len() - c, mechanism.independent_states() + mechanism.inputs.len())
+        }
         Quantity::KineticEnergy | Quantity::PotentialEnergy => (1, 1),
         Quantity::ConfigurationResidual => (c, 1),
         Quantity::ConfigurationJacobian => (c, c),

@@ -1,10 +1,11 @@
-//! The linearised equations: x' = A x + B w about a state, a column at a time from the program's directional derivative.
+//! Derivatives as matrices: those of accelerations and inverse dynamics, and the linearised equations x' = A x + B w made of them.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
-use crate::program::Quantity;
+use super::routine::Arguments;
+use crate::program::{Output, Quantity};
 
 impl Emitter<'_> {
     /// Number of states and of named inputs.
@@ -50,6 +51,48 @@ impl Emitter<'_> {
         }
     }
 
+    /// The record of a value and its derivatives; nothing where the program has none.
+    pub fn derivatives_record(&self) -> TokenStream {
+        let of = [Quantity::AccelerationsDerivatives, Quantity::InverseDynamicsDerivatives];
+        if of.iter().all(|&quantity| self.program.output(quantity).is_none()) {
+            return quote!();
+        }
+        let krate = self.krate;
+        let [rows, coordinates, inputs] = [
+            self.speeds.len(),
+            self.mechanism.independent_states() - self.speeds.len(),
+            self.mechanism.inputs.len(),
+        ]
+        .map(Literal::usize_unsuffixed);
+        quote! {
+            /// Accelerations or generalized forces, and how they change with the state. Rows: independent speeds.
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            pub struct Derivatives<T> {
+                /// what is differentiated
+                pub value: #krate::nalgebra::SVector<T, #rows>,
+                /// derivatives by the independent coordinates (columns, in their order)
+                pub by_coordinates: #krate::nalgebra::SMatrix<T, #rows, #coordinates>,
+                /// derivatives by the independent speeds (columns, in their order)
+                pub by_speeds: #krate::nalgebra::SMatrix<T, #rows, #rows>,
+                /// derivatives by the named inputs (columns, in their order)
+                pub by_inputs: #krate::nalgebra::SMatrix<T, #rows, #inputs>,
+            }
+        }
+    }
+
+    /// The type and the expression of a value with its derivatives.
+    pub fn value_and_derivatives(&self, output: &Output) -> (TokenStream, TokenStream) {
+        let (states, inputs) = self.linear_sizes();
+        let coordinates = 1 + states - self.speeds.len();
+        let [(_, value), (_, by_coordinates), (_, by_speeds), (_, by_inputs)] =
+            [0..1, 1..coordinates, coordinates..1 + states, 1 + states..1 + states + inputs]
+                .map(|columns| self.block(output, columns));
+        let fields = quote! {
+            value: #value, by_coordinates: #by_coordinates, by_speeds: #by_speeds, by_inputs: #by_inputs
+        };
+        (quote!(Derivatives<T>), quote!(Derivatives { #fields }))
+    }
+
     /// The method `linearise`; nothing where the program has no directional derivative.
     pub fn linearise(&self) -> TokenStream {
         if self.program.output(Quantity::StateTangent).is_none() {
@@ -57,26 +100,80 @@ impl Emitter<'_> {
         }
         let krate = self.krate;
         let (states, inputs) = self.linear_sizes();
-        let size = Literal::usize_unsuffixed(states + inputs);
         let (n, m) = (Literal::usize_unsuffixed(states), Literal::usize_unsuffixed(inputs));
         let mut arguments = self.arguments(&[Quantity::StateTangent]);
         arguments.tangent = false;
         let signature = self.signature(arguments);
-        let passed = self.passed(arguments);
+        let body = match self.program.output(Quantity::AccelerationsDerivatives) {
+            Some(_) => self.by_derivatives(arguments),
+            None => self.by_tangents(arguments),
+        };
         quote! {
             /// The equations linearised about a state, exactly (by differentiation, not by differences). Dependent
             /// coordinates and speeds follow the independent ones; parameters and time are held.
             pub fn linearise(#signature) -> ::core::result::Result<Linearisation<T>, #krate::StateError> {
                 let mut a = #krate::nalgebra::SMatrix::<T, #n, #n>::zeros();
                 let mut b = #krate::nalgebra::SMatrix::<T, #n, #m>::zeros();
-                for (number, mut column) in a.column_iter_mut().chain(b.column_iter_mut()).enumerate() {
-                    let mut tangent = [T::zero(); #size];
-                    if let Some(entry) = tangent.get_mut(number) {
-                        *entry = T::one();
-                    }
-                    column.copy_from(&self.state_tangent(#passed &tangent)?);
-                }
+                #body
                 ::core::result::Result::Ok(Linearisation { a, b })
+            }
+        }
+    }
+
+    /// Rows of coordinates from the derivatives of their rates, rows of speeds from those of the accelerations.
+    fn by_derivatives(&self, arguments: Arguments) -> TokenStream {
+        let krate = self.krate;
+        let (states, _) = self.linear_sizes();
+        let coordinates = Literal::usize_unsuffixed(states - self.speeds.len());
+        let passed = self.passed(arguments);
+        let rates = self.program.output(Quantity::RatesDerivatives).map(|output| {
+            let [(of_states, by_states), (of_inputs, by_inputs)] =
+                [0..states, states..output.columns].map(|columns| self.block(output, columns));
+            let compute = self.compute(&[Quantity::RatesDerivatives]);
+            quote! {
+                let (by_states, by_inputs): (#of_states, #of_inputs) = {
+                    #compute
+                    (#by_states, #by_inputs)
+                };
+                write(&mut a, 0, 0, &by_states);
+                write(&mut b, 0, 0, &by_inputs);
+            }
+        });
+        quote! {
+            // Writes a block whose first entry stands in this row and column.
+            fn write<T: #krate::Scalar, const R: usize, const C: usize, const N: usize, const M: usize>(
+                into: &mut #krate::nalgebra::SMatrix<T, R, C>,
+                row: usize,
+                column: usize,
+                block: &#krate::nalgebra::SMatrix<T, N, M>,
+            ) {
+                for (to, from) in into.column_iter_mut().skip(column).zip(block.column_iter()) {
+                    let mut to = to;
+                    for (entry, value) in to.iter_mut().skip(row).zip(from.iter()) {
+                        *entry = *value;
+                    }
+                }
+            }
+            #rates
+            let of_speeds = self.accelerations_derivatives(#passed)?;
+            write(&mut a, #coordinates, 0, &of_speeds.by_coordinates);
+            write(&mut a, #coordinates, #coordinates, &of_speeds.by_speeds);
+            write(&mut b, #coordinates, 0, &of_speeds.by_inputs);
+        }
+    }
+
+    /// A column at a time: where all derivatives at once would be too long a program.
+    fn by_tangents(&self, arguments: Arguments) -> TokenStream {
+        let (states, inputs) = self.linear_sizes();
+        let size = Literal::usize_unsuffixed(states + inputs);
+        let passed = self.passed(arguments);
+        quote! {
+            for (number, mut column) in a.column_iter_mut().chain(b.column_iter_mut()).enumerate() {
+                let mut tangent = [T::zero(); #size];
+                if let Some(entry) = tangent.get_mut(number) {
+                    *entry = T::one();
+                }
+                column.copy_from(&self.state_tangent(#passed &tangent)?);
             }
         }
     }

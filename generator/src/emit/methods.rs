@@ -1,5 +1,7 @@
 //! A method per quantity of the mechanism, its points and frames.
 
+use std::ops::Range;
+
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 
@@ -67,6 +69,9 @@ impl Emitter<'_> {
             {
                 record(&self.dependent)
             }
+            Quantity::AccelerationsDerivatives | Quantity::InverseDynamicsDerivatives => {
+                self.value_and_derivatives(output)
+            }
             _ if values.len() == 1 && is_scalar(output.quantity) => (quote!(T), quote!(#(#values)*)),
             _ => self.matrix(output),
         }
@@ -74,21 +79,23 @@ impl Emitter<'_> {
 
     /// An output as a matrix of static size.
     pub fn matrix(&self, output: &Output) -> (TokenStream, TokenStream) {
+        self.block(output, 0..output.columns)
+    }
+
+    /// Some columns of an output.
+    pub fn block(&self, output: &Output, columns: Range<usize>) -> (TokenStream, TokenStream) {
         let krate = self.krate;
-        let (rows, columns) =
-            (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(output.columns));
+        let (rows, count) =
+            (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(columns.len()));
         let entry = |row: usize, column: usize| {
             output.values.get(row * output.columns + column).map(|&value| local(value))
         };
-        let columns_of = (0..output.columns).map(|column| {
+        let columns_of = columns.map(|column| {
             let entries = (0..output.rows).filter_map(|row| entry(row, column));
             quote!([#(#entries),*])
         });
         let data = quote!([#(#columns_of),*]);
-        (
-            quote!(#krate::nalgebra::SMatrix<T, #rows, #columns>),
-            quote!(#krate::nalgebra::SMatrix::from(#data)),
-        )
+        (quote!(#krate::nalgebra::SMatrix<T, #rows, #count>), quote!(#krate::nalgebra::SMatrix::from(#data)))
     }
 
     /// Name and documentation of the method of a quantity; contacts have their own.
@@ -121,6 +128,20 @@ impl Emitter<'_> {
             Quantity::StateTangent => plain(
                 "state_tangent",
                 "How the rates of the independent coordinates and speeds change along a direction: a column of `linearise`, or a sum of columns.",
+            ),
+            Quantity::AccelerationsDerivatives => plain(
+                "accelerations_derivatives",
+                "Rates u' of the independent speeds, per second, and their derivatives. Dependent coordinates and speeds follow the independent ones; \
+                 parameters and time are held. The value is that of `accelerations` but for rounding.",
+            ),
+            Quantity::InverseDynamicsDerivatives => plain(
+                "inverse_dynamics_derivatives",
+                "What `inverse_dynamics` gives, but for rounding, and its derivatives while the independent speeds have the rates `acceleration` (by those, it is \
+                 `mass_matrix`). Dependent coordinates and speeds follow the independent ones; parameters and time are held. At zero rates it is the opposite of `forcing`.",
+            ),
+            Quantity::RatesDerivatives => plain(
+                "coordinate_rates_derivatives",
+                "Derivatives of the rates of the independent coordinates (rows) by the independent coordinates, the independent speeds and the named inputs (columns).",
             ),
             Quantity::KineticEnergy => plain("kinetic_energy", "Kinetic energy in N, in J."),
             Quantity::PotentialEnergy => {

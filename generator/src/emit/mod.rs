@@ -74,6 +74,7 @@ fn module_in_parts(
     let methods = emitter.methods();
     let contacts = emitter.contacts();
     let linearisation = emitter.linearisation_record();
+    let derivatives = emitter.derivatives_record();
     let traits = emitter.traits();
     let name = &emitter.name;
     Ok(quote! {
@@ -90,6 +91,7 @@ fn module_in_parts(
             #closed
             #derivative
             #linearisation
+            #derivatives
 
             impl<T: #krate::Scalar> #name<T> {
                 #methods
@@ -236,6 +238,8 @@ fn takes_loads(quantity: Quantity) -> bool {
             | Quantity::DependentAccelerations
             | Quantity::InverseDynamics
             | Quantity::StateTangent
+            | Quantity::AccelerationsDerivatives
+            | Quantity::InverseDynamicsDerivatives
             | Quantity::Contact(_, ContactQuantity::FreeAcceleration)
     )
 }

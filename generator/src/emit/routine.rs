@@ -102,6 +102,7 @@ impl Emitter<'_> {
                 matches!(
                     quantity,
                     Quantity::InverseDynamics
+                        | Quantity::InverseDynamicsDerivatives
                         | Quantity::Point(_, crate::program::PointQuantity::Acceleration)
                 )
             }),

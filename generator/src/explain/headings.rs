@@ -34,6 +34,9 @@ pub fn heading(mechanism: &Mechanism, quantity: Quantity) -> Heading {
             plain("Inverse dynamics", "Q", "N for a speed in m/s, N*m for one in rad/s")
         }
         Quantity::StateTangent => plain("Linearised rates", "l", ""),
+        Quantity::AccelerationsDerivatives => plain("Accelerations, and their derivatives", "A", ""),
+        Quantity::InverseDynamicsDerivatives => plain("Inverse dynamics, and its derivatives", "Q", ""),
+        Quantity::RatesDerivatives => plain("Derivatives of the rates of the coordinates", "L", ""),
         Quantity::KineticEnergy => plain("Kinetic energy", "K", "J"),
         Quantity::PotentialEnergy => plain("Potential energy", "W", "J"),
         Quantity::ConfigurationResidual => plain("Configuration equations", "c", ""),

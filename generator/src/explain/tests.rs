@@ -39,7 +39,14 @@ fn pendulum() -> (Mechanism, Program) {
         one(Quantity::Forcing, force),
         one(Quantity::KineticEnergy, energy),
     ];
-    let derived = Derived { graph, outputs, guards: Vec::new(), structures: Vec::new(), samples: Vec::new() };
+    let derived = Derived {
+        graph,
+        outputs,
+        guards: Vec::new(),
+        structures: Vec::new(),
+        samples: Vec::new(),
+        apart: Vec::new(),
+    };
     (rod(), Program::new(&derived))
 }
 
@@ -179,7 +186,8 @@ fn quantities_do_not_look_like_names_of_the_model() {
     let [mass, force] = [Input::Parameter(0), Input::Input(0)].map(|input| graph.input(input));
     let one = |quantity, node| Output { quantity, rows: 1, columns: 1, values: vec![node] };
     let outputs = vec![one(Quantity::Forcing, force), one(Quantity::KineticEnergy, mass)];
-    let derived = Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] };
+    let derived =
+        Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![], apart: vec![] };
     let program = Program::new(&derived);
     let [text, latex, html] = [Format::Text, Format::Latex, Format::Html]
         .map(|format| explain(&mechanism, &program, &[Quantity::Forcing, Quantity::KineticEnergy], format));
@@ -281,7 +289,8 @@ fn what_mends_the_rounding_of_angles_is_left_out() {
         let angle = form(&mut graph, nodes);
         let nodes = [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![angle])).to_vec();
         let outputs = vec![Output { quantity: Quantity::Forcing, rows: 2, columns: 1, values: nodes }];
-        let derived = Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] };
+        let derived =
+            Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![], apart: vec![] };
         let text = explain(&rod(), &Program::new(&derived), &[Quantity::Forcing], Format::Text);
         let equations =
             text.lines().filter_map(|line| line.strip_prefix("  ").filter(|line| line.contains(" = ")));

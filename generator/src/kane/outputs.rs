@@ -1,6 +1,7 @@
 //! Everything a derivation delivers, exported from algebra to nodes of a value graph.
 
 mod contact;
+mod derivatives;
 mod flow;
 
 use std::collections::{BTreeMap, HashMap};
@@ -36,6 +37,8 @@ struct Writer<'k, 'm> {
     largest: Vec<Node>,
     /// the mass matrix in another guise, where the mechanism permits
     articulated: Option<Articulated>,
+    /// dependent coordinates: how each changes with independent ones
+    followers: Vec<(Input, Vec<(Input, Node)>)>,
 }
 
 /// Derives and writes all quantities.
@@ -56,6 +59,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
         lumps,
         largest: Vec::new(),
         articulated: None,
+        followers: Vec::new(),
     };
     writer.kinematics();
     let (matrix, prescribed) = writer.mass_matrix();
@@ -76,7 +80,15 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     writer.free_accelerations();
     writer.guards();
     let samples = super::samples::samples(writer.k.mechanism);
-    Derived { graph: writer.graph, outputs: writer.outputs, guards: writer.guards, structures, samples }
+    let apart = if rates.is_some() { writer.derivatives(&samples) } else { Vec::new() };
+    Derived {
+        graph: writer.graph,
+        outputs: writer.outputs,
+        guards: writer.guards,
+        structures,
+        samples,
+        apart,
+    }
 }
 
 impl Writer<'_, '_> {
@@ -172,14 +184,19 @@ impl Writer<'_, '_> {
     }
 
     fn guard_pivots(&mut self, factor: &Factor) {
-        for &(value, scale, row) in &factor.pivots {
+        let pivots = self.pivots(&self.graph, factor, &self.largest);
+        self.guards.extend(pivots);
+    }
+
+    /// The pivots of a factor of the mass matrix, which must not vanish beside the `largest` that its diagonal can be.
+    fn pivots(&self, graph: &Graph, factor: &Factor, largest: &[Node]) -> Vec<Guard<Node>> {
+        let open = factor.pivots.iter().filter(|(value, ..)| graph.as_number(*value).is_none());
+        let guard = |&(value, scale, row): &(Node, Node, usize)| {
             let speed = &self.k.mechanism.speeds[self.independent[row]].name;
-            if self.graph.as_number(value).is_none() {
-                let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
-                let scale = self.largest.get(row).copied().unwrap_or(scale);
-                self.guards.push(Guard { value, scale: Some(scale), message });
-            }
-        }
+            let message = format!("the mass matrix is singular: nothing resists a change of {speed}");
+            Guard { value, scale: Some(largest.get(row).copied().unwrap_or(scale)), message }
+        };
+        open.map(guard).collect()
     }
 
     /// Generalized forces in independent speeds for given derivatives of all speeds.
@@ -316,12 +333,14 @@ impl Writer<'_, '_> {
             rates.insert(Input::Input(i as u32), node);
         }
         for (coordinate, form) in followers {
-            let mut terms = Vec::new();
+            let (mut terms, mut leaders) = (Vec::new(), Vec::new());
             for (leader, coefficient) in form.terms {
                 let coefficient = self.node(&coefficient);
-                let leader = rates[&Input::Coordinate(leader as u32)];
-                terms.push(self.graph.product([coefficient, leader]));
+                let leader = Input::Coordinate(leader as u32);
+                leaders.push((leader, coefficient));
+                terms.push(self.graph.product([coefficient, rates[&leader]]));
             }
+            self.followers.push((Input::Coordinate(coordinate as u32), leaders));
             let sum = self.graph.sum(terms);
             rates.insert(Input::Coordinate(coordinate as u32), sum);
         }

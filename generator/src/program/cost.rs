@@ -100,6 +100,14 @@ impl Cost {
     }
 }
 
+impl AddAssign for Cost {
+    fn add_assign(&mut self, other: Cost) {
+        self.parameter += other.parameter;
+        self.configuration += other.configuration;
+        self.velocity += other.velocity;
+    }
+}
+
 /// The state of a program after a pass.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Step {
@@ -137,5 +145,10 @@ pub fn trace(derived: &Derived) -> Vec<Step> {
     let step = |pass, program: &Program| Step { pass, cost: program.cost(&program.quantities()) };
     let mut steps = vec![step("none", &lower(derived))];
     passes::run(derived, |pass, program| steps.push(step(pass, &program())));
+    for apart in &derived.apart {
+        for (step, more) in steps.iter_mut().zip(trace(apart)) {
+            step.cost += more.cost;
+        }
+    }
     steps
 }

@@ -18,4 +18,6 @@ pub struct Derived {
     pub structures: Vec<Structure>,
     /// arbitrary states, at which passes weigh what rounding costs; none where it does not matter
     pub samples: Vec<Inputs>,
+    /// quantities that go through the passes on their own, so that what they share with others does not shape the routines of those
+    pub apart: Vec<Derived>,
 }

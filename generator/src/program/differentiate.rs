@@ -57,6 +57,23 @@ pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, N
     nodes.iter().map(|node| derivatives[node]).collect()
 }
 
+/// Derivative of a node with respect to its operand number `at`.
+pub fn slope_by(graph: &mut Graph, node: Node, at: usize) -> Node {
+    match graph.kind(node).clone() {
+        NodeKind::Number(_) | NodeKind::Pi | NodeKind::Input(_) => graph.integer(0),
+        NodeKind::Sum(_) => graph.integer(1),
+        NodeKind::Product(mut factors) => {
+            factors.remove(at);
+            graph.product(factors)
+        }
+        NodeKind::Power(base, n) => {
+            let (n_node, rest) = (graph.integer(n.into()), graph.power(base, n - 1));
+            graph.product([n_node, rest])
+        }
+        NodeKind::Call(function, arguments) => slope(graph, node, function, &arguments, at),
+    }
+}
+
 fn reachable(graph: &Graph, nodes: &[Node]) -> Vec<Node> {
     let mut seen = vec![false; graph.kinds().len()];
     let mut open = nodes.to_vec();

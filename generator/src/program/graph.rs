@@ -298,6 +298,30 @@ impl Graph {
         self.product([a, b])
     }
 
+    /// The same nodes with inputs replaced.
+    pub fn replaced(&mut self, nodes: &[Node], by: &HashMap<Input, Node>) -> Vec<Node> {
+        let mut renamed: HashMap<Node, Node> = HashMap::new();
+        let reachable = self.reachable(nodes.iter().copied());
+        for index in (0..reachable.len()).filter(|&index| reachable[index]) {
+            let node = Node(index as u32);
+            let kind = self.kind(node).clone();
+            let changed = kind.operands().iter().any(|operand| renamed.contains_key(operand));
+            let of = |nodes: Vec<Node>| -> Vec<Node> {
+                nodes.into_iter().map(|node| renamed.get(&node).copied().unwrap_or(node)).collect()
+            };
+            let new = match kind {
+                NodeKind::Input(input) => by.get(&input).copied(),
+                NodeKind::Sum(terms) if changed => Some(self.sum(of(terms))),
+                NodeKind::Product(factors) if changed => Some(self.product(of(factors))),
+                NodeKind::Power(base, n) if changed => Some(self.power(of(vec![base])[0], n)),
+                NodeKind::Call(function, arguments) if changed => Some(self.call(function, of(arguments))),
+                _ => None,
+            };
+            renamed.extend(new.map(|new| (node, new)));
+        }
+        nodes.iter().map(|node| renamed.get(node).copied().unwrap_or(*node)).collect()
+    }
+
     /// A function of one or two nodes.
     pub fn call(&mut self, function: Function, arguments: Vec<Node>) -> Node {
         self.intern(NodeKind::Call(function, arguments))

@@ -71,6 +71,11 @@ fn sparse_order(graph: &Graph, matrix: &[Vec<Node>]) -> Vec<usize> {
 }
 
 impl Factor {
+    /// Number of entries of L below the diagonal that are not structurally 0.
+    pub fn entries(&self) -> usize {
+        self.lower.iter().flatten().flatten().count()
+    }
+
     /// L^-1 P b, in elimination order.
     pub fn half_solve(&self, graph: &mut Graph, b: &[Node]) -> Vec<Node> {
         let mut y: Vec<Node> = self.order.iter().map(|&row| b[row]).collect();

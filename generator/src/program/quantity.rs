@@ -26,6 +26,14 @@ pub enum Quantity {
     /// derivative of the rates of the independent coordinates and of the accelerations along a direction (inputs
     /// `Tangent`): a column of the linearised equations (number of independent coordinates + p)
     StateTangent,
+    /// u' and its derivatives by independent coordinates, independent speeds and named inputs: p rows; columns: the value, then one per
+    /// coordinate, speed and input. Dependent coordinates and speeds follow; parameters and time are held
+    AccelerationsDerivatives,
+    /// inverse dynamics and its derivatives, likewise, for given u' (inputs `Acceleration`), which is held
+    InverseDynamicsDerivatives,
+    /// derivatives of the rates of the independent coordinates (rows); columns: one per independent coordinate, independent speed and
+    /// named input
+    RatesDerivatives,
     /// kinetic energy (1), J
     KineticEnergy,
     /// potential energy of gravity and springs (1), J
@@ -106,7 +114,7 @@ pub enum Structure {
 }
 
 /// Quantities of the whole mechanism.
-const WHOLE: [(Quantity, &str); 13] = [
+const WHOLE: [(Quantity, &str); 16] = [
     (Quantity::CoordinateRates, "coordinate_rates"),
     (Quantity::DependentSpeeds, "dependent_speeds"),
     (Quantity::MassMatrix, "mass_matrix"),
@@ -115,6 +123,9 @@ const WHOLE: [(Quantity, &str); 13] = [
     (Quantity::DependentAccelerations, "dependent_accelerations"),
     (Quantity::InverseDynamics, "inverse_dynamics"),
     (Quantity::StateTangent, "state_tangent"),
+    (Quantity::AccelerationsDerivatives, "accelerations_derivatives"),
+    (Quantity::InverseDynamicsDerivatives, "inverse_dynamics_derivatives"),
+    (Quantity::RatesDerivatives, "rates_derivatives"),
     (Quantity::KineticEnergy, "kinetic_energy"),
     (Quantity::PotentialEnergy, "potential_energy"),
     (Quantity::ConfigurationResidual, "configuration_residual"),

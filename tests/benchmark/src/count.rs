@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 use std::process::Command;
 
-use crate::harness::{Built, ROUTINES};
+use crate::harness::{Built, DERIVATIVES, ROUTINES};
 use crate::tools::{Failure, Folders, output};
 
 /// How often each routine is evaluated at each state.
@@ -44,7 +44,8 @@ fn parse(profile: &str) -> Counts {
     let mut lines = profile.lines();
     while let Some(line) = lines.next() {
         if let Some(name) = line.strip_prefix("cfn=") {
-            let mut routines = ROUTINES.into_iter().chain([(CONSTRUCTION, ">::hoist")]);
+            let mut routines =
+                ROUTINES.into_iter().chain(DERIVATIVES).chain([(CONSTRUCTION, ">::hoist")]);
             callee = routines.find(|(_, function)| name.contains(function)).map(|(routine, _)| routine);
         } else if let (Some(calls), Some(routine)) = (line.strip_prefix("calls="), callee.take()) {
             let number =
@@ -62,7 +63,15 @@ fn parse(profile: &str) -> Counts {
 /// angles, which all routines share.
 pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
     let text = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(&built.program))?;
-    let methods = ["::accelerations", "::inverse_dynamics", "::contact_matrices_", "::mass_matrix"];
+    let methods = [
+        "::accelerations",
+        "::inverse_dynamics",
+        "::contact_matrices_",
+        "::mass_matrix",
+        "::accelerations_derivatives",
+        "::inverse_dynamics_derivatives",
+        "::linearise",
+    ];
     let mut sizes = BTreeMap::new();
     for line in text.lines() {
         let mut words = line.splitn(4, ' ');
@@ -72,7 +81,7 @@ pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
             continue;
         };
         let Ok(size) = u64::from_str_radix(size, 16) else { continue };
-        for ((routine, function), method) in ROUTINES.iter().zip(methods) {
+        for ((routine, function), method) in ROUTINES.iter().chain(&DERIVATIVES).zip(methods) {
             if name.contains(function) || name.contains(method) || name.contains(ANGLES) {
                 *sizes.entry(*routine).or_default() += size;
             }

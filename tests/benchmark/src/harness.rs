@@ -26,6 +26,10 @@ pub struct Built {
 pub const ROUTINES: [(&str, &str); 4] =
     [("FD", "measured_fd"), ("ID", "measured_id"), ("CM", "measured_cm"), ("M", "measured_m")];
 
+/// The measured routines that differentiate, likewise; a derivation that is too long for them has none.
+pub const DERIVATIVES: [(&str, &str); 3] =
+    [("dFD", "measured_dfd"), ("dID", "measured_did"), ("A, B", "measured_linear")];
+
 const MANIFEST: &str = "\
 [package]
 name = \"{name}\"
@@ -104,6 +108,8 @@ fn main(derivation: &Derivation<'_>) -> String {
     let numbers = "Result<impl Numbers, StateError>";
     let (record, empty) = if case.inputs { ("Inputs", "Inputs::default()") } else { ("()", "()") };
     let arguments = format!("m: &Machine, q: &Coordinates, u: &Speeds, a: &Speeds, i: &{record}");
+    let differentiated = differentiated(derivation);
+    let derivatives = if differentiated { derivatives(&arguments, inputs) } else { String::new() };
     let mut text = format!(
         "#![allow(unused)]
 use std::hint::black_box;
@@ -126,7 +132,7 @@ fn measured_m({arguments}) -> {numbers} {{ m.mass_matrix(q) }}
 trait Numbers {{
     fn numbers(&self) -> Vec<f64>;
 }}
-impl Numbers for Speeds {{
+{derivatives}impl Numbers for Speeds {{
     fn numbers(&self) -> Vec<f64> {{ <[f64; {speeds}]>::from(*self).to_vec() }}
 }}
 impl<const R: usize, const C: usize> Numbers for SMatrix<f64, R, C> {{
@@ -153,12 +159,16 @@ fn line_of_all({arguments}, none: &{record}) {{
     line(measured_cm(m, q, u, a, i));
     line(measured_m(m, q, u, a, i));
 }}
+fn line_of_derivatives({arguments}, none: &{record}) {{
+    {lines}
+}}
 
 fn main() {{
     let m = black_box(Machine::default());
     let none = black_box({empty});
     let states: Vec<State> = black_box(vec![\n",
-        speeds = derivation.speeds.len()
+        speeds = derivation.speeds.len(),
+        lines = if differentiated { "line(measured_dfd(m, q, u, a, i)); line(measured_did(m, q, u, a, none));" } else { "" },
     );
     for state in &derivation.states {
         let _ = writeln!(text, "        ({}),", self::state(state, case.inputs));
@@ -175,6 +185,9 @@ fn main() {{
         if argument == \"numbers\" {
             line_of_all(&m, q, u, a, i, &none);
         }
+        if argument == \"derivatives\" {
+            line_of_derivatives(&m, q, u, a, i, &none);
+        }
     }
     for _ in 0..argument.parse().unwrap_or(0) {
         for (q, u, a, i) in &states {
@@ -182,11 +195,49 @@ fn main() {{
             let _ = black_box(measured_id(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(&none)));
             let _ = black_box(measured_cm(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
             let _ = black_box(measured_m(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
+";
+    if differentiated {
+        text += "\
+            let _ = black_box(measured_dfd(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
+            let _ = black_box(measured_did(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(&none)));
+            let _ = black_box(measured_linear(black_box(&m), black_box(q), black_box(u), black_box(a), black_box(i)));
+";
+    }
+    text += "\
         }
     }
 }
 ";
     text
+}
+
+/// Has the module all routines that differentiate?
+pub fn differentiated(derivation: &Derivation<'_>) -> bool {
+    derivation.module.contains("fn accelerations_derivatives(")
+}
+
+/// The functions that are measured of the routines that differentiate, and how their answers are written: value, then derivatives.
+fn derivatives(arguments: &str, inputs: &str) -> String {
+    format!(
+        "impl<T: Numbers> Numbers for Result<T, StateError> {{
+    fn numbers(&self) -> Vec<f64> {{ self.as_ref().map(T::numbers).unwrap_or_default() }}
+}}
+impl Numbers for Derivatives<f64> {{
+    fn numbers(&self) -> Vec<f64> {{
+        [self.value.numbers(), self.by_coordinates.numbers(), self.by_speeds.numbers(), self.by_inputs.numbers()].concat()
+    }}
+}}
+impl Numbers for Linearisation<f64> {{
+    fn numbers(&self) -> Vec<f64> {{ [self.a.numbers(), self.b.numbers()].concat() }}
+}}
+#[inline(never)]
+fn measured_dfd({arguments}) -> Result<Derivatives<f64>, StateError> {{ m.accelerations_derivatives(q, u{inputs}) }}
+#[inline(never)]
+fn measured_did({arguments}) -> Result<Derivatives<f64>, StateError> {{ m.inverse_dynamics_derivatives(q, u, a{inputs}) }}
+#[inline(never)]
+fn measured_linear({arguments}) -> Result<Linearisation<f64>, StateError> {{ m.linearise(q, u{inputs}) }}
+"
+    )
 }
 
 /// `answer` reads states, one per line, and prints what the routines answer.

@@ -8,7 +8,7 @@ use hodograph_generator::program::{ContactQuantity, Quantity};
 
 use crate::count::{CONSTRUCTION, Counts};
 use crate::derive::Derivation;
-use crate::harness::ROUTINES;
+use crate::harness::{DERIVATIVES, ROUTINES};
 use crate::peers::Peers;
 
 /// A measured mechanism.
@@ -31,6 +31,9 @@ fn quantities(routine: &str) -> Vec<Quantity> {
         "CM" => [ContactQuantity::PartialVelocities, ContactQuantity::Reduced]
             .map(|quantity| Quantity::Contact(0, quantity))
             .to_vec(),
+        "dFD" => vec![Quantity::AccelerationsDerivatives],
+        "dID" => vec![Quantity::InverseDynamicsDerivatives],
+        "A, B" => vec![Quantity::RatesDerivatives, Quantity::AccelerationsDerivatives],
         _ => vec![Quantity::MassMatrix],
     }
 }
@@ -51,7 +54,7 @@ pub fn print(rows: &[Row<'_>], peers: &Peers) {
     println!("| --- | --- | ---: | ---: | ---: | ---: | --- | ---: | ---: |");
     for pair in rows.chunks_exact(2) {
         let [run_time, fixed] = pair else { continue };
-        for (routine, _) in ROUTINES {
+        for (routine, _) in ROUTINES.into_iter().chain(DERIVATIVES) {
             let of = |row: &Row<'_>| row.counts.get(routine).copied();
             let (Some(slow), Some(fast)) = (of(run_time), of(fixed)) else { continue };
             let case = run_time.derivation.case;

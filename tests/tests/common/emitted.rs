@@ -39,6 +39,9 @@ pub fn routine(mechanism: &Mechanism, quantity: Quantity) -> Option<String> {
         Quantity::DependentAccelerations => "dependent_accelerations",
         Quantity::InverseDynamics => "inverse_dynamics",
         Quantity::StateTangent => "state_tangent",
+        Quantity::AccelerationsDerivatives => "accelerations_derivatives",
+        Quantity::InverseDynamicsDerivatives => "inverse_dynamics_derivatives",
+        Quantity::RatesDerivatives => "coordinate_rates_derivatives",
         Quantity::KineticEnergy => "kinetic_energy",
         Quantity::PotentialEnergy => "potential_energy",
         Quantity::ConfigurationResidual => "configuration_residual",
@@ -104,6 +107,26 @@ fn array<const N: usize>(list: &[f64]) -> [f64; N] {
 
 fn by_rows<const R: usize, const C: usize>(matrix: SMatrix<f64, R, C>) -> Vec<f64> {
     matrix.transpose().as_slice().to_vec()
+}
+
+/// Value and derivatives as one matrix, by rows.
+macro_rules! beside {
+    ($derivatives:expr) => {{
+        let found = $derivatives;
+        let rows = found.value.len();
+        let row = |row: usize| {
+            let derivatives = found
+                .by_coordinates
+                .row(row)
+                .iter()
+                .chain(found.by_speeds.row(row).iter())
+                .copied()
+                .collect::<Vec<f64>>();
+            let inputs = found.by_inputs.row(row).iter().copied().collect();
+            [vec![found.value[row]], derivatives, inputs].concat()
+        };
+        (0..rows).flat_map(row).collect()
+    }};
 }
 
 macro_rules! hit {

@@ -19,7 +19,7 @@ mod reassociate;
 mod rewrite;
 mod terms;
 #[cfg(test)]
-mod testing;
+pub mod testing;
 mod vanishing;
 
 use super::derivation::Derived;
@@ -63,8 +63,20 @@ pub const PASSES: [Pass; 12] = [
 impl Program {
     /// The program of a derivation. The same derivation gives the same program.
     pub fn new(derived: &Derived) -> Self {
-        run(derived, |_, _| {})
+        let mut program = run(derived, |_, _| {});
+        for apart in &derived.apart {
+            program.append(&Program::new(apart));
+        }
+        program
     }
+}
+
+/// What the passes on the graph make of a derivation, for who wants to go on from there.
+pub fn simplified(derived: &Derived) -> Derived {
+    PASSES.iter().fold(derived.clone(), |derived, pass| match pass.work {
+        Work::Graph(run) => run(&derived),
+        _ => derived,
+    })
 }
 
 /// A derivation on its way through the passes.

@@ -1,0 +1,195 @@
+//! Derivatives of the dynamics by coordinates, speeds and named inputs, each with its value in a derivation of its own.
+//!
+//! With r(q, u, a, w) = M a - forcing, the inverse dynamics, accelerations a(q, u, w) satisfy r = 0, so that da/dx = -M^-1 dr/dx at a held: one
+//! program r is differentiated, whatever the constraints, and the factor of M serves all columns.
+
+use std::collections::HashMap;
+
+use super::Writer;
+use crate::program::graph::{Graph, Input, Node};
+use crate::program::jacobian::{Direction, Jacobian, ORDERS, jacobian};
+use crate::program::ldl::factorise;
+use crate::program::passes::simplified;
+use crate::program::{Derived, Guard, Inputs, Output, Program, Quantity};
+
+/// Up to this work every order of elimination goes through the passes, and the one with the fewest operations after them is taken.
+const COMPARED: usize = 2000;
+/// Solves that take more operations are no straight line any more: a dense mass matrix of 25 speeds with all columns.
+const LONGEST: usize = 50_000;
+
+/// What is differentiated, as nodes of a graph that is simplified already.
+struct Pieces {
+    graph: Graph,
+    guards: Vec<Guard<Node>>,
+    rates: Vec<Node>,
+    inverse: Vec<Node>,
+    forcing: Vec<Node>,
+    matrix: Vec<Vec<Node>>,
+    largest: Vec<Node>,
+    directions: Vec<Direction>,
+}
+
+impl Writer<'_, '_> {
+    /// Accelerations, inverse dynamics and rates of the coordinates with their derivatives.
+    pub(super) fn derivatives(&mut self, samples: &[Inputs]) -> Vec<Derived> {
+        let Some(pieces) = self.pieces() else { return Vec::new() };
+        let derived = |graph: Graph, guards: &[Guard<Node>], quantity, rows: Vec<Vec<Node>>| {
+            let columns = rows.first().map_or(0, Vec::len);
+            let output = Output { quantity, rows: rows.len(), columns, values: rows.concat() };
+            let (guards, samples) = (guards.to_vec(), samples.to_vec());
+            Derived { graph, outputs: vec![output], guards, structures: vec![], samples, apart: vec![] }
+        };
+        let mut all = Vec::new();
+        if !pieces.rates.is_empty() {
+            let (graph, rows) = pieces.best(&pieces.rates);
+            all.push(derived(graph, &pieces.guards, Quantity::RatesDerivatives, rows));
+        }
+        let (graph, rows) = pieces.best(&pieces.inverse);
+        let with_value = beside(&pieces.inverse, &rows);
+        all.push(derived(graph.clone(), &pieces.guards, Quantity::InverseDynamicsDerivatives, with_value));
+        if let Some((graph, pivots, rows)) = self.accelerations_derivatives(&pieces, graph, &rows) {
+            let guards = [&pieces.guards[..], &pivots].concat();
+            all.push(derived(graph, &guards, Quantity::AccelerationsDerivatives, rows));
+        }
+        all
+    }
+
+    /// Everything that is needed, sent through the passes on the graph together; `None` where a mechanism has no dynamics.
+    fn pieces(&mut self) -> Option<Pieces> {
+        let directions = self.directions();
+        let of = |quantity| self.outputs.iter().find(|output| output.quantity == quantity);
+        let rates = of(Quantity::CoordinateRates)?.values.iter().zip(&self.k.mechanism.coordinates);
+        let rates = rates.filter(|(_, coordinate)| !coordinate.dependent).map(|(&node, _)| node).collect();
+        let slopes = directions.iter().flatten().map(|&(_, slope)| slope).collect();
+        let parts: [Vec<Node>; 6] = [
+            rates,
+            of(Quantity::InverseDynamics)?.values.clone(),
+            of(Quantity::Forcing)?.values.clone(),
+            of(Quantity::MassMatrix)?.values.clone(),
+            self.largest.clone(),
+            slopes,
+        ];
+        // The name does not matter: it is never a program.
+        let output = |values: Vec<Node>| Output {
+            quantity: Quantity::Forcing,
+            rows: values.len(),
+            columns: 1,
+            values,
+        };
+        let derived = simplified(&Derived {
+            graph: self.graph.clone(),
+            outputs: parts.map(output).to_vec(),
+            guards: self.guards.clone(),
+            structures: Vec::new(),
+            samples: Vec::new(),
+            apart: Vec::new(),
+        });
+        let mut parts = derived.outputs.into_iter().map(|output| output.values);
+        let mut next = || parts.next().unwrap_or_default();
+        let [rates, inverse, forcing, matrix, largest] = [next(), next(), next(), next(), next()];
+        let mut slopes = next().into_iter();
+        let renamed = |direction: Direction| {
+            direction.into_iter().zip(&mut slopes).map(|((input, _), slope)| (input, slope)).collect()
+        };
+        Some(Pieces {
+            graph: derived.graph,
+            guards: derived.guards,
+            rates,
+            matrix: matrix.chunks(inverse.len()).map(<[Node]>::to_vec).collect(),
+            inverse,
+            forcing,
+            largest,
+            directions: directions.into_iter().map(renamed).collect(),
+        })
+    }
+
+    /// Independent coordinates, followed by the dependent ones; independent speeds; named inputs.
+    fn directions(&mut self) -> Vec<Direction> {
+        let one = self.graph.integer(1);
+        let mechanism = self.k.mechanism;
+        let coordinates = (0..).map(Input::Coordinate).zip(&mechanism.coordinates);
+        let coordinates = coordinates.filter(|(_, coordinate)| !coordinate.dependent).map(|(input, _)| input);
+        let speeds = (0..self.independent.len() as u32).map(Input::Speed);
+        let inputs = (0..mechanism.inputs.len() as u32).map(Input::Input);
+        let along = |leader: Input| {
+            let slope = |(follower, leaders): &(Input, Vec<(Input, Node)>)| {
+                leaders.iter().find(|(input, _)| *input == leader).map(|&(_, slope)| (*follower, slope))
+            };
+            let followers = self.followers.iter().filter_map(slope);
+            std::iter::once((leader, one)).chain(followers).collect()
+        };
+        coordinates.chain(speeds).chain(inputs).map(along).collect()
+    }
+
+    /// u' and its derivatives, from the derivatives of the inverse dynamics for given u'; with what must not vanish. `None` where that is too
+    /// long for a straight line.
+    #[allow(clippy::type_complexity)]
+    fn accelerations_derivatives(
+        &self,
+        pieces: &Pieces,
+        mut graph: Graph,
+        rows: &[Vec<Node>],
+    ) -> Option<(Graph, Vec<Guard<Node>>, Vec<Vec<Node>>)> {
+        let factor = factorise(&mut graph, &pieces.matrix);
+        let each = 2 * factor.entries() + rows.len();
+        if each * pieces.directions.len() > LONGEST {
+            return None;
+        }
+        let pivots = self.pivots(&graph, &factor, &pieces.largest);
+        let half = factor.half_solve(&mut graph, &pieces.forcing);
+        let accelerations = factor.finish(&mut graph, &half);
+        let held = (0..).map(Input::Acceleration).zip(accelerations.iter().copied());
+        let entries = graph.replaced(&rows.concat(), &held.collect::<HashMap<Input, Node>>());
+        let count = pieces.directions.len();
+        let mut solved = rows.to_vec();
+        for column in 0..count {
+            let opposite: Vec<Node> =
+                (0..rows.len()).map(|row| graph.neg(entries[row * count + column])).collect();
+            let half = factor.half_solve(&mut graph, &opposite);
+            for (row, node) in solved.iter_mut().zip(factor.finish(&mut graph, &half)) {
+                row[column] = node;
+            }
+        }
+        Some((graph, pivots, beside(&accelerations, &solved)))
+    }
+}
+
+impl Pieces {
+    /// The Jacobian of some nodes, in its graph, by the best of the orders of elimination.
+    fn best(&self, nodes: &[Node]) -> (Graph, Vec<Vec<Node>>) {
+        let found = ORDERS.map(|order| {
+            let mut graph = self.graph.clone();
+            let found = jacobian(&mut graph, nodes, &self.directions, order);
+            (graph, found)
+        });
+        let compare = found.iter().all(|(_, found)| found.work <= COMPARED);
+        let cost = |(graph, found): &(Graph, Jacobian)| if compare { cost(graph, found) } else { found.work };
+        let best = found.into_iter().min_by_key(cost);
+        best.map_or_else(Default::default, |(graph, found)| (graph, found.rows))
+    }
+}
+
+/// Operations per evaluation of a Jacobian after all passes; fused ones count once.
+fn cost(graph: &Graph, found: &Jacobian) -> usize {
+    let values = found.rows.concat();
+    let output = Output { quantity: Quantity::Forcing, rows: values.len(), columns: 1, values };
+    let program = Program::new(&Derived {
+        graph: graph.clone(),
+        outputs: vec![output],
+        guards: Vec::new(),
+        structures: Vec::new(),
+        samples: Vec::new(),
+        apart: Vec::new(),
+    });
+    let count = program.cost(&[Quantity::Forcing]).evaluation();
+    count.total() - count.fused
+}
+
+/// A column and the matrix that follows it.
+fn beside(column: &[Node], rows: &[Vec<Node>]) -> Vec<Vec<Node>> {
+    column
+        .iter()
+        .zip(rows)
+        .map(|(&first, row)| std::iter::once(first).chain(row.iter().copied()).collect())
+        .collect()
+}
