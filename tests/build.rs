@@ -43,11 +43,27 @@ fn main() {
     std::fs::write(output, text).expect("written");
 }
 
+/// The routines that tests call with numbers that carry derivatives.
+const DIFFERENTIATED: [&str; 4] =
+    ["accelerations", "inverse_dynamics", "coordinate_rates", "configuration_residual"];
+
+/// What such a routine gets for an argument.
+fn dual(argument: &str) -> &'static str {
+    match argument {
+        "time" => "Dual64::from_re(at.time)",
+        "q" => "&duals(&at.coordinates, &along.coordinates).into()",
+        "u" => "&duals(&at.speeds, &along.speeds).into()",
+        "acceleration" => "&duals(&at.accelerations, &[]).into()",
+        _ => "&duals(&at.inputs, &along.inputs).into()",
+    }
+}
+
 fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
     let path = format!("hodograph_models::{module}");
     let name = rust_names::type_name(&mechanism.name);
     let mut routines = String::new();
     let mut collisions = String::new();
+    let mut duals = String::new();
     for method in code.split("pub fn ").skip(1) {
         let Some((method, rest)) = method.split_once('(') else { continue };
         let method = method.trim();
@@ -109,7 +125,7 @@ fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &s
             } else if result.contains("ReducedMatrix") {
                 "<[f64; 6]>::from(value).to_vec()"
             } else if ["Coordinates", "Speeds"].iter().any(|record| result.contains(record)) {
-                "<[f64; _]>::from(value).to_vec()"
+                "<[_; _]>::from(value).to_vec()"
             } else if result.contains("Derivatives") {
                 "beside!(value)"
             } else if result.contains("Linearisation") {
@@ -119,6 +135,11 @@ fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &s
             } else {
                 panic!("{module}::{method} has a result that tests do not know: {result}")
             };
+            if DIFFERENTIATED.contains(&method) {
+                let passed: Vec<&str> = names.iter().map(|name| dual(name)).collect();
+                let call = format!("Self::dual_machine(at).{method}({})", passed.join(", "));
+                writeln!(duals, "            \"{method}\" => {call}.map(|value| {flat}),").unwrap();
+            }
             writeln!(
                 routines,
                 "            \"{method}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
@@ -136,6 +157,10 @@ impl {module} {{
     fn machine(at: &Inputs) -> {path}::{name}<f64> {{
         {path}::{name}::new(array(&at.parameters).into()).expect(\"good parameters\")
     }}
+
+    fn dual_machine(at: &Inputs) -> {path}::{name}<Dual64> {{
+        {path}::{name}::new(duals(&at.parameters, &[]).into()).expect(\"good parameters\")
+    }}
 }}
 
 impl Emitted for {module} {{
@@ -146,6 +171,12 @@ impl Emitted for {module} {{
         Some(match routine {{
 {routines}            _ => return None,
         }})
+    }}
+    fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>> {{
+        let answer: Result<Vec<Dual64>, StateError> = match routine {{
+{duals}            _ => return None,
+        }};
+        Some(answer.expect(\"a regular state\").into_iter().map(|number| number.eps).collect())
     }}
     fn collide(&self, contact: usize, at: &Inputs, surface: &Surface<f64>) -> Result<Hit, String> {{
         match contact {{

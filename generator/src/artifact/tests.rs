@@ -23,6 +23,7 @@ fn program() -> Program {
         guards,
         structures: vec![Structure::Planar, Structure::General],
         samples: vec![],
+        apart: vec![],
     })
 }
 

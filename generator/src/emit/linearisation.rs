@@ -1,10 +1,13 @@
 //! Derivatives as matrices: those of accelerations and inverse dynamics, and the linearised equations x' = A x + B w made of them.
 
+use std::ops::Range;
+
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
 use super::routine::Arguments;
+use super::values::local;
 use crate::program::{Output, Quantity};
 
 impl Emitter<'_> {
@@ -99,8 +102,6 @@ impl Emitter<'_> {
             return quote!();
         }
         let krate = self.krate;
-        let (states, inputs) = self.linear_sizes();
-        let (n, m) = (Literal::usize_unsuffixed(states), Literal::usize_unsuffixed(inputs));
         let mut arguments = self.arguments(&[Quantity::StateTangent]);
         arguments.tangent = false;
         let signature = self.signature(arguments);
@@ -112,8 +113,6 @@ impl Emitter<'_> {
             /// The equations linearised about a state, exactly (by differentiation, not by differences). Dependent
             /// coordinates and speeds follow the independent ones; parameters and time are held.
             pub fn linearise(#signature) -> ::core::result::Result<Linearisation<T>, #krate::StateError> {
-                let mut a = #krate::nalgebra::SMatrix::<T, #n, #n>::zeros();
-                let mut b = #krate::nalgebra::SMatrix::<T, #n, #m>::zeros();
                 #body
                 ::core::result::Result::Ok(Linearisation { a, b })
             }
@@ -123,51 +122,55 @@ impl Emitter<'_> {
     /// Rows of coordinates from the derivatives of their rates, rows of speeds from those of the accelerations.
     fn by_derivatives(&self, arguments: Arguments) -> TokenStream {
         let krate = self.krate;
-        let (states, _) = self.linear_sizes();
-        let coordinates = Literal::usize_unsuffixed(states - self.speeds.len());
+        let (states, inputs) = self.linear_sizes();
+        let coordinates = states - self.speeds.len();
         let passed = self.passed(arguments);
-        let rates = self.program.output(Quantity::RatesDerivatives).map(|output| {
-            let [(of_states, by_states), (of_inputs, by_inputs)] =
-                [0..states, states..output.columns].map(|columns| self.block(output, columns));
-            let compute = self.compute(&[Quantity::RatesDerivatives]);
-            quote! {
-                let (by_states, by_inputs): (#of_states, #of_inputs) = {
-                    #compute
-                    (#by_states, #by_inputs)
-                };
-                write(&mut a, 0, 0, &by_states);
-                write(&mut b, 0, 0, &by_inputs);
+        let rates = self.program.output(Quantity::RatesDerivatives);
+        let compute = rates.map(|_| self.compute(&[Quantity::RatesDerivatives]));
+        let entry = |row: usize, column: usize| {
+            let Some(row) = row.checked_sub(coordinates).map(Literal::usize_unsuffixed) else {
+                let value = rates.and_then(|output| output.values.get(row * output.columns + column));
+                let value = value.map(|&value| local(value));
+                return quote!(#value);
+            };
+            let (block, first) = match column {
+                column if column < coordinates => (quote!(by_coordinates), 0),
+                column if column < states => (quote!(by_speeds), coordinates),
+                _ => (quote!(by_inputs), states),
+            };
+            let column = Literal::usize_unsuffixed(column - first);
+            quote!(#block[#column][#row])
+        };
+        let matrix = |columns: Range<usize>| {
+            if columns.is_empty() {
+                return quote!(#krate::nalgebra::SMatrix::zeros());
             }
-        });
+            let columns = columns.map(|column| {
+                let entries = (0..states).map(|row| entry(row, column));
+                quote!([#(#entries),*])
+            });
+            quote!(#krate::nalgebra::SMatrix::from([#(#columns),*]))
+        };
+        let (a, b) = (matrix(0..states), matrix(states..states + inputs));
         quote! {
-            // Writes a block whose first entry stands in this row and column.
-            fn write<T: #krate::Scalar, const R: usize, const C: usize, const N: usize, const M: usize>(
-                into: &mut #krate::nalgebra::SMatrix<T, R, C>,
-                row: usize,
-                column: usize,
-                block: &#krate::nalgebra::SMatrix<T, N, M>,
-            ) {
-                for (to, from) in into.column_iter_mut().skip(column).zip(block.column_iter()) {
-                    let mut to = to;
-                    for (entry, value) in to.iter_mut().skip(row).zip(from.iter()) {
-                        *entry = *value;
-                    }
-                }
-            }
-            #rates
+            #compute
             let of_speeds = self.accelerations_derivatives(#passed)?;
-            write(&mut a, #coordinates, 0, &of_speeds.by_coordinates);
-            write(&mut a, #coordinates, #coordinates, &of_speeds.by_speeds);
-            write(&mut b, #coordinates, 0, &of_speeds.by_inputs);
+            let (by_coordinates, by_speeds, by_inputs) =
+                (&of_speeds.by_coordinates.data.0, &of_speeds.by_speeds.data.0, &of_speeds.by_inputs.data.0);
+            let (a, b) = (#a, #b);
         }
     }
 
     /// A column at a time: where all derivatives at once would be too long a program.
     fn by_tangents(&self, arguments: Arguments) -> TokenStream {
+        let krate = self.krate;
         let (states, inputs) = self.linear_sizes();
+        let (n, m) = (Literal::usize_unsuffixed(states), Literal::usize_unsuffixed(inputs));
         let size = Literal::usize_unsuffixed(states + inputs);
         let passed = self.passed(arguments);
         quote! {
+            let mut a = #krate::nalgebra::SMatrix::<T, #n, #n>::zeros();
+            let mut b = #krate::nalgebra::SMatrix::<T, #n, #m>::zeros();
             for (number, mut column) in a.column_iter_mut().chain(b.column_iter_mut()).enumerate() {
                 let mut tangent = [T::zero(); #size];
                 if let Some(entry) = tangent.get_mut(number) {

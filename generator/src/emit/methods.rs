@@ -90,12 +90,16 @@ impl Emitter<'_> {
         let entry = |row: usize, column: usize| {
             output.values.get(row * output.columns + column).map(|&value| local(value))
         };
+        let shape = quote!(#krate::nalgebra::SMatrix<T, #rows, #count>);
+        if columns.is_empty() {
+            return (shape, quote!(#krate::nalgebra::SMatrix::zeros()));
+        }
         let columns_of = columns.map(|column| {
             let entries = (0..output.rows).filter_map(|row| entry(row, column));
             quote!([#(#entries),*])
         });
         let data = quote!([#(#columns_of),*]);
-        (quote!(#krate::nalgebra::SMatrix<T, #rows, #count>), quote!(#krate::nalgebra::SMatrix::from(#data)))
+        (shape, quote!(#krate::nalgebra::SMatrix::from(#data)))
     }
 
     /// Name and documentation of the method of a quantity; contacts have their own.

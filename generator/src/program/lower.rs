@@ -372,7 +372,7 @@ mod tests {
         let nodes = [second, third].map(|angle| calls(&mut graph, angle)).concat();
         let outputs =
             vec![crate::program::Output { quantity: Quantity::Forcing, rows: 4, columns: 1, values: nodes }];
-        Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] }
+        Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![], apart: vec![] }
     }
 
     #[test]
@@ -413,7 +413,14 @@ mod tests {
         let nodes = vec![graph.call(Function::Sin, vec![angle]), graph.call(Function::Cos, vec![angle])];
         let outputs =
             vec![crate::program::Output { quantity: Quantity::Forcing, rows: 2, columns: 1, values: nodes }];
-        let program = lower(&Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![] });
+        let program = lower(&Derived {
+            graph,
+            outputs,
+            guards: vec![],
+            structures: vec![],
+            samples: vec![],
+            apart: vec![],
+        });
         assert_eq!(program.operations.len(), 4, "an input, a pair, and its two parts");
     }
 }

@@ -187,6 +187,11 @@ impl fmt::Display for Quantity {
 }
 
 impl Quantity {
+    /// Is it a matrix whose columns solve systems of equations? Few values are alive while its entries are computed column by column.
+    pub fn is_solved_by_columns(self) -> bool {
+        matches!(self, Quantity::AccelerationsDerivatives)
+    }
+
     /// The quantity that these words mean, as `Display` writes them.
     pub fn from_words(words: &[&str]) -> Option<Self> {
         match *words {

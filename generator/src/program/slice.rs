@@ -22,8 +22,14 @@ impl Program {
         let outputs: Vec<&Output> = quantities.iter().filter_map(|&quantity| self.output(quantity)).collect();
         let mut visit = Visit { program: self, seen: vec![false; self.operations.len()], order: Vec::new() };
         for output in &outputs {
-            for &value in &output.values {
-                visit.value(value);
+            let by_columns = output.quantity.is_solved_by_columns();
+            let count = output.values.len();
+            let place = |index: usize| match by_columns {
+                true => index % output.rows * output.columns + index / output.rows,
+                false => index,
+            };
+            for value in (0..count).filter_map(|index| output.values.get(place(index))) {
+                visit.value(*value);
             }
         }
         let mut guards: Vec<&Guard> =

@@ -44,8 +44,7 @@ fn parse(profile: &str) -> Counts {
     let mut lines = profile.lines();
     while let Some(line) = lines.next() {
         if let Some(name) = line.strip_prefix("cfn=") {
-            let mut routines =
-                ROUTINES.into_iter().chain(DERIVATIVES).chain([(CONSTRUCTION, ">::hoist")]);
+            let mut routines = ROUTINES.into_iter().chain(DERIVATIVES).chain([(CONSTRUCTION, ">::hoist")]);
             callee = routines.find(|(_, function)| name.contains(function)).map(|(routine, _)| routine);
         } else if let (Some(calls), Some(routine)) = (line.strip_prefix("calls="), callee.take()) {
             let number =
@@ -82,7 +81,10 @@ pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
         };
         let Ok(size) = u64::from_str_radix(size, 16) else { continue };
         for ((routine, function), method) in ROUTINES.iter().chain(&DERIVATIVES).zip(methods) {
-            if name.contains(function) || name.contains(method) || name.contains(ANGLES) {
+            // a value's method is not that of its derivatives
+            let of_values = !routine.starts_with('d') && name.contains("_derivatives");
+            let is_method = name.contains(method) && !of_values;
+            if name.contains(function) || is_method || name.contains(ANGLES) {
                 *sizes.entry(*routine).or_default() += size;
             }
         }

@@ -168,7 +168,11 @@ fn main() {{
     let none = black_box({empty});
     let states: Vec<State> = black_box(vec![\n",
         speeds = derivation.speeds.len(),
-        lines = if differentiated { "line(measured_dfd(m, q, u, a, i)); line(measured_did(m, q, u, a, none));" } else { "" },
+        lines = if differentiated {
+            "line(measured_dfd(m, q, u, a, i)); line(measured_did(m, q, u, a, none));"
+        } else {
+            ""
+        },
     );
     for state in &derivation.states {
         let _ = writeln!(text, "        ({}),", self::state(state, case.inputs));

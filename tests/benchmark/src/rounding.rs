@@ -6,10 +6,10 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-use hodograph_generator::interpret::{Evaluator};
-use hodograph_generator::program::Inputs;
 use hodograph_generator::check::check;
+use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
+use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::{ContactQuantity, Quantity};

@@ -15,7 +15,9 @@ mod memory;
 
 hodograph::mechanism!("../downstream/models/hopper.mech");
 
-use hopper::{ClosedContact, Collision, CollisionDerivative, Coordinates, Hopper, Inputs, Parameters, Speeds};
+use hopper::{
+    ClosedContact, Collision, CollisionDerivative, Coordinates, Derivatives, Hopper, Inputs, Linearisation, Parameters, Speeds,
+};
 
 #[no_panic]
 #[inline(never)]
@@ -164,6 +166,34 @@ fn accelerations(hopper: &Hopper, q: &Coordinates, u: &Speeds, inputs: &Inputs) 
 
 #[no_panic]
 #[inline(never)]
+fn accelerations_derivatives(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+) -> Result<Derivatives<f64>, StateError> {
+    hopper.accelerations_derivatives(q, u, inputs)
+}
+
+#[no_panic]
+#[inline(never)]
+fn inverse_dynamics_derivatives(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+) -> Result<Derivatives<f64>, StateError> {
+    hopper.inverse_dynamics_derivatives(q, u, u, inputs)
+}
+
+#[no_panic]
+#[inline(never)]
+fn linearise(hopper: &Hopper, q: &Coordinates, u: &Speeds, inputs: &Inputs) -> Result<Linearisation<f64>, StateError> {
+    hopper.linearise(q, u, inputs)
+}
+
+#[no_panic]
+#[inline(never)]
 fn mass_matrix(hopper: &Hopper, q: &Coordinates) -> Result<SMatrix<f64, 2, 2>, StateError> {
     hopper.mass_matrix(q)
 }
@@ -183,6 +213,9 @@ extern "C" fn _start() -> ! {
         black_box(collide_derivative(&hopper, &q, &u, &surface).is_ok());
         black_box(saltation(&hopper, &q, &u, &Inputs::default(), &surface).is_ok());
         black_box(accelerations(&hopper, &q, &u, &Inputs::default()).is_ok());
+        black_box(accelerations_derivatives(&hopper, &q, &u, &Inputs::default()).is_ok());
+        black_box(inverse_dynamics_derivatives(&hopper, &q, &u, &Inputs::default()).is_ok());
+        black_box(linearise(&hopper, &q, &u, &Inputs::default()).is_ok());
         black_box(mass_matrix(&hopper, &q).is_ok());
         black_box(contact_mode(&hopper, &q, &u, &Inputs::default(), &surface).is_ok());
         black_box(contact_force(&hopper, &q, &u, &Inputs::default(), black_box(ContactMode::Stick), &surface).is_ok());

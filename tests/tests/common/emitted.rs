@@ -1,11 +1,12 @@
 //! The emitted modules of all shipped models behind one interface; `tests/build.rs` writes the implementations.
 
 use hodograph::nalgebra::SMatrix;
-use hodograph::{Contacts, Path, Surface};
+use hodograph::{Contacts, Path, StateError, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
 use hodograph_generator::rust_names::snake_case;
+use num_dual::Dual64;
 
 /// An emitted module. Matrices are by rows.
 pub trait Emitted {
@@ -13,6 +14,8 @@ pub trait Emitted {
     fn name(&self) -> &'static str;
     /// a routine by its name, if there is one; the error is its message
     fn call(&self, routine: &str, at: &Inputs) -> Option<Result<Vec<f64>, String>>;
+    /// the derivative of a routine along a direction (coordinates, speeds, inputs), by numbers that carry derivatives
+    fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>>;
     /// a collision; the error is its message
     fn collide(&self, contact: usize, at: &Inputs, surface: &Surface<f64>) -> Result<Hit, String>;
     /// the mechanism by its traits
@@ -105,8 +108,15 @@ fn array<const N: usize>(list: &[f64]) -> [f64; N] {
     list.try_into().expect("as many numbers as fields")
 }
 
-fn by_rows<const R: usize, const C: usize>(matrix: SMatrix<f64, R, C>) -> Vec<f64> {
-    matrix.transpose().as_slice().to_vec()
+/// Numbers that change along a direction; those that it does not name do not.
+fn duals<const N: usize>(list: &[f64], along: &[f64]) -> [Dual64; N] {
+    let rates = along.iter().copied().chain(std::iter::repeat(0.0));
+    let all: Vec<Dual64> = list.iter().zip(rates).map(|(&number, rate)| Dual64::new(number, rate)).collect();
+    all.try_into().expect("as many numbers as fields")
+}
+
+fn by_rows<T: Copy, const R: usize, const C: usize>(matrix: SMatrix<T, R, C>) -> Vec<T> {
+    (0..R).flat_map(|row| (0..C).map(move |column| (row, column))).map(|place| matrix[place]).collect()
 }
 
 /// Value and derivatives as one matrix, by rows.
