@@ -12,8 +12,9 @@ use super::Emitter;
 use super::values::{Place, local};
 use crate::program::operation::{Operation, Stage, Value};
 
-/// The greatest number of operations in one function of an emitted module.
-pub const LONGEST: usize = 4000;
+/// The greatest number of statements in one function of an emitted module, roughly. In builds with debug information each opens a scope within the
+/// one before, and the compiler descends into them: at 4100 its stack overflows.
+pub const LONGEST: usize = 3000;
 
 impl Emitter<'_> {
     /// The statements that compute `values`, in their order; `wanted` are those that are looked at afterwards.
@@ -25,12 +26,12 @@ impl Emitter<'_> {
         let rest: Vec<Value> = values.iter().copied().filter(|value| !first.contains(value)).collect();
         let angles = angles.into_iter().filter_map(|value| self.statement(value, Place::Method));
         let (work, given): (Vec<Value>, Vec<Value>) = rest.iter().partition(|&&value| self.is_work(value));
-        if work.len() <= self.longest {
+        if rest.len() <= self.longest {
             let statements = rest.iter().filter_map(|&value| self.statement(value, Place::Method));
             return quote! { #(#angles)* #of_angles #(#statements)* };
         }
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
-        let length = work.len().div_ceil(work.len().div_ceil(self.longest.max(1)));
+        let length = work.len().div_ceil(rest.len().div_ceil(self.longest.max(1))).max(1);
         let parts: Vec<&[Value]> = work.chunks(length).collect();
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
         let calls = (0..parts.len()).map(|index| self.part(&parts, index, &wanted));
