@@ -13,7 +13,7 @@ use nalgebra::{DMatrix, DVector};
 const STATES: usize = 4;
 
 /// Off by at most this part of the largest entry.
-const BOUND: f64 = 1e-11;
+const BOUND: f64 = 1e-12;
 
 /// The directions of the derivatives: independent coordinates, with what follows, independent speeds, named inputs.
 fn directions(module: &dyn Emitted, model: &Model, at: &Inputs) -> Vec<Inputs> {

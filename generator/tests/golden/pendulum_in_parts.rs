@@ -441,11 +441,23 @@ pub mod pendulum_in_parts {
             ::hodograph::StateError,
         > {
             let v3 = q.q1;
-            let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-            let v7 = v6;
             let v14 = self.hoisted[1];
             let v5 = inputs.tau;
-            let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
+            #[inline(never)]
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 1] {
+                let [v3] = *taken;
+                let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                let v7 = v6;
+                [v7]
+            }
+            let [v7] = part_0(&[v3]);
+            #[inline(never)]
+            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 1] {
+                let [v14, v5, v7] = *taken;
+                let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
+                [v15]
+            }
+            let [v15] = part_1(&[v14, v5, v7]);
             if !::hodograph::generated::all_finite([v15]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -497,8 +509,20 @@ pub mod pendulum_in_parts {
         ) -> ::core::result::Result<T, ::hodograph::StateError> {
             let v4 = u.u1;
             let v20 = self.hoisted[3];
-            let v21 = v4 * v20;
-            let v22 = v4 * v21;
+            #[inline(never)]
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v20, v4] = *taken;
+                let v21 = v4 * v20;
+                [v21]
+            }
+            let [v21] = part_0(&[v20, v4]);
+            #[inline(never)]
+            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v21, v4] = *taken;
+                let v22 = v4 * v21;
+                [v22]
+            }
+            let [v22] = part_1(&[v21, v4]);
             if !::hodograph::generated::all_finite([v22]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -519,23 +543,29 @@ pub mod pendulum_in_parts {
             let v3 = q.q1;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
-                let [v1, v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
+                let [v3] = *taken;
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v7 = v6;
-                let v23 = v1 * v7;
-                [v23, v6c]
+                [v6c, v7]
             }
-            let [v23, v6c] = part_0(&[v1, v3]);
+            let [v6c, v7] = part_0(&[v3]);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v1, v6c] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
+                let [v1, v6c, v7] = *taken;
+                let v23 = v1 * v7;
                 let v8 = v6c;
+                [v23, v8]
+            }
+            let [v23, v8] = part_1(&[v1, v6c, v7]);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v1, v8] = *taken;
                 let v24 = v1 * v8;
                 let v37 = -v24;
                 [v37]
             }
-            let [v37] = part_1(&[v1, v6c]);
+            let [v37] = part_2(&[v1, v8]);
             if !::hodograph::generated::all_finite([v23, v37]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -560,30 +590,36 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 3] {
-                let [v1, v3, v4] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
+                let [v3] = *taken;
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v8 = v6c;
-                let v25 = v1 * v4;
-                [v25, v6, v8]
+                [v6, v8]
             }
-            let [v25, v6, v8] = part_0(&[v1, v3, v4]);
+            let [v6, v8] = part_0(&[v3]);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v25, v6, v8] = *taken;
+                let [v1, v4, v8] = *taken;
+                let v25 = v1 * v4;
                 let v27 = v8 * v25;
+                [v25, v27]
+            }
+            let [v25, v27] = part_1(&[v1, v4, v8]);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
+                let [v27, v6] = *taken;
                 let v39 = -v27;
                 let v7 = v6;
                 [v39, v7]
             }
-            let [v39, v7] = part_1(&[v25, v6, v8]);
+            let [v39, v7] = part_2(&[v27, v6]);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
                 let [v25, v7] = *taken;
                 let v26 = v7 * v25;
                 [v26]
             }
-            let [v26] = part_2(&[v25, v7]);
+            let [v26] = part_3(&[v25, v7]);
             if !::hodograph::generated::all_finite([v26, v39]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -606,23 +642,29 @@ pub mod pendulum_in_parts {
             let v34 = self.hoisted[5];
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
-                let [v3, v34] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
+                let [v3] = *taken;
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v8 = v6c;
-                let v35 = v8 * v34;
-                [v35, v6]
+                [v6, v8]
             }
-            let [v35, v6] = part_0(&[v3, v34]);
+            let [v6, v8] = part_0(&[v3]);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v34, v35, v6] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v34, v8] = *taken;
+                let v35 = v8 * v34;
                 let v41 = -v35;
+                [v41]
+            }
+            let [v41] = part_1(&[v34, v8]);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v34, v6] = *taken;
                 let v7 = v6;
                 let v36 = v7 * v34;
-                [v36, v41]
+                [v36]
             }
-            let [v36, v41] = part_1(&[v34, v35, v6]);
+            let [v36] = part_2(&[v34, v6]);
             if !::hodograph::generated::all_finite([v36, v41]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -718,48 +760,60 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v28 = self.hoisted[4];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 3] {
-                let [v1, v3, v4] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
+                let [v3] = *taken;
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v8 = v6c;
-                let v25 = v1 * v4;
-                [v25, v6, v8]
+                [v6, v8]
             }
-            let [v25, v6, v8] = part_0(&[v1, v3, v4]);
+            let [v6, v8] = part_0(&[v3]);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v25, v6, v8] = *taken;
+                let [v1, v4, v8] = *taken;
+                let v25 = v1 * v4;
                 let v27 = v8 * v25;
+                [v25, v27]
+            }
+            let [v25, v27] = part_1(&[v1, v4, v8]);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
+                let [v27, v6] = *taken;
                 let v39 = -v27;
                 let v7 = v6;
                 [v39, v7]
             }
-            let [v39, v7] = part_1(&[v25, v6, v8]);
+            let [v39, v7] = part_2(&[v27, v6]);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
+            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
                 let [v25, v28, v7, v8] = *taken;
                 let v26 = v7 * v25;
                 let v29 = v8 * v28;
-                let v30 = v8 * v29;
-                [v26, v30]
+                [v26, v29]
             }
-            let [v26, v30] = part_2(&[v25, v28, v7, v8]);
+            let [v26, v29] = part_3(&[v25, v28, v7, v8]);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v28, v7, v8] = *taken;
+            fn part_4<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
+                let [v28, v29, v7, v8] = *taken;
+                let v30 = v8 * v29;
                 let v31 = v7 * v28;
+                [v30, v31]
+            }
+            let [v30, v31] = part_4(&[v28, v29, v7, v8]);
+            #[inline(never)]
+            fn part_5<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v31, v8] = *taken;
                 let v32 = v8 * v31;
                 let v40 = -v32;
-                [v31, v40]
+                [v40]
             }
-            let [v31, v40] = part_3(&[v28, v7, v8]);
+            let [v40] = part_5(&[v31, v8]);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+            fn part_6<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
                 let [v31, v7] = *taken;
                 let v33 = v7 * v31;
                 [v33]
             }
-            let [v33] = part_4(&[v31, v7]);
+            let [v33] = part_6(&[v31, v7]);
             if !::hodograph::generated::all_finite([v26, v30, v33, v39, v40]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -833,57 +887,69 @@ pub mod pendulum_in_parts {
             let v28 = self.hoisted[4];
             let v34 = self.hoisted[5];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 3] {
-                let [v1, v3, v4] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
+                let [v3] = *taken;
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v8 = v6c;
-                let v25 = v1 * v4;
-                [v25, v6, v8]
+                [v6, v8]
             }
-            let [v25, v6, v8] = part_0(&[v1, v3, v4]);
+            let [v6, v8] = part_0(&[v3]);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v25, v6, v8] = *taken;
+                let [v1, v4, v8] = *taken;
+                let v25 = v1 * v4;
                 let v27 = v8 * v25;
+                [v25, v27]
+            }
+            let [v25, v27] = part_1(&[v1, v4, v8]);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
+                let [v27, v6] = *taken;
                 let v39 = -v27;
                 let v7 = v6;
                 [v39, v7]
             }
-            let [v39, v7] = part_1(&[v25, v6, v8]);
+            let [v39, v7] = part_2(&[v27, v6]);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
+            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
                 let [v25, v28, v7, v8] = *taken;
                 let v26 = v7 * v25;
                 let v29 = v8 * v28;
-                let v30 = v8 * v29;
-                [v26, v30]
+                [v26, v29]
             }
-            let [v26, v30] = part_2(&[v25, v28, v7, v8]);
-            #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v28, v7, v8] = *taken;
-                let v31 = v7 * v28;
-                let v32 = v8 * v31;
-                let v40 = -v32;
-                [v31, v40]
-            }
-            let [v31, v40] = part_3(&[v28, v7, v8]);
+            let [v26, v29] = part_3(&[v25, v28, v7, v8]);
             #[inline(never)]
             fn part_4<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
+                let [v28, v29, v7, v8] = *taken;
+                let v30 = v8 * v29;
+                let v31 = v7 * v28;
+                [v30, v31]
+            }
+            let [v30, v31] = part_4(&[v28, v29, v7, v8]);
+            #[inline(never)]
+            fn part_5<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
+                let [v31, v8] = *taken;
+                let v32 = v8 * v31;
+                let v40 = -v32;
+                [v40]
+            }
+            let [v40] = part_5(&[v31, v8]);
+            #[inline(never)]
+            fn part_6<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
                 let [v31, v34, v7, v8] = *taken;
                 let v33 = v7 * v31;
                 let v35 = v8 * v34;
-                let v41 = -v35;
-                [v33, v41]
+                [v33, v35]
             }
-            let [v33, v41] = part_4(&[v31, v34, v7, v8]);
+            let [v33, v35] = part_6(&[v31, v34, v7, v8]);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v34, v7] = *taken;
+            fn part_7<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
+                let [v34, v35, v7] = *taken;
+                let v41 = -v35;
                 let v36 = v7 * v34;
-                [v36]
+                [v36, v41]
             }
-            let [v36] = part_5(&[v34, v7]);
+            let [v36, v41] = part_7(&[v34, v35, v7]);
             if !::hodograph::generated::all_finite([v26, v30, v33, v36, v39, v40, v41]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
