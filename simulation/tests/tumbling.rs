@@ -28,7 +28,7 @@ fn a_tumbling_box_comes_to_rest_on_a_face() {
     let count = starts(5);
     let mut all = Vec::new();
     let mut failures = Vec::new();
-    for seed in 0..count {
+    for seed in count.clone() {
         match tumble(seed) {
             Ok(figures) => all.push(figures),
             Err(message) => failures.push(format!("start {seed}: {message}")),
@@ -36,7 +36,7 @@ fn a_tumbling_box_comes_to_rest_on_a_face() {
     }
     let most = |of: fn(&Figures) -> f64| all.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
     println!(
-        "{count} starts, {} events: greatest gain of energy at an impact {:.1e} of the energy at the start, error of the account {:.1e}, latest rest {:.2} s",
+        "starts {count:?}, {} events: greatest gain of energy at an impact {:.1e} of the energy at the start, error of the account {:.1e}, latest rest {:.2} s",
         all.iter().map(|figures| figures.events).sum::<usize>(),
         most(|figures| figures.gain),
         most(|figures| figures.account),

@@ -35,7 +35,11 @@ impl Random {
     }
 }
 
-/// How many random starts a test tries: so many, or what `HODOGRAPH_STARTS` says.
-pub fn starts(usual: u64) -> u64 {
-    std::env::var("HODOGRAPH_STARTS").ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+/// Which random starts a test tries: the first so many, or what `HODOGRAPH_STARTS` says, a number or a range as `96..97`.
+pub fn starts(usual: u64) -> std::ops::Range<u64> {
+    let text = std::env::var("HODOGRAPH_STARTS").unwrap_or_default();
+    match text.split_once("..") {
+        Some((from, to)) => from.parse().unwrap_or(0)..to.parse().unwrap_or(usual),
+        None => 0..text.parse().unwrap_or(usual),
+    }
 }
