@@ -163,7 +163,39 @@ def several():
     save(figure, "several_modes.svg")
 
 
+def modes():
+    """Which modes of a planar contact without slip fit, by the direction of its free acceleration."""
+    a, b, t = 1.0, 0.8, 1.0
+    angle = np.linspace(0, 2 * np.pi, 7201)
+    beta_t, beta_n = np.cos(angle), np.sin(angle)
+    figure, panels = plt.subplots(1, 2, figsize=(6.4, 3.4), subplot_kw={"projection": "polar"})
+    names = ["separate", "stick", "slip begins along +t", "slip begins along -t"]
+    for axes, mu in zip(panels, [0.6, 1.6]):
+        determinant = a * t - b * b
+        lambda_n = -(t * beta_n - b * beta_t) / determinant
+        lambda_t = -(a * beta_t - b * beta_n) / determinant
+        fits = [beta_n > 0, (lambda_n >= 0) & (abs(lambda_t) <= mu * lambda_n)]
+        for d in [1, -1]:
+            f = a - mu * b * d
+            pressed = -beta_n / f
+            gamma = ((b - mu * t * d) * pressed + beta_t) * d
+            fits.append((pressed > 0) & (gamma > 0))
+        for ring, (fit, colour) in enumerate(zip(fits, [GREY, GREEN, BLUE, RED])):
+            radius = np.where(fit, 1.0 - 0.17 * ring, np.nan)
+            axes.plot(angle, radius, color=colour, linewidth=7, solid_capstyle="butt", label=names[ring])
+        count = sum(fit.astype(int) for fit in fits)
+        print(f"mu |b| / m_nn = {mu * b / a:.2f}: {set(count[(angle % 0.1) > 0.01].tolist())} modes fit")
+        axes.set_ylim(0, 1.1)
+        axes.set_yticks([])
+        axes.set_xticks([0, np.pi / 2, np.pi, 3 * np.pi / 2])
+        axes.set_xticklabels(["$\\beta_t$", "$\\beta_n$", "", ""])
+        axes.set_title(f"$\\mu |b|$ = {mu * b / a:.2f} $m_{{nn}}$", fontsize=9)
+    panels[0].legend(loc="upper center", bbox_to_anchor=(1.15, -0.04), ncols=2, frameon=False)
+    save(figure, "modes.svg")
+
+
 rates()
 portraits()
 reach()
 several()
+modes()

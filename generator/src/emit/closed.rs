@@ -40,6 +40,7 @@ impl Emitter<'_> {
             /// What a closed contact does. n, t, s are the axes `normal`, `first`, `second` of the contact basis.
             #[derive(Clone, Copy, Debug, PartialEq)]
             #[must_use]
+            #[non_exhaustive]
             pub struct ClosedContact<T: #krate::nalgebra::Scalar = f64> {
                 /// whether it sticks, slides, begins to slip or separates
                 pub mode: #krate::ContactMode,

@@ -43,6 +43,8 @@ impl Emitter<'_> {
         quote! {
             /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
             #[derive(Clone, Copy, Debug, PartialEq)]
+            #[must_use]
+            #[non_exhaustive]
             pub struct Collision<T: #krate::nalgebra::Scalar = f64> {
                 /// independent speeds after the collision: (12a)
                 pub speeds: Speeds<T>,

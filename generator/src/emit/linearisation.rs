@@ -45,6 +45,8 @@ impl Emitter<'_> {
         quote! {
             #[doc = #docs]
             #[derive(Clone, Copy, Debug, PartialEq)]
+            #[must_use]
+            #[non_exhaustive]
             pub struct Linearisation<T> {
                 /// A: rates of the states (rows) per state (columns)
                 pub a: #krate::nalgebra::SMatrix<T, #n, #n>,

@@ -43,6 +43,8 @@ impl Emitter<'_> {
         quote! {
             #[doc = #text]
             #[derive(Clone, Copy, Debug, PartialEq)]
+            #[must_use]
+            #[non_exhaustive]
             pub struct CollisionDerivative<T: #krate::nalgebra::Scalar = f64> {
                 /// speeds after by speeds before: 1 + M^-1 V^T (dI/dv) V
                 pub speeds: #krate::nalgebra::SMatrix<T, #p, #p>,

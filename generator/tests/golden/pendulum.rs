@@ -339,6 +339,8 @@ pub mod pendulum {
     }
     /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
     #[derive(Clone, Copy, Debug, PartialEq)]
+    #[must_use]
+    #[non_exhaustive]
     pub struct Collision<T: ::hodograph::nalgebra::Scalar = f64> {
         /// independent speeds after the collision: (12a)
         pub speeds: Speeds<T>,
@@ -390,6 +392,8 @@ pub mod pendulum {
     }
     /// The derivative of a collision at one configuration. Rows and columns of speeds are `u1`, in this order.
     #[derive(Clone, Copy, Debug, PartialEq)]
+    #[must_use]
+    #[non_exhaustive]
     pub struct CollisionDerivative<T: ::hodograph::nalgebra::Scalar = f64> {
         /// speeds after by speeds before: 1 + M^-1 V^T (dI/dv) V
         pub speeds: ::hodograph::nalgebra::SMatrix<T, 1, 1>,

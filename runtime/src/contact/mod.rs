@@ -74,6 +74,7 @@ pub enum Selection {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use]
 #[non_exhaustive]
 pub struct Margins<T> {
     /// Normal force, N: at zero the contact lifts off. `None` while separate.

@@ -12,6 +12,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use]
 pub struct ContactState<T: nalgebra::Scalar = f64> {
     /// distance of the striking point from what it strikes, m; `None` where the model gives no gap
     pub gap: Option<T>,
@@ -31,6 +32,7 @@ pub struct ContactState<T: nalgebra::Scalar = f64> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[must_use]
 pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
     /// n along N.x, N.y, N.z
     pub normal: Vector3<T>,
