@@ -138,7 +138,10 @@ fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &s
             if DIFFERENTIATED.contains(&method) {
                 let passed: Vec<&str> = names.iter().map(|name| dual(name)).collect();
                 let call = format!("Self::dual_machine(at).{method}({})", passed.join(", "));
-                writeln!(duals, "            \"{method}\" => {call}.map(|value| {flat}),").unwrap();
+                // said as clippy wants it
+                let flatten =
+                    if flat == "by_rows(value)" { "by_rows".into() } else { format!("|value| {flat}") };
+                writeln!(duals, "            \"{method}\" => {call}.map({flatten}),").unwrap();
             }
             writeln!(
                 routines,
