@@ -13,7 +13,7 @@ use crate::json::{Fields, Json};
 use crate::model;
 use crate::output;
 use crate::plot::collision::figure;
-use crate::plot::figure::Format;
+use crate::plot::file::Format;
 use crate::plot::trace::{Trace, trace};
 use crate::stop::{Outcome, Stop};
 

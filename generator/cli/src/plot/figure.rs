@@ -6,14 +6,7 @@
 //! Figure::new("Pendulum").panel(panel).save(path, Format::of(None, Some(path))?)?;
 //! ```
 
-use std::path::Path;
-
-use clap::ValueEnum;
-
 use super::label::Label;
-use super::{layout, png, svg};
-use crate::output;
-use crate::stop::{Outcome, Stop};
 
 /// Panels under a title.
 #[derive(Clone, Debug)]
@@ -129,32 +122,10 @@ impl Figure {
         self
     }
 
-    /// The bytes of a file in a format.
-    ///
-    /// # Errors
-    ///
-    /// The figure is too large for a picture.
-    pub fn bytes(&self, format: Format) -> Outcome<Vec<u8>> {
-        let sheet = layout::draw(self).map_err(|error| Stop::Fault(format!("cannot draw: {error}")))?;
-        match format {
-            Format::Svg => Ok(svg::write(&sheet, &self.title, &self.description()).into_bytes()),
-            Format::Png => png::write(&sheet).map_err(|error| Stop::Fault(format!("cannot draw {error}"))),
-        }
-    }
-
     /// What the panels show, in words.
-    fn description(&self) -> String {
+    pub fn description(&self) -> String {
         let panel = |panel: &Panel| format!("{} over {}", panel.y.name.plain(), panel.x.name.plain());
         self.panels.iter().map(panel).collect::<Vec<_>>().join("; ")
-    }
-
-    /// Writes a file, whole or not at all.
-    ///
-    /// # Errors
-    ///
-    /// As [`bytes`](Self::bytes), or the file cannot be written.
-    pub fn save(&self, path: &Path, format: Format) -> Outcome {
-        output::file(path, &self.bytes(format)?)
     }
 }
 
@@ -176,35 +147,5 @@ impl Series {
     /// A curve without direction.
     pub fn new(label: impl Into<Label>, style: usize, points: Vec<[f64; 2]>) -> Self {
         Series { label: label.into(), style, points, directed: false }
-    }
-}
-
-/// The format of a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Format {
-    /// lines and letters, which can be magnified
-    Svg,
-    /// a picture of points
-    Png,
-}
-
-impl Format {
-    /// The format that is asked for, else the one a file's name ends with, else SVG.
-    ///
-    /// # Errors
-    ///
-    /// The name ends otherwise, and no format is asked for.
-    pub fn of(asked: Option<Format>, path: Option<&Path>) -> Outcome<Format> {
-        let ending = |path: &Path| path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        match (asked, path.map(ending)) {
-            (Some(format), _) => Ok(format),
-            (None, None | Some(None)) => Ok(Format::Svg),
-            (None, Some(Some(ending))) => Format::from_str(&ending, true).map_err(|_| {
-                Stop::Call(format!(
-                    "figures are written as SVG or PNG, not as `{ending}`: end the file's name with .svg or .png, \
-                     or give --format"
-                ))
-            }),
-        }
     }
 }

@@ -1,7 +1,8 @@
 //! Figures: what stands where, and what is written.
 
 use super::canvas::{Shape, Sheet};
-use super::figure::{Axis, Figure, Format, Legend, Mark, Panel, Series, Sign};
+use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};
+use super::file::Format;
 use super::label::{Kind, Label};
 use super::{layout, series};
 

@@ -7,7 +7,8 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Simulation;
 
 use super::gap;
-use crate::plot::figure::{Axis, Figure, Format, Panel, Series};
+use crate::plot::figure::{Axis, Figure, Panel, Series};
+use crate::plot::file::Format;
 use crate::plot::label::Label;
 use crate::stop::Outcome;
 
