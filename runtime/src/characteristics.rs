@@ -1,4 +1,4 @@
-//! The quantities of section 3 that depend on the contact alone.
+//! Characteristic quantities of a contact (section 3 of the paper): mu_c, phi_c, mu_s, the rates while sticking, and renewed sliding.
 //!
 //! Theory: docs/theory.md, section 12.
 
@@ -6,18 +6,18 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::{ReducedMatrix, Scalar, solve::Contact};
 
-/// What the paper calls mu_c, phi_c, mu_s, c_n, c_t, c_s, phi_hat, f_hat and g_hat, for one contact and one coefficient of friction.
+/// The paper's mu_c, phi_c, mu_s, c_n, c_t, c_s, phi_hat, f_hat and g_hat, for one contact and one coefficient of friction.
 ///
-/// Angles are in radians from t towards s.
+/// They depend on the reduced matrix and mu, not on the velocity of approach. Angles are in radians from t towards s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Characteristics<T> {
-    /// The least coefficient of friction that holds the contact once it has stopped slipping (43); with the pseudo-inverse of the
-    /// tangential part where that is singular.
+    /// The critical coefficient of friction (43): the least with which the contact sticks after slip has stopped. Where the tangential part of the matrix is
+    /// singular its pseudo-inverse is used.
     pub mu_c: T,
-    /// The direction opposite to which friction then acts (43); zero if mu_c is.
+    /// The direction phi_c (43): while the contact sticks, friction acts in the opposite direction. Zero if mu_c is zero.
     pub phi_c: T,
     /// m_ns / m_ts, the friction at which slip along t stays along t; `None` if m_ts is zero.
     pub mu_s: Option<T>,

@@ -1,7 +1,10 @@
-//! The directions in which slip may begin.
+//! Finds all directions in which slip of a contact at rest may begin.
 //!
-//! Slip begins along the acceleration: (b - mu T d) lambda_n + beta_tan = gamma d with gamma > 0 and no normal acceleration. Without lambda_n it reads
-//! d' . (c + mu S d) = 0 with c = beta_tan - beta_n b and S = beta_n T - beta_tan b^T in units where m_nn = 1, a quartic in the tangent of half the angle.
+//! Slip begins in the direction of the acceleration: (b - mu T d) lambda_n + beta_tan = gamma d with gamma > 0, and without normal acceleration. Eliminating
+//! lambda_n gives d' . (c + mu S d) = 0 with c = beta_tan - beta_n b and S = beta_n T - beta_tan b^T (in units where m_nn = 1), a quartic in the tangent of
+//! half the angle.
+//!
+//! Theory: docs/theory.md, section 17.2.
 
 use nalgebra::Vector2;
 
@@ -19,7 +22,8 @@ pub(super) struct Beginning<T: Real> {
 /// At most so many: the quartic has four zeros.
 pub(super) const MOST: usize = 4;
 
-/// All ways to begin to slip; `wedged` where sticking leaves the force open, and directions without acceleration come close to zeros.
+/// All ways in which slip may begin. `wedged` says that the force of sticking is not unique; directions without acceleration are then recognised with a wider
+/// tolerance.
 pub(super) fn beginnings<T: Real>(closed: &Closed<T>, wedged: bool) -> [Option<Beginning<T>>; MOST] {
     let mut found = [None; MOST];
     let mut count = 0;
@@ -27,7 +31,7 @@ pub(super) fn beginnings<T: Real>(closed: &Closed<T>, wedged: bool) -> [Option<B
     let c = tangential - b * normal;
     let (s11, s12) = (normal * tt - tangential.x * b.x, normal * ts - tangential.x * b.y);
     let (s21, s22) = (normal * ts - tangential.y * b.x, normal * ss - tangential.y * b.y);
-    // Of the terms: of a wedged contact nothing is left of c and S but rounding.
+    // Relative to the terms of c and S: for a wedged contact these cancel to rounding.
     let (pull, couple) = (length(&tangential), length(&b));
     let size = pull + normal.abs() * couple + mu * (normal.abs() * (tt + ss) + pull * couple);
     let few = if wedged { constant::<T>(4096.0) } else { constant(64.0) };

@@ -1,4 +1,4 @@
-//! Why a closed contact has no force.
+//! The errors of a closed contact: why no finite force exists.
 
 use core::fmt;
 

@@ -1,7 +1,7 @@
-//! Contact that lasts: force, acceleration and mode of a contact whose gap is closed and whose normal velocity is zero.
+//! Lasting contact: mode, force and acceleration of a contact whose gap is closed and whose normal velocity is zero.
 //!
-//! A contact force lambda (n, t, s) changes the rate of the relative velocity by M lambda, M being the reduced matrix; without it the
-//! rate is beta, the free acceleration of the contact. Coulomb's law then leaves four modes:
+//! Under a contact force lambda (n, t, s) the relative velocity has the rate M lambda + beta, where M is the reduced matrix and beta, the free acceleration of
+//! the contact, is the rate without contact force. Coulomb's law allows four modes:
 //!
 //! | mode | force | holds while |
 //! | --- | --- | --- |
@@ -10,9 +10,9 @@
 //! | stick (no slip) | the one without acceleration | lambda_n >= 0, abs(lambda_tan) <= mu lambda_n |
 //! | begin to slip (no slip yet) | as slide, d along the acceleration | lambda_n >= 0, acceleration along d positive |
 //!
-//! with f = m_nn - mu b.d (31) and b = (m_nt, m_ns). [`contact_mode`] selects the mode at an event; between events [`contact_force`]
-//! keeps the mode and its margins tell when it ends. Where mu |b| < m_nn at least one mode fits, and well below that bound only one. Where several fit,
-//! or where a sliding contact has no finite force (Painleve), the answer says so.
+//! with f = m_nn - mu b.d (31) and b = (m_nt, m_ns). [`contact_mode`] selects the mode at an event. Between events [`contact_force`] keeps the mode, and its
+//! margins tell when the mode ends. Where mu |b| < m_nn at least one mode fits, and well below that bound exactly one. Where several fit, `selection` of the
+//! result says so; where a sliding contact has no finite force (Painleve's paradox) there is an error.
 //!
 //! Theory: docs/theory.md, section 17.
 
@@ -35,11 +35,11 @@ use crate::{ReducedMatrix, Scalar};
 pub enum ContactMode {
     /// The contact opens: no force.
     Separate,
-    /// There is slip, and friction opposes it.
+    /// The contact slips, and friction acts against the slip.
     Slide,
-    /// There is no slip, and friction keeps it so.
+    /// The contact does not slip, and friction keeps it from slipping.
     Stick,
-    /// There is no slip yet; it begins now.
+    /// The slip is zero but its rate is not: slip begins.
     BeginSlip,
 }
 
@@ -56,7 +56,7 @@ impl ContactMode {
     }
 }
 
-/// How certain the mode is.
+/// Whether the mode is the only one that fits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -70,7 +70,7 @@ pub enum Selection {
     Indeterminate,
 }
 
-/// How far the mode is from its end; the mode holds while all that are given are positive.
+/// How far the mode is from its end; the mode holds while all margins that are `Some` are positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -121,7 +121,7 @@ pub struct ContactForce<T: nalgebra::Scalar> {
     pub acceleration: Vector3<T>,
     /// Direction of slip, or in which slip begins; of length one.
     pub direction: Option<Vector2<T>>,
-    /// What ends the mode.
+    /// The quantities whose zeros end the mode.
     pub margins: Margins<T>,
     /// Whether no other force gives this acceleration in this mode. It is false where the contact is wedged: then the least force is given.
     pub force_is_unique: bool,
@@ -130,10 +130,10 @@ pub struct ContactForce<T: nalgebra::Scalar> {
 /// Selects the mode of a closed contact with v_n = 0, coming from no contact force (free flight, or an impact).
 ///
 /// `free_acceleration` is beta (n, t, s), `slip` the tangential velocity (t, s); the contact counts as not slipping where it is exactly zero.
-/// Where there is no slip all directions in which it may begin are sought: some 10 000 instructions, and bounded.
+/// Without slip all directions in which it may begin are computed, in some 10 000 instructions; the work is bounded.
 ///
 /// # Errors
-/// Every reason is a variant of [`ContactError`].
+/// Each reason is a variant of [`ContactError`].
 #[inline]
 pub fn contact_mode<T: Scalar>(
     matrix: &ReducedMatrix<T>,

@@ -1,8 +1,8 @@
-//! All zeros of a quartic in [-1, 1].
+//! Finds all zeros of a polynomial of degree four in [-1, 1].
 
 use crate::scalar::{Real, constant};
 
-/// At most so many: four zeros, and the three extrema where the polynomial may touch zero.
+/// Room for four zeros and for three extrema at which the polynomial may touch zero.
 pub(super) const MOST: usize = 8;
 
 /// Zeros in order, some of them perhaps twice.
@@ -38,7 +38,7 @@ pub(super) fn zeros<T: Real>(p: &[T; 5]) -> Zeros<T> {
         size += coefficient.abs().primal();
     }
     let mut found = Zeros::none();
-    // The constant outweighs the rest on all of [-1, 1]; or nothing is there.
+    // The constant exceeds the sum of the other coefficients: no zero; or all coefficients are zero.
     let constant_part = p.first().map_or(T::zero(), |first| first.abs().primal());
     if size <= T::zero() || constant_part > (size - constant_part) * constant(1.0625) {
         return found;
@@ -84,8 +84,8 @@ fn derivative<T: Real>([_, b, c, d, e]: &[T; 5]) -> [T; 5] {
     [*b, two * *c, constant::<T>(3.0) * *d, constant::<T>(4.0) * *e, T::zero()]
 }
 
-/// The zero of a polynomial between two places, between which it is monotone: Newton's method, and halves where that leaves the bracket
-/// or gains too little.
+/// The zero of a polynomial between two places between which it is monotone, by Newton's method, with bisection where that leaves the bracket or converges
+/// too slowly.
 fn between<T: Real>(q: &[T; 5], slope: &[T; 5], low: T, high: T) -> Option<T> {
     let (zero, half) = (T::zero(), constant::<T>(0.5));
     let (mut low, mut high) = (low.primal(), high.primal());
@@ -93,11 +93,11 @@ fn between<T: Real>(q: &[T; 5], slope: &[T; 5], low: T, high: T) -> Option<T> {
     if (value(q, high) < zero) == rises {
         return None;
     }
-    // Steps of Newton's method do not fall below rounding.
+    // Steps of Newton's method do not become smaller than rounding.
     let enough = T::default_epsilon() * constant(4.0);
     let mut place = (low + high) * half;
     let mut last = high - low;
-    // Every step is at most half of the one before, or halves the bracket.
+    // Every step is at most half as long as the one before, or halves the bracket.
     for _ in 0..128 {
         let here = value(q, place).primal();
         if (here < zero) == rises {
@@ -124,11 +124,11 @@ fn between<T: Real>(q: &[T; 5], slope: &[T; 5], low: T, high: T) -> Option<T> {
     Some(place)
 }
 
-/// Two more steps of Newton's method, which carry derivatives of the coefficients to the zero.
+/// Two more steps of Newton's method, after which the zero has the derivatives that follow from those of the coefficients.
 fn polished<T: Real>(p: &[T; 5], slope: &[T; 5], mut place: T) -> T {
     for _ in 0..2 {
         let step = value(p, place) / value(slope, place);
-        // Else two zeros are about to merge.
+        // A larger step means that two zeros are about to merge; it is not taken.
         if step.abs() <= constant(1e-6) {
             place -= step;
         }

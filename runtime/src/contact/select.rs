@@ -1,4 +1,6 @@
-//! The mode that fits, and the force of a mode that is kept.
+//! Selects the mode of a closed contact, and computes the force of a mode that is kept.
+//!
+//! Theory: docs/theory.md, sections 17.1 and 17.3.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -10,7 +12,7 @@ use super::{
 };
 use crate::{Law, ReducedMatrix, Scalar, Surface, scalar::length, solve::check};
 
-/// A closed contact with what is needed to answer in its own units.
+/// A closed contact in scaled units, with the input that converts results back.
 struct Answering<'a, T: Scalar> {
     matrix: &'a ReducedMatrix<T>,
     beta: &'a Vector3<T>,
@@ -78,7 +80,7 @@ fn answering<'a, T: Scalar>(
     Ok(Answering { matrix, beta, closed: Closed::new(matrix, beta, mu) })
 }
 
-/// No answer leaves that is not finite.
+/// The answer, or an error if one of its numbers is not finite.
 fn finite<T: Scalar>(answer: ContactForce<T>) -> Result<ContactForce<T>, ContactError<T>> {
     for value in answer.force.iter().chain(answer.acceleration.iter()).copied() {
         if !value.is_finite() {
@@ -89,7 +91,7 @@ fn finite<T: Scalar>(answer: ContactForce<T>) -> Result<ContactForce<T>, Contact
 }
 
 impl<T: Scalar> Answering<'_, T> {
-    /// The contact slips.
+    /// The mode of a contact that slips.
     fn slipping(&self, d: &Vector2<T>, speed: T) -> Result<ContactForce<T>, ContactError<T>> {
         let f = self.closed.f(d);
         if f > self.closed.f_noise() {
@@ -106,9 +108,9 @@ impl<T: Scalar> Answering<'_, T> {
         Err(self.without_force(f))
     }
 
-    /// The contact does not slip.
+    /// The mode of a contact that does not slip.
     fn resting(&self, before: &Vector3<T>) -> Result<ContactForce<T>, ContactError<T>> {
-        // f > 0 in all directions: what is free to part parts, and nothing else fits.
+        // f > 0 in all directions: if the free acceleration separates the bodies, no other mode fits.
         let moderate = self.closed.mu * length(&self.closed.b) < T::one() - self.closed.f_noise();
         if moderate && self.beta.x > T::zero() {
             return Ok(self.separate());
@@ -128,7 +130,7 @@ impl<T: Scalar> Answering<'_, T> {
         let mut best: Option<(T, bool, ContactForce<T>)> = None;
         for answer in sticks.into_iter().chain(separates).chain(begins) {
             count += 1;
-            // A way to slip with f < 0 ends at once: the last choice.
+            // Slip that would begin with f < 0 ends at once: it is chosen only if nothing else fits.
             let lasts = answer.margins.f.is_none_or(|f| f > T::zero());
             let change = (answer.force - before).norm();
             let better = best
@@ -144,7 +146,7 @@ impl<T: Scalar> Answering<'_, T> {
             }
             return Ok(answer);
         }
-        // On the edge between two modes rounding may leave neither: the one that sticks is as good.
+        // On the boundary between stick and begin to slip, rounding may refuse both: stick is taken.
         let near = T::default_epsilon().sqrt();
         match stuck {
             Some(stuck) if stuck.force.x >= -near && stuck.cone >= -near => Ok(self.stick(&stuck)),
@@ -169,7 +171,7 @@ impl<T: Scalar> Answering<'_, T> {
         self.against(ContactMode::BeginSlip, &way.direction, way.lambda, way.f, None)
     }
 
-    /// Friction acts fully against a direction.
+    /// The answer in which friction is fully used (mu lambda_n) and acts against a direction.
     fn against(
         &self,
         mode: ContactMode,
@@ -211,7 +213,7 @@ impl<T: Scalar> Answering<'_, T> {
         }
     }
 
-    /// Why a contact that slides has no force.
+    /// The error of a sliding contact that has no finite force.
     fn without_force(&self, f: T) -> ContactError<T> {
         let free_acceleration = self.beta.x;
         if free_acceleration >= T::zero() {

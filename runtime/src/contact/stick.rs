@@ -1,4 +1,6 @@
 //! The force that keeps a contact from slipping and from separating.
+//!
+//! Theory: docs/theory.md, section 17.1.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -11,19 +13,19 @@ pub(super) struct Stuck<T: Real> {
     pub force: Vector3<T>,
     /// mu lambda_n - |lambda_tan|
     pub cone: T,
-    /// What rounding may do to lambda_n and to the cone.
+    /// The rounding error of lambda_n and of `cone`.
     pub noise: T,
     pub unique: bool,
 }
 
 impl<T: Real> Stuck<T> {
-    /// Whether friction suffices and the contact presses.
+    /// Whether the normal force is not negative and friction suffices.
     pub fn fits(&self) -> bool {
         self.force.x >= -self.noise && self.cone >= -self.noise
     }
 }
 
-/// The force without which the contact would accelerate; `None` where no force keeps it.
+/// The force that makes the acceleration of the contact zero; `None` where no force does.
 pub(super) fn stuck<T: Real>(closed: &Closed<T>) -> Option<Stuck<T>> {
     let hold = closed.hold(&closed.b).x;
     let pull = closed.hold(&closed.tangential);
@@ -47,8 +49,8 @@ pub(super) fn stuck<T: Real>(closed: &Closed<T>) -> Option<Stuck<T>> {
             unique: true,
         });
     }
-    // No normal force moves the contact while it sticks: it is wedged. It stays where it is if nothing pulls it off, with any force that
-    // friction allows.
+    // While the contact sticks, no normal force accelerates it: it is wedged. If its free acceleration is consistent with that, it stays at rest under
+    // every force in the cone of friction.
     if free.abs() > lost * (closed.normal.abs() + length(&closed.b) * length(&pull)) {
         return None;
     }
@@ -68,7 +70,7 @@ fn wedged<T: Real>(mu: T, hold: &Vector2<T>, pull: &Vector2<T>) -> T {
     let couple = hold.dot(pull);
     let square = hold.dot(hold);
     let least = larger(zero, -couple / (T::one() + square));
-    // In the cone where a lambda^2 - 2 b lambda - c >= 0.
+    // The force lies in the cone where a lambda^2 - 2 b lambda - c >= 0.
     let (a, b, c) = (mu * mu - square, couple, pull.dot(pull));
     let outside = |x: T| a * x * x - (b + b) * x - c < zero;
     if !outside(least) {
@@ -76,7 +78,7 @@ fn wedged<T: Real>(mu: T, hold: &Vector2<T>, pull: &Vector2<T>) -> T {
     }
     let disc = b * b + a * c;
     if disc <= constant::<T>(16.0) * T::default_epsilon() * (b * b + (a * c).abs()) {
-        // Friction never suffices, or for one force only: where it lacks least.
+        // Friction suffices for no force or for one only: the force for which least is missing.
         return if a < zero { larger(zero, b / a) } else { least };
     }
     let root = disc.sqrt();
@@ -84,7 +86,7 @@ fn wedged<T: Real>(mu: T, hold: &Vector2<T>, pull: &Vector2<T>) -> T {
     let first = if a.abs() > zero { q / a } else { zero };
     let second = if q.abs() > zero { -c / q } else { zero };
     let (low, high) = (smaller(first, second), larger(first, second));
-    // Above the larger root for a narrow hold; between the roots else.
+    // The cone holds above the larger root if a > 0, and between the roots otherwise.
     if a > zero {
         larger(high, zero)
     } else if least < low {

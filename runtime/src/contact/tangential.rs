@@ -1,4 +1,6 @@
-//! The closed contact in units where m_nn = 1 and its free acceleration is about one.
+//! A closed contact in units where m_nn = 1 and the greatest component of the free acceleration is one, and its tangential equations T x = rhs.
+//!
+//! Theory: docs/theory.md, section 17.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -22,15 +24,15 @@ pub(super) struct Closed<T: Real> {
     pub force: T,
 }
 
-/// T x = rhs in the sense of least squares.
+/// A solution of T x = rhs in the sense of least squares.
 pub(super) struct Held<T: Real> {
     pub x: Vector2<T>,
-    /// The part of the right side that T does not reach.
+    /// The part of the right side outside the range of T.
     pub left: T,
 }
 
 impl<T: Real> Closed<T> {
-    /// From the contact's own numbers.
+    /// Scales a contact.
     pub fn new(m: &ReducedMatrix<T>, beta: &Vector3<T>, mu: T) -> Self {
         let size = larger(larger(beta.x.abs(), beta.y.abs()), beta.z.abs()).primal();
         let unit = if size > T::zero() { size } else { T::one() };
@@ -73,18 +75,18 @@ impl<T: Real> Closed<T> {
         tt > noise && ss > noise && tt * ss - ts * ts > noise * size
     }
 
-    /// What rounding may do to f.
+    /// The rounding error of f.
     #[inline]
     pub fn f_noise(&self) -> T {
         constant::<T>(8.0) * T::default_epsilon() * (T::one() + self.mu * length(&self.b))
     }
 
-    /// The least x with T x = rhs as nearly as possible, by elimination from the larger pivot; a pivot lost to rounding counts as zero.
+    /// The least-squares solution x of T x = rhs of least norm, by elimination with the larger pivot first; a second pivot within rounding of zero counts as zero.
     pub fn hold(&self, rhs: &Vector2<T>) -> Held<T> {
         let swap = self.ss > self.tt;
         let (p, q, r) =
             if swap { (self.ss, self.tt, Vector2::new(rhs.y, rhs.x)) } else { (self.tt, self.ss, *rhs) };
-        // b lies in the range of T, so T that vanishes beside b^2 <= m_nn T is none.
+        // b^2 <= m_nn T, so where T underflows b counts as zero too.
         if p <= T::zero() {
             return Held { x: Vector2::zeros(), left: length(rhs) };
         }
@@ -101,8 +103,8 @@ impl<T: Real> Closed<T> {
         Held { x: if swap { Vector2::new(x.y, x.x) } else { x }, left }
     }
 
-    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from slipping; zero where that is
-    /// lost in rounding.
+    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from slipping; zero where it is below its rounding
+    /// error.
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
         let rate = T::one() - (self.b + self.b - self.pulled(hold)).dot(hold);
         let known = T::one() + (self.tt + self.ss) * hold.dot(hold);

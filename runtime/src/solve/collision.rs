@@ -1,4 +1,5 @@
-//! One collision from its input to its outcome: sliding arc, then terminal arc, in units where m_nn = 1 and v_n1 = -1.
+//! Solves one collision: checks the input, follows the sliding arc and then the terminal arc in units where m_nn = 1 and v_n1 = -1, verifies
+//! the outcome and converts it to the units of the input.
 //!
 //! Theory: docs/theory.md, sections 1 and 10.
 
@@ -20,10 +21,10 @@ use crate::{
 
 /// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
 ///
-/// t and s are any orthonormal pair in the contact plane. No slip at the start, straight hodographs, singular matrices and
-/// repeated compression are all ordinary input.
+/// The reduced matrix is in 1/kg, velocities are in m/s, impulses in N s. n is the contact normal; t and s are any orthonormal pair in the contact plane.
+/// No slip at the start, slip that keeps its direction, singular matrices and repeated compression are all allowed.
 ///
-/// Every answer is held against the laws of impact before it leaves: one that rounding keeps from obeying them is an error.
+/// Every outcome is checked against the laws of impact before it is returned; one that violates them because of rounding becomes an error.
 ///
 /// ```
 /// # use hodograph::{Law, ReducedMatrix, Surface, solve};
@@ -38,7 +39,7 @@ use crate::{
 /// ```
 ///
 /// # Errors
-/// Every reason is a variant of [`ImpactError`]; a result is never NaN.
+/// Each reason is a variant of [`ImpactError`]. No number of an outcome is NaN or infinite.
 #[inline]
 pub fn solve<T: crate::Scalar>(
     matrix: &ReducedMatrix<T>,
@@ -48,7 +49,7 @@ pub fn solve<T: crate::Scalar>(
     solve_real(matrix, approach, surface)
 }
 
-/// The same for everything that the solver can calculate with.
+/// [`solve`] for every number type of the solver: the public scalars and dual numbers.
 #[inline]
 pub(crate) fn solve_real<T: Real>(
     matrix: &ReducedMatrix<T>,
@@ -67,7 +68,7 @@ pub(crate) fn solve_real<T: Real>(
     collide(matrix, approach, -approach.x, surface, restitution, slide)
 }
 
-/// Solves an impact whose input is checked, in units of `speed`, with any way of following the sliding arc.
+/// Solves an impact whose input has been checked. Velocities are divided by `speed`; `slide` follows the sliding arc.
 #[inline(always)]
 pub(crate) fn collide<T: Real>(
     matrix: &ReducedMatrix<T>,
@@ -122,7 +123,7 @@ pub(crate) fn collide<T: Real>(
     let separation = Vector3::new(end.velocity, velocity.x, velocity.y) * speed;
     let normal_work = end.work * scale * speed;
     let contact_work = impulse.dot(&(separation + approach)) * constant(0.5);
-    // One look at all of them suffices where nothing is wrong.
+    // The sum is finite only if all terms are; which one is not is found in `in_range`.
     let sum = impulse.x + impulse.y + impulse.z + separation.x + separation.y + separation.z;
     if !(sum + (contact_work + normal_work)).is_finite() || impulse.x < least() {
         in_range(&impulse, &separation, [contact_work, normal_work])?;
@@ -139,7 +140,8 @@ pub(crate) fn collide<T: Real>(
     })
 }
 
-/// Counts normal impulses that do nothing by themselves, but are what friction needed, in the true friction; it is `1 / share` of the one calculated with.
+/// Converts normal impulses below eps^2 from the limited friction that was calculated with to the true friction, which is `1 / share` times as large.
+/// Impulses that small change v_n by nothing; they only measure how long friction acted (theory, section 1.2).
 #[cold]
 #[inline(never)]
 fn in_true_friction<T: Real>(share: T, states: [Option<&mut State<T>>; 4]) {
@@ -149,7 +151,7 @@ fn in_true_friction<T: Real>(share: T, states: [Option<&mut State<T>>; 4]) {
     }
 }
 
-/// Names the quantity of an outcome that left the range of the number type, if one did: too large, or an impulse too small to have digits.
+/// An error if a quantity of the outcome is not finite, or if the normal impulse is so small that it has lost digits (denormal).
 #[cold]
 #[inline(never)]
 fn in_range<T: Real>(
@@ -166,13 +168,13 @@ fn in_range<T: Real>(
     if n < least() { Err(ImpactError::NotFinite { value: n }) } else { Ok(()) }
 }
 
-/// About the smallest number with all its digits.
+/// The smallest normal number of the number type, about.
 #[inline(always)]
 fn least<T: Real>() -> T {
     constant(if T::default_epsilon() > constant(1e-10) { 1.2e-38 } else { 2.3e-308 })
 }
 
-/// The length of a vector whose square may be beyond the range of the number type.
+/// The length of a vector whose square may overflow or underflow.
 #[cold]
 #[inline(never)]
 pub(super) fn long<T: Real>(v: &Vector2<T>) -> T {
@@ -180,21 +182,21 @@ pub(super) fn long<T: Real>(v: &Vector2<T>) -> T {
     if size > T::zero() { length(&(v / size)) * size } else { T::zero() }
 }
 
-/// Whether there is slip at all, where v_n1 = -1.
+/// Whether slip counts as present, in units where v_n1 = -1.
 #[inline]
 pub(crate) fn slips<T: Real>(slip: T) -> bool {
     let eps = T::default_epsilon();
     slip > eps * eps * eps * eps
 }
 
-/// Slip and normal velocity stop together: true if the collision ends with it.
+/// Slip and normal velocity vanish at the same impulse: compression ends. True if the collision ends with it (e = 0).
 #[cold]
 #[inline(never)]
 fn stop_together<T: Real>(restitution: &mut Restitution<T>, state: &State<T>) -> bool {
     restitution.compressed(state)
 }
 
-/// The arc after slip has stopped; nothing if the law never ends it.
+/// Follows the arc after slip has stopped, to the end of the collision; `None` if the law never ends it.
 #[inline]
 fn after_slip<T: Real>(
     contact: &Contact<T>,
@@ -205,8 +207,8 @@ fn after_slip<T: Real>(
 ) -> Option<(State<T>, Vector2<T>, Path)> {
     let eps = T::default_epsilon();
     let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
-    // Where slip and normal velocity stop together, rounding must not tell them apart: most of all where little moves the contact afterwards,
-    // or where compression has just ended.
+    // Where slip and normal velocity vanish together, rounding must not decide which does so first. A wrong sign of v_n does most harm where v_n
+    // hardly changes afterwards, or where compression has ended before: the bound is wider there.
     let scale = fma(state.normal, contact.normal_size(), T::one());
     let again = restitution.compressions > 0 && state.velocity < T::zero();
     let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
@@ -231,7 +233,7 @@ fn after_slip<T: Real>(
                 velocity,
                 work,
             };
-            // A phase that lasts no impulse is no phase.
+            // A terminal arc without impulse is not reported as a phase.
             let path = if slips && impulse <= T::zero() { Path::Sliding } else { path };
             Some((end, gain * impulse, path))
         }

@@ -1,4 +1,4 @@
-//! A contact in the units of the solver: the rates f, g and h of (31)-(33), in their one place.
+//! A contact in the units of the solver: reduced matrix and coefficient of friction, and the rates f, g and h of (31)-(33) formed from them.
 //!
 //! Theory: docs/theory.md, section 2.
 
@@ -12,14 +12,14 @@ use crate::{
 /// The reduced matrix and mu, in units where m_nn = 1: b = (m_nt, m_ns) and the tangential block T.
 #[derive(Clone, Copy)]
 pub(crate) struct Contact<T: Real> {
-    /// One, but in the units of [`super::range`].
+    /// m_nn: one, except in the units of [`super::range`].
     pub nn: T,
     pub mu: T,
     pub b: Vector2<T>,
     pub tt: T,
     pub ts: T,
     pub ss: T,
-    /// mu b and mu T, which is what slip sees of them.
+    /// mu b and mu T, by which friction changes v_n and v_tan.
     pub mu_b: Vector2<T>,
     pub mu_tt: T,
     pub mu_ts: T,
@@ -29,17 +29,18 @@ pub(crate) struct Contact<T: Real> {
 impl<T: Real> Contact<T> {
     #[inline]
     pub fn new(matrix: &ReducedMatrix<T>, mu: T) -> Self {
-        // Not by the inverse of m_nn, which may be infinite where no quotient is.
+        // Quotients, not products with 1 / m_nn: that may overflow where the quotients do not.
         let nn = matrix.nn;
         let b = Vector2::new(matrix.nt / nn, matrix.ns / nn);
         let (tt, ts, ss) = (matrix.tt / nn, matrix.ts / nn, matrix.ss / nn);
         Self { nn: T::one(), mu, b, tt, ts, ss, mu_b: b * mu, mu_tt: mu * tt, mu_ts: mu * ts, mu_ss: mu * ss }
     }
 
-    /// The contact to calculate with, and the share that its mu is of the true one: below one where products of mu leave the range.
+    /// The contact to calculate with, and its mu over the true mu. The quotient is below one where products of the true mu would overflow and a
+    /// smaller mu is used.
     ///
-    /// So great a friction stops slip, or ends the collision, after an I_n of the order of 1/mu, during which nothing but friction acts:
-    /// a smaller mu gives the same arc, with a larger I_n. docs/theory.md, section 1.2.
+    /// Friction of that size stops slip, or ends the collision, after an I_n of the order of 1/mu, during which nothing but friction counts.
+    /// A smaller mu gives the same arc with a larger I_n (docs/theory.md, section 1.2).
     #[inline(always)]
     pub fn limited(matrix: &ReducedMatrix<T>, mu: T) -> (Self, T) {
         let mut used = mu;
@@ -55,7 +56,7 @@ impl<T: Real> Contact<T> {
         let most = constant::<T>(if single::<T>() { MOST.0 } else { MOST.1 });
         let Self { b, tt, ss, .. } = Self::new(matrix, T::one());
         let size = larger(larger(b.x.abs(), b.y.abs()), larger(tt, ss));
-        // A quotient may leave the range, and is then no limit.
+        // The divisor is kept so large that the quotient does not overflow.
         smaller(mu, most / larger(size, T::one() / most))
     }
 
@@ -81,7 +82,7 @@ impl<T: Real> Contact<T> {
         [self.normal_rate(d), dot(rate.x, d.x, rate.y, d.y), dot(rate.y, d.x, -rate.x, d.y)]
     }
 
-    /// g + h' = -mu d'.T d', with d' a right angle ahead of d: h' is the derivative of h by phi.
+    /// g + h' = -mu d'.T d' (theory, 2.8), where d' is d turned by a right angle and h' the derivative of h with respect to phi.
     #[inline]
     pub fn convergence(&self, d: &Vector2<T>) -> T {
         let twice = self.mu_ts + self.mu_ts;
@@ -94,13 +95,13 @@ impl<T: Real> Contact<T> {
         Vector2::new(dot(self.mu_tt, x.x, self.mu_ts, x.y), dot(self.mu_ts, x.x, self.mu_ss, x.y))
     }
 
-    /// The size of the terms of f, which is known to this times the rounding unit.
+    /// The sum of the sizes of the terms of f. f has an error of about this times the rounding unit.
     #[inline]
     pub fn normal_size(&self) -> T {
         self.nn + self.mu_b.x.abs() + self.mu_b.y.abs()
     }
 
-    /// The size of the terms of g and h, likewise.
+    /// The sum of the sizes of the terms of g and h, likewise.
     #[inline]
     pub fn slip_size(&self) -> T {
         self.b.x.abs() + self.b.y.abs() + self.mu_tt + self.mu_ss
@@ -109,7 +110,7 @@ impl<T: Real> Contact<T> {
     /// Whether sixth powers of the rates stay within the range of the number type.
     #[inline]
     pub fn is_ordinary(&self) -> bool {
-        // Known while compiling.
+        // The compiler evaluates this.
         let most = if single::<T>() { WIDE.0 } else { WIDE.1 };
         let least = 1.0 / most;
         let size = self.slip_size();
@@ -126,5 +127,5 @@ fn single<T: Real>() -> bool {
 /// The largest ordinary rate, in single and in double precision: 2^20 and 2^160.
 const WIDE: (f64, f64) = (1_048_576.0, 1_461_501_637_330_902_918_203_684_832_716_283_019_655_932_542_976.0);
 
-/// The largest product of mu and an entry, whose square is a number still.
+/// The largest product of mu and an entry that is calculated with, in single and in double precision: its square does not overflow.
 const MOST: (f64, f64) = (1e18, 1e150);

@@ -1,4 +1,5 @@
-//! Events of a sliding arc: a quantity reaches a target. Where the event is expected, and the next step towards it.
+//! Events of a sliding arc. An event is the point where v_n, I_n or the normal work reaches a target value. This file predicts its place (`guess`)
+//! and computes the next step of the iteration towards it (`Correction`); `event_location` iterates.
 //!
 //! Theory: docs/theory.md, section 8.
 
@@ -40,7 +41,7 @@ impl<T: Real> Event<T> {
         }
     }
 
-    /// The derivative of the quantity by I_n, where f = dv_n/dI_n.
+    /// The derivative of the quantity with respect to I_n, where f = dv_n/dI_n.
     #[inline(always)]
     pub fn by_impulse(&self, velocity: T, f: T) -> T {
         match self {
@@ -56,7 +57,7 @@ impl<T: Real> Event<T> {
         self.residual(&point.state, point.since)
     }
 
-    /// Its derivative by lambda, and that of the derivative's logarithm.
+    /// The derivative y' of the residual y with respect to lambda, and (ln y')' (theory, table in 8.4).
     #[inline(always)]
     fn slope(&self, state: &State<T>, rates: &Rates<T>) -> (T, T) {
         let Rates { impulse, slope, weight, shape, turn, .. } = *rates;
@@ -68,14 +69,14 @@ impl<T: Real> Event<T> {
         (impulse * self.by_impulse(state.velocity, slope), curvature)
     }
 
-    /// The normal impulse until the event, if f changes in proportion to it; not positive if that never comes.
+    /// The normal impulse from here to the event if f is linear in I_n with the rate `bend`; zero or less if the event does not come then.
     #[inline]
     fn impulse(&self, point: &ArcPoint<T>, slope: T, bend: T) -> T {
         let zero = T::zero();
         let missing = -self.at(point);
         let v = match self {
             Self::Impulse(_) => return missing,
-            // v_n rises from zero, about, to where the work is done.
+            // With constant f the work is quadratic in I_n; the change of f adds a cubic term, taken for v_n = 0 at the beginning.
             Self::Work(_) => {
                 let v = point.state.velocity;
                 let square = dot(v, v, missing + missing, slope);
@@ -92,12 +93,13 @@ impl<T: Real> Event<T> {
         if square <= zero { zero } else { (v + v) / (slope + square.sqrt()) }
     }
 
-    /// About where the event is: slip changes by the square of I_n at most, and the length is the integral of (q / e) / s over I_n.
+    /// A first guess of the length in lambda from here to the event (theory, 8.3); negative if none is expected. Slip is taken for a quadratic in I_n,
+    /// and the length is the integral of (q / e) / s over I_n.
     #[inline]
     pub(super) fn guess(&self, arc: &SlidingArc<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
         let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
         let slip = point.sigma * rates.e;
-        // q / e, g, and the changes of f and g with I_n.
+        // q / e, g, and the derivative of f with respect to I_n.
         let lag = slip / rates.impulse;
         let rate = rates.growth + rates.shape;
         let pole = rate - rates.weight;
@@ -110,12 +112,12 @@ impl<T: Real> Event<T> {
         }
         let ratio = (impulse * g / slip).primal();
         if ratio <= constant(-1.5) {
-            // Slip stops long before.
+            // Slip stops long before the event.
             return -one;
         }
         let far = point.w > arc.outer + arc.outer;
         let mean = if far {
-            // Slip has yet to come to the rate of the end.
+            // Beyond the zeros of q: the rate of slip tends to that of the stable direction.
             let last = arc.last_rate();
             let late = last / arc.q[2] - rate;
             last / (one + larger(late, zero) * half)
@@ -140,12 +142,12 @@ impl<T: Real> Event<T> {
     }
 }
 
-/// The step from a point to an event close by.
+/// The step of third order from a point to the event (theory, 8.2), and what the estimates of its error need.
 pub(super) struct Correction<T> {
     pub step: T,
-    /// The step over the length on which the integrands change.
+    /// The step divided by the length in lambda over which the integrands change.
     pub size: T,
-    /// The derivative of the residual by lambda, and the size of the derivative of its logarithm.
+    /// The size of (ln y')' is `curvature`, y' itself is `slope` (primes: derivatives with respect to lambda).
     slope: T,
     curvature: T,
 }
@@ -172,14 +174,14 @@ impl<T: Real> Correction<T> {
         Self { step, slope, curvature: bend, size }
     }
 
-    /// The errors of steps of third and of fourth order, about.
+    /// Estimates of the errors of `second_order_step` (of third order in the length) and of `third_order_step` (of fourth order).
     #[inline]
     pub fn errors(&self, event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> (T, T) {
         let length = self.step.primal().abs();
         let steepest =
             larger(larger(T::one(), self.curvature), larger(rates.growth.abs(), rates.weight.abs()).primal());
         let steep = length * steepest;
-        // Halley's step misses by its third power.
+        // The error of Halley's step is of third order in the step.
         let missed = self.slope.primal().abs() * length;
         let square = steep * steep * constant(1.0 / 24.0);
         let moved = dot((point.sigma * rates.e).primal(), steep, rates.impulse.primal().abs(), length);
@@ -187,7 +189,7 @@ impl<T: Real> Correction<T> {
         (rough, if let Event::Work(_) = event { rough } else { moved * steep * square })
     }
 
-    /// The step with an error of fourth order.
+    /// The step to the event with an error of fourth order (theory, end of 8.5).
     #[inline]
     pub fn refined(
         &self,
@@ -212,7 +214,7 @@ impl<T: Real> Correction<T> {
     }
 }
 
-/// The step to the zero of the parabola: Newton's step, and that times the derivative of the derivative's logarithm.
+/// The step to the zero of the parabola with the same value, slope and curvature: `newton` is Newton's step x, `bent` is x (ln y')'.
 #[inline]
 fn square<T: Real>(newton: T, bent: T) -> T {
     let one = T::one();
@@ -220,7 +222,7 @@ fn square<T: Real>(newton: T, bent: T) -> T {
     (newton + newton) / (one + under.sqrt())
 }
 
-/// ln(1 + x), to a per cent or so between -0.999 and 1000, which is what a guess needs.
+/// ln(1 + x) with a relative error of about one per cent between -0.999 and 1000: enough for a first guess.
 #[inline]
 fn rough_ln_1p<T: Real>(x: T) -> T {
     let y = T::one() + x;

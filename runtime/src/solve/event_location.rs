@@ -1,5 +1,5 @@
-//! Locates the next event on the sliding arc: the end of compression or of restitution, a turning point of v_n, or the farthest point that one
-//! quadrature reaches.
+//! Follows one stretch of the sliding arc: to the next event (the end of compression or of restitution), to a turning point of v_n, or as far as one
+//! quadrature reaches, whichever comes first. Events are located by trials of `gauss16` inside a bracket.
 //!
 //! Theory: docs/theory.md, section 8.
 
@@ -11,29 +11,29 @@ use super::{
 };
 use crate::{Law, scalar::Real, scalar::constant, scalar::larger, scalar::smaller};
 
-/// Trials of one search: two or three are usual.
+/// The greatest number of trials for one event; two or three are usual.
 const TRIALS: u32 = 96;
 
-/// Short steps after them.
+/// The greatest number of short steps after the trials.
 const SHORT_STEPS: u32 = 6;
 
-/// A stretch on which v_n is monotone.
+/// A stretch of the arc on which v_n is monotone, and what locating events on it needs.
 pub(super) struct EventLocation<'a, T: Real> {
     pub arc: &'a SlidingArc<T>,
     pub from: ArcPoint<T>,
     pub rates: &'a Rates<T>,
-    /// Whether v_n rises, and the length in lambda after which it turns, if it does.
+    /// Whether v_n rises, and the length in lambda to its turning point, if there is one ahead.
     pub rising: bool,
     pub turning_point: Option<T>,
-    /// Whether slip is so fast that the balance of energy would lose the work.
+    /// Whether slip is so fast that the work from the balance of energy would lose digits; it is then integrated directly.
     pub fast: bool,
     pub panel: &'a mut Panel<T>,
-    /// How far one quadrature reaches.
+    /// The greatest length in lambda of one quadrature.
     pub reach: T,
 }
 
 impl<T: Real> EventLocation<'_, T> {
-    /// Follows the arc to the next event, or as far as one stretch goes, to the point `to`; true if the law ends the collision there.
+    /// Follows the arc to the next event or to the end of the stretch, and sets `to` to that point; true if the law ends the collision there.
     #[inline]
     pub fn follow(&mut self, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
         let zero = T::zero();
@@ -51,7 +51,7 @@ impl<T: Real> EventLocation<'_, T> {
         if !self.rising {
             return self.falling(limit, restitution, to);
         }
-        // Newton's law need not know where compression ends.
+        // Newton's target does not depend on where compression ends.
         if v >= zero || (law == Law::Newton && target > zero && !restitution.thorough) {
             let ended = self.find(&Event::end(restitution), T::one(), limit, to).is_some();
             if v < zero && to.state.velocity >= zero {
@@ -70,7 +70,7 @@ impl<T: Real> EventLocation<'_, T> {
         false
     }
 
-    /// v_n falls: it may come to zero before the law ends restitution.
+    /// [`Self::follow`] where v_n falls: v_n may reach zero before the law ends restitution.
     #[cold]
     #[inline(never)]
     fn falling(&mut self, limit: T, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
@@ -91,19 +91,19 @@ impl<T: Real> EventLocation<'_, T> {
             *to = last;
             return false;
         }
-        // The law ends restitution here, before v_n falls to zero; rounding alone may say otherwise.
+        // The residual at the end is not negative, so the event lies on the stretch; if `find` misses it, it is at the end up to rounding.
         self.find(&end, T::one(), limit, to);
         true
     }
 
-    /// Goes to the point at a length, with the work.
+    /// Sets `to` to the point at this length, with the work.
     #[inline]
     fn whole(&mut self, length: T, to: &mut ArcPoint<T>) {
         self.arc.step(&self.from, length, self.panel, to);
         self.work(to);
     }
 
-    /// Adds the work on the stretch stepped over last.
+    /// Adds the work along the last `step` to `to`.
     #[inline]
     fn work(&mut self, to: &mut ArcPoint<T>) {
         let from = &self.from;
@@ -116,10 +116,11 @@ impl<T: Real> EventLocation<'_, T> {
         to.since = from.since + done;
     }
 
-    /// Goes to the event, where the residual rises (`sign` = 1) or falls (-1) through zero, and returns the length to it; or else to the end of the stretch.
+    /// Sets `to` to the event, where the residual rises (`sign` = 1) or falls (-1) through zero, and returns its length from the beginning; without an
+    /// event before `limit`, sets `to` to the end of the stretch and returns `None`.
     ///
-    /// Each trial is one quadrature from the beginning to there; a method of third order inside a bracket leads from one to the next. The last
-    /// steps are short ones from the trial before.
+    /// Each trial is one quadrature from the beginning of the stretch; the next trial follows by a method of third order inside a bracket. The last
+    /// steps are short and start from the last trial.
     #[inline(never)]
     fn find(&mut self, event: &Event<T>, sign: T, limit: T, to: &mut ArcPoint<T>) -> Option<T> {
         if event.at(&self.from) * sign >= T::zero() {
@@ -161,7 +162,7 @@ impl<T: Real> EventLocation<'_, T> {
                 if !works {
                     self.work(to);
                 }
-                // Not back beyond the beginning.
+                // The event does not lie before the beginning.
                 if correction.step < -x {
                     *to = self.from;
                     return Some(T::zero());
@@ -169,7 +170,7 @@ impl<T: Real> EventLocation<'_, T> {
                 return Some(x + self.polish(event, rates, correction, to));
             }
             let next = (x + correction.step).primal();
-            // Where the derivatives mislead, halving the bracket does not.
+            // Every fourth trial halves the bracket, in case the steps converge slowly.
             let slow = trial % 4 == 3;
             x = if next > lo && next < hi && (open || !slow) {
                 next
@@ -183,7 +184,7 @@ impl<T: Real> EventLocation<'_, T> {
         Some(x)
     }
 
-    /// The last short steps, each from the point before; returns their length.
+    /// Takes the last short steps, each from where the one before ended, and returns the sum of their lengths.
     #[inline]
     fn polish(
         &self,
@@ -193,7 +194,7 @@ impl<T: Real> EventLocation<'_, T> {
         to: &mut ArcPoint<T>,
     ) -> T {
         let (mut length, mut rates, mut correction) = (T::zero(), rates, correction);
-        // A derivative is one step behind its value.
+        // Derivatives converge one step later than values (theory, 13.1).
         let close = constant::<T>(if T::refined() { 1e-4 } else { 32.0 }) * T::default_epsilon();
         let (mut rough, mut error) = correction.errors(event, to, &rates);
         for _ in 0..SHORT_STEPS {

@@ -1,6 +1,6 @@
-//! A short step along the sliding arc by collocation with four Gauss nodes: what a trial of the search still lacks.
+//! Takes a short step along the sliding arc by collocation with four Gauss nodes: from the last trial of `event_location` to the event.
 //!
-//! The same integrals as on a whole stretch, but for a length of a few hundredths, where four nodes are exact.
+//! The integrals are those of `gauss16`; over lengths of a few hundredths of a stretch four nodes give them to machine precision.
 //!
 //! Theory: docs/theory.md, section 8.5.
 
@@ -25,7 +25,7 @@ const INTEGRALS: [Lanes<f64>; 4] = [
     [-0.0035551496857956833, 0.006735500594538156, -0.014190694931141144, 0.08696371128436346],
 ];
 
-/// What is known at the nodes: w, sigma e / q and e, then the terms of the sums.
+/// Quantities at the nodes: w, sigma e / q and e, then the terms of the sums.
 struct Nodes<T> {
     w: Lanes<T>,
     rate: Lanes<T>,
@@ -33,12 +33,12 @@ struct Nodes<T> {
     e: Lanes<T>,
     log: Lanes<T>,
     sums: [Lanes<T>; 4],
-    /// By what sigma and w grow over the step, twice.
+    /// The factors by which sigma and w grow over the step, each twice to fill the lanes.
     ends: Lanes<T>,
 }
 
 impl<T: Real> SlidingArc<T> {
-    /// Goes further by `length` in lambda (or back, if it is negative).
+    /// Moves the point by `length` in lambda, with its work (backwards if `length` is negative).
     #[inline(never)]
     pub fn short_step(&self, point: &mut ArcPoint<T>, length: T) {
         let any = [length; 4];
@@ -48,7 +48,7 @@ impl<T: Real> SlidingArc<T> {
         let [first, second, third, _] = nodes.sums.map(sum);
         let from = point.state;
         self.add([first * scale, second * scale, third * scale], &mut point.state);
-        // v_n less its value at the beginning, over I_n.
+        // The integral over I_n of v_n less its value at the beginning.
         let pushed = self.push(&mut nodes);
         let done = fma(from.velocity, point.state.normal - from.normal, scale * scale * pushed);
         point.state.work += done;
@@ -58,7 +58,7 @@ impl<T: Real> SlidingArc<T> {
         point.w *= w;
     }
 
-    /// Fills the nodes and the ends.
+    /// Fills `nodes` for a step from `from`.
     #[inline(never)]
     fn approach(&self, from: &ArcPoint<T>, length: T, nodes: &mut Nodes<T>) {
         let ([q0, q1, q2], [k0, k1, k2]) = (self.q, self.k);
@@ -94,7 +94,7 @@ impl<T: Real> SlidingArc<T> {
         *ends = exp([grown, length, grown, length]);
     }
 
-    /// The integral of v_n less its value at the beginning over I_n, over sigma squared.
+    /// The integral over I_n of v_n less its value at the beginning, divided by the square of (sigma at the beginning times the length).
     #[inline(never)]
     fn push(&self, nodes: &mut Nodes<T>) -> T {
         let [f0, f1, f2] = self.f;
@@ -110,7 +110,7 @@ impl<T: Real> SlidingArc<T> {
     }
 }
 
-/// The integrals up to the nodes of a function with these values.
+/// The integrals from the beginning to each node of a function with these values at the nodes.
 #[inline(always)]
 fn collocate<T: Real>(values: &Lanes<T>, out: &mut Lanes<T>) {
     *out = [T::zero(); 4];
@@ -121,7 +121,7 @@ fn collocate<T: Real>(values: &Lanes<T>, out: &mut Lanes<T>) {
     }
 }
 
-/// The sum of the four.
+/// The sum of the four lanes.
 #[inline(always)]
 fn sum<T: Real>([a, b, c, d]: Lanes<T>) -> T {
     (a + c) + (b + d)

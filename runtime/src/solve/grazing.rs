@@ -1,4 +1,5 @@
-//! Grazing: how near v_n turned to a value that ends compression or restitution. Where a turning point just reaches that value the outcome jumps.
+//! Grazing: keeps the least distance of the turning points of v_n from a value that ends compression or restitution. Where a turning point just reaches
+//! such a value the outcome jumps.
 //!
 //! Theory: docs/theory.md, section 14.
 
@@ -10,24 +11,24 @@ pub(crate) struct Grazing<T> {
     rising: bool,
     last: T,
     target: T,
-    /// How near v_n turned to zero, or from above to Newton's target.
+    /// The least distance so far of a turning point from zero, or of a maximum from Newton's target.
     pub nearest: T,
 }
 
 impl<T: Real> Grazing<T> {
-    /// No turning point yet. `target` is that of Newton's law, or zero.
+    /// Before any turning point. `target` is that of Newton's law, and zero for the others.
     #[inline]
     pub fn new(target: T) -> Self {
         Self { rising: true, last: -T::one(), target, nearest: T::one() }
     }
 
-    /// None yet, and v_n falls from zero.
+    /// Before any turning point, where v_n begins at zero and falls.
     #[inline]
     pub fn falling() -> Self {
         Self { rising: false, last: T::zero(), ..Self::new(T::zero()) }
     }
 
-    /// v_n went to `to` without turning on the way.
+    /// v_n changed to `to` without a turning point on the way.
     #[inline]
     pub fn moved(&mut self, to: T) {
         let from = self.last;
@@ -41,7 +42,7 @@ impl<T: Real> Grazing<T> {
         self.missed(to_target);
     }
 
-    /// An event took place, or did not, by this relative distance.
+    /// An event was reached or missed by this relative distance.
     #[inline]
     pub fn missed(&mut self, distance: T) {
         if distance < self.nearest {

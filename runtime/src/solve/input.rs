@@ -1,4 +1,4 @@
-//! What an impact can be asked: the input that is refused, each with its reason, and what rounding does to a reduced matrix.
+//! Checks the input of an impact: refuses what is wrong, with the reason, and removes from a reduced matrix what rounding added to it.
 //!
 //! Theory: docs/theory.md, section 1.3.
 
@@ -9,13 +9,13 @@ use crate::{
     scalar::{Real, constant, dot, fma, larger},
 };
 
-/// How many rounding units, times the largest diagonal entry, an entry of a reduced matrix is known to.
+/// The uncertainty of an entry of a reduced matrix, in rounding units times the largest diagonal entry.
 ///
 /// An entry is a sum of products of partial velocities and their images under M^-1. Its rounding error is relative to the sizes of these
 /// terms, which are those of the largest diagonal entry, however small the entry itself is: a few units for each of some dozen terms.
 const NOISE: f64 = 256.0;
 
-/// Names what is wrong with the input.
+/// An error that says what is wrong with the input, if anything is.
 #[inline]
 pub(crate) fn check<T: Real>(
     m: &ReducedMatrix<T>,
@@ -25,7 +25,7 @@ pub(crate) fn check<T: Real>(
     checked(m, v, surface).map(|_| ())
 }
 
-/// Names what is wrong with the input of a collision. Where rounding alone makes a matrix indefinite, gives the one to take instead.
+/// An error that says what is wrong with the input of a collision, if anything is. Where rounding alone makes the matrix indefinite, the matrix to use instead.
 #[inline]
 pub(crate) fn checked<T: Real>(
     m: &ReducedMatrix<T>,
@@ -42,12 +42,12 @@ pub(crate) fn checked<T: Real>(
     Ok(Some(matrix))
 }
 
-/// Whether contact and surface are right, and far enough from every edge to see it without care.
+/// Whether contact and surface are valid by a margin so large that rounding does not matter; `false` decides nothing.
 #[inline]
 fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
     let zero = T::zero();
     let (a, b, c) = (m.nn * m.tt, m.nn * m.ss, m.tt * m.ss);
-    // Below this a product may have lost what it is compared with.
+    // Products below this may be denormal and comparisons with them meaningless.
     let least = T::default_epsilon() * T::default_epsilon() * T::default_epsilon() * T::default_epsilon();
     let minor = c - m.ts * m.ts;
     let (t, s) = (dot(m.nt, m.ss, -m.ns, m.ts), dot(m.nt, m.ts, -m.tt, m.ns));
@@ -66,7 +66,7 @@ fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
         && (det + surface.mu).is_finite()
 }
 
-/// Names what is wrong with contact, surface and numbers, if anything is; else the matrix without what rounding did to it.
+/// An error that says what is wrong with contact, surface and numbers, if anything is; else the matrix without the effect of rounding.
 #[cold]
 #[inline(never)]
 pub(super) fn check_closely<T: Real>(
@@ -88,8 +88,8 @@ pub(super) fn check_closely<T: Real>(
     without_noise(m)
 }
 
-/// The matrix, if it is positive semidefinite but for rounding: an entry m_ij may exceed sqrt(m_ii m_jj) by what it is known to, and is then
-/// taken for that bound, which is zero beside a diagonal entry of zero.
+/// The matrix, if it is positive semidefinite up to rounding. An entry m_ij may exceed sqrt(m_ii m_jj) by its uncertainty and is then set to that
+/// bound, which is zero where m_ii or m_jj is zero.
 fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactError<T>> {
     let (zero, one) = (T::zero(), T::one());
     let noise = constant::<T>(NOISE) * T::default_epsilon() * larger(larger(m.nn, m.tt), m.ss);
@@ -99,7 +99,7 @@ fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, Impa
         _ => Err(ImpactError::NotPositiveSemidefinite { minor }),
     };
     let (nn, tt, ss) = (diagonal(m.nn)?, diagonal(m.tt)?, diagonal(m.ss)?);
-    // Roots first: products may overflow or vanish. Minors are those of correlations, so that mixed magnitudes do not matter.
+    // Roots before products, which may overflow or underflow. The minors are those of the correlations, which have no units.
     let (n, t, s) = (nn.sqrt(), tt.sqrt(), ss.sqrt());
     let slack = T::default_epsilon().sqrt() * constant(0.0625);
     let bounded = |x: T, p: T, q: T| {
@@ -110,7 +110,7 @@ fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, Impa
         if x.abs() - most <= noise {
             return Ok(if x < zero { -most } else { most });
         }
-        // No correlation beside zero: as wrong as can be.
+        // A coupling beside a diagonal entry of zero: the worst minor that a correlation can give.
         let minor = if most > zero { one - (x / most) * (x / most) } else { -one };
         if minor < -slack { Err(ImpactError::NotPositiveSemidefinite { minor }) } else { Ok(x) }
     };
@@ -125,13 +125,13 @@ fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, Impa
     if det >= -slack {
         return Ok(matrix);
     }
-    // Each correlation is uncertain by the noise over its bound; the determinant by at most four times that for each.
+    // Each correlation is uncertain by noise / sqrt(m_ii m_jj); the determinant by at most four times their sum.
     let uncertain = |p: T, q: T| if p * q > zero { noise / (p * q) } else { zero };
     let sum = uncertain(n, t) + uncertain(n, s) + uncertain(t, s);
     if det < -slack - constant::<T>(4.0) * sum {
         return Err(ImpactError::NotPositiveSemidefinite { minor: det });
     }
-    // A direction known by its noise alone has no couplings.
+    // The couplings of the less mobile tangential direction are noise where they lie within it.
     if matrix.tt <= matrix.ss && larger(nt.abs(), ts.abs()) <= noise {
         (matrix.nt, matrix.ts) = (zero, zero);
     } else if matrix.ss <= matrix.tt && larger(ns.abs(), ts.abs()) <= noise {

@@ -1,8 +1,9 @@
-//! The directions in which slip stays as it is: the zeros of h.
+//! Finds the invariant directions on either side of a direction of slip: the zeros of h, in which slip keeps its direction.
 //!
-//! In the principal axes of T, mirrored so that b = (p, q) is positive, h = q cos - p sin + delta sin cos, where delta is mu times the difference of the
-//! principal values. One stable zero lies in the first quadrant and one unstable zero in the third; the fourth may hold one of each; the
-//! second none. In all of them the slip is along b - mu T d, so that d = (p / (eta + delta), q / eta) with a number eta: a secular equation.
+//! In the principal axes of T, mirrored so that b = (p, q) has positive components, h = q cos phi - p sin phi + delta sin phi cos phi, where delta is mu
+//! times the difference of the principal values. The first quadrant holds one stable zero and the third one unstable zero; the fourth holds one of each
+//! or none; the second none. At a zero d is parallel to b - mu T d, so that d = (p / (eta + delta), q / eta) for some eta; abs(d) = 1 is a secular
+//! equation for eta.
 //!
 //! Theory: docs/theory.md, section 3.
 
@@ -10,15 +11,16 @@ use nalgebra::Vector2;
 
 use crate::scalar::{Real, constant, dot, fma, larger, length};
 
-/// Steps of a search; a handful suffices unless zeros are about to merge.
+/// The greatest number of Newton steps; a handful suffices unless two zeros are about to merge.
 const STEPS: u32 = 32;
 
-/// The relative change of eta after which another step would change nothing in half the digits.
+/// The relative change of eta at which the iteration ends: the next step would not change the first half of the digits.
 const ROUGH: f64 = 1e-4;
 
-/// The zeros of h on either side of the direction `d`: the one that slip comes from, the one that it turns to.
+/// The zeros of h next to the direction `d`: the unstable one that slip turns away from, and the stable one that it turns to.
 ///
-/// `turn` is h at d, not zero. `b` and `nu` are m_nt, m_ns and mu times the deviator of T ((m_tt - m_ss) / 2, m_ts). Good to half the digits, and not of length one.
+/// `turn` is h at d, not zero. `b` is (m_nt, m_ns), `nu` is mu times the deviator of T, ((m_tt - m_ss) / 2, m_ts). The vectors returned are right to half
+/// the digits, and their length is one to half the digits only.
 #[inline]
 pub(super) fn neighbours<T: Real>(
     b: &Vector2<T>,
@@ -29,7 +31,7 @@ pub(super) fn neighbours<T: Real>(
     let zero = T::zero();
     let half = length(nu);
     let delta = half + half;
-    // The principal axis of the larger value: half the angle of nu.
+    // The principal axis of the larger principal value has half the angle of nu.
     let axis = if half > zero {
         let axis =
             if nu.x >= zero { Vector2::new(half + nu.x, nu.y) } else { Vector2::new(nu.y, half - nu.x) };
@@ -43,7 +45,7 @@ pub(super) fn neighbours<T: Real>(
     let (sx, sy) = (sign(pull.x), sign(pull.y));
     let slip = Vector2::new(slip.x * sx, slip.y * sy);
     let forward = turn * sx * sy > zero;
-    // A component that vanishes leaves zeros on an axis; a little of it keeps them apart from the next quadrant.
+    // Where a component of b vanishes a zero lies on an axis; replacing it by a tiny number keeps the zero inside its quadrant.
     let eps = T::default_epsilon();
     let none = eps * eps * (pull.x.abs() + pull.y.abs() + delta);
     let (p, q) = (larger(pull.x.abs(), none), larger(pull.y.abs(), none));
@@ -55,7 +57,7 @@ pub(super) fn neighbours<T: Real>(
         let (y, x) = alone(q, p, delta);
         Vector2::new(-x, -y)
     };
-    // In the fourth quadrant the stable zero comes first.
+    // Of the zeros in the fourth quadrant the stable one comes first, anticlockwise.
     let fourth_stable = || {
         let (y, x) = paired(q, p, delta);
         Vector2::new(x, -y)
@@ -64,7 +66,7 @@ pub(super) fn neighbours<T: Real>(
         let (x, y) = paired(p, q, delta);
         Vector2::new(x, -y)
     };
-    // h' tells the two ends of the fourth quadrant apart: there it changes sign once, between the zeros.
+    // h' changes sign once in the fourth quadrant, between its zeros: its sign tells on which side of them the direction lies.
     let slope =
         fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
     let found = if forward && crowded(p, q, delta) {
@@ -84,7 +86,7 @@ pub(super) fn neighbours<T: Real>(
     })
 }
 
-/// Whether the fourth quadrant holds zeros: b lies within the astroid p^(2/3) + q^(2/3) = delta^(2/3).
+/// Whether the fourth quadrant holds zeros: whether b lies inside the astroid p^(2/3) + q^(2/3) = delta^(2/3).
 #[inline]
 fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
     let inside = fma(delta, delta, -dot(p, p, q, q));
@@ -92,11 +94,12 @@ fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
     inside > T::zero() && inside * inside * inside > constant::<T>(27.0) * product * product
 }
 
-/// The direction (p / (eta + delta), q / eta) of about length one with eta > 0: Newton's method on 1 / length, which rises to the root.
+/// The direction (p / (eta + delta), q / eta) of length one (to half the digits) with eta > 0, by Newton's method on 1 / length = 1, which converges from
+/// below (theory, 3.2).
 #[inline]
 fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
-    // The root is convex in delta, so that its tangent at zero lies below.
+    // The root is a convex function of delta, so its tangent at delta = 0 lies below it.
     let pp = p * p;
     let square = fma(q, q, pp);
     let mut eta = larger(q, square.sqrt() - delta * pp / square);
@@ -115,7 +118,7 @@ fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     (x, y)
 }
 
-/// The direction (p / eta, q / (delta - eta)) of about length one with the smaller eta in (0, delta).
+/// The direction (p / eta, q / (delta - eta)) of length one (to half the digits) with the lesser such eta in (0, delta).
 #[inline]
 fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
@@ -144,7 +147,7 @@ pub(super) fn times<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
     Vector2::new(dot(a.x, b.x, -a.y, b.y), dot(a.x, b.y, a.y, b.x))
 }
 
-/// a over b, if b is of length one.
+/// a / b of complex numbers, for b of modulus one.
 #[inline(always)]
 pub(super) fn over<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
     Vector2::new(dot(a.x, b.x, a.y, b.y), dot(a.y, b.x, -a.x, b.y))
@@ -153,14 +156,15 @@ pub(super) fn over<T: Real>(a: &Vector2<T>, b: &Vector2<T>) -> Vector2<T> {
 /// A zero of h.
 pub(super) struct Zero<T: Real> {
     pub direction: Vector2<T>,
-    /// The size of h' there.
+    /// abs(h') at the zero.
     pub slope: T,
-    /// g there, but for the mean of T.
+    /// g at the zero without its constant term -mu tau, tau being half the trace of T.
     pub pull: T,
 }
 
 impl<T: Real> Zero<T> {
-    /// The one close to a direction where h' has the given sign: to second order, so that another zero close by does no harm.
+    /// The zero next to the direction `v` at which h' has the given sign. Steps solve the quadratic approximation of h, so that another zero close by is not
+    /// taken for it.
     #[inline(always)]
     pub fn close(b: &Vector2<T>, nu: &Vector2<T>, mut v: Vector2<T>, sign: T) -> Self {
         let enough = if T::refined() { constant::<T>(8.0) * T::default_epsilon() } else { constant(3e-8) };
@@ -173,7 +177,7 @@ impl<T: Real> Zero<T> {
             let bend = fma(constant::<T>(4.0), double.y, -along.y);
             let turn = to_zero(h * sign, slope, bend * sign);
             let size = turn.abs();
-            // Not a number, or another zero. Where zeros merge all steps are rounding, and the last one is not taken.
+            // A large step is NaN or leads to another zero and is not taken; nor is the last one, since the steps are rounding where zeros merge.
             if size <= constant(0.1) && left > 0 {
                 let along = fma(turn * turn, constant(-0.5), T::one());
                 v = Vector2::new(dot(v.x, along, -v.y, turn), dot(v.y, along, v.x, turn));
@@ -190,7 +194,7 @@ impl<T: Real> Zero<T> {
     }
 }
 
-/// Half the angle of a direction, on the side of the axis that `side` tells.
+/// The unit vector at half the angle of `v`, counted from the axis in the sense of `side` (1 anticlockwise, -1 clockwise).
 #[inline(always)]
 fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
     let (one, half) = (T::one(), constant::<T>(0.5));
@@ -203,14 +207,14 @@ fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
     if sin * side < T::zero() { Vector2::new(-cos, -sin) } else { Vector2::new(cos, sin) }
 }
 
-/// The zeros of h as seen from the direction where the arc is entered.
+/// h as a function of x = tan(angle / 2), the angle being counted from the direction in which the arc begins.
 pub(super) struct Near<T> {
-    /// h over tan of half the angle, times e^2.
+    /// The coefficients of (1 + x^2)^2 h (theory, 3.8), the constant first.
     pub h: [T; 5],
 }
 
 impl<T: Real> Near<T> {
-    /// Half the angle to the zero close to a rough one, and the zero. `b` and `nu` as for [`neighbours`].
+    /// The zero next to the approximate zero `rough`, and the unit vector at half the angle to it. `b` and `nu` as for [`neighbours`].
     #[inline(always)]
     pub fn exact(&self, [b, nu, rough]: [&Vector2<T>; 3], side: T, sign: T) -> (Vector2<T>, Zero<T>) {
         let zero = Zero::close(b, nu, rough / length(rough), sign);
@@ -224,12 +228,12 @@ impl<T: Real> Near<T> {
         (halved(direction, side), zero)
     }
 
-    /// The same for a zero beside the axis, and its direction: as exact as h itself.
+    /// The unit vectors at half the angle and at the angle of a zero near the axis. The angle has the same relative error as h.
     #[inline(always)]
     pub fn beside(&self, v: &Vector2<T>, side: T, sign: T) -> (Vector2<T>, Vector2<T>) {
         let one = T::one();
         let x = self.close(v.y / (one + v.x), sign);
-        // The rest of the way round is no small angle.
+        // An angle on the other side goes nearly all the way round if it is large, and is rounding if it is small.
         let least = T::default_epsilon() * T::default_epsilon();
         let (x, turn) = if x * side >= least {
             (x, one)
@@ -244,7 +248,7 @@ impl<T: Real> Near<T> {
         (Vector2::new(cos, x * cos), Vector2::new((one - square) * inverse, (x + x) * inverse))
     }
 
-    /// The zero close to x, where h' has the given sign.
+    /// The zero next to x at which h' has the given sign.
     #[inline(always)]
     fn close(&self, x: T, sign: T) -> T {
         let [h0, h1, h2, h3, h4] = self.h;
@@ -257,7 +261,7 @@ impl<T: Real> Near<T> {
     }
 }
 
-/// The distance to the zero of h + s x + b x^2 / 2 where it rises, or to the extremum if it has none. s must be positive there, up to rounding.
+/// The zero x of `value` + `slope` x + `bend` x^2 / 2 at which this rises, or its extremum if it has no zero. `slope` must be positive up to rounding.
 #[inline(always)]
 fn to_zero<T: Real>(value: T, slope: T, bend: T) -> T {
     let two = constant::<T>(2.0);

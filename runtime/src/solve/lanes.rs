@@ -1,4 +1,4 @@
-//! Four numbers that go through the same calculation: arrays that the compiler keeps in one register.
+//! Arrays of four numbers that undergo the same operations, so that the compiler keeps them in one vector register; their exponential.
 //!
 //! Theory: docs/theory.md, section 5.
 
@@ -46,7 +46,7 @@ fn mul_add<T: Real>(a: Lanes<T>, b: Lanes<T>, c: Lanes<T>) -> Lanes<T> {
     [fma(a0, b0, c0), fma(a1, b1, c1), fma(a2, b2, c2), fma(a3, b3, c3)]
 }
 
-/// Coefficients of y coth(y / 2) - 2 over y^2, in y^2, from the highest.
+/// Coefficients of (y coth(y / 2) - 2) / y^2 as a polynomial in y^2, the highest first.
 const COTH: [f64; 7] = [
     2.676_507_306_136_935_8e-11,
     -1.056_838_027_737_498_6e-9,
@@ -57,9 +57,9 @@ const COTH: [f64; 7] = [
     1.0 / 6.0,
 ];
 
-/// The exponential, to a few units of rounding of the larger of it and one for arguments up to nine in size (and to 5e-14 up to twelve).
+/// The exponential. For abs(x) up to nine its error is a few rounding units of max(e^x, 1); up to twelve it is 5e-14 of that.
 ///
-/// e^y - 1 = 2 y / (y coth(y / 2) - y) for y = x / 16, squared four times: (1 + E)^2 - 1 = E (E + 2) loses nothing.
+/// E = e^y - 1 = 2 y / (y coth(y / 2) - y) for y = x / 16, and then four times E <- (1 + E)^2 - 1 = E (E + 2), which loses no digits.
 #[inline(always)]
 pub(super) fn exp<T: Real>(x: Lanes<T>) -> Lanes<T> {
     let two = all(constant(2.0));

@@ -1,4 +1,4 @@
-//! Slip that begins beside a direction in which it would stay: the arc to first order in the angle by which it turns.
+//! The sliding arc to first order in the angle by which slip turns, for slip that begins next to an invariant direction.
 //!
 //! Theory: docs/theory.md, section 7.2.
 
@@ -11,12 +11,12 @@ use super::{
 };
 use crate::scalar::{Real, constant, larger};
 
-/// The arc from a direction where h is nearly zero, to first order in the angle by which slip turns; `None` where first order is not exact.
+/// The arc from a direction where h is nearly zero, to first order in the angle by which slip turns; `None` where first order is not accurate enough.
 ///
-/// Where two zeros of h are about to merge there, the quadratic q of the exact arc is lost to rounding.
+/// It is needed where two zeros of h are about to merge: the quadratic q of the general method is then a difference of large terms without digits.
 ///
-/// With B the integral of the angle over I_n, slip since the beginning changes by (b - mu T d) I_n - mu T d' B and v_n by f I_n - mu b.d' B. Up to the end of
-/// compression, and from there to the end, the arc is followed along its mean direction, so that both are right where they are needed.
+/// With B the integral of the angle over I_n, slip changes by (b - mu T d) I_n - mu T d' B and v_n by f I_n - mu b.d' B. v_n is followed along one mean
+/// direction up to the end of compression and along another from there on, so that it is right to first order at both events.
 #[cold]
 #[inline(never)]
 pub(super) fn perturbed<T: Real>(
@@ -30,7 +30,8 @@ pub(super) fn perturbed<T: Real>(
     let pull = c.dragged(&across);
     let rate = c.slip_rate(d);
     let [f, g, turn] = c.rates(d);
-    // First order is not enough for an angle that grows faster than slip stops. A zero with so steep an h' has no second one close by.
+    // First order does not suffice where the angle grows faster than slip stops. The general method does: a zero with so large an h' has no other
+    // zero next to it.
     let slope = -pull.dot(&across) - g;
     let size = c.slip_size();
     if slope > constant::<T>(0.25) * g.abs() && slope > constant::<T>(1e-3) * size {
@@ -41,7 +42,7 @@ pub(super) fn perturbed<T: Real>(
     }
     let angle = |impulse: T| deviation(c, d, slip, Some(impulse));
     let stop = (g < zero).then(|| -slip / g);
-    // The impulse that remains from a state on if the direction is taken as fixed.
+    // The impulse from a state to the end of the arc if slip keeps its direction.
     let remains = |mut restitution: Restitution<T>, state: &State<T>, stop: Option<T>| match restitution
         .follow_linear(state, f, &(*d * c.mu), stop)
     {
@@ -51,9 +52,9 @@ pub(super) fn perturbed<T: Real>(
     let mut state = restitution.start();
     let start = -state.velocity;
     let whole = remains(*restitution, &state, stop)?;
-    // Nor is it enough for a large angle.
+    // Nor does it suffice for large angles, which the mean angle measures.
     let mut mean = (angle(whole) / whole).abs();
-    // Where slip stops depends on B, too.
+    // I_n at the end of slip depends on B (theory, 7.4).
     let mut last = zero;
     let stop = stop.map(|stop| {
         if whole < stop * half {
@@ -72,7 +73,8 @@ pub(super) fn perturbed<T: Real>(
     }
     let tangential = |impulse: T, angle: T| -(*d * impulse + across * angle) * c.mu;
     let left = |impulse: T, angle: T| *d * slip + rate * impulse - pull * angle;
-    // The work that the chord of v_n over I_n leaves out: the integral of B by Boole's rule, with points that crowd where slip may stop.
+    // The work is the area under v_n over I_n; this is the part between v_n and its chord: the integral of B by Boole's rule, in a variable whose points
+    // are dense where slip may stop.
     let bow = |from: T, length: T| {
         let part = |y: f64| (one - constant(y)) * angle(from + length * constant(y * (2.0 - y)));
         let sum = (part(0.25) + part(0.75)) * constant(32.0)
@@ -95,7 +97,7 @@ pub(super) fn perturbed<T: Real>(
     }
     let stop = stop.map(|stop| stop - from);
     let more = remains(*restitution, &state, stop)?;
-    // Over a short way the change of B is rounding, and the chord is exact.
+    // Over a short way the change of B is mere rounding, and the chord suffices.
     let short = whole * constant(1.0 / 1024.0);
     let bow = if more > short { bow(from, more) } else { zero };
     let span = larger(more, short);

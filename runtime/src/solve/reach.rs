@@ -1,4 +1,4 @@
-//! How far a stretch of the sliding arc may go: to where one quadrature is exact, and to where v_n turns.
+//! The length of the next stretch of the sliding arc: how far one quadrature of sixteen nodes is exact to rounding, and where v_n has a turning point.
 //!
 //! Theory: docs/theory.md, sections 5.3 and 8.1.
 
@@ -6,21 +6,21 @@ use super::sliding_arc::{ArcPoint, Rates, SlidingArc, rough_ln};
 use crate::scalar::{Real, constant, dot, fma, larger, smaller};
 
 impl<T: Real> SlidingArc<T> {
-    /// How far in lambda a point lies beyond the zeros of q, at least; negative before them.
+    /// The distance in lambda by which a point lies beyond the mean modulus of the zeros of q, or a lower bound of it; negative before them.
     #[inline(always)]
     pub fn beyond(&self, point: &ArcPoint<T>) -> T {
         rough_ln(point.w.primal() * self.scale)
     }
 
-    /// How far in lambda one quadrature may reach from here.
+    /// The greatest length in lambda that one quadrature from `point` may have.
     ///
-    /// With all zeros of q outside an ellipse whose foci are the ends, and a constant rate of growth, the error is about
-    /// e^(c (rho + 1 / rho - 2) / 2) rho^(-2 n), where rho is the sum of the semi-axes and c half of the rate times the length.
+    /// If all zeros of q lie outside an ellipse whose foci are the ends of the stretch, and the integrand grows at a constant rate, the error is about
+    /// e^(c (rho + 1 / rho - 2) / 2) rho^(-32), where rho is the sum of the semi-axes (for foci at +-1) and c half the rate times the length.
     #[inline]
     pub fn reach(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
-        // rho + 1 / rho with an error of 1e-15 but for growth.
+        // rho + 1 / rho at which rho^-32 = 1e-15 (theory, 5.3).
         const SUM: f64 = 3.28;
-        // Here the map of the nodes comes as near to its own poles.
+        // At this length the poles of the map from t to w come as near (theory, 18.4).
         const MOST: f64 = 9.0;
         let to = |d: T| {
             let away = dot(d, d, self.angle, self.angle).sqrt();
@@ -37,13 +37,13 @@ impl<T: Real> SlidingArc<T> {
         let slip = point.sigma * rates.e;
         let works = slip > constant(0.06) || (slip > constant(1e-3) && poles * rate > constant(12.0));
         if works {
-            // The work goes with slip times the impulse.
+            // The integrand of the work has the size of slip times that of the impulse.
             rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().primal());
         }
-        // Growth that changes shows zeros of q with large powers; there the distance must be greater.
+        // A growth that changes means that sigma has a large power of the distance from the zeros of q; the stretch must keep farther from them.
         let bent = (rates.change.abs().primal() * constant(0.06)).sqrt();
         let limited = |rate: T| {
-            // How much growth shortens it: a fit.
+            // A fit to the length at which the error with growth is 1e-15 (theory, 18.4).
             let c = poles * rate;
             let fit = fma(fma(c, constant(3e-5), constant(1.2e-3)), c, constant(0.01));
             let steep = smaller(poles, constant::<T>(7.0) / rate);
@@ -55,7 +55,7 @@ impl<T: Real> SlidingArc<T> {
             return both.primal();
         }
         let both = both * constant(0.5);
-        // About the growth at the far end, where it may be steeper. Where it rises it rises on beyond.
+        // An estimate of the growth at the far end, where it may be larger; what it has risen by is added once more, since it rises on.
         let near = (rates.growth + one).abs().primal();
         let far = |both: T| {
             let part = both * constant(0.125);
@@ -72,7 +72,7 @@ impl<T: Real> SlidingArc<T> {
         if steepest <= rate + rate {
             return (both + both).primal();
         }
-        // Shorter, and then as long again as the growth at that end allows.
+        // A length that the growth at its own far end allows, by bisection.
         let (mut least, mut most) = (smaller(both, limited(steepest)), both);
         for _ in 0..4 {
             let middle = (least + most) * constant(0.5);
@@ -86,7 +86,7 @@ impl<T: Real> SlidingArc<T> {
         (least + least).primal()
     }
 
-    /// Whether v_n rises from here, and the length in lambda after which f changes sign, if it does.
+    /// Whether v_n rises from here, and the length in lambda to the next zero of f, if there is one ahead.
     #[inline]
     pub fn turning_point(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> (bool, Option<T>) {
         if !self.may_turn {
@@ -101,7 +101,7 @@ impl<T: Real> SlidingArc<T> {
         let a = (f2 * w * w).primal();
         let b = (f1 * w).primal() + a + a;
         let mut rising = c > zero;
-        // A zero at the beginning is behind, as well as f can be known.
+        // A zero of f at the beginning, up to the rounding of f, has been passed.
         if c.abs() <= tiny * self.size * rates.e {
             c = zero;
             rising = b > zero;

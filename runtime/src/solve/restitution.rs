@@ -1,4 +1,5 @@
-//! The three laws of restitution: where each ends the collision, in units where m_nn = 1 and v_n1 = -1.
+//! The laws of restitution: the target at which each ends the collision, set where compression ends, and straight arcs up to it in closed form. Units:
+//! m_nn = 1 and v_n1 = -1.
 //!
 //! Theory: docs/theory.md, section 9.
 
@@ -7,7 +8,7 @@ use nalgebra::Vector2;
 use super::{contact::Contact, grazing::Grazing};
 use crate::{Law, scalar::Real, scalar::constant, scalar::larger};
 
-/// Slip over |v_n1| (times mu if that is above one) beyond which the balance of energy would lose digits of the work.
+/// Slip over |v_n1| (times mu if mu > 1) above which the balance of energy would lose digits of the work.
 const FAST: f64 = 32.0;
 
 /// Impulses, normal velocity and normal work at one point of a collision.
@@ -24,13 +25,13 @@ pub(crate) struct State<T: Real> {
 }
 
 impl<T: Real> State<T> {
-    /// Before any impulse, with this v_n.
+    /// The state before any impulse, with this v_n.
     #[inline]
     pub fn before(velocity: T) -> Self {
         Self { normal: T::zero(), tangential: Vector2::zeros(), velocity, work: T::zero() }
     }
 
-    /// The same state in other units of normal and tangential impulse.
+    /// The same state after multiplying normal and tangential impulses by these factors.
     #[inline]
     pub fn in_units(self, normal: T, tangential: T) -> Self {
         Self {
@@ -42,7 +43,8 @@ impl<T: Real> State<T> {
     }
 }
 
-/// The law, and where it ends restitution. Compression ends at each upward zero of v_n.
+/// A law of restitution and the progress of a collision under it: compressions so far, and the target that ends restitution. Compression ends wherever v_n
+/// rises through zero.
 #[derive(Clone, Copy)]
 pub(crate) struct Restitution<T: Real> {
     law: Law,
@@ -51,29 +53,29 @@ pub(crate) struct Restitution<T: Real> {
     start: T,
     /// Whether the work is always integrated directly.
     direct: bool,
-    /// v_n, I_n or the normal work at which restitution ends, whichever the law speaks of.
+    /// The value of v_n (Newton), I_n (Poisson) or the normal work (Stronge) at which restitution ends.
     pub target: T,
     least_work: T,
     /// Normal work at the end of the latest compression.
     ended: T,
-    /// Normal work from there to the end of restitution (Stronge): kept apart, because as a part of the whole it would lose digits.
+    /// Normal work from there to the end of restitution (Stronge). As the difference of `target` and `ended` it would lose digits.
     pub wanted: T,
-    /// Normal work since then less the difference of the totals, which is what rounding took from it.
+    /// The normal work since the end of the latest compression, as integrated, less its value as the difference of total works: the rounding error of the latter.
     lost: T,
     pub compressions: u32,
-    /// Where the first and the latest compression ended, if that was located.
+    /// The states where the first and the latest compression ended, if they were located.
     pub first: Option<State<T>>,
     pub latest: Option<State<T>>,
-    /// Locates the end of compression even where the law does not need it.
+    /// Whether to locate the end of compression even where the law does not need it.
     pub thorough: bool,
-    /// Ends the arc at this normal impulse, whatever the law.
+    /// If set, the arc ends at this normal impulse, and the law is not used.
     pub stop: Option<T>,
     /// The turning points of v_n.
     pub grazing: Grazing<T>,
 }
 
 impl<T: Real> Restitution<T> {
-    /// For a collision with v_n1 = -1.
+    /// The beginning of a collision with v_n1 = -1.
     #[inline]
     pub fn new(law: Law, e: T) -> Self {
         Self {
@@ -95,11 +97,11 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// For an impact without collision, v_n1 = 0 and f < 0: v_n starts so little below zero that no sum feels it.
+    /// The beginning of an impact without collision, v_n1 = 0 and f < 0. v_n starts at -eps^4 instead of zero, which changes no sum, so that compression comes first.
     #[inline]
     pub fn without_collision(law: Law, e: T) -> Self {
         let eps = T::default_epsilon();
-        // Newton's hypothesis asks for v_n2 = -e 0.
+        // Newton's hypothesis gives v_n2 = -e v_n1 = 0, as for e = 0.
         let e = if law == Law::Newton { T::zero() } else { e };
         let start = -(eps * eps * eps * eps);
         Self { start, grazing: Grazing::falling(), ..Self::new(law, e) }
@@ -111,8 +113,7 @@ impl<T: Real> Restitution<T> {
         State::before(self.start)
     }
 
-    /// The same restitution where the work is integrated directly and impulses are counted in other units: what one was is `normal` (and
-    /// `tangential`) now.
+    /// The same after multiplying normal and tangential impulses by these factors. `direct` says whether the work is always integrated directly.
     #[cold]
     pub fn in_units(&self, normal: T, tangential: T, direct: bool) -> Self {
         Self {
@@ -129,20 +130,20 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// No law: the arc ends at a normal impulse.
+    /// No law: the arc ends at this normal impulse.
     #[inline]
     pub fn until(normal: T) -> Self {
         Self { stop: Some(normal), ..Self::new(Law::Poisson, T::one()) }
     }
 
-    /// Compression ends somewhere on this stretch, and the place is not needed.
+    /// Counts an end of compression whose place the law does not need.
     #[inline]
     pub fn compressed_somewhere(&mut self) {
         self.compressions += 1;
         self.latest = None;
     }
 
-    /// Compression ends here: v_n = 0 and rising. True if the collision ends with it (e = 0).
+    /// Records the end of compression at this state (v_n = 0 and rising) and sets the target. True if the collision ends here (e = 0).
     #[inline]
     pub fn compressed(&mut self, at: &State<T>) -> bool {
         let (normal, work) = (at.normal, at.work);
@@ -168,7 +169,7 @@ impl<T: Real> Restitution<T> {
         self.e <= T::zero()
     }
 
-    /// Records the normal work `since` the end of the latest compression at `at`, which is more exact than the difference of the totals.
+    /// Records the normal work at `at` since the latest compression ended, which is more accurate than the difference of the total works.
     #[inline]
     pub fn since(&mut self, at: &State<T>, since: T) {
         if self.law == Law::Stronge && self.compressions > 0 {
@@ -176,7 +177,7 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// Whether restitution needs so little work that the balance of energy would lose it.
+    /// Whether restitution needs so little work that the balance of energy would lose its digits.
     #[inline]
     pub fn delicate(&self) -> bool {
         self.law == Law::Stronge
@@ -190,7 +191,8 @@ impl<T: Real> Restitution<T> {
         larger(self.wanted - ((work - self.ended) + self.lost), T::zero())
     }
 
-    /// v_n falls through zero here: Poisson's or Stronge's law ends the collision before this point, or only after another compression.
+    /// Records that v_n falls through zero at this state, and how near the target of Poisson's or Stronge's law is: on one side of the target the collision
+    /// has ended before, on the other another compression follows.
     #[inline]
     pub fn falls(&mut self, at: &State<T>) {
         let size = match self.law {
@@ -206,13 +208,13 @@ impl<T: Real> Restitution<T> {
         self.law
     }
 
-    /// Whether slip is so fast that the work must not be found from the balance of energy.
+    /// Whether the work must be integrated directly because slip is so fast that the balance of energy would lose its digits.
     #[inline]
     pub fn fast(&self, contact: &Contact<T>, slip: T) -> bool {
         self.direct || slip * larger(T::one(), contact.mu) > constant(FAST)
     }
 
-    /// Whether the law ends the collision here, but for this share of what it speaks of.
+    /// Whether the law ends the collision at this state, up to an error of `share` relative to the scale of its quantity.
     #[inline]
     pub fn is_ended(&self, end: &State<T>, share: T) -> bool {
         let scale = match self.law {
@@ -223,7 +225,7 @@ impl<T: Real> Restitution<T> {
         (self.watched(end) - self.target).abs() <= share * scale
     }
 
-    /// The quantity that the law watches.
+    /// The quantity whose target ends the collision: v_n (Newton), I_n (Poisson) or the normal work (Stronge).
     #[inline]
     pub fn watched(&self, state: &State<T>) -> T {
         match self.law {
@@ -233,7 +235,8 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// Whether no event lies between a state and a later one, if v_n is monotone between them; counts a compression that ends there.
+    /// Whether no event that must be located lies between a state and a later one, if v_n is monotone between them. Counts an end of compression whose place
+    /// is not needed.
     #[inline]
     pub fn passes(&mut self, from: &State<T>, to: &State<T>) -> bool {
         let zero = T::zero();
@@ -253,8 +256,8 @@ impl<T: Real> Restitution<T> {
         to.velocity >= zero && self.watched(to) < self.target
     }
 
-    /// Follows an arc on which v_n is linear in I_n with slope `rate`, for at most `length` (without end if `None`), against friction with
-    /// the impulse `push` per I_n.
+    /// Follows an arc on which v_n is linear in I_n with slope `rate`, over an impulse of at most `length` (no limit if `None`). The tangential impulse is
+    /// -`push` per I_n.
     #[inline]
     pub fn follow_linear(
         &mut self,
@@ -332,9 +335,9 @@ pub(crate) enum LinearArc<T> {
         /// Normal work since the collision began.
         work: T,
     },
-    /// The arc came to its end first, after this impulse.
+    /// The law had not ended the collision after this impulse, the length of the arc.
     Passed(T),
-    /// The arc has no end, and the law does not end it.
+    /// The arc has no limit, and the law never ends the collision on it.
     Endless,
 }
 

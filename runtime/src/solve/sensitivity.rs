@@ -1,4 +1,4 @@
-//! Finds why an outcome is sensitive to its input.
+//! Sets the flags of [`Sensitivity`]: the reasons why a small change of the input would change the outcome, or its derivatives, by much.
 //!
 //! Theory: docs/theory.md, section 14.
 
@@ -13,13 +13,13 @@ use crate::{
     scalar::{Real, constant, length},
 };
 
-/// How near is near: in |mu / mu_c - 1|, in v_n over the speed of approach, and in radians.
+/// The bound below which a flag is set, of |mu / mu_c - 1|, of v_n over the speed of approach, and of an angle in radians.
 const NEAR: f64 = 1e-3;
-/// The change of v_n, at the rate at the end and over the whole impulse, that a law needs to end a collision well.
+/// The bound of f I_n2 over the speed of approach below which v_n hardly rises at the end of the collision.
 const STEEP: f64 = 0.05;
 
 impl Sensitivity {
-    /// What the slip of approach alone tells.
+    /// The flags that follow from the slip at the start.
     #[inline]
     pub(super) fn of_start<T: Real>(contact: &Contact<T>, tangential: &Vector2<T>, slip: T) -> Self {
         let no_slip = slip * slip <= T::default_epsilon();
@@ -30,13 +30,13 @@ impl Sensitivity {
         }
     }
 
-    /// Adds that slip stopped, and friction must reach mu_c = `mu_c` to hold the contact.
+    /// Sets the flag of mu near mu_c, after slip has stopped.
     #[inline]
     pub(super) fn stopped<T: Real>(&mut self, mu: T, mu_c: T) {
         self.near_mu_c = (mu - mu_c).abs() < constant::<T>(NEAR) * mu_c;
     }
 
-    /// Adds what the end of the collision tells; `slides` with that velocity, if it slides from before.
+    /// Sets the flag of grazing at the end of the collision. `slides` is the tangential velocity there if slip has not stopped before.
     #[inline]
     pub(super) fn ended<T: Real>(
         &mut self,
@@ -59,7 +59,7 @@ impl Sensitivity {
     }
 }
 
-/// Whether a direction lies near a root of h that repels.
+/// Whether a direction lies near an unstable zero of h.
 #[inline]
 fn unstable<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
     let [_, g, h] = c.rates(d);

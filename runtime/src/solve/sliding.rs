@@ -1,6 +1,7 @@
-//! The sliding arc (34), stretch by stretch, until the law ends the collision or slip stops.
+//! Follows the sliding arc (34), stretch by stretch, until the law ends the collision or slip stops. It chooses between straight arcs, the perturbed arc,
+//! quadrature and the series to the end of slip.
 //!
-//! Theory: docs/theory.md, section 7.1.
+//! Theory: docs/theory.md, sections 5 to 8.
 
 use nalgebra::Vector2;
 
@@ -15,13 +16,13 @@ use super::{
 };
 use crate::scalar::{Real, constant};
 
-/// The greatest number of stretches. Each is as long in lambda as the zeros of q are far from it, so that a few dozen lead past everything.
+/// The greatest number of stretches. The length of a stretch in lambda is proportional to its distance from the zeros of q, so that few are needed.
 const STRETCHES: u32 = 512;
 
-/// Where slip begins with |h| below so many times the rounding of h, slip turns by a small angle only, or not at all, and perturbation is tried first.
+/// If |h| at the start is below this many times its rounding error, slip may turn by a small angle only, and `perturbed` is tried first.
 const NEARLY: f64 = 131_072.0;
 
-/// Slides from the given tangential velocity, where the rates of the contact are ordinary numbers.
+/// Follows the sliding arc from the tangential velocity `from` of length `speed`, for a contact whose rates are neither very large nor very small.
 #[inline]
 pub(super) fn arc<T: Real>(
     c: &Contact<T>,
@@ -30,7 +31,7 @@ pub(super) fn arc<T: Real>(
     restitution: &mut Restitution<T>,
 ) -> Slide<T> {
     let eps = T::default_epsilon();
-    // Rounding leaves h this uncertain.
+    // The rounding error of h.
     let noise = eps * c.slip_size();
     let direction = from / speed;
     let [.., h] = c.rates(&direction);

@@ -1,11 +1,12 @@
-//! The sliding arc between two neighbouring directions in which slip would stay: from the unstable one, a^2, to the stable one, b^2.
+//! The chart of a sliding arc: slip turns from an unstable invariant direction a^2 towards a stable one b^2, and one parameter w makes all rates rational.
 //!
-//! With complex numbers for vectors of the contact plane, slip is sigma (a + b w)^2 with w from 0 to infinity, and along lambda = ln w
-//! (34) becomes d ln sigma = k / q, dI_n = sigma e^2 / q and dv_n = sigma e F / q, with quadratics e, q, k and F in w. The impulses are sums of three
-//! integrals, of sigma e / q times 1, w and w^2.
+//! With complex numbers for vectors of the contact plane, slip is sigma (a + b w)^2 with w from 0 to infinity. Along lambda = ln w, (34) becomes
+//! d ln sigma = (k / q) dlambda, dI_n = (sigma e^2 / q) dlambda and dv_n = (sigma e F / q) dlambda, with quadratics e, q, k and F in w. Normal impulse,
+//! tangential impulse and v_n are sums of three integrals: of sigma e / q times 1, w and w^2.
 //!
-//! With C + i S = a b* (b* the conjugate), h = -2 S w q / e^2 where q = (h'(a^2), 6 m S, -h'(b^2)), the coefficients of 1, w and w^2, and m is mu times
-//! the off-diagonal entry of T in axes along a b. At w = 0 and without end (34) must hold as well: k = (g(a^2), C (g(a^2) + g(b^2)) - q_1, g(b^2) - 2 q_2).
+//! With C + i S = a b* (b* the conjugate), h = -2 S w q / e^2. The coefficients of q (of 1, w and w^2) are h'(a^2), 6 m S and -h'(b^2), where m is mu times
+//! the off-diagonal entry of T in axes along a b. Those of k follow from (34) in the limits w -> 0 and w -> infinity: g(a^2),
+//! C (g(a^2) + g(b^2)) - q_1 and g(b^2) - 2 q_2.
 //!
 //! Theory: docs/theory.md, section 4.
 
@@ -18,7 +19,7 @@ use super::{
 };
 use crate::scalar::{Real, constant, dot, fma, larger};
 
-/// The three integrals along a stretch of the arc.
+/// The integrals of sigma e / q times 1, w and w^2 over lambda, along a stretch of the arc.
 pub(super) type Integrals<T> = [T; 3];
 
 /// The coefficients of an arc.
@@ -38,16 +39,16 @@ pub(super) struct SlidingArc<T: Real> {
     pub central: [T; 3],
     /// F = f e (31).
     pub f: [T; 3],
-    /// The terms of which f is made.
+    /// The sum of the sizes of the terms of f, for estimates of rounding.
     pub size: T,
     /// |h| = bend w q / e^2.
     bend: T,
     /// The larger of the moduli of the zeros of q.
     pub outer: T,
-    /// The angle between a zero of q and the positive axis, and how far the logarithms of real zeros lie from their mean.
+    /// The angle between a zero of q and the positive real axis, and the distance of the logarithms of two real zeros from their mean.
     pub angle: T,
     pub spread: T,
-    /// The inverse of the zeros' mean modulus.
+    /// The inverse of the geometric mean of the moduli of the zeros of q.
     pub scale: T,
     /// Whether f may change sign.
     pub may_turn: bool,
@@ -57,31 +58,31 @@ pub(super) struct SlidingArc<T: Real> {
 #[derive(Clone, Copy)]
 pub(super) struct ArcPoint<T: Real> {
     pub state: State<T>,
-    /// Normal work since the latest compression ended: a small number that keeps its digits.
+    /// Normal work since the latest compression ended, kept apart from the total because it may be much smaller.
     pub since: T,
     pub w: T,
     pub sigma: T,
 }
 
-/// Rates by lambda.
+/// Derivatives with respect to lambda, and e, 1 / q and f, at a point of the arc.
 pub(super) struct Rates<T> {
     pub e: T,
     /// 1 / q.
     pub inverse: T,
-    /// dI_n, and f = dv_n / dI_n.
+    /// The derivative of I_n, and f = dv_n / dI_n.
     pub impulse: T,
     pub slope: T,
-    /// Of ln sigma, and of ln(sigma e / q).
+    /// The derivatives of ln sigma (`growth`) and of ln(sigma e / q) (`weight`).
     pub growth: T,
     pub weight: T,
-    /// Of the growth.
+    /// The derivative of `growth`.
     pub change: T,
-    /// Of ln e and ln F.
+    /// The derivatives of ln e (`shape`) and of ln F (`turn`).
     pub shape: T,
     pub turn: T,
 }
 
-/// How the rates change: of ln sigma (the second derivative of the growth), ln(sigma e / q), ln e and ln F.
+/// Higher derivatives with respect to lambda: the third of ln sigma (`growth`), and the second of ln(sigma e / q), ln e and ln F.
 pub(super) struct RateChanges<T> {
     pub growth: T,
     pub weight: T,
@@ -90,12 +91,12 @@ pub(super) struct RateChanges<T> {
 }
 
 impl<T: Real> SlidingArc<T> {
-    /// The arc through the direction `d`, where h is not zero, and its parameter there.
+    /// The arc through the direction `d`, at which h is not zero, and the parameter w of `d`.
     #[inline]
     pub fn through(c: &Contact<T>, d: &Vector2<T>) -> (Self, T) {
         let (zero, one, two) = (T::zero(), T::one(), constant::<T>(2.0));
         let (half, four, six) = (constant::<T>(0.5), constant::<T>(4.0), constant::<T>(6.0));
-        // b, mu times the mean and the deviator of T, as seen from d.
+        // b, and mu times mean and deviator of T, in axes in which d is (1, 0).
         let b = over(&c.b, d);
         let mean = (c.mu_tt + c.mu_ss) * half;
         let nu = over(&over(&Vector2::new((c.mu_tt - c.mu_ss) * half, c.mu_ts), d), d);
@@ -108,7 +109,7 @@ impl<T: Real> SlidingArc<T> {
             h: [h, fma(four, nu.x, -two * b.x), six * nu.y, fma(-four, nu.x, -two * b.x), -b.y - nu.y],
         };
         let [u, s] = rough;
-        // Half the angles from here: behind in the first, ahead in the second.
+        // Unit vectors at half the angles to the zeros: `a` to the one behind, `z` to the one ahead.
         let forward = if h > zero { one } else { -one };
         let (a, Zero { direction: u, slope: q0, pull: g_u }) = near.exact([&b, &nu, &u], -forward, one);
         let (z, Zero { direction: s, slope: q2, pull: g_s }) = near.exact([&b, &nu, &s], forward, -one);
@@ -147,13 +148,13 @@ impl<T: Real> SlidingArc<T> {
         (arc, start)
     }
 
-    /// e.
+    /// e = abs(a + b w)^2.
     #[inline(always)]
     pub fn e(&self, w: T) -> T {
         fma(w + self.middle, w, T::one())
     }
 
-    /// Whether |h| is at most this.
+    /// Whether abs(h) is at most `than`.
     #[inline(always)]
     pub fn turns_slower(&self, point: &ArcPoint<T>, rates: &Rates<T>, than: T) -> bool {
         self.bend * point.w <= than * rates.inverse * rates.e * rates.e
@@ -174,7 +175,7 @@ impl<T: Real> SlidingArc<T> {
         Vector2::new(fma(fma(b.x, w, ab.x), w, a.x), fma(fma(b.y, w, ab.y), w, a.y)) * point.sigma
     }
 
-    /// g at the stable end: the rate of slip there.
+    /// g at the stable direction: ds / dI_n there.
     #[inline(always)]
     pub fn last_rate(&self) -> T {
         fma(constant::<T>(2.0), self.q[2], self.k[2])
@@ -205,7 +206,7 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// How the rates change at a point.
+    /// The higher derivatives at a point.
     #[inline]
     pub fn rate_changes(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> RateChanges<T> {
         let w = point.w;
@@ -224,7 +225,7 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// Adds integrals to a state, but for the work.
+    /// Adds to impulses and v_n of a state what the three integrals contribute (theory, 4.15); the work is left as it is.
     #[inline(always)]
     pub fn add(&self, [m0, m1, m2]: Integrals<T>, state: &mut State<T>) {
         let [f0, f1, f2] = self.f;
@@ -236,7 +237,7 @@ impl<T: Real> SlidingArc<T> {
     }
 }
 
-/// Whether a quadratic has zeros at positive w.
+/// Whether a quadratic has, or up to rounding may have, zeros at positive w.
 #[inline]
 fn may_turn<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
     let zero = T::zero();
@@ -246,7 +247,7 @@ fn may_turn<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
     apart || *f0 == zero || *f2 == zero || (between && *f1 * *f1 >= constant::<T>(3.9) * *f0 * *f2)
 }
 
-/// ln x, to a per cent between 1/8 and 8 and too near to zero beyond.
+/// ln x with a relative error of about one per cent between 1/8 and 8; beyond, its size is too small.
 #[inline]
 pub(super) fn rough_ln<T: Real>(x: T) -> T {
     // 2 atanh((x - 1) / (x + 1))
@@ -255,7 +256,7 @@ pub(super) fn rough_ln<T: Real>(x: T) -> T {
     (u + u) * fma(constant::<T>(-4.0), z, constant(15.0)) / fma(constant::<T>(-9.0), z, constant(15.0))
 }
 
-/// The angle with this cosine, to a few per cent; pi below -1.
+/// The angle with this cosine, with an error of about one per cent; pi for cosines below -1.
 #[inline]
 fn angle<T: Real>(cos: T) -> T {
     let one = T::one();

@@ -1,4 +1,4 @@
-//! Snapshots of the states that the solver recorded, in the units of the input.
+//! Converts the states that the solver recorded into snapshots in the units of the input.
 //!
 //! Theory: docs/theory.md, section 1.2.
 
@@ -13,10 +13,10 @@ use crate::{
     scalar::{Real, constant},
 };
 
-/// From the units of the solver, where m_nn = 1 and v_n1 = -1, to those of the input.
+/// The units of the solver, where m_nn = 1 and v_n1 = -1, in those of the input.
 pub(crate) struct Units<'a, T: Real> {
     pub approach: &'a Vector3<T>,
-    /// Of impulse and of velocity.
+    /// The units of impulse (`scale`) and of velocity (`speed`).
     pub scale: T,
     pub speed: T,
     pub contact: &'a Contact<T>,

@@ -1,8 +1,8 @@
-//! The rest of the arc until slip stops, by series in u = 1 / w.
+//! Integrates the rest of the sliding arc, until slip stops, by power series in u = 1 / w.
 //!
-//! About the stable direction slip is tau (b + a u)^2 with tau = sigma w^2, and the integrals that remain are tau R(u) (tau^2 R for the work of
-//! friction) with Q u R' - K R = w, where Q, K and w are polynomials: one recurrence with two taps, shared by four lanes. The rows are worked
-//! on in memory, which lets the compiler keep the four lanes in one register.
+//! Near the stable direction slip is tau (b + a u)^2 with tau = sigma w^2. The integrals from here to the end of slip are tau R(u) (tau^2 R(u) for the work
+//! of friction), where Q u R' - K R is a known polynomial in u. The coefficients of R obey a three-term recurrence, which runs for four integrals at once.
+//! They are kept in arrays of four, which the compiler holds in one vector register.
 //!
 //! Theory: docs/theory.md, section 6.
 
@@ -14,23 +14,23 @@ use super::{
 };
 use crate::scalar::{Real, constant, dot, fma, larger};
 
-/// One coefficient of the four lanes: the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and the work of friction.
+/// One coefficient of each series, for the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and for the work of friction.
 type Row<T> = [T; 4];
 
-/// Terms between two looks at whether they still count.
+/// The number of terms between two tests for convergence.
 const BLOCK: usize = 8;
 
-/// Most blocks. With u at less than half of the distance to the zeros of q four are enough.
+/// The greatest number of blocks. Four suffice if u is less than half the distance to the zeros of Q.
 const BLOCKS: u32 = 12;
 
-/// Minus the multipliers of the terms before and that of the term itself, as base + n slope.
+/// The coefficients of the recurrence (theory, 6.4), each as `base` + n `slope`: of term n on its left side, and of terms n - 1 and n - 2 on its right side.
 struct Taps<T> {
     base: [Row<T>; 3],
     slope: [Row<T>; 3],
 }
 
 impl<T: Real> SlidingArc<T> {
-    /// Whether the series converges quickly from here, for so much of all slip.
+    /// Whether 64 terms of the series suffice from here, where slip is `share` of the slip at the start.
     #[inline]
     pub fn settles(&self, point: &ArcPoint<T>, share: T) -> bool {
         let ratio = point.w / self.outer;
@@ -39,11 +39,11 @@ impl<T: Real> SlidingArc<T> {
         }
         let [q0, q1, q2] = self.q;
         let [k0, k1, _] = self.k;
-        // The terms must fall from the beginning, too: steep powers of the distance to the zeros of q make them rise first.
+        // The terms must also decrease from the first on: large powers of the distance from the zeros of q would let them grow first.
         let u = T::one() / point.w;
         let (last, fall) = (-self.last_rate(), q2 - self.last_rate());
         let rise = larger(((k1 + q1 + q1).abs() + (k0 + q0 + q0).abs() * u) * u - fall, T::zero());
-        // After 64 terms nothing may be left.
+        // The terms after the 64th must be below rounding.
         let power = ratio * ratio;
         let power = power * power;
         let power = power * power;
@@ -62,7 +62,7 @@ impl<T: Real> SlidingArc<T> {
         let (uu, middle) = (u * u, self.middle * u);
         let [q0, q1, q2] = self.q;
         let [k0, k1, _] = self.k;
-        // ln tau grows by K / Q; powers of u are put into the coefficients.
+        // K and Q; powers of u are included in their coefficients.
         let far = [self.last_rate(), (k1 + q1 + q1) * u, (k0 + q0 + q0) * uu];
         let [k0, k1, k2] = far.map(|k| [k, k, k, k + k]);
         let (q0, q1, q2) = (q2, q1 * u, q0 * uu);
@@ -94,7 +94,7 @@ impl<T: Real> SlidingArc<T> {
             block(&mut rows, &mut sources, &mut taps, &mut total);
             let [[a, b, c, d], [a1, b1, c1, d1], ..] = rows;
             let [sum, .., rubbed] = total;
-            // Measured against all that has been since the beginning.
+            // The last two terms, compared with the whole impulse and the whole work since the start.
             let left = (a.abs() + b.abs() + c.abs()) + (a1.abs() + b1.abs() + c1.abs());
             if left <= eps * (sum + before) && d.abs() + d1.abs() <= eps * (rubbed + worked) {
                 break;
@@ -119,7 +119,8 @@ impl<T: Real> SlidingArc<T> {
     }
 }
 
-/// Eight terms from the two before, which come first in `rows`; those of the next block, and its sources and taps, are left behind.
+/// Computes eight terms from the two before them, which are the first two of `rows`, and adds them to `total`. Prepares `rows`, `sources` and `taps` for the
+/// next block.
 #[inline(never)]
 fn block<T: Real>(
     rows: &mut [Row<T>; BLOCK + 2],

@@ -1,4 +1,4 @@
-//! Slip that keeps its direction, and how the sliding arc ends.
+//! The sliding arc of slip that keeps its direction, and the ways in which a sliding arc may end ([`Slide`]).
 //!
 //! Theory: docs/theory.md, sections 7.1 and 7.2.
 
@@ -10,13 +10,13 @@ use super::{
 };
 use crate::scalar::{Real, constant};
 
-/// How the sliding arc ends.
+/// How a sliding arc ends.
 pub(crate) enum Slide<T: Real> {
     /// The law ended the collision while the contact slid with this velocity.
     Ended(State<T>, Vector2<T>),
     /// Slip stopped first.
     Stopped(State<T>),
-    /// Neither happens: slip goes on for ever.
+    /// Neither happens: slip never stops, and the law never ends the collision.
     Endless(State<T>),
 }
 
@@ -34,7 +34,7 @@ pub(crate) fn straight<T: Real>(
     if f.abs() <= noise * c.normal_size() {
         f = T::zero();
     }
-    // Slip that no longer changes while v_n does not either goes on for ever.
+    // If neither slip nor v_n changes, slip never stops.
     let dead = f == T::zero() && g.abs() <= noise * c.slip_size();
     let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
     let across = Vector2::new(-d.y, d.x);
@@ -64,9 +64,9 @@ pub(crate) fn straight<T: Real>(
     }
 }
 
-/// The integral over I_n of the deviation of phi from a zero of h, where h is `turn` = 0 up to its derivatives.
+/// B, the integral over I_n of the angle by which slip turns, to first order in h (theory, 7.1).
 ///
-/// To first order phi' = h + h' phi along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'.
+/// To first order theta' = h + h' theta along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'. Where h = 0 the value is zero, but not its derivative.
 /// `impulse` is I_n since the beginning, or `None` for all I_n until slip stops.
 #[inline]
 pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
@@ -89,7 +89,7 @@ pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impuls
         let y = k * tau;
         if y.abs() <= small { tau * (one + y * half) } else { y.exp_m1() / k }
     };
-    // Where h' vanishes too, a small value gives the limit.
+    // For h' -> 0 the formula is 0 / 0; a small h' gives its limit.
     let slope = sum - g;
     let slope = if (slope * tau).abs() <= small { small / tau } else { slope };
     turn * slip * (grown(slope + g) - ratio) / slope

@@ -1,4 +1,4 @@
-//! Very short steps along the sliding arc, by Taylor's series.
+//! Steps along the sliding arc so short that a few terms of Taylor's series suffice.
 //!
 //! Theory: docs/theory.md, section 8.5.
 
@@ -6,7 +6,7 @@ use super::sliding_arc::{ArcPoint, RateChanges, Rates, SlidingArc};
 use crate::scalar::{Real, constant, fma};
 
 impl<T: Real> ArcPoint<T> {
-    /// Goes a tiny step of lambda further: the error is of third order.
+    /// Moves the point by `step` in lambda with an error of third order.
     #[inline]
     pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {
         let (one, half) = (T::one(), constant::<T>(0.5));
@@ -27,7 +27,7 @@ impl<T: Real> ArcPoint<T> {
         self.w *= fma(step, one + halved, one);
     }
 
-    /// Goes a small step of lambda further: the error is of fourth order.
+    /// Moves the point by `step` in lambda with an error of fourth order.
     #[inline(never)]
     pub fn third_order_step(
         &mut self,
@@ -46,7 +46,7 @@ impl<T: Real> ArcPoint<T> {
         let second = first * w;
         let from = self.state;
         arc.add([first * bent(T::zero()), second * bent(one), second * w * bent(one + one)], &mut self.state);
-        // The trapezoid, and the bend of v_n over I_n.
+        // The work by the trapezoidal rule and its correction for the curvature of v_n over I_n.
         let pushed = self.state.normal - from.normal;
         let bow = rates.slope * (rates.turn - rates.shape) * step * pushed * constant(1.0 / 6.0);
         let done = (from.velocity + self.state.velocity - bow) * half * pushed;

@@ -1,4 +1,4 @@
-//! The arc after slip has stopped: sticking (45) or sliding in the direction phi_hat (46). Both are linear in I_n.
+//! The terminal arc, after slip has stopped: sticking (45), or renewed sliding in the direction phi_hat (46). All velocities are linear in I_n on it.
 //!
 //! Theory: docs/theory.md, section 10.
 
@@ -8,9 +8,10 @@ use super::contact::Contact;
 use crate::scalar::{Real, constant, dot, fma, larger, length};
 
 impl<T: Real> Contact<T> {
-    /// The least-norm solution of T x = b by elimination from the larger pivot; a pivot lost to rounding counts as zero if b lies in the range of T.
+    /// The solution x of T x = b of least norm, by elimination with the larger pivot first. The tangential impulse -x per I_n keeps the contact from slipping.
     ///
-    /// If b does not, such a pivot is small and no zero: a positive semidefinite matrix has at least the square of what is left of b there.
+    /// A second pivot within rounding of zero counts as zero if b lies in the range of T. If b does not, the pivot is small but not zero: in a positive
+    /// semidefinite matrix it is at least the square of what elimination leaves of b.
     #[inline]
     pub fn hold(&self) -> Vector2<T> {
         let swap = self.ss > self.tt;
@@ -36,10 +37,10 @@ impl<T: Real> Contact<T> {
         if swap { Vector2::new(x.y, x.x) } else { x }
     }
 
-    /// dv_n / dI_n while the tangential impulse `hold` keeps the contact from slipping; zero where the contact can no longer move along n.
+    /// dv_n / dI_n while the tangential impulse -`hold` per I_n keeps the contact from slipping; zero where the contact cannot move along n without slip.
     ///
-    /// Formed so that an error of `hold` counts by its square. What remains is what the rounding of the entries does: much if the contact
-    /// hardly resists in the direction of `hold`. Below that a rate means nothing, and depends on how the axes are turned.
+    /// The formula is such that an error of `hold` enters by its square. What remains is the rounding of the matrix entries, which counts much where `hold` is
+    /// large. A rate below that error is taken for zero; it would depend on the choice of axes.
     #[inline]
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
         let pulled =
@@ -57,7 +58,7 @@ impl<T: Real> Contact<T> {
     pub fn renewal(&self) -> Vector2<T> {
         let (mut b, mut tt, mut ts, mut ss) = (self.b, self.mu_tt, self.mu_ts, self.mu_ss);
         if !self.is_ordinary() {
-            // The direction depends on the ratios alone.
+            // The direction depends on ratios of the entries only.
             let unit = T::one() / self.slip_size();
             (b, tt, ts, ss) = (b * unit, tt * unit, ts * unit, ss * unit);
         }
@@ -85,7 +86,7 @@ impl<T: Real> Contact<T> {
                 g = next;
             }
         }
-        // The determinant may have lost digits: what they left in h, taken away.
+        // The determinant may have lost digits; a turn by h / (-h') makes h zero again.
         let [_, g, h] = self.rates(&d);
         let across = Vector2::new(-d.y, d.x);
         let turn = h / (g - self.convergence(&d));
@@ -96,15 +97,15 @@ impl<T: Real> Contact<T> {
     }
 }
 
-/// What the contact does once it has stopped slipping, per I_n.
+/// What happens on the terminal arc, per unit of I_n.
 #[derive(Clone, Copy)]
 pub(crate) struct Terminal<T: Real> {
     pub sticks: bool,
-    /// The opposite of the tangential impulse.
+    /// Minus the change of the tangential impulse.
     pub push: Vector2<T>,
-    /// Tangential velocity.
+    /// The change of the tangential velocity.
     pub gain: Vector2<T>,
-    /// v_n.
+    /// The change of v_n.
     pub rate: T,
     pub mu_c: T,
 }
@@ -121,7 +122,7 @@ impl<T: Real> Terminal<T> {
         }
         let d = contact.renewal();
         let g = contact.slip_rate(&d).dot(&d);
-        // f >= mu g > 0 of a positive semidefinite matrix, where f is a difference lost to rounding.
+        // f >= mu g > 0 for a positive semidefinite matrix (theory, 2.9), used where f has lost its digits.
         let rate = contact.normal_rate(&d);
         let rate = if rate > T::zero() { rate } else { contact.mu * g };
         Self { sticks: false, push: d * contact.mu, gain: d * g, rate, mu_c }

@@ -1,10 +1,10 @@
-//! The laws of impact, held against every answer before it leaves: nothing that breaks one is given out.
+//! Checks every outcome against the laws of impact before it is returned; an outcome that violates one becomes an error.
 //!
-//! Residuals are those of the answer itself, in the units of the solver, and count relative to the speeds and works of the impact.
-//! An answer of the solver is exact to a small multiple of the rounding unit times the condition of the contact; where a residual exceeds
-//! the root of the rounding unit, rounding has taken half of the digits, and the input does not determine the answer in these numbers.
+//! The residuals of the laws are formed from the outcome, in the units of the solver, and compared with the speeds, impulses and works of the impact.
+//! An outcome has an error of a small multiple of the rounding unit times the condition of the contact. A residual above the square root of the rounding
+//! unit means that rounding has taken half of the digits: numbers of this precision do not determine the outcome.
 //!
-//! Theory: docs/theory.md, section 18.2.
+//! Theory: docs/theory.md, sections 9.4 and 18.2.
 
 use nalgebra::Vector2;
 
@@ -17,19 +17,19 @@ use crate::{
     scalar::{Real, constant, dot, fma, larger, length, smaller},
 };
 
-/// The largest residual of a sound answer over its scale: the root of the rounding unit.
+/// The largest residual that is accepted, over its scale: the square root of the rounding unit.
 #[inline(always)]
 fn share<T: Real>() -> T {
     constant(if T::default_epsilon() > constant(1e-10) { 3.5e-4 } else { 1.5e-8 })
 }
 
-/// How many rounding units of its terms the balance of momentum may miss.
+/// The residual of the balance of momentum that roundings of its terms explain, in rounding units of these terms.
 const ROUNDINGS: f64 = 16.0;
 
-/// The most that these roundings may take of the speeds.
+/// The largest share of the speeds that may be explained so.
 const LEFT: f64 = 1e-3;
 
-/// The residuals of an answer, each with its scale.
+/// The residuals of an outcome, each with its scale.
 struct Residuals<T> {
     momentum: [(T, T); 2],
     work: T,
@@ -37,8 +37,8 @@ struct Residuals<T> {
 }
 
 impl<T: Real> Restitution<T> {
-    /// Holds an answer against the laws: v_2 = v_1 + M I (20)-(22), Coulomb's cone, I_n >= 0, v_n2 >= 0, no work gained from friction, and
-    /// what the law of restitution says of v_n, I_n or the work.
+    /// Checks an outcome against v_2 = v_1 + M I (20)-(22), Coulomb's cone, I_n >= 0, v_n2 >= 0, work of friction <= 0, and the law of restitution. `from` is
+    /// the tangential velocity of approach, `slip` its length.
     #[inline]
     pub(super) fn verify(
         &self,
@@ -53,7 +53,7 @@ impl<T: Real> Restitution<T> {
         let share = share::<T>();
         let most = c.mu * end.normal;
         let i = &end.tangential;
-        // Written so that what is not a number fails.
+        // Comparisons with NaN are false, so that NaN fails.
         let sound = n <= share * speed
             && t <= share * slips
             && end.normal >= T::zero()
@@ -79,7 +79,7 @@ impl<T: Real> Restitution<T> {
         let t = fma(c.b.x, end.normal, from.x) + dot(c.tt, i.x, c.ts, i.y) - velocity.x;
         let s = fma(c.b.y, end.normal, from.y) + dot(c.ts, i.x, c.ss, i.y) - velocity.y;
         let slips = T::one() + slip + velocity.x.abs() + velocity.y.abs();
-        // Where slip drives v_n, it passes through speeds of the size of slip.
+        // Couplings of n with the contact plane give v_n intermediate values of the size of slip.
         let coupled = smaller(c.b.x.abs() + c.b.y.abs(), T::one());
         let speed = fma(coupled, slips, T::one() + end.velocity.abs());
         let half = constant::<T>(0.5);
@@ -91,7 +91,7 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// Names the law that an answer breaks, if it does: the same again with care for the range of the numbers.
+    /// An error that names the law which the outcome violates, if it does. The same checks again, safe from overflow and with the roundings of the terms.
     #[cold]
     #[inline(never)]
     fn violation(
@@ -118,7 +118,7 @@ impl<T: Real> Restitution<T> {
         let along = end.normal + c.b.x.abs() * i.x.abs() + c.b.y.abs() * i.y.abs();
         let (b, rubbed) = (larger(c.b.x.abs(), c.b.y.abs()), larger(i.x.abs(), i.y.abs()));
         let across = b * end.normal + (larger(c.tt, c.ss) + c.ts.abs()) * rubbed;
-        // But where they leave no digits of the speeds, any answer would do.
+        // Where these roundings exceed a share of the speeds, any outcome would be accepted: they are bounded.
         let known = |terms: T, scale: T| smaller(rounding * terms, scale * constant(LEFT));
         if !within(n - known(along, speed), speed) {
             return broken(Violation::Momentum, n / speed);
@@ -133,7 +133,7 @@ impl<T: Real> Restitution<T> {
             return broken(Violation::Separation, -end.velocity);
         }
         let size = larger(i.x.abs(), i.y.abs());
-        // Denormal impulses have no digits to compare.
+        // Denormal impulses have too few digits to compare.
         if size > constant(if T::default_epsilon() > constant(1e-10) { 1e-30 } else { 1e-290 }) {
             let most = c.mu * end.normal;
             let excess = length(&(i / size)) - most / size;

@@ -1,5 +1,5 @@
-//! Impact without collision: v_n = 0, but slip is such that a normal impulse would press the bodies together (f < 0), so that no finite
-//! force exists (Painleve).
+//! Impact without collision (Painleve's paradox): v_n = 0, but the friction of the present slip makes a normal impulse reduce v_n (f < 0), so that no
+//! finite contact force exists.
 //!
 //! Theory: docs/theory.md, section 17.6.
 
@@ -50,7 +50,7 @@ pub fn impact_without_collision<T: crate::Scalar>(
     without_collision(matrix, slip, surface)
 }
 
-/// The same for everything that the solver can calculate with.
+/// [`impact_without_collision`] for every number type of the solver: the public scalars and dual numbers.
 pub(crate) fn without_collision<T: Real>(
     matrix: &ReducedMatrix<T>,
     slip: &Vector2<T>,
@@ -71,7 +71,7 @@ pub(crate) fn without_collision<T: Real>(
     }
     let restitution = Restitution::without_collision(surface.law, surface.e);
     let mut impact = collide(&matrix, &approach, speed, surface, restitution, slide)?;
-    // f rose at once: v_n has come back from where it never went.
+    // f becomes positive at once: v_n has not fallen, and there is no impact.
     if impact.impulse.x * matrix.nn <= eps * speed * length(&(slip / speed)) {
         return Err(ImpactError::NoImpact { rate: f * matrix.nn });
     }

@@ -1,8 +1,8 @@
-//! Where friction does not act on v_n (m_nt = m_ns = 0), v_n is linear in I_n, and slip decays by itself.
+//! The sliding arc of a balanced contact, m_nt = m_ns = 0, in closed form: tangential impulses do not change v_n, and v_n is linear in I_n.
 //!
-//! In the eigenbasis of T the components of slip are exponentials of sigma, dI_n = s dsigma: v_1' = -alpha v_1, v_2' = -nu v_2 with
-//! alpha = mu lambda_1 >= nu = mu lambda_2, so that v_2 ~ v_1^(lambda_2 / lambda_1). The impulse, the integral of s, is an incomplete beta
-//! function of the direction, summed here by two series that complement each other.
+//! Along the eigenvectors of T the components of slip are exponentials of sigma, where dI_n = s dsigma: v_1' = -alpha v_1 and v_2' = -nu v_2 with
+//! alpha = mu lambda_1 >= nu = mu lambda_2. I_n, the integral of s, is an incomplete beta function of the direction of slip. Two series give it, one where
+//! slip is near the direction of v_1 and one elsewhere.
 //!
 //! Theory: docs/theory.md, section 11.3.
 
@@ -18,10 +18,10 @@ use crate::{
     solve::{Contact, Restitution, Slide, State, slide, straight},
 };
 
-/// (v_2 / v_1)^2 up to which slip is expanded about the direction of v_1.
+/// The greatest (v_2 / v_1)^2 at which the series about the direction of v_1 is used.
 const NEAR: f64 = 0.5;
 
-/// Terms of either series: enough for ratios of 1/2 and 2/3.
+/// The greatest number of terms of either series; their terms fall at least like (1/2)^k and (2/3)^k.
 const TERMS: u32 = 128;
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -57,7 +57,7 @@ fn principal<T: Real>(c: &Contact<T>) -> (Vector2<T>, [T; 2]) {
     }
     let greater = middle + radius;
     let lesser = (c.tt * c.ss - c.ts * c.ts) / greater;
-    // The longer of two vectors along the axis.
+    // Two vectors lie along the axis; the longer one has lost no digits.
     let axis = if difference >= zero {
         Vector2::new(difference + radius, c.ts)
     } else {
@@ -66,7 +66,7 @@ fn principal<T: Real>(c: &Contact<T>) -> (Vector2<T>, [T; 2]) {
     (axis / length(&axis), [greater, if lesser > zero { lesser } else { zero }])
 }
 
-/// Slides where T has these eigenvalues, the first for the direction `axis`.
+/// Follows the sliding arc of a contact whose T has these eigenvalues, the first with the eigenvector `axis`.
 #[inline]
 pub(super) fn decay<T: Real>(
     c: &Contact<T>,
@@ -108,7 +108,8 @@ impl<T: Real> Decay<T> {
         self.axis * first + Vector2::new(-self.axis.y, self.axis.x) * second
     }
 
-    /// The state at a normal impulse, when v_1 and v_2 have gone through these times their size at the start, and the work since then.
+    /// The state at the normal impulse `normal`, where the integrals of v_1 and v_2 over sigma are `first` and `second` times their values at the start, and the
+    /// normal work since the start.
     fn state(&self, normal: T, first: T, second: T) -> (State<T>, T) {
         let [v1, v2] = self.start;
         let State { normal: before, tangential, velocity, work } = self.begin;
@@ -122,7 +123,7 @@ impl<T: Real> Decay<T> {
         (state, since)
     }
 
-    /// I_n after sigma; all that is left if there is none.
+    /// I_n from the start to `sigma`; to the end of slip if it is `None`.
     fn impulse(&self, sigma: Option<T>) -> T {
         let [first, second] = self.start;
         let [fast, slow] = self.rates;
@@ -132,7 +133,7 @@ impl<T: Real> Decay<T> {
         if square >= near {
             return self.far(first, second, sigma);
         }
-        // Where the one expansion gives way to the other: nothing depends on it.
+        // sigma at which one series replaces the other; the result does not depend on it.
         let change = ((near / square).ln() / (self.difference + self.difference)).primal();
         match sigma {
             Some(sigma) if sigma <= change => self.near(sigma),
@@ -143,7 +144,7 @@ impl<T: Real> Decay<T> {
         }
     }
 
-    /// From the start, where |v_2| is the lesser: |v_1| (1 + z)^(1/2) term by term, z = (v_2 / v_1)^2 growing.
+    /// I_n from the start to `sigma`, where |v_2| < |v_1|: the integral of |v_1| (1 + z)^(1/2), z = (v_2 / v_1)^2, by the binomial series.
     fn near(&self, sigma: T) -> T {
         let [first, second] = self.start;
         let [fast, _] = self.rates;
@@ -157,7 +158,7 @@ impl<T: Real> Decay<T> {
         for k in 0..TERMS {
             let rate = fast - double * constant(f64::from(k));
             let x = rate * sigma;
-            // Where z^k |v_1| neither grows nor decays the quotient would be 0 / 0.
+            // Where z^k |v_1| hardly changes the quotient would be nearly 0 / 0.
             let lasting =
                 if x.abs() <= constant(0.5) { now * decayed(rate, sigma) } else { (now - then) / rate };
             let term = binomial * lasting;
@@ -172,7 +173,7 @@ impl<T: Real> Decay<T> {
         first.abs() * sum
     }
 
-    /// From any point where |v_2| is not small: the integral of |v_2|, and that of s - |v_2| = s R with R analytic in u = (v_1 / s)^2.
+    /// I_n from any point where |v_2| is not small: the integral of |v_2| plus that of s - |v_2|, which is s R(u) with a power series R in u = (v_1 / s)^2.
     fn far(&self, first: T, second: T, sigma: Option<T>) -> T {
         let (one, zero) = (T::one(), T::zero());
         let [fast, slow] = self.rates;
@@ -183,7 +184,7 @@ impl<T: Real> Decay<T> {
         }
         let (c, s) = (first / slip, second / slip);
         let u = c * c;
-        // Of s and of u: what is left after sigma, and what is gone, without cancellation.
+        // The parts of s and of u that are left after sigma, and those that are gone, both without cancellation.
         let (steady, [kept, gone], [stays, lost]) = match sigma {
             None => (one / slow, [zero, one], [zero, one]),
             Some(sigma) => {
@@ -208,7 +209,7 @@ impl<T: Real> Decay<T> {
             let n = f64::from(k);
             let of_last = self.difference * constant(2.0 * n - 3.0) * coefficient;
             coefficient = (of_last + left) / (slow + double * constant(n));
-            // s u^k less what is left of it.
+            // s u^k at the start less that after sigma.
             gone += kept * lost;
             kept *= stays;
             let term = coefficient * power * gone;
@@ -223,7 +224,7 @@ impl<T: Real> Decay<T> {
     }
 }
 
-/// The size of a term, over the sum, after which a series ends; derivatives need some more of them.
+/// The size of a term relative to the sum at which a series ends; smaller where numbers carry derivatives.
 #[inline]
 fn last<T: Real>() -> T {
     T::default_epsilon() * if T::refined() { constant(1.0 / 4096.0) } else { constant(0.125) }

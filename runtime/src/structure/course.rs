@@ -1,4 +1,4 @@
-//! A sliding arc in closed form, and the search for the end of the collision on it.
+//! Follows a sliding arc that is given in closed form, and locates on it the end of compression and the end of the collision.
 //!
 //! Theory: docs/theory.md, sections 8 and 11.
 
@@ -10,13 +10,13 @@ use crate::{
     solve::{Event, Restitution, Slide, State},
 };
 
-/// How often a step that leads nowhere yet is doubled.
+/// How often the step is doubled, on an arc without end, until it reaches the end of the collision.
 const DOUBLINGS: u32 = 200;
 
-/// Steps of one search.
+/// The greatest number of steps for one event.
 const STEPS: u32 = 100;
 
-/// A point of a course.
+/// A point of an arc.
 #[derive(Clone, Copy)]
 pub(super) struct Point<T: Real> {
     pub state: State<T>,
@@ -26,11 +26,11 @@ pub(super) struct Point<T: Real> {
     pub rate: T,
     /// f = dv_n / dI_n (31).
     pub slope: T,
-    /// Normal work since the course began: a small number that keeps its digits.
+    /// Normal work since the arc began, kept apart from the total because it may be much smaller.
     pub since: T,
 }
 
-/// A sliding arc over a parameter xi that starts at zero and grows with I_n.
+/// A sliding arc in closed form, over a parameter xi that is zero at its beginning and grows with I_n.
 pub(super) trait Course<T: Real>: Sized {
     /// The point at xi.
     fn at(&self, xi: T) -> Point<T>;
@@ -42,20 +42,20 @@ pub(super) trait Course<T: Real>: Sized {
     fn turn(&self) -> Option<T>;
 }
 
-/// What became of a piece of a course.
+/// What happens on a piece of an arc on which v_n is monotone.
 enum Piece<T: Real> {
     /// The law ended the collision.
     Ended(Point<T>),
-    /// It is over.
+    /// The law did not end the collision on it.
     Passed,
-    /// Compression ended here, and the law (Stronge's) counts the work from here on.
+    /// Compression ended here, and the law (Stronge's) needs the work from here on: the arc begins anew at this point.
     Compressed(Point<T>),
 }
 
-/// Follows a course until the law ends the collision or slip stops.
+/// Follows an arc until the law ends the collision or slip stops.
 pub(super) fn follow<T: Real>(mut course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
     let mut state = restitution.start();
-    // f changes sign once at most.
+    // f changes sign once at most, so that compression ends at most twice.
     for _ in 0..3 {
         match along(&course, restitution) {
             Followed::Over(slide) => return slide,
@@ -68,10 +68,10 @@ pub(super) fn follow<T: Real>(mut course: impl Course<T>, restitution: &mut Rest
     Slide::Endless(state)
 }
 
-/// What became of a course.
+/// What happens on an arc.
 enum Followed<T: Real> {
     Over(Slide<T>),
-    /// Compression ended here, and the law counts the work from here on.
+    /// As [`Piece::Compressed`].
     Compressed(Point<T>),
 }
 
@@ -100,7 +100,7 @@ fn along<T: Real>(course: &impl Course<T>, restitution: &mut Restitution<T>) -> 
             }
         };
     }
-    // Slip goes on for ever: as far as the law needs.
+    // Slip never stops: go on until the law ends the collision.
     let mut step = T::one() / from.1.rate;
     for _ in 0..DOUBLINGS {
         let xi = from.0 + step;
@@ -119,7 +119,7 @@ fn along<T: Real>(course: &impl Course<T>, restitution: &mut Restitution<T>) -> 
     Followed::Over(Slide::Endless(from.1.state))
 }
 
-/// What the law does between two points, between which v_n is monotone.
+/// What happens between two points between which v_n is monotone.
 fn piece<T: Real>(
     course: &impl Course<T>,
     restitution: &mut Restitution<T>,
@@ -129,7 +129,7 @@ fn piece<T: Real>(
     let zero = T::zero();
     let law = restitution.law();
     let (mut from, mut to) = (from, to);
-    // Stronge's law waits for work since compression ended, which may be too little to be seen in the whole.
+    // Stronge's target is a work since compression ended, which may be below the rounding of the total work.
     let works = law == Law::Stronge && restitution.compressions > 0 && restitution.stop.is_none();
     let passes = if works && from.1.state.velocity >= zero {
         to.1.velocity >= zero && to.2 < restitution.wanted
@@ -144,7 +144,7 @@ fn piece<T: Real>(
     }
     if from.1.state.velocity < zero {
         if law == Law::Newton && restitution.target > zero && !restitution.thorough {
-            // Newton's law need not know where compression ends.
+            // Newton's target does not depend on where compression ends.
             restitution.compressed_somewhere();
         } else {
             from = find(course, &Event::Velocity(zero), T::one(), &from, to.0);
@@ -182,7 +182,7 @@ fn find<T: Real>(
     let residual = |point: &Point<T>| event.residual(&point.state, point.since);
     let slope = |point: &Point<T>| point.rate * event.by_impulse(point.state.velocity, point.slope);
     let y = residual(begin);
-    // Work begins to grow like a square after compression.
+    // After the end of compression the work grows like the square of I_n.
     let v = begin.state.velocity;
     let guess = match event {
         Event::Work(_) => {
@@ -211,7 +211,7 @@ fn find<T: Real>(
         }
     }
     if T::refined() {
-        // A derivative is one step of Newton's behind its value.
+        // Derivatives converge one step of Newton's method later than values.
         let plain = xi.primal();
         let point = course.at(plain);
         xi = plain - residual(&point) / slope(&point);
@@ -224,7 +224,7 @@ fn find<T: Real>(
 pub(super) fn decayed<T: Real>(k: T, sigma: T) -> T {
     let x = k * sigma;
     if x.abs() <= constant(1e-5) {
-        // Three terms; the next is below rounding.
+        // Three terms of the series; the next is below rounding.
         return sigma * (T::one() - x * constant(0.5) * (T::one() - x * constant(1.0 / 3.0)));
     }
     -(-x).exp_m1() / k
@@ -240,7 +240,7 @@ pub(super) fn elapsed<T: Real>(k: T, xi: T) -> T {
     -(-x).ln_1p() / k
 }
 
-/// Whether slip has a direction that stays, exactly, with components `along` and `across` the axes of symmetry.
+/// Whether slip with components `along` and `across` an axis of symmetry keeps its direction: whether one of them is zero.
 #[inline]
 pub(super) fn stays<T: Real>(along: T, across: T) -> bool {
     let v = Vector2::new(along, across);

@@ -1,4 +1,4 @@
-//! The balanced contact whose axes are t and s: its eigenbasis is at hand.
+//! The sliding arc of a diagonal contact: balanced, with t and s as the principal axes of T.
 //!
 //! Theory: docs/theory.md, section 11.4.
 

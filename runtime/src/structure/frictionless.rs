@@ -1,4 +1,4 @@
-//! Without friction the impulse is along n, v_n is linear in it, and so is the slip.
+//! The arc of a contact without friction: the impulse is along n, and v_n and the tangential velocity are linear in it.
 //!
 //! Theory: docs/theory.md, section 11.1.
 
@@ -27,7 +27,7 @@ impl Shape for Frictionless {
     ) -> Slide<T> {
         let d = from / speed;
         let across = c.b.y * d.x - c.b.x * d.y;
-        // Slip can only pass through zero where it is along b.
+        // Slip can vanish only where it is parallel to b.
         if across.abs() <= constant::<T>(0.25) * T::default_epsilon() * length(&c.b) {
             return straight(c, d, speed, restitution.start(), restitution);
         }

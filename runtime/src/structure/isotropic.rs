@@ -1,8 +1,8 @@
-//! Where the contact plane resists alike in all directions, sliding is elementary.
+//! The sliding arc of an isotropic contact, m_ts = 0 and m_tt = m_ss, in closed form.
 //!
-//! With m_ts = 0, m_tt = m_ss and slip (v_1, v_2) along b and across it, P = (s + v_1) / 2 and M = (s - v_1) / 2 obey P' = (beta - kappa) P and
-//! M' = -(beta + kappa) M, where dI_n = s dsigma, beta = |b| and kappa = mu m_tt. So everything on the arc is a sum of exponentials of
-//! sigma; without sigma it reads s sin(psi) ~ tan(psi/2)^(kappa/beta), psi counted from b.
+//! With slip (v_1, v_2) along b and across it, P = (s + v_1) / 2 and M = (s - v_1) / 2 obey P' = (beta - kappa) P and M' = -(beta + kappa) M, where
+//! dI_n = s dsigma, beta = |b| and kappa = mu m_tt. All quantities on the arc are therefore sums of exponentials of sigma. Eliminating sigma,
+//! s sin(psi) is proportional to tan(psi/2)^(kappa/beta), psi being the angle of slip from b.
 //!
 //! Theory: docs/theory.md, section 11.2.
 
@@ -77,7 +77,7 @@ struct Arc<T: Real> {
     /// v_2 at the start.
     across: T,
     kappa: T,
-    /// At which P and M decay.
+    /// The rates at which P and M decay.
     rates: [T; 2],
     /// P and M at the start.
     sizes: [T; 2],
@@ -86,7 +86,8 @@ struct Arc<T: Real> {
 }
 
 impl<T: Real> Arc<T> {
-    /// The state where P, M and v_2 have gone through these times their size at the start, and P after M through `mixed` times both; the work since then.
+    /// The state where the integrals of P, M and v_2 over sigma are these multiples of their values at the start, and the integral of P times that of M is
+    /// `mixed` times both values; and the normal work since the start.
     fn state(&self, [p, m, across]: [T; 3], mixed: T) -> (State<T>, T) {
         let half = constant::<T>(0.5);
         let [a, b] = self.gains;

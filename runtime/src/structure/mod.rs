@@ -1,11 +1,12 @@
-//! Structure of a contact that is known while compiling, and what it spares.
+//! Contacts whose reduced matrix has a structure that is known at compile time, and solvers in closed form for them.
 //!
-//! The marker types say which entries vanish; those are then not read, whatever they hold. Each has its own closed form of the sliding arc:
+//! A marker type says which entries of the matrix, of the velocity of approach or of the surface are zero or equal. These are then not read, whatever their
+//! value. Each structure has a closed form of the sliding arc, with s the speed of slip and dI_n = s dsigma:
 //!
 //! | structure | slip | impulse |
 //! | --- | --- | --- |
-//! | [`Planar`], [`Frictionless`] | linear in I_n | is the variable |
-//! | [`Isotropic`] | exponentials of sigma, dI_n = s dsigma | exponentials of sigma |
+//! | [`Planar`], [`Frictionless`] | linear in I_n | the variable itself |
+//! | [`Isotropic`] | exponentials of sigma | exponentials of sigma |
 //! | [`Balanced`], [`Diagonal`] | exponentials of sigma | an incomplete beta function of the direction |
 //!
 //! Theory: docs/theory.md, section 11.
@@ -25,7 +26,7 @@ use crate::{
     solve::{Restitution, checked, collide},
 };
 
-/// A structure of the reduced matrix and the approach: one of the marker types of this module.
+/// A structure of a contact: one of the marker types of this module.
 pub trait Structure: implementation::Shape {}
 
 mod implementation {
@@ -37,9 +38,9 @@ mod implementation {
         solve::{Contact, Restitution, Slide, slide},
     };
 
-    /// What a structure does; not to be implemented elsewhere.
+    /// What a structure does. Other crates cannot implement it.
     pub trait Shape {
-        /// Sets to zero what vanishes.
+        /// Sets the entries that the structure fixes.
         #[expect(private_bounds, reason = "nobody else implements this")]
         fn impose<T: Real>(_: &mut ReducedMatrix<T>, _: &mut Vector3<T>, _: &mut Surface<T>) {}
 
@@ -57,15 +58,15 @@ mod implementation {
     }
 }
 
-/// No structure: as [`crate::solve`].
+/// No structure: the general solver, as [`crate::solve`].
 #[derive(Clone, Copy, Debug)]
 pub struct General;
 
-/// m_ns = m_ts = 0 and v_s = 0: everything happens in the plane of n and t, and is piecewise linear. m_ss may be anything.
+/// m_ns = m_ts = 0 and v_s = 0: all velocities and impulses lie in the plane of n and t, and are piecewise linear in I_n. m_ss is not read.
 #[derive(Clone, Copy, Debug)]
 pub struct Planar;
 
-/// m_nt = m_ns = 0: friction does not act on v_n, which is linear in I_n, and the three laws agree.
+/// m_nt = m_ns = 0: friction does not change v_n, which is linear in I_n; the three laws of restitution agree.
 #[derive(Clone, Copy, Debug)]
 pub struct Balanced;
 
@@ -73,7 +74,7 @@ pub struct Balanced;
 #[derive(Clone, Copy, Debug)]
 pub struct Diagonal;
 
-/// m_ts = 0 and m_ss = m_tt, which is what is read.
+/// m_ts = 0 and m_ss = m_tt; m_tt is read, m_ss is not.
 #[derive(Clone, Copy, Debug)]
 pub struct Isotropic;
 
@@ -90,10 +91,11 @@ impl Structure for Frictionless {}
 
 impl Shape for General {}
 
-/// Solves one collision of known structure: the same outcome and errors as [`crate::solve`] with the vanishing entries set to zero.
+/// Solves one collision of known structure: the same outcome and errors as [`crate::solve`] for the matrix, velocity and surface with the entries set as the
+/// structure `S` says. Arguments and units are those of [`crate::solve`].
 ///
 /// # Errors
-/// What [`crate::solve`] refuses.
+/// Those of [`crate::solve`].
 #[inline]
 pub fn solve_structured<S: Structure, T: Scalar>(
     matrix: &ReducedMatrix<T>,

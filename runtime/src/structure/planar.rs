@@ -1,4 +1,4 @@
-//! In a plane the direction of slip stays (h = 0), and every arc is linear in I_n.
+//! The arc of a planar contact: slip keeps its direction (h = 0), and all velocities are linear in I_n.
 //!
 //! Theory: docs/theory.md, section 11.1.
 

@@ -1,9 +1,9 @@
-//! One stretch of the sliding arc by collocation: from a point to any point within reach, at once.
+//! Integrates one stretch of the sliding arc with sixteen Gauss nodes: impulses, v_n, work, w and sigma at its end.
 //!
-//! Sixteen Gauss nodes in a parameter t that w follows like ((1 + s t) / (1 - s t))^8, which is nearly exp but rational. The logarithm of sigma w is
-//! integrated by collocation; at the end of the stretch (and only there) the error of all integrals falls with twice the number of nodes.
+//! Along a stretch w is proportional to ((1 + s t) / (1 - s t))^8, a rational function close to an exponential; the nodes are those of t in [-1, 1].
+//! ln(sigma w) is integrated by collocation; the errors of all integrals over the whole stretch fall like rho^-32, those up to a node like rho^-16.
 //!
-//! The loops are plain ones over short arrays, so that the compiler turns each into a few instructions on vectors.
+//! The loops run over short arrays so that the compiler turns each into a few vector instructions.
 //!
 //! Theory: docs/theory.md, section 5.
 
@@ -16,40 +16,40 @@ use super::{
 };
 use crate::scalar::{Real, constant, dot, fma};
 
-/// The coefficients of a quadratic that is divided by w, where w counts in units of `middle`.
+/// The coefficients of p(w) / w in the unit `middle` of w, for a quadratic p; `inverse` is 1 / `middle`.
 #[inline(always)]
 fn about<T: Real>([p0, p1, p2]: [T; 3], middle: T, inverse: T) -> [T; 3] {
     [p0 * inverse, p1, p2 * middle]
 }
 
-/// A quantity at the positive nodes, and at the negative ones.
+/// A quantity at the positive nodes (`ahead` of the middle) and at the negative ones (`behind`).
 #[derive(Clone, Copy)]
 struct Nodes<T> {
     ahead: [T; HALF],
     behind: [T; HALF],
 }
 
-/// What is known at the nodes, where w counts from the middle of the stretch: quadratics are divided by w there.
+/// Quantities at the nodes of a stretch. w is divided by its value in the middle, and quadratics in w are divided by w.
 pub(super) struct Panel<T> {
     w: Nodes<T>,
-    /// dlambda/dt over q.
+    /// (dlambda/dt) / q.
     inverse: Nodes<T>,
     e: Nodes<T>,
     /// d ln(sigma w) / dt and ln(sigma w), and then the terms of the four sums.
     rate: Nodes<T>,
     log: Nodes<T>,
-    /// sigma w, where it is one in the middle.
+    /// sigma w over its value in the middle.
     grown: Nodes<T>,
-    /// The growth of ln(sigma w) from either end to the middle, then of sigma w, twice.
+    /// The changes of ln(sigma w) from the middle to both ends, each twice to fill the lanes; afterwards their exponentials.
     ends: Lanes<T>,
-    /// w and sigma w in the middle, and the sum of the work of friction.
+    /// w and sigma w in the middle, and the integral of s that the work of friction is formed from.
     middle: T,
     central: T,
     rubbed: T,
 }
 
 impl<T: Real> Panel<T> {
-    /// An empty one. It is filled with a number from the problem, because one stretch overwrites what the last one left.
+    /// A panel whose contents mean nothing yet: `step` overwrites all of them. `any` is any number that depends on the input.
     #[inline]
     pub fn new(any: T) -> Self {
         let nodes = Nodes { ahead: [any; HALF], behind: [any; HALF] };
@@ -69,7 +69,7 @@ impl<T: Real> Panel<T> {
 }
 
 impl<T: Real> SlidingArc<T> {
-    /// Fills a panel about w = `middle`. `s` is the parameter of the map.
+    /// Fills a panel whose middle is at w = `middle` (`unit` is its inverse). `s` is the parameter of the map from t to w.
     #[inline(always)]
     fn survey(&self, [middle, unit]: [T; 2], s: T, panel: &mut Panel<T>) {
         let one = T::one();
@@ -109,7 +109,7 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// The point that lies `length` further in lambda, but for the work.
+    /// Sets `to` to the point that lies `length` further in lambda, all but its work, which `balance` or `direct` gives.
     #[inline(never)]
     pub fn step(&self, from: &ArcPoint<T>, length: T, panel: &mut Panel<T>, to: &mut ArcPoint<T>) {
         let one = T::one();
@@ -127,7 +127,7 @@ impl<T: Real> SlidingArc<T> {
         let unit = one / middle;
         self.survey([middle, unit], s, panel);
         let [begin, end] = integrals(&panel.rate, &mut panel.log);
-        // Small numbers by their inverses, to keep their digits.
+        // Exponentials of positive numbers only, and their inverses where needed: small exponentials would lose digits.
         panel.ends = [begin.abs(), end.abs(), begin.abs(), end.abs()];
         Self::total(panel);
         let [before, after, ..] = panel.ends;
@@ -145,7 +145,7 @@ impl<T: Real> SlidingArc<T> {
         to.sigma = central * after / last;
     }
 
-    /// The work of the normal impulse on the stretch that was stepped over last, from the balance of energy and the work of friction.
+    /// The work of the normal impulse along the last `step`, from the balance of energy and the work of friction (theory, 4.16).
     #[inline]
     pub fn balance(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &Panel<T>) -> T {
         let slips = self.slip(from) + self.slip(to);
@@ -161,7 +161,7 @@ impl<T: Real> SlidingArc<T> {
         )
     }
 
-    /// The same work by integrating v_n over I_n: exact where it is small beside the energies.
+    /// The same work by integrating v_n over I_n (theory, 4.17): accurate also where the work is small beside the energies.
     #[inline(never)]
     pub fn direct(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &mut Panel<T>) -> T {
         let [f0, f1, f2] = about(self.f, panel.middle, T::one() / panel.middle);
@@ -195,9 +195,9 @@ impl<T: Real> SlidingArc<T> {
         fma(from.state.velocity, to.state.normal - from.state.normal, *central * *central * pushed)
     }
 
-    /// The terms of the sums of sigma e / q over pairs of nodes, times 1, w and w^2, and of sigma^2 e^3 / q, where sigma w = 1 in the middle.
+    /// Forms the terms of four sums, one for each pair of nodes: sigma e / q times 1, w and w^2, and sigma^2 e^3 / q, where sigma w = 1 in the middle.
     ///
-    /// 1 / w is w at the other node of a pair.
+    /// 1 / w at one node of a pair is w at the other.
     #[inline(always)]
     fn total(panel: &mut Panel<T>) {
         let Panel { w, inverse, e, log, grown, rate, ends, .. } = panel;
@@ -218,7 +218,7 @@ impl<T: Real> SlidingArc<T> {
     }
 }
 
-/// Takes what one half of the nodes adds to the four sums: w there and at the opposite nodes, dlambda/dt over q, and e.
+/// Adds one half of the nodes to the four sums. The arrays are w at these nodes, w at the opposite nodes, (dlambda/dt) / q, and e.
 #[inline(always)]
 fn gather<T: Real>(
     [w, opposite, inverse, e]: [&[T; HALF]; 4],
@@ -237,7 +237,7 @@ fn gather<T: Real>(
     }
 }
 
-/// What a node adds to the four sums.
+/// The terms of one node in the four sums.
 #[inline(always)]
 fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) -> [T; 4] {
     let slip = grown * e;
@@ -247,13 +247,13 @@ fn terms<T: Real>(w: T, opposite: T, inverse: T, e: T, grown: T, weight: f64) ->
     [first, second, second * w, first * (slip * opposite * e)]
 }
 
-/// The sum over the pairs.
+/// The sum of the eight pairs.
 #[inline(always)]
 fn sum<T: Real>([a, b, c, d, e, f, g, h]: [T; HALF]) -> T {
     ((a + e) + (b + f)) + ((c + g) + (d + h))
 }
 
-/// The integrals of a function from the middle to each node, and to either end.
+/// The integrals of a function from the middle to each node (in `log`), and to both ends (returned).
 #[inline(always)]
 fn integrals<T: Real>(rate: &Nodes<T>, log: &mut Nodes<T>) -> [T; 2] {
     let zero = T::zero();

@@ -1,6 +1,6 @@
-//! Gauss-Legendre quadrature with sixteen nodes, as a collocation method.
+//! Nodes, weights and integration matrices of Gauss-Legendre quadrature and collocation with sixteen nodes.
 //!
-//! The nodes come in pairs +-t; tables hold the positive ones. Made with 50 digits; the tests check them against integrals of
+//! The nodes come in pairs +-t; the tables hold the positive ones. They were computed with 50 digits; the tests compare them with integrals of
 //! powers.
 //!
 //! Theory: docs/theory.md, section 5.2.
