@@ -10,22 +10,28 @@ mod check;
 mod choose;
 mod drift;
 mod drive;
+mod due;
 mod energy;
 mod error;
 mod event;
 mod forces;
+mod front;
+mod happen;
 mod locate;
 mod motion;
 mod options;
+mod phase;
 mod proceed;
 mod rattle;
 mod settle;
+mod settled;
 mod simulation;
+mod slip_direction;
 mod slip_end;
-mod slow;
 mod stepper;
 mod strike;
 mod support;
+mod watch;
 
 pub use crate::{
     drive::{Controller, Drive, InputFunction},
@@ -33,5 +39,6 @@ pub use crate::{
     error::{Reason, SimulationError},
     event::{Event, EventKind, Struck},
     options::{EventFunction, Options, Together},
-    simulation::{ContactForces, ContactPhase, Progress, Simulation},
+    phase::ContactPhase,
+    simulation::{ContactForces, Progress, Simulation},
 };

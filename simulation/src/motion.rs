@@ -5,33 +5,12 @@ use nalgebra::Vector2;
 
 use crate::Drive;
 use crate::forces::{Forces, Hold, Lacking, forces, shared};
-use crate::slow;
+use crate::phase::Closed;
+use crate::slip_direction::settle_directions;
 use crate::support::Support;
 
 /// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
 const DIRECTION: f64 = 1e-10;
-
-/// A closed contact while its mode lasts.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Closed {
-    pub contact: usize,
-    pub mu: f64,
-    /// its weight where forces are not unique, as found when its mode was decided
-    pub weight: f64,
-    /// none while it sticks; else the direction in which slip began, for as long as slip is too small to have one
-    pub slides: Option<Vector2<f64>>,
-    /// rate at which its direction of slip turns, rad/s, where that follows from the state
-    pub omega: Option<f64>,
-}
-
-/// What stays the same during a step.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Modes {
-    pub closed: Vec<Closed>,
-    /// the inputs that are held
-    pub held: Vec<f64>,
-    pub resting: bool,
-}
 
 /// Why the rates cannot be evaluated.
 #[derive(Clone, Debug)]
@@ -134,7 +113,7 @@ impl Motion<'_> {
             };
             // Where something slides its share of the normal forces decides how it is slowed down, and must not change between two decisions.
             let solve = |holds: &[Hold]| forces(&support, holds, &mu, Some(&weights));
-            slow::settle_directions(&support, self.closed, &mut holds, &solve);
+            settle_directions(&support, self.closed, &mut holds, &solve);
             let answer = if holds.iter().all(|hold| *hold == Hold::Stick) {
                 shared(&support, &holds, &mu, weights).map(|(answer, _)| answer)
             } else {

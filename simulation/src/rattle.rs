@@ -11,7 +11,8 @@ use nalgebra::DVector;
 use crate::SimulationError;
 use crate::forces::{Hold, forces};
 use crate::motion::Failure;
-use crate::simulation::{Leaving, Phase, Simulation};
+use crate::phase::{Leaving, Phase};
+use crate::simulation::Simulation;
 use crate::support::Support;
 
 /// Contacts nearer than so many times the tolerance take part.

@@ -6,8 +6,8 @@ use nalgebra::{DVector, Vector2, Vector3};
 use crate::choose::{Choice, Decision, choose};
 use crate::forces::{Lacking, hold_good};
 use crate::motion::Failure;
-use crate::proceed::mus;
-use crate::simulation::{Leaving, Phase, Simulation};
+use crate::phase::{Leaving, Phase, mus};
+use crate::simulation::Simulation;
 use crate::support::Support;
 use crate::{EventKind, Reason, SimulationError};
 

@@ -3,48 +3,12 @@
 use std::collections::VecDeque;
 
 use hodograph::{Contacts, Kind, State, Surface};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
-use crate::motion::{Closed, Failure, Modes, Motion, WORKS};
+use crate::motion::{Failure, Motion, WORKS};
+use crate::phase::{Closed, ContactPhase, Leaving, Modes, Phase};
 use crate::stepper::Step;
 use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
-
-/// How an open contact came to be open.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Leaving {
-    /// Its gap is open.
-    Apart,
-    /// It separated with a speed now, at this gap, which is zero but for rounding.
-    Bounced(f64),
-    /// It lifted off: gap and its rate begin at zero.
-    Lifted,
-}
-
-/// What a contact does.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Phase {
-    Open(Leaving),
-    Stick,
-    /// With the direction in which slip began.
-    Slide(Vector2<f64>),
-}
-
-impl Phase {
-    pub fn is_closed(&self) -> bool {
-        !matches!(self, Phase::Open(_))
-    }
-}
-
-/// What a contact does at the moment, for whoever asks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContactPhase {
-    /// The bodies are apart, or leave each other.
-    Open,
-    /// They touch, without slip.
-    Stick,
-    /// They touch and slide on each other.
-    Slide,
-}
 
 /// A motion that is followed on demand. Clones go on independently, with the same results.
 ///

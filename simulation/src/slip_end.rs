@@ -7,6 +7,7 @@
 use nalgebra::Vector2;
 
 use crate::forces::{Hold, forces};
+use crate::motion::Evaluation;
 use crate::support::Support;
 
 /// What becomes of slip.
@@ -18,6 +19,8 @@ pub(crate) enum Fate {
     PassesBy,
 }
 
+/// Slip that ends within this time is followed to its end by itself, s.
+pub(crate) const ENDING: f64 = 1e-9;
 const STEPS: usize = 4000;
 
 /// Follows slip of the contact with this place to its end, all else unchanged.
@@ -54,4 +57,14 @@ pub(crate) fn fate(support: &Support, holds: &[Hold], mu: &[f64], place: usize) 
         phi += d / 6.0 * (h + 2.0 * b.1 + 2.0 * c.1 + e.1);
     }
     Fate::PassesBy
+}
+
+/// The time after which slip would end if its rate stayed; `None` where it grows.
+pub(crate) fn time_of_slip(here: &Evaluation, place: usize) -> Option<f64> {
+    let Hold::Slide(d) = here.holds[place] else { return None };
+    let forces = here.forces.as_ref()?;
+    let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+    let slip = here.support.slip(place).norm();
+    let along = rate.dot(&d);
+    (along < 0.0).then(|| slip / -along)
 }

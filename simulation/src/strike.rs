@@ -4,7 +4,8 @@ use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface, impact_w
 use nalgebra::{Vector2, Vector3};
 
 use crate::motion::Failure;
-use crate::simulation::{Leaving, Phase, Simulation};
+use crate::phase::{Leaving, Phase};
+use crate::simulation::Simulation;
 use crate::support::{Support, free_acceleration};
 use crate::{EventKind, Reason, SimulationError, Struck, Together};
 

@@ -1,0 +1,127 @@
+//! An event in a step: its time to rounding, the state there, and what follows.
+
+use crate::locate::Crossing;
+use crate::motion::Evaluation;
+use crate::phase::{Closed, Leaving, Phase};
+use crate::simulation::Simulation;
+use crate::slip_end::{ENDING, time_of_slip};
+use crate::stepper::Step;
+use crate::watch::Watched;
+use crate::{EventKind, Reason, SimulationError};
+
+/// Most events without progress in time.
+const CROWD: usize = 2000;
+
+impl Simulation<'_> {
+    /// Finds the time of an event to rounding, goes there and answers it.
+    pub(crate) fn happen(
+        &mut self,
+        closed: &[Closed],
+        whole: Step,
+        watched: Watched,
+        crossing: Crossing,
+    ) -> Result<(), SimulationError> {
+        let mut after = crossing.place * whole.h;
+        let mut step = whole.clone();
+        for _ in 0..8 {
+            let Some(part) = self.part(closed, after) else { break };
+            step = part;
+            let change = match watched {
+                Watched::Gap(contact) => {
+                    let (gap, rate) = self.gap_at(&step, contact)?;
+                    if rate < 0.0 { -gap / rate } else { 0.0 }
+                }
+                _ => {
+                    let d = 1e-4 * after.min(whole.h - after).max(1e-3 * whole.h);
+                    let value = |simulation: &Self, h: f64| {
+                        let step = simulation.part(closed, h)?;
+                        simulation.values(closed, &[watched], h, &step.end).ok().map(|values| values[0])
+                    };
+                    let (here, there) = (value(self, after), value(self, after - d));
+                    match (here, there) {
+                        (Some(here), Some(there)) if here < there => here * d / (there - here),
+                        _ => 0.0,
+                    }
+                }
+            };
+            let next = (after + change).clamp(0.0, whole.h);
+            // Relative to the time since the front: the state is as exact as that, however late it is.
+            if (next - after).abs() <= 2.0 * f64::EPSILON * after || (next - after).abs() > 0.1 * whole.h {
+                break;
+            }
+            after = next;
+        }
+        self.next = whole.next.min((10.0 * step.h).max(1e-7));
+        let start = self.t;
+        self.commit(&mut step)?;
+        self.crowded(start)?;
+        match watched {
+            Watched::Gap(contact) => {
+                let (_, rate) = self.gap_at(&step, contact)?;
+                if rate >= 0.0 {
+                    // It only touches.
+                    self.phases[contact] = Phase::Open(Leaving::Lifted);
+                    return Ok(());
+                }
+                self.arm_others(contact)?;
+                self.strike(contact)
+            }
+            Watched::Normal(place) => {
+                let contact = closed[place].contact;
+                self.lift_off(contact)
+            }
+            Watched::Cone(place) => self.begin_slip(closed[place].contact),
+            Watched::Jam => self.impact_without_collision(closed[0].contact),
+            Watched::User(index, _) => {
+                self.push(None, EventKind::Zero(index));
+                // Past the zero, so that it is not found again.
+                let small = 1e-12 * self.t.abs().max(1e-3);
+                if let Some(mut past) = self.part(closed, small) {
+                    self.commit(&mut past)?;
+                }
+                self.arm()
+            }
+        }
+    }
+
+    /// Slip of a contact ends after a short time.
+    pub(crate) fn end_slip(
+        &mut self,
+        closed: &[Closed],
+        here: &Evaluation,
+        place: usize,
+        time: f64,
+    ) -> Result<(), SimulationError> {
+        let start = self.t;
+        let mut end = self.y.clone();
+        end.iter_mut().zip(&here.rates).for_each(|(value, rate)| *value += time * rate);
+        let mut step = Step::still(self.t, time, &end);
+        let mut stopped = Vec::new();
+        for (i, contact) in closed.iter().enumerate() {
+            // Contacts of one body may stop together.
+            let together =
+                contact.slides.is_some() && time_of_slip(here, i).is_some_and(|left| left < 3.0 * ENDING);
+            if i == place || together {
+                self.phases[contact.contact] = Phase::Stick;
+                stopped.push(contact.contact);
+            }
+        }
+        self.commit(&mut step)?;
+        self.crowded(start)?;
+        self.slip_ended(&stopped)?;
+        self.arm()
+    }
+
+    /// Counts events that follow each other without progress.
+    pub(crate) fn crowded(&mut self, before: f64) -> Result<(), SimulationError> {
+        let close = 1e-12 * self.t.abs().max(1.0);
+        if self.t - before > close {
+            self.crowd = (0, self.t);
+        }
+        self.crowd.0 += 1;
+        if self.crowd.0 > CROWD {
+            return Err(self.error(None, Reason::EventsWithoutEnd(CROWD)));
+        }
+        Ok(())
+    }
+}

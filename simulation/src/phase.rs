@@ -1,0 +1,67 @@
+//! What the contacts do: apart, sticking, sliding.
+
+use nalgebra::Vector2;
+
+/// How an open contact came to be open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Leaving {
+    /// Its gap is open.
+    Apart,
+    /// It separated with a speed now, at this gap, which is zero but for rounding.
+    Bounced(f64),
+    /// It lifted off: gap and its rate begin at zero.
+    Lifted,
+}
+
+/// What a contact does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Phase {
+    Open(Leaving),
+    Stick,
+    /// With the direction in which slip began.
+    Slide(Vector2<f64>),
+}
+
+impl Phase {
+    pub fn is_closed(&self) -> bool {
+        !matches!(self, Phase::Open(_))
+    }
+}
+
+/// What a contact does at the moment, for whoever asks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactPhase {
+    /// The bodies are apart, or leave each other.
+    Open,
+    /// They touch, without slip.
+    Stick,
+    /// They touch and slide on each other.
+    Slide,
+}
+
+/// A closed contact while its mode lasts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Closed {
+    pub contact: usize,
+    pub mu: f64,
+    /// its weight where forces are not unique, as found when its mode was decided
+    pub weight: f64,
+    /// none while it sticks; else the direction in which slip began, for as long as slip is too small to have one
+    pub slides: Option<Vector2<f64>>,
+    /// rate at which its direction of slip turns, rad/s, where that follows from the state
+    pub omega: Option<f64>,
+}
+
+/// What stays the same during a step.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Modes {
+    pub closed: Vec<Closed>,
+    /// the inputs that are held
+    pub held: Vec<f64>,
+    pub resting: bool,
+}
+
+/// The coefficients of friction.
+pub(crate) fn mus(closed: &[Closed]) -> Vec<f64> {
+    closed.iter().map(|contact| contact.mu).collect()
+}

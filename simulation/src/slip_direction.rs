@@ -1,0 +1,46 @@
+//! The direction of slip that is too small to be integrated, from the state.
+//!
+//! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration across it: while s is small the direction settles
+//! in the time s / |h_phi|, and an explicit integration would have to follow it in steps of that size. Once it has settled it is known from the state:
+//! h(phi) = s omega, with omega the rate at which the settled direction turns. What is dropped is of the second order in s / |h_phi| times that rate.
+
+use nalgebra::Vector2;
+
+use crate::choose::begin_along;
+use crate::forces::{Forces, Hold, Lacking};
+use crate::phase::Closed;
+use crate::support::Support;
+
+/// The modes of contacts with the directions that follow from the state: `omega` of those that have settled.
+pub(crate) fn settle_directions(
+    support: &Support,
+    closed: &[Closed],
+    holds: &mut [Hold],
+    solve: &dyn Fn(&[Hold]) -> Result<Forces, Lacking>,
+) -> Option<()> {
+    let settled: Vec<(usize, usize)> =
+        (0..closed.len()).filter(|&i| closed[i].omega.is_some()).map(|i| (i, i)).collect();
+    if settled.is_empty() {
+        return Some(());
+    }
+    let mut directions = directions(holds);
+    let across: Vec<f64> =
+        settled.iter().map(|&(i, _)| closed[i].omega.unwrap_or(0.0) * support.slip(i).norm()).collect();
+    begin_along(&settled, &mut directions, &across, |directions| solve(&with(directions)).ok())?;
+    holds.copy_from_slice(&with(&directions));
+    Some(())
+}
+
+fn directions(holds: &[Hold]) -> Vec<Option<Vector2<f64>>> {
+    holds
+        .iter()
+        .map(|hold| match hold {
+            Hold::Slide(d) => Some(*d),
+            Hold::Stick => None,
+        })
+        .collect()
+}
+
+fn with(directions: &[Option<Vector2<f64>>]) -> Vec<Hold> {
+    directions.iter().map(|d| d.map_or(Hold::Stick, Hold::Slide)).collect()
+}
