@@ -1,4 +1,4 @@
-//! Reads collisions as JSON lines and writes their outcomes: the core of `hodograph solve`, for measuring the solver alone.
+//! Reads collisions as JSON lines and writes their outcomes, as `hodograph solve` does, so that the solver can be measured without the command line tool.
 
 use std::io::{BufRead, Write};
 

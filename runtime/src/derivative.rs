@@ -1,4 +1,4 @@
-//! The derivative of a collision's outcome with respect to everything that it depends on.
+//! The derivative of the outcome of a collision with respect to its input: velocity of approach, reduced matrix, mu and e.
 //!
 //! Theory: docs/theory.md, section 13.
 
@@ -15,34 +15,34 @@ use crate::{
 /// Inputs: approach velocity (3), reduced matrix (6), mu, e.
 const INPUTS: usize = 11;
 
-/// Why an outcome is not differentiable at this input. What is given then is the derivative along the path that the solver took, which
-/// is one-sided: it holds for changes of the input that keep the path.
+/// Why an outcome is not differentiable at an input. The derivative returned is then one-sided: it holds for changes of the input that keep the path of the
+/// collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum NonSmoothness {
-    /// There is no slip at the start. The outcome is continuous there, but what a little slip does depends on its direction: the
-    /// columns of v_t and v_s are zero and mean nothing. The other columns hold for changes that bring no slip.
+    /// There is no slip at the start. The outcome is continuous there, but the effect of a little slip depends on its direction: the columns of v_t and v_s are
+    /// set to zero and have no meaning. The other columns hold for changes without slip.
     NoSlip,
-    /// mu = mu_c: after slip has stopped the contact sticks for a greater mu and slides on for a smaller one. The derivative is the one for
-    /// the path given.
+    /// mu = mu_c: after slip has stopped the contact sticks for a greater mu and slides on for a smaller one. The derivative is the one for the path that the
+    /// solver took.
     CriticalFriction,
-    /// Slip stops just as the collision ends: with a change of the input one way the terminal phase vanishes. The derivative is the one for
-    /// the path given.
+    /// Slip stops just when the collision ends: a change of the input to one side removes the terminal phase. The derivative is the one for the path that the
+    /// solver took.
     PathChange,
-    /// Slip keeps its direction from the beginning although the contact pulls across it (h = 0 while b.d' is not): the derivative of v_n is
-    /// the one for changes that keep the hodograph straight. Where symmetry keeps it straight (planar systems) nothing is missing.
+    /// Slip keeps its direction from the start (h = 0) while v_n depends on that direction (b.d' is not zero): the derivative of v_n is the one for changes that
+    /// keep the direction of slip constant. Planar systems, in which symmetry keeps it, are not affected.
     Straight,
-    /// The law ends the collision where v_n just touches zero or its greatest value, or the bodies just fail to approach a second time: the
-    /// outcome jumps. The derivative is the one without the jump.
+    /// The outcome jumps at this input: v_n has a turning point just where the law ends the collision, or just where the bodies would approach a second time.
+    /// The derivative is the one on this side of the jump.
     Grazing,
 }
 
 /// The outcome of a collision and its derivative.
 ///
-/// The columns of both matrices are v_n1, v_t1, v_s1 (approach), m_nn, m_nt, m_ns, m_tt, m_ts, m_ss, mu, e; an off-diagonal entry
-/// of the reduced matrix is one input that stands twice in the matrix.
+/// The columns of both matrices are derivatives with respect to v_n1, v_t1, v_s1 (approach), m_nn, m_nt, m_ns, m_tt, m_ts, m_ss, mu, e, in this order. An
+/// off-diagonal entry of the reduced matrix is one input, which stands twice in the matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[non_exhaustive]
@@ -53,44 +53,44 @@ pub struct ImpactDerivative<T: nalgebra::Scalar> {
     pub impulse: SMatrix<T, 3, 11>,
     /// Derivative of the velocity of separation (rows n, t, s).
     pub velocity: SMatrix<T, 3, 11>,
-    /// Why this is only a one-sided derivative, if it is.
+    /// Why the derivative is one-sided only, if it is.
     ///
     /// At mu = 0, e = 0 and e = 1, where the range of an input ends, the column of that input is one-sided by itself and nothing is reported.
     pub non_smoothness: Option<NonSmoothness>,
 }
 
 impl<T: Scalar> ImpactDerivative<T> {
-    /// Impulse by velocity of approach, in kg.
+    /// Derivative of the impulse with respect to the velocity of approach, kg.
     #[inline]
     pub fn impulse_by_approach(&self) -> Matrix3<T> {
         self.impulse.fixed_columns::<3>(0).into_owned()
     }
 
-    /// Velocity of separation by velocity of approach, without unit.
+    /// Derivative of the velocity of separation with respect to the velocity of approach, without unit.
     #[inline]
     pub fn velocity_by_approach(&self) -> Matrix3<T> {
         self.velocity.fixed_columns::<3>(0).into_owned()
     }
 
-    /// Impulse by the entries nn, nt, ns, tt, ts, ss of the reduced matrix.
+    /// Derivative of the impulse with respect to the entries nn, nt, ns, tt, ts, ss of the reduced matrix, N s kg.
     #[inline]
     pub fn impulse_by_matrix(&self) -> SMatrix<T, 3, 6> {
         self.impulse.fixed_columns::<6>(3).into_owned()
     }
 
-    /// Velocity of separation by the entries nn, nt, ns, tt, ts, ss of the reduced matrix.
+    /// Derivative of the velocity of separation with respect to the entries nn, nt, ns, tt, ts, ss of the reduced matrix, kg m/s.
     #[inline]
     pub fn velocity_by_matrix(&self) -> SMatrix<T, 3, 6> {
         self.velocity.fixed_columns::<6>(3).into_owned()
     }
 
-    /// Impulse and velocity of separation by mu.
+    /// Derivatives of impulse (N s) and velocity of separation (m/s) with respect to mu.
     #[inline]
     pub fn by_friction(&self) -> (Vector3<T>, Vector3<T>) {
         (self.impulse.column(9).into_owned(), self.velocity.column(9).into_owned())
     }
 
-    /// Impulse and velocity of separation by e.
+    /// Derivatives of impulse (N s) and velocity of separation (m/s) with respect to e.
     #[inline]
     pub fn by_restitution(&self) -> (Vector3<T>, Vector3<T>) {
         (self.impulse.column(10).into_owned(), self.velocity.column(10).into_owned())
@@ -99,8 +99,8 @@ impl<T: Scalar> ImpactDerivative<T> {
 
 /// Solves a collision and differentiates its outcome.
 ///
-/// The same exact solver runs on numbers that carry their derivatives: no step size, no truncation. Needs no allocator and cannot
-/// panic; the stack holds about 50 kB (`f64` on x86-64), thirteen times what [`solve`] needs.
+/// [`solve`] runs on dual numbers, so that there is no step size and no truncation error. It allocates nothing and does not panic; it needs about 50 kB of
+/// stack (`f64` on x86-64), thirteen times that of [`solve`].
 ///
 /// ```
 /// # use hodograph::{Law, ReducedMatrix, Surface, derivative, solve};
@@ -117,7 +117,7 @@ impl<T: Scalar> ImpactDerivative<T> {
 /// ```
 ///
 /// # Errors
-/// What [`solve`] refuses.
+/// Those of [`solve`].
 pub fn derivative<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
@@ -128,7 +128,7 @@ pub fn derivative<T: Scalar>(
 
 /// Solves an impact without collision, as [`impact_without_collision`] does, and differentiates its outcome.
 ///
-/// v_n1 is zero and stays so: its column is zero and means nothing.
+/// v_n1 is zero by definition: its column is zero and has no meaning.
 ///
 /// ```
 /// # use hodograph::{Law, ReducedMatrix, Surface, derivative_without_collision, impact_without_collision};
@@ -144,7 +144,7 @@ pub fn derivative<T: Scalar>(
 /// ```
 ///
 /// # Errors
-/// What [`impact_without_collision`] refuses.
+/// Those of [`impact_without_collision`].
 pub fn derivative_without_collision<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     slip: &Vector2<T>,
@@ -160,7 +160,7 @@ pub fn derivative_without_collision<T: Scalar>(
     )
 }
 
-/// The derivative of what `solve` answers; `lifted` is the same on numbers that carry derivatives.
+/// The derivative of the outcome of `solve`; `lifted` is the same function on dual numbers.
 #[inline(always)]
 fn differentiate<T: Scalar>(
     matrix: &ReducedMatrix<T>,
@@ -188,7 +188,7 @@ fn differentiate<T: Scalar>(
         &Vector3::new(input(approach.x, 0), input(approach.y, 1), input(approach.z, 2)),
         &Surface { mu: input(surface.mu, 9), e: input(surface.e, 10), law: surface.law },
     );
-    // The same calculation has just succeeded.
+    // Not reached: the same calculation has just succeeded in plain numbers.
     let Ok(hit) = hit else { return Err(ImpactError::NotFinite { value: surface.e }) };
     let rows = |v: &Vector3<Dual<T, INPUTS>>| {
         SMatrix::from_fn(|i, j| {
@@ -209,7 +209,7 @@ fn differentiate<T: Scalar>(
     Ok(result)
 }
 
-/// The column of e where it is zero: the collision ends with compression, and a little restitution adds a little of the last phase.
+/// The column of e at e = 0, where the collision ends with compression: a small e adds a short piece of the last phase (theory, 13.2).
 fn plastic<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
@@ -221,7 +221,7 @@ fn plastic<T: Scalar>(
     let speed = slip.norm();
     let push = match impact.path {
         Path::SlidingThenSticking | Path::Sticking => {
-            // No tangential velocity comes: T x = b, as sticking demands.
+            // The impulse of sticking, which gives no tangential velocity: T x = b.
             let hold = Contact::new(matrix, surface.mu).hold();
             Vector3::new(T::one(), -hold.x, -hold.y)
         }
@@ -243,7 +243,7 @@ fn plastic<T: Scalar>(
     }
 }
 
-/// Why there is no derivative: another path, or number of compressions, is found close by.
+/// Why there is no derivative at this input, if there is none: nearby inputs have another path, another number of compressions, or an outcome that jumps.
 fn non_smoothness<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
@@ -266,7 +266,7 @@ fn non_smoothness<T: Scalar>(
             let Ok(near) = solve(matrix, velocity, surface) else {
                 return Some(NonSmoothness::Grazing);
             };
-            // The outcome jumps, or falls steeply like a root.
+            // The outcome jumps, or has the infinite slope of a square root.
             let moved = (near.impulse - here.impulse).norm();
             let jumps = moved > here.impulse.norm() * step.sqrt() * constant(64.0);
             if near.compressions != here.compressions || jumps {
@@ -286,7 +286,7 @@ fn non_smoothness<T: Scalar>(
     if finite { found } else { Some(NonSmoothness::Grazing) }
 }
 
-/// Whether slip starts in a direction that stays, while the normal velocity depends on that direction.
+/// Whether slip starts in an invariant direction while the rate of v_n depends on the direction.
 fn straight<T: Scalar>(m: &ReducedMatrix<T>, v: &Vector3<T>, mu: T) -> bool {
     let slip = v.yz();
     let d = slip / slip.norm();

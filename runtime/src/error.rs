@@ -1,4 +1,4 @@
-//! Why a collision has no answer.
+//! The errors of the impact solver.
 
 use core::fmt;
 
@@ -47,26 +47,26 @@ pub enum ImpactError<T> {
         /// f in the direction of slip, or m_nn without slip, in 1/kg.
         rate: T,
     },
-    /// The answer found breaks a law of impact by more than its digits allow: rounding forbids an answer in this number type.
+    /// The outcome found violates a law of impact by more than rounding explains: numbers of this precision do not determine the outcome.
     ///
-    /// That takes a contact that is nearly wedged (mu close to mu_c of a singular matrix) or friction beyond the inverse of the
-    /// rounding unit on a singular contact.
+    /// It takes a contact that is nearly wedged (mu close to mu_c of a singular matrix), or a singular contact with friction above the inverse of the rounding
+    /// unit.
     Inaccurate {
-        /// The law.
+        /// The law that is violated.
         violated: Violation,
-        /// By how much, over the speeds or works of the impact.
+        /// By how much, relative to the speeds or works of the impact.
         residual: T,
     },
-    /// The bodies wedge: no outcome satisfies this law, because the normal velocity stops changing, stuck or sliding.
+    /// The bodies wedge: the law never ends the collision, because the normal velocity stops changing, while the contact sticks or slides.
     Wedged {
-        /// The normal velocity at which the contact jams, in m/s.
+        /// The normal velocity at which it stops changing, in m/s.
         normal_velocity: T,
         /// The law that has no outcome.
         law: Law,
     },
 }
 
-/// The laws that every answer is held against.
+/// The laws that every outcome is checked against.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -77,11 +77,11 @@ pub enum Violation {
     Momentum,
     /// Coulomb's law: the tangential impulse is at most mu I_n.
     Friction,
-    /// The bodies push and part: I_n >= 0, v_n2 >= 0.
+    /// The bodies push each other and separate: I_n >= 0, v_n2 >= 0.
     Separation,
-    /// Friction takes energy, and never gives any.
+    /// Friction does not add energy.
     Energy,
-    /// What the hypothesis of restitution says of v_n2, I_n2 or the normal work.
+    /// The law of restitution: the target of v_n2, I_n2 or the normal work.
     Restitution,
 }
 

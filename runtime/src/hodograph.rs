@@ -1,4 +1,4 @@
-//! The course of a collision over the normal impulse: the hodograph.
+//! The hodograph: velocities, impulses and works of a collision as functions of the normal impulse.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -8,8 +8,8 @@ use crate::{
     solve::{Contact, Restitution, Slide, State, Terminal, Units, checked, collide, slide, slips},
 };
 
-/// A solved collision that can be evaluated at any normal impulse, exactly: the curve of v_s over v_t that the paper calls hodograph, with the
-/// normal velocity, the impulses and the works along it.
+/// A solved collision that can be evaluated at any normal impulse: the curve of v_s over v_t that the paper calls hodograph, with the normal velocity, the
+/// impulses and the works along it. Every point is computed to machine precision, not interpolated.
 ///
 /// ```
 /// # use hodograph::{Hodograph, Law, ReducedMatrix, Surface};
@@ -24,9 +24,8 @@ use crate::{
 /// # Ok::<(), hodograph::ImpactError<f64>>(())
 /// ```
 ///
-/// Cost: [`Hodograph::new`] is one [`crate::solve`] that also looks for the end of compression where the law need not know it. A
-/// point while sliding follows the arc from its beginning with the pieces of the solver until I_n is reached, and so costs no
-/// more than a solve; nothing is stored but the outcome. A point after slip has stopped is a straight line, some twenty operations. No allocation.
+/// Cost: [`Hodograph::new`] is one [`crate::solve`] that always locates the end of compression. A point of the sliding arc is computed from the start of the
+/// collision and costs no more than a solve. A point after slip has stopped costs some twenty operations. Nothing is allocated.
 #[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct Hodograph<T: nalgebra::Scalar> {
@@ -59,7 +58,7 @@ impl<T: Scalar> Hodograph<T> {
         Ok(Self { approach: *approach, matrix: *matrix, mu: surface.mu, impact, terminal })
     }
 
-    /// The outcome, as of [`crate::solve`], with the end of compression under every law.
+    /// The outcome, as of [`crate::solve`]; the end of compression is known under every law.
     #[inline]
     pub fn impact(&self) -> &Impact<T> {
         &self.impact
@@ -71,7 +70,7 @@ impl<T: Scalar> Hodograph<T> {
         self.impact.impulse.x
     }
 
-    /// All quantities where the normal impulse is `normal_impulse`, in N s: the approach at 0 and below, the outcome at I_n2 and above.
+    /// All quantities at the normal impulse `normal_impulse`, in N s: at 0 and below the approach, at I_n2 and above the outcome.
     #[inline]
     pub fn at(&self, normal_impulse: T) -> Snapshot<T> {
         let zero = T::zero();
@@ -87,7 +86,7 @@ impl<T: Scalar> Hodograph<T> {
         let slip = tangential.norm();
         let slides = slips(slip);
         let first = if slides { Motion::Sliding } else { after };
-        // No: it is the beginning, or not a number.
+        // False at the beginning, and for NaN.
         let begun = normal_impulse > zero;
         if !begun {
             return units.snapshot(&State::before(-T::one()), &tangential, first);
@@ -101,7 +100,7 @@ impl<T: Scalar> Hodograph<T> {
                 Slide::Ended(state, velocity) => {
                     return units.snapshot(&state.in_units(share, T::one()), &velocity, first);
                 }
-                // Rounding alone tells this from the end of slip.
+                // The impulse asked for is the end of slip up to rounding.
                 Slide::Stopped(state) | Slide::Endless(state) => {
                     return units.snapshot(&state.in_units(share, T::one()), &Vector2::zeros(), first);
                 }
@@ -119,7 +118,7 @@ impl<T: Scalar> Hodograph<T> {
         units.snapshot(&state, &(gain * impulse), after)
     }
 
-    /// `count` snapshots at even steps of the normal impulse, from the approach to the outcome; a single one is the outcome.
+    /// `count` snapshots at equal steps of the normal impulse, from the approach to the outcome; if `count` is one, the outcome.
     #[inline]
     pub fn points(
         &self,

@@ -4,20 +4,20 @@ use nalgebra::Vector3;
 
 use crate::{Motion, Phases, Sensitivity};
 
-/// The phases a collision went through. A phase that lasts no impulse is left out.
+/// The phases of a collision in order. A phase without impulse is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Path {
     /// Slip from beginning to end (section 3.1).
     Sliding,
-    /// Slip, then no slip until the end (section 3.2; mu >= mu_c).
+    /// Slip that stops, then sticking until the end (section 3.2; mu >= mu_c).
     SlidingThenSticking,
     /// Slip that stops and is renewed at once in the direction phi_hat (section 3.3; mu < mu_c).
     SlidingThenRenewal,
-    /// No slip at any time (it began without, and mu >= mu_c).
+    /// No slip at any time: there was none at the start, and mu >= mu_c.
     Sticking,
-    /// Slip that starts from none, in the direction phi_hat (mu < mu_c).
+    /// No slip at the start; slip begins at once in the direction phi_hat (mu < mu_c).
     Renewal,
 }
 
@@ -70,18 +70,18 @@ pub struct Impact<T: nalgebra::Scalar> {
     pub contact_work: T,
     /// Work of the normal impulse alone, the integral of v_n dI_n (35b), in J.
     pub normal_work: T,
-    /// The phases gone through.
+    /// The phases of the collision.
     pub path: Path,
     /// How often compression ended: 1, or 2 if the bodies approached again during restitution.
     pub compressions: u32,
-    /// All quantities where compression ended and where slip stopped.
+    /// All quantities at the instants where compression ended and where slip stopped.
     pub phases: Phases<T>,
-    /// Why the outcome is sensitive to its input, if it is.
+    /// Flags for situations in which a small change of the input changes the outcome by much.
     pub sensitivity: Sensitivity,
 }
 
 impl<T: crate::Scalar> Impact<T> {
-    /// The energy that the collision gained, if it did: only Newton's hypothesis does that.
+    /// The energy that the collision gained, in J, if it did; that happens under Newton's hypothesis only.
     #[inline]
     pub fn energy_gained(&self) -> Option<T> {
         (self.contact_work > T::zero()).then_some(self.contact_work)

@@ -1,4 +1,4 @@
-//! Equations of motion and frictional impacts of mechanisms.
+//! Equations of motion of mechanisms, and their frictional impacts and contacts in three dimensions.
 //!
 //! A *model file* describes a mechanism: bodies, joints, constraints, loads and contacts. [`mechanism!`] makes a Rust module of it at
 //! compile time, generic over the scalar, which allocates nothing and does not panic:
@@ -24,7 +24,7 @@
 //! | solve a collision without a model | [`solve`], [`impact_without_collision`], [`structure`] |
 //! | follow a collision | [`Hodograph`], [`Phases`] |
 //! | differentiate a collision | [`derivative`], [`derivative_without_collision`], [`saltation`] |
-//! | find force and mode of a contact that lasts | [`contact_mode`], [`contact_force`] |
+//! | find mode and force of a lasting contact | [`contact_mode`], [`contact_force`] |
 //!
 //! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse and the velocity of separation in three
 //! dimensions, under Coulomb's law of friction and Newton's, Poisson's or Stronge's hypothesis of restitution:
@@ -40,7 +40,7 @@
 //! # Ok::<(), hodograph::ImpactError<f64>>(())
 //! ```
 //!
-//! Plain equation numbers in these pages are those of Djerassi, *Three-dimensional, one-point collision with friction* (2012).
+//! Equation numbers such as (34) in these pages are those of Djerassi, *Three-dimensional, one-point collision with friction* (2012), "the paper".
 //!
 //! # What may change
 //!

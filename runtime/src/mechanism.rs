@@ -1,4 +1,4 @@
-//! Mechanisms seen through slices: one integrator, controller or plot serves all of them.
+//! The traits of all mechanisms, with slices in place of named fields: one integrator, controller or plot written for them serves every mechanism.
 //!
 //! Every generated module implements [`Mechanism`] and [`Contacts`], and so does the interpreter of derivations. Both traits can be used as
 //! trait objects (`&dyn Contacts`). Nothing here allocates: the caller brings the slices.

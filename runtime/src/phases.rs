@@ -1,4 +1,4 @@
-//! Snapshots of a collision: all quantities at one normal impulse, and where a phase begins or ends.
+//! Snapshots of a collision: all quantities at one normal impulse, and the snapshots at which phases begin or end.
 
 use nalgebra::Vector3;
 
@@ -14,7 +14,7 @@ pub enum Motion {
     Sliding,
     /// It does not slip (45).
     Sticking,
-    /// It slips in the direction phi_hat, after slip had stopped or from none (46).
+    /// It slips in the direction phi_hat, after slip had stopped or from the start (46).
     Renewal,
 }
 
@@ -32,7 +32,7 @@ pub struct Snapshot<T: nalgebra::Scalar> {
     pub contact_work: T,
     /// Work of the normal impulse so far (35b), in J.
     pub normal_work: T,
-    /// What the contact does now; where a phase begins, that phase.
+    /// The motion of the contact; where two phases meet, that of the later one.
     pub motion: Motion,
 }
 
@@ -56,7 +56,7 @@ impl<T: Scalar> Snapshot<T> {
         (!none).then(|| self.velocity.z.atan2(self.velocity.y))
     }
 
-    /// Whether the bodies approach each other: compression.
+    /// Whether the bodies approach each other (v_n < 0): compression.
     #[inline]
     pub fn compresses(&self) -> bool {
         self.velocity.x < T::zero()
@@ -71,8 +71,8 @@ impl<T: Scalar> Snapshot<T> {
 pub struct Phases<T: nalgebra::Scalar> {
     /// The end of the first compression: v_n = 0 (index C in the paper).
     ///
-    /// Under Newton's hypothesis, while slip lasts, nothing depends on it: [`crate::solve`] passes it by and leaves `None`;
-    /// [`crate::Hodograph`] has it always.
+    /// Under Newton's hypothesis the outcome does not depend on it while slip lasts: [`crate::solve`] then does not locate it and leaves `None`;
+    /// [`crate::Hodograph`] always locates it.
     pub compression_end: Option<Snapshot<T>>,
     /// The end of the latest compression, the one the law counts from; the same as the first unless the bodies approached again.
     pub last_compression_end: Option<Snapshot<T>>,

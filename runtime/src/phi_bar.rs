@@ -1,4 +1,4 @@
-//! The direction in which slip stops.
+//! phi_bar, the direction in which slip stops.
 //!
 //! Theory: docs/theory.md, section 12.
 
@@ -11,8 +11,8 @@ use crate::{Characteristics, ReducedMatrix, Scalar, rates, scalar::constant, sol
 /// It is the first zero of h in the direction in which h turns the slip (34a), or `phi` itself if h is zero there. `None` if slip
 /// never stops by itself (g >= 0 there; then that direction is phi_hat).
 ///
-/// At most some 10 000 operations (it bisects); h is a polynomial of degree four in the tangent of half the angle, whose zeros are found between those of its
-/// derivatives.
+/// It takes at most some 10 000 operations: h is a polynomial of degree four in the tangent of half the angle, whose zeros are found by bisection between
+/// those of its derivatives.
 pub fn phi_bar<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, phi: T) -> Option<T> {
     let c = Contact::new(matrix, mu);
     let noise = constant::<T>(4.0) * T::default_epsilon() * c.slip_size();

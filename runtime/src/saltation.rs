@@ -1,4 +1,4 @@
-//! How a small deviation of a mechanism's state passes through a collision.
+//! The saltation matrix: how a small deviation of a mechanism's state changes in a collision.
 //!
 //! Theory: docs/theory.md, section 13.4.
 
@@ -33,7 +33,7 @@ pub fn speed_derivative<T: Scalar, const P: usize>(
 
 /// The saltation matrix: to first order, deviation after = matrix * deviation before, at the same time.
 ///
-/// A trajectory that starts a little off also meets the surface a little earlier or later. With the state x = (q, u), the rates
+/// A trajectory with a small deviation also meets the surface a little earlier or later. With the state x = (q, u), the rates
 /// x' = f, the gap g(x) = 0 and the jump x+ = r(x-) it is
 ///
 /// D r + (f(x+) - D r f(x-)) D g / (D g f(x-)).

@@ -1,4 +1,4 @@
-//! Where a small change of the input changes the outcome, or its path, by much.
+//! Flags for situations in which a small change of the input changes the outcome of a collision, its path or its derivatives by much.
 //!
 //! Theory: docs/theory.md, section 14.
 

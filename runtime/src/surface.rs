@@ -1,4 +1,4 @@
-//! What the two surfaces are like.
+//! The pair of surfaces in contact: friction and restitution.
 
 use crate::Law;
 

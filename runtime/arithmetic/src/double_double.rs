@@ -1,10 +1,12 @@
-//! Numbers of twice the digits, the unevaluated sum of two (Dekker 1971): what depends on parameters alone is computed in them, once,
-//! and rounded at the end. Their products and quotients are right to a few units in the last of all places, their sums to as many units of
-//! their terms. What a number loses is asked of the operations, and no bits are taken apart, so that derivatives go through.
+//! Numbers of twice the digits, as unevaluated sums of two numbers (Dekker 1971). Constructors compute in them what depends on parameters only, and
+//! round the result once.
+//!
+//! The relative error of products and quotients is a few units in the last of all places; that of sums is as many units relative to their terms. Rounding
+//! errors are computed by arithmetic operations and not by manipulating bits, so that numbers that carry derivatives can be components.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What is asked of the numbers that come in pairs.
+/// The operations that a component needs.
 pub trait Component:
     Copy
     + PartialOrd
@@ -16,7 +18,7 @@ pub trait Component:
 {
     /// 0
     fn zero() -> Self;
-    /// Is it neither infinite nor not a number?
+    /// Whether it is neither infinite nor NaN.
     fn is_finite(&self) -> bool;
     /// Square root.
     fn sqrt(self) -> Self;
@@ -47,7 +49,7 @@ pub struct DoubleDouble<T> {
     low: T,
 }
 
-/// What rounding took from `high = a + b` (Knuth 1969).
+/// The rounding error of `high = a + b` (Knuth 1969).
 fn lost<T: Component>(a: T, b: T, high: T) -> T {
     let of_b = high - a;
     let of_a = high - of_b;
@@ -55,7 +57,7 @@ fn lost<T: Component>(a: T, b: T, high: T) -> T {
 }
 
 impl<T: Component> DoubleDouble<T> {
-    /// A number as it is.
+    /// An exact number.
     pub fn new(high: T) -> Self {
         DoubleDouble { high, low: T::zero() }
     }
@@ -69,7 +71,7 @@ impl<T: Component> DoubleDouble<T> {
         DoubleDouble { high: sum, low: low - (sum - high) }
     }
 
-    /// The nearest number of the usual digits.
+    /// The nearest number of the component type.
     pub fn rounded(self) -> T {
         self.high
     }
@@ -79,7 +81,7 @@ impl<T: Component> DoubleDouble<T> {
         DoubleDouble::of(value, slope * self.low)
     }
 
-    /// Is it less than another?
+    /// Whether it is less than another.
     pub fn is_less(self, other: Self) -> bool {
         self.high < other.high || (self.high == other.high && self.low < other.low)
     }
@@ -88,14 +90,14 @@ impl<T: Component> DoubleDouble<T> {
     pub fn sqrt(self) -> Self {
         let near = self.high.sqrt();
         let rest = (-near).mul_add(near, self.high) + self.low;
-        // zero has no slope: what comes of it is not finite and left out
+        // At zero the slope is infinite: the correction is not finite and is left out.
         DoubleDouble::of(near, rest / (near + near))
     }
 }
 
 impl<T: Component> Add for DoubleDouble<T> {
     type Output = Self;
-    // a call: constructors are long, and run once
+    // Not inlined: constructors are long, and run once.
     #[inline(never)]
     fn add(self, other: Self) -> Self {
         let high = self.high + other.high;
@@ -122,7 +124,7 @@ impl<T: Component> Mul for DoubleDouble<T> {
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let high = self.high * other.high;
-        // with one rounding on every target, if need be in many operations: this is done once
+        // With one rounding on every target, even where that takes many operations: it is done once.
         let lost = self.high.mul_add(other.high, -high);
         DoubleDouble::of(high, lost + (self.high * other.low + self.low * other.high))
     }

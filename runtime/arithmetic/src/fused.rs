@@ -1,7 +1,7 @@
-//! a * b + c, where the target does it in one operation.
+//! a * b + c in one operation with one rounding, on targets that have the instruction.
 
-/// Are a * b + c and its kin one operation, with one rounding, on this build's target? Without the standard library the operation cannot be
-/// reached.
+/// Whether a * b + c, a * b - c and c - a * b are one operation with one rounding in this build. Without the standard library the operation is not
+/// available.
 pub const FUSED: bool = cfg!(all(
     feature = "std",
     any(target_feature = "fma", all(target_arch = "aarch64", target_feature = "neon"))

@@ -5,7 +5,7 @@
 //! * [`hyperbolic`]: hyperbolic functions of a double, likewise,
 //! * [`DoubleDouble`]: numbers of twice the digits.
 //!
-//! No part of Hodograph's interface: versions may differ in any way.
+//! This package is not part of Hodograph's public interface: any version may change it.
 
 #![no_std]
 #![forbid(unsafe_code)]

@@ -1,7 +1,7 @@
-//! Sine and cosine of a double together, to less than one unit in the last place, in forty operations and without a branch.
+//! Sine and cosine of a double together, to less than one unit in the last place, in forty operations without a branch, the same bits on every machine.
 //!
-//! The angle is reduced by multiples of pi/2 in three parts, sine and cosine of the rest are polynomials (Chebyshev
-//! interpolation on [0, pi/4], error below 2^-55), and the quadrant says which is which. Angles beyond 2^19 go another way.
+//! The angle is reduced by a multiple of pi/2, which is stored in three parts. Sine and cosine of the remainder are polynomials (Chebyshev interpolation
+//! on [0, pi/4], error below 2^-55); the quadrant exchanges them and sets their signs. For angles beyond 2^19 the caller supplies a function.
 
 use crate::fused::{FUSED, mul_add};
 
@@ -36,7 +36,7 @@ const COSINE: [f64; 6] = [
     -1.1382614868556325e-11,
 ];
 
-/// Sine and cosine; `beyond` answers for angles that are too large, infinite or not a number.
+/// Sine and cosine; `beyond` computes them for angles that are too large, infinite or NaN.
 #[inline(always)]
 pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
     if !is_within(x) {
@@ -45,18 +45,18 @@ pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
     let (r, low, turns) = reduced(x);
     let (sine, cosine) = near_zero(r, low);
     let quadrant = turns as usize & 3;
-    // Of each product below one factor is 0, 1 or -1: nothing is rounded.
+    // In each product below one factor is 0, 1 or -1: no rounding.
     let (s, c) = (QUARTERS[quadrant], QUARTERS[quadrant + 1]);
     (mul_add(sine, c, cosine * s), mul_add(cosine, c, -(sine * s)))
 }
 
-/// Is the angle reduced here?
+/// Whether the angle is small enough to be reduced here.
 #[inline(always)]
 pub fn is_within(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
-/// What an angle is beside the nearest multiple of pi/2, what rounding takes from that, and the multiple, of which the last two bits count.
+/// The difference of an angle and the nearest multiple of pi/2, the rounding error of the difference, and the multiple, of which the last two bits count.
 #[inline(always)]
 pub fn reduced(x: f64) -> (f64, f64, u64) {
     let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUNDER);

@@ -1,4 +1,4 @@
-//! Dual numbers: a value with its derivatives with respect to `N` inputs, carried through the solver by forward differentiation.
+//! Dual numbers: a value with its derivatives with respect to `N` inputs. The solver runs on them to differentiate an outcome (forward mode).
 //!
 //! Theory: docs/theory.md, section 13.1.
 
@@ -6,8 +6,7 @@ mod operators;
 
 use crate::{Scalar, scalar::Real};
 
-/// A value and its partial derivatives. Comparisons look at the value alone, so that a calculation takes the same branches as without
-/// derivatives.
+/// A value and its partial derivatives. Comparisons use the value only, so that a calculation takes the same branches as without derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual<T, const N: usize> {
     pub value: T,
@@ -15,13 +14,13 @@ pub(crate) struct Dual<T, const N: usize> {
 }
 
 impl<T: Scalar, const N: usize> Dual<T, N> {
-    /// Something that does not depend on the inputs.
+    /// A constant: all derivatives are zero.
     #[inline]
     pub fn fixed(value: T) -> Self {
         Self { value, partials: [T::zero(); N] }
     }
 
-    /// The input with this index.
+    /// The input with this index: its own derivative is one.
     #[inline]
     pub fn input(value: T, index: usize) -> Self {
         let mut dual = Self::fixed(value);
@@ -31,7 +30,7 @@ impl<T: Scalar, const N: usize> Dual<T, N> {
         dual
     }
 
-    /// A function of one number, by its value and its derivative here.
+    /// A function of this number, from its value and its derivative here.
     #[inline]
     fn chain(self, value: T, derivative: T) -> Self {
         Self { value, partials: self.partials.map(|p| p * derivative) }
@@ -64,7 +63,7 @@ impl<T: Scalar, const N: usize> Real for Dual<T, N> {
     fn abs(self) -> Self {
         if self.value < T::zero() { -self } else { self }
     }
-    /// At zero, where there is no derivative, it counts as zero.
+    /// At zero, where the root has no derivative, the derivatives are set to zero.
     #[inline]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();

@@ -1,4 +1,4 @@
-//! Sines and cosines of several angles at once: a loop without branches, which compilers turn into vector instructions.
+//! Sines and cosines of several angles at once, in loops without branches that compilers turn into vector instructions.
 
 use core::{any::TypeId, array::from_fn, hint::black_box};
 
@@ -8,7 +8,7 @@ use nalgebra::convert;
 use super::arithmetic::sin_cos;
 use crate::Scalar;
 
-/// Does the target compute several doubles by one instruction?
+/// Whether the target has instructions that compute several doubles at once.
 const VECTORS: bool = cfg!(any(
     target_feature = "sse2",
     target_feature = "neon",
@@ -16,7 +16,7 @@ const VECTORS: bool = cfg!(any(
     target_feature = "v"
 ));
 
-/// Sines and cosines of up to eight angles: for each what [`sin_cos`] gives, to the last bit.
+/// Sines and cosines of up to eight angles, each the same bits as [`sin_cos`] gives.
 #[inline(always)]
 pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
     // Known at compile time; the conversions of a double to a double vanish.
@@ -34,14 +34,14 @@ pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; 
     (sines.map(convert), cosines.map(convert))
 }
 
-/// `N` angles in `LANES` lanes, at least as many; the last angle fills those that are left over.
+/// `N` angles in `LANES` lanes (at least `N`); the last angle fills the lanes that are left over.
 #[inline(always)]
 fn filled<const N: usize, const LANES: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     let (sines, cosines) = of_doubles::<LANES>(from_fn(|lane| angles[lane.min(N - 1)]));
     (from_fn(|lane| sines[lane.min(LANES - 1)]), from_fn(|lane| cosines[lane.min(LANES - 1)]))
 }
 
-/// A function of its own: within a long one, compilers leave parts of the loops as they are.
+/// A function of its own: inside a long function, compilers do not vectorise all of the loops.
 #[inline(never)]
 fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     if !angles.iter().fold(true, |within, &angle| within & is_within(angle)) {
@@ -72,11 +72,11 @@ fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
-/// Loops of so many turns are unrolled before they are looked at for vector instructions. These are then found from stores backwards,
-/// over a dozen operations: so there are stores on the way, which cost less than what would be missed.
+/// Compilers unroll loops of this many turns before they look for vector instructions, and then find these only up to a dozen operations before a store.
+/// Intermediate results are therefore stored, which costs less than missing vector instructions would.
 const UNROLLED: usize = 4;
 
-/// Exchanges sine and cosine and changes their signs as the quadrant tells, without a table.
+/// Exchanges sine and cosine and changes their signs according to the quadrant, without a table.
 #[inline(always)]
 fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
     let odd = (turns & 1).wrapping_neg();

@@ -1,4 +1,4 @@
-//! Operations of generated code. `hodograph_generator::arithmetic` means the same in doubles.
+//! The arithmetic operations of generated code, for any scalar. For doubles they give the same bits as `hodograph_generator::arithmetic`.
 
 use core::any::TypeId;
 
@@ -7,7 +7,7 @@ use nalgebra::{ComplexField, convert};
 
 use crate::Scalar;
 
-/// A number of the program.
+/// A literal of the program in the scalar type.
 #[inline(always)]
 pub fn number<T: Scalar>(number: f64) -> T {
     convert(number)

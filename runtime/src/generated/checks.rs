@@ -1,4 +1,4 @@
-//! Checks that generated routines make before they answer.
+//! Checks of generated routines: singular states, numbers that are not finite, impossible parameters, lengths of slices.
 
 use super::{ParameterError, StateError, mul_add, number};
 use crate::Scalar;
@@ -6,35 +6,35 @@ use crate::Scalar;
 /// A value counts as zero where it is at most this times its scale: 2^-40.
 const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
 
-/// Does a value vanish beside its scale (or is one of them not a number)?
+/// Whether a value counts as zero relative to its scale, or one of the two is NaN.
 #[inline(always)]
 pub fn vanishes_beside<T: Scalar>(value: T, scale: T) -> bool {
     let above = value.abs() > number::<T>(VANISHING) * scale.abs();
     !above && !is_infinite(value)
 }
 
-/// A divisor that overflows is large, and what it divides is 0: that is asked only where the scale is infinite too.
+/// Whether a divisor is infinite. It is then large, not zero, and the quotient is 0; this is asked only where the scale is infinite too.
 #[cold]
 #[inline(never)]
 fn is_infinite<T: Scalar>(value: T) -> bool {
     value.abs() > T::zero() && !value.is_finite()
 }
 
-/// Is a value zero, or not a number?
+/// Whether a value is zero or NaN.
 #[inline(always)]
 pub fn vanishes<T: Scalar>(value: T) -> bool {
     let above = value.abs() > T::zero();
     !above
 }
 
-/// Why a state has no answer, when `value` vanishes beside `scale`.
+/// The error of a state in which `value` counts as zero relative to `scale`.
 #[cold]
 #[inline(never)]
 pub fn singular<T: Scalar>(value: T, scale: T, what: &'static str) -> StateError {
     if value.is_finite() && scale.is_finite() { StateError::Singular { what } } else { StateError::NotFinite }
 }
 
-/// Are all values finite? One operation each, no branch.
+/// Whether all values are finite, by one operation each and without branches.
 #[inline(always)]
 pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
     let mut sum = T::zero();
@@ -81,7 +81,7 @@ pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Resul
     }
 }
 
-/// A slice must have so many numbers.
+/// An error unless the slice has this length.
 #[inline]
 pub fn check_length<T>(slice: &[T], expected: usize, what: &'static str) -> Result<(), StateError> {
     if slice.len() == expected {
@@ -91,7 +91,7 @@ pub fn check_length<T>(slice: &[T], expected: usize, what: &'static str) -> Resu
     }
 }
 
-/// A slice must have so many numbers, or more.
+/// An error unless the slice has this length or more.
 #[inline]
 pub fn check_room<T>(slice: &[T], needed: usize, what: &'static str) -> Result<(), StateError> {
     if slice.len() >= needed {
@@ -101,7 +101,7 @@ pub fn check_room<T>(slice: &[T], needed: usize, what: &'static str) -> Result<(
     }
 }
 
-/// The numbers of a slice that must have so many.
+/// The slice as an array; an error if it has another length.
 #[inline]
 pub fn array<T: Copy, const N: usize>(slice: &[T], what: &'static str) -> Result<[T; N], StateError> {
     <[T; N]>::try_from(slice).map_err(|_| StateError::Length { what, expected: N, found: slice.len() })

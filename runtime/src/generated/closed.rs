@@ -1,4 +1,6 @@
-//! From the quantities of a closed contact to its mode and force.
+//! Calls the functions of lasting contact for a contact of a generated module, and decides which slip counts as zero.
+//!
+//! Theory: docs/theory.md, section 18.12.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -8,10 +10,11 @@ use crate::{
     ClosedContactError, ContactForce, ContactMode, ContactOutcome, Scalar, contact_force, contact_mode,
 };
 
-/// Roundings of the terms of a velocity, in units of their sum.
+/// The rounding error of a velocity, in rounding units of the sum of the sizes of its terms.
 const ROUNDINGS: f64 = 64.0;
 
-/// What rounding alone may make of a slip that is zero: partial velocities (by rows) times speeds, and prescribed motion, cancel.
+/// The largest slip that rounding alone can make where the exact slip is zero: the terms (partial velocities, by rows, times speeds, and prescribed motion)
+/// cancel up to their roundings.
 #[inline]
 pub fn slip_noise<T: Scalar>(partial_velocities: &[T], speeds: &[T], remainder: &Vector3<T>) -> T {
     let mut terms = remainder.iter().fold(T::zero(), |sum, part| sum + Real::abs(*part));
@@ -28,7 +31,7 @@ pub fn slip_noise<T: Scalar>(partial_velocities: &[T], speeds: &[T], remainder: 
 ///
 /// # Errors
 ///
-/// What [`contact_mode`] refuses.
+/// Those of [`contact_mode`].
 #[inline]
 pub fn closed_contact<T: Scalar>(
     contact: &Contact<T>,
@@ -48,7 +51,7 @@ pub fn closed_contact<T: Scalar>(
 ///
 /// # Errors
 ///
-/// What [`contact_force`] refuses.
+/// Those of [`contact_force`].
 #[inline]
 pub fn kept_contact<T: Scalar>(
     mode: ContactMode,

@@ -1,4 +1,6 @@
-//! Operations at construction, by the names that `arithmetic` has for those of routines: in twice the digits.
+//! The arithmetic operations of constructors, in numbers of twice the digits, under the same names as those of `arithmetic`.
+//!
+//! Theory: docs/theory.md, section 16.4.
 
 use super::arithmetic as usual;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -11,7 +13,7 @@ use crate::Scalar;
 /// A number of twice the digits.
 pub type Paired<T> = DoubleDouble<Usual<T>>;
 
-/// A number of the usual digits, in a type of this crate, so that it can have another crate's trait.
+/// A scalar in a type of this crate, so that a trait of another crate can be implemented for it.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 #[repr(transparent)]
 pub struct Usual<T>(T);
@@ -57,13 +59,13 @@ impl<T: Scalar> Component for Usual<T> {
     }
 }
 
-/// A number of the program, or a parameter.
+/// A literal of the program or a parameter, exactly.
 #[inline]
 pub fn exactly<T: Scalar>(number: T) -> Paired<T> {
     Paired::new(Usual(number))
 }
 
-/// The number that routines work with.
+/// The nearest scalar, for use in routines.
 #[inline]
 pub fn rounded<T: Scalar>(a: Paired<T>) -> T {
     a.rounded().0
@@ -224,7 +226,7 @@ mod tests {
         assert!((value.re - expected.re).abs() < 1e-15 && (value.eps - expected.eps).abs() < 1e-15);
     }
 
-    /// Near both ends of the range what rounding takes is infinite or lost itself: the usual digits stay.
+    /// Near both ends of the range the second part overflows or underflows; the usual digits must remain.
     #[test]
     fn numbers_of_any_size_keep_the_usual_digits() {
         let sizes =

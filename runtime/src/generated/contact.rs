@@ -1,4 +1,4 @@
-//! From the quantities of a contact to a solved collision.
+//! Solves the collision of a contact of a generated module: turns the contact basis so that t lies along the slip, calls the solver, and turns the result back.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -8,7 +8,7 @@ use crate::{
     structure::{Structure, solve_structured},
 };
 
-/// What a mechanism tells of a contact. The contact basis is `normal`, `first`, `second`, right-handed.
+/// The quantities of a contact in a state of the mechanism. The contact basis is `normal`, `first`, `second`, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<T> {
     /// n along N.x, N.y, N.z
@@ -21,7 +21,7 @@ pub struct Contact<T> {
     pub velocity: Vector3<T>,
     /// reduced matrix in the contact basis, 1/kg
     pub reduced: ReducedMatrix<T>,
-    /// v_t^R in the contact basis, m/s
+    /// the part of the velocity of approach that prescribed motion causes (the paper's v_t^R), in the contact basis, m/s
     pub remainder: Vector3<T>,
     /// work of the prescribed motion per unit impulse, in the contact basis, m/s: the sum of m v_t . dv in (24)
     pub prescribed_work: Vector3<T>,
@@ -38,7 +38,7 @@ pub struct Resolved<T: nalgebra::Scalar> {
     pub approach: Vector3<T>,
     /// reduced matrix along n, t, s, 1/kg
     pub reduced: ReducedMatrix<T>,
-    /// the solver's answer along n, t, s
+    /// the outcome along n, t, s
     pub impact: Impact<T>,
     /// impulse in the contact basis, N s
     pub impulse: Vector3<T>,
@@ -75,7 +75,7 @@ pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
 ///
 /// # Errors
 ///
-/// What [`solve`] refuses.
+/// Those of [`solve`].
 #[inline]
 pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<Resolved<T>, ImpactError<T>> {
     let (cos, sin) = contact_axes(contact);
@@ -91,7 +91,7 @@ pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<
 ///
 /// # Errors
 ///
-/// What [`impact_without_collision`] refuses.
+/// Those of [`impact_without_collision`].
 #[inline]
 pub fn resolve_without_collision<T: Scalar>(
     contact: &Contact<T>,
@@ -110,7 +110,7 @@ pub fn resolve_without_collision<T: Scalar>(
 ///
 /// # Errors
 ///
-/// What [`solve`] refuses.
+/// Those of [`solve`].
 #[inline]
 pub fn resolve_structured<S: Structure, T: Scalar>(
     contact: &Contact<T>,
@@ -125,7 +125,7 @@ pub fn resolve_structured<S: Structure, T: Scalar>(
     Ok(resolved(contact, (cos, sin), contact.reduced.turned(cos, sin), approach, impact))
 }
 
-/// The outcome along n, t, s in all the forms wanted.
+/// Converts an outcome along n, t, s to the contact basis and to N.
 #[inline]
 fn resolved<T: Scalar>(
     contact: &Contact<T>,

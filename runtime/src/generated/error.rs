@@ -1,41 +1,41 @@
-//! Why a generated routine has no answer.
+//! The errors of generated routines.
 
 use core::fmt;
 
 use crate::{ContactError, ImpactError, Kind};
 
-/// Why a mechanism has no answer in a state.
+/// Why a routine of a mechanism has no result in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum StateError {
-    /// The state is singular.
+    /// The state is singular: a divisor is zero, or a matrix that must be inverted is singular.
     Singular {
-        /// What is singular, in the words of the model.
+        /// What is singular, in the names of the model.
         what: &'static str,
     },
-    /// The state, or a result, is infinite or not a number.
+    /// A number of the state, or of the result, is infinite or NaN.
     NotFinite,
     /// A slice is too long or too short.
     Length {
-        /// What it holds.
+        /// What the slice holds.
         what: &'static str,
         /// How many numbers it must have.
         expected: usize,
         /// How many it has.
         found: usize,
     },
-    /// There is none of this number.
+    /// The mechanism has no component of this kind with this number.
     Missing {
-        /// Of what kind.
+        /// The kind.
         kind: Kind,
         /// The number, counted from 0.
         index: usize,
     },
-    /// The model does not say enough to know this.
+    /// The model does not define this quantity.
     Undefined {
-        /// What is not known.
+        /// The quantity.
         what: &'static str,
     },
 }
@@ -76,7 +76,7 @@ impl fmt::Display for StateError {
 
 impl core::error::Error for StateError {}
 
-/// Why parameters belong to no mechanism.
+/// Why parameters are refused.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -92,14 +92,14 @@ pub enum ParameterError {
         /// The body.
         body: &'static str,
     },
-    /// No body has this inertia: a moment is negative, or greater than the sum of the other two.
+    /// No body has this inertia: a principal moment is negative or greater than the sum of the other two.
     Inertia {
         /// The body.
         body: &'static str,
     },
-    /// Something that must not vanish does.
+    /// A quantity that must not be zero is zero.
     Singular {
-        /// What it is, in the words of the model.
+        /// The quantity, in the names of the model.
         what: &'static str,
     },
     /// The slice of parameters is too long or too short.
@@ -162,7 +162,7 @@ impl From<StateError> for ParameterError {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum CollisionError<T> {
-    /// The mechanism has no equations of motion there.
+    /// The state is singular or not finite.
     State(StateError),
     /// The collision cannot be solved.
     Impact(ImpactError<T>),
@@ -207,7 +207,7 @@ impl<T> From<ImpactError<T>> for CollisionError<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ClosedContactError<T> {
-    /// The mechanism has no equations of motion there.
+    /// The state is singular or not finite.
     State(StateError),
     /// No finite force agrees with Coulomb's law.
     Contact(ContactError<T>),

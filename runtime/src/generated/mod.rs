@@ -1,4 +1,4 @@
-//! What generated modules are made of. Only generated code names these functions; the errors are for everybody.
+//! Functions and macros that generated modules call. Only generated code names them; the error types are public.
 
 mod angles;
 mod arithmetic;
@@ -40,6 +40,6 @@ pub use crate::{
     __record as record, __serialize_outcome as serialize_outcome, __serialize_record as serialize_record,
 };
 
-/// Generated code names this constant: where it is missing, the module was made by a generator that this runtime does not fit.
+/// Generated code names this constant, so that a module made by a generator of another version does not compile with this runtime.
 #[doc(hidden)]
 pub const GENERATED_CODE_FORMAT_3: () = ();

@@ -1,10 +1,12 @@
-//! From the derivatives of a contact to the saltation matrix of its collision.
+//! Assembles the saltation matrix of a collision of a generated module from the derivatives of its contact.
+//!
+//! Theory: docs/theory.md, section 13.4.
 
 use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 
 use crate::{CollisionError, ImpactDerivative, ImpactError, Saltation, Scalar, saltation};
 
-/// Rates of the state: those of the independent coordinates, which have these places among all, and of the `P` speeds.
+/// The rates of the state: of the independent coordinates, whose places among all coordinates are given, then of the `P` speeds.
 #[inline]
 pub fn state<T: Scalar, const K: usize, const C: usize, const P: usize, const N: usize>(
     rates: &[T; K],
@@ -17,7 +19,7 @@ pub fn state<T: Scalar, const K: usize, const C: usize, const P: usize, const N:
     )
 }
 
-/// The derivative of the jump, without what the configuration does to the speeds.
+/// The derivative of the jump of the state: the block of the speeds and the identity for coordinates, without the derivatives of speeds by coordinates.
 #[inline]
 pub fn reset<T: Scalar, const P: usize, const N: usize>(speeds: &SMatrix<T, P, P>) -> SMatrix<T, N, N> {
     let first = N.saturating_sub(P);
@@ -31,8 +33,8 @@ pub fn reset<T: Scalar, const P: usize, const N: usize>(speeds: &SMatrix<T, P, P
     })
 }
 
-/// Adds how the speeds after change with a coordinate, and tells how the gap does. `change` holds the derivatives of velocity, reduced
-/// matrix and response by that coordinate, in this order, and of the gap.
+/// Adds the derivatives of the speeds after the collision with respect to one coordinate, and returns that of the gap. `change` holds the derivatives of
+/// velocity, reduced matrix, response and gap with respect to that coordinate, in this order.
 #[inline]
 pub fn by_coordinate<T: Scalar, const P: usize, const N: usize>(
     reset: &mut SMatrix<T, N, N>,

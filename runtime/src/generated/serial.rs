@@ -1,5 +1,5 @@
-//! Serialisation of generated structs, where the feature `serde` of this crate is on: a map from field names (the model's
-//! spelling) to numbers. Missing fields take their defaults, unknown ones are errors.
+//! Serialisation of generated structs with the feature `serde`: a map from field names, as the model spells them, to numbers. Missing fields take their
+//! defaults; unknown fields are errors.
 
 /// Implements serde's traits for a generated struct of numbers, or nothing.
 #[cfg(not(feature = "serde"))]

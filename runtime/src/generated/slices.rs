@@ -1,4 +1,4 @@
-//! Between the slices of the trait `Mechanism` and the types of a generated module.
+//! Converts between the slices of the trait `Mechanism` and the types of a generated module.
 
 use nalgebra::SMatrix;
 
@@ -24,7 +24,7 @@ pub struct Description {
 }
 
 impl Description {
-    /// How many of a kind.
+    /// The number of components of a kind.
     pub const fn count(&self, kind: Kind) -> usize {
         match kind {
             Kind::DependentCoordinate => self.dependent_coordinates.len(),
@@ -45,7 +45,7 @@ impl Description {
         }
     }
 
-    /// One of a kind.
+    /// The component of a kind with this number.
     pub fn component(&self, kind: Kind, index: usize) -> Option<Component<'static>> {
         let index = match kind {
             Kind::DependentCoordinate => *self.dependent_coordinates.get(index)?,
@@ -54,7 +54,7 @@ impl Description {
         self.list(kind).get(index).copied()
     }
 
-    /// Have the slices of a state their lengths?
+    /// An error unless the slices of a state have their lengths.
     #[inline]
     pub fn check<T>(&self, state: &State<'_, T>) -> Result<(), StateError> {
         check_length(state.coordinates, self.coordinates.len(), "coordinates")?;
@@ -62,7 +62,7 @@ impl Description {
         check_length(state.inputs, self.inputs.len(), "inputs")
     }
 
-    /// Brings the quaternions among the coordinates to length 1.
+    /// Scales the quaternions among the coordinates to length 1.
     pub fn normalize<T: Scalar>(&self, coordinates: &mut [T]) -> Result<(), StateError> {
         check_length(coordinates, self.coordinates.len(), "coordinates")?;
         normalize_quaternions(coordinates, self.quaternions);
@@ -70,7 +70,7 @@ impl Description {
     }
 }
 
-/// Brings quaternions, given by the numbers of their coordinates, to length 1; those of length 0 stay.
+/// Scales quaternions, given by the numbers of their coordinates, to length 1; those of length 0 are not changed.
 pub fn normalize_quaternions<T: Scalar>(coordinates: &mut [T], quaternions: &[[usize; 4]]) {
     for quaternion in quaternions {
         let parts = quaternion.iter().filter_map(|&index| coordinates.get(index));

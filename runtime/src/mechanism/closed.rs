@@ -1,4 +1,4 @@
-//! What a closed contact of a mechanism does.
+//! The result of a mechanism's closed contact: mode, force and acceleration.
 
 use nalgebra::Vector3;
 

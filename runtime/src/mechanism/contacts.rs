@@ -1,4 +1,4 @@
-//! Contacts of a mechanism by number.
+//! The trait [`Contacts`]: state, collision and force of a mechanism's contacts, selected by number.
 
 use nalgebra::Vector3;
 
@@ -8,7 +8,7 @@ use crate::{
     ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError, Surface,
 };
 
-/// What a contact is like in a state. The contact basis is `normal`, `first`, `second`: unit vectors, right-handed.
+/// Gap, contact basis, velocity and reduced matrix of a contact in a state. The contact basis is `normal`, `first`, `second`: unit vectors, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -48,7 +48,7 @@ pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
     pub impulse_on_point: Vector3<T>,
     /// change of the kinetic energy, J; it differs from `impact.contact_work` where motion is prescribed: (24)
     pub energy_change: T,
-    /// everything that the solver tells, along n, t, s: impulse, velocity of separation, phases
+    /// the outcome of the solver along n, t, s: impulse, velocity of separation, phases
     pub impact: Impact<T>,
 }
 

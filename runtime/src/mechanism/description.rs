@@ -1,13 +1,13 @@
-//! What a mechanism has, by name and number.
+//! Names, numbers and units of a mechanism's components: parameters, coordinates, speeds, inputs, points, frames and contacts.
 
-/// The things of a mechanism that have a name and a number, counted from 0 in the order of the model.
+/// The kinds of components of a mechanism that have a name and a number, counted from 0 in the order of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Kind {
-    /// parameters that can be changed; those that the model declares `fixed` are none
+    /// parameters that can be changed at run time; those that the model declares `fixed` are not counted
     Parameter,
     /// generalized coordinates, independent and dependent ones
     Coordinate,
@@ -28,7 +28,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// What one of the kind is called in a sentence.
+    /// The English noun for one of the kind, for messages.
     pub const fn noun(self) -> &'static str {
         match self {
             Self::Parameter => "parameter",
@@ -44,7 +44,7 @@ impl Kind {
     }
 }
 
-/// Name and unit of one of the things that a mechanism has.
+/// Name and unit of one component of a mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,11 +1,11 @@
-//! The differential equations (31)-(35), (45), (46) in units where m_nn = 1 and v_n1 = -1.
+//! The differential equations of a collision, (31)-(35), (45) and (46), in units where m_nn = 1 and v_n1 = -1, for the paper's methods.
 
 use nalgebra::{Vector2, Vector3};
 
 use super::MethodError;
 use crate::{Path, ReducedMatrix, Surface};
 
-/// Places in a [`State`].
+/// Indices of a [`State`].
 pub(super) const PHI: usize = 0;
 pub(super) const S: usize = 1;
 pub(super) const V_N: usize = 2;
@@ -89,12 +89,12 @@ impl Problem {
         scaled * self.speed
     }
 
-    /// The largest rate of v_n, for scales.
+    /// A bound of the rate of v_n, as a scale.
     pub fn pace(&self) -> f64 {
         1.0 + self.mu * self.b.norm()
     }
 
-    /// The largest size of g and h, for scales.
+    /// A bound of g and h, as a scale.
     pub fn turn(&self) -> f64 {
         self.b.norm() + self.mu * (self.tt + self.ss)
     }
@@ -121,7 +121,7 @@ impl Problem {
         ]
     }
 
-    /// What follows when slip has stopped: sticking (3.2) if mu >= mu_c, else renewal (3.3).
+    /// The arc after slip has stopped: sticking (3.2) if mu >= mu_c, else renewal (3.3).
     pub fn terminal(&self) -> Terminal {
         // Eigenvalues and -vectors of T; b in those axes.
         let (half, mean) = ((self.tt - self.ss) / 2.0, (self.tt + self.ss) / 2.0);

@@ -1,4 +1,4 @@
-//! Integration of (55) with a variable step (sections 3 and 4).
+//! Numerical integration of (55) with variable step (sections 3 and 4 of the paper).
 
 use nalgebra::Vector3;
 
@@ -84,7 +84,7 @@ pub fn integrate(
     let arc = problem.terminal();
     let mut at = arc.entered(at);
     ending.settle(&arc, &mut at, options.slack());
-    // An arc without end is judged, not followed.
+    // Whether an arc without limit ends is decided by formula, not by integration.
     let end = if arc.v_n > 0.0 {
         walk.run(Branch::Terminal(&arc), at, 1.0 / arc.v_n, &mut ending, |_, _| Next::Stay)?.0
     } else {
@@ -93,7 +93,7 @@ pub fn integrate(
     Ok(problem.outcome(&end, arc.path(problem.start()[S] > 0.0), &ending))
 }
 
-/// How sliding came to its end.
+/// How sliding ended.
 pub(super) enum Slid {
     /// The law ended the collision.
     Ended(State),
@@ -149,7 +149,7 @@ pub(super) fn slide(walk: &mut Walk<'_>, ending: &mut Ending) -> Result<Slid, Me
     }
 }
 
-/// The equations that are followed: lambda of (55), and the variable.
+/// The equations that are integrated: lambda of (55), and the independent variable.
 #[derive(Clone, Copy)]
 enum Branch<'a> {
     /// (34) over I_n: lambda = 0.

@@ -1,4 +1,4 @@
-//! Partial integration or recursive summation (6.2, 6.3).
+//! Partial integration and partial recursive summation (6.2, 6.3 of the paper): numerical while the contact slides, closed form afterwards.
 
 use nalgebra::Vector3;
 
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{Impact, Path, ReducedMatrix, Surface};
 
-/// How the sliding part is followed.
+/// The method for the sliding arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Partial {
     /// Recursive summation (56a)-(56l) with lambda = 0.

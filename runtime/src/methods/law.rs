@@ -1,4 +1,4 @@
-//! Where a hypothesis ends the collision (section 4).
+//! Where the hypotheses of restitution end a collision (section 4 of the paper), for the paper's methods.
 
 use super::{
     MethodError,
@@ -6,7 +6,7 @@ use super::{
 };
 use crate::{ImpactError, Law, Surface};
 
-/// What happens next.
+/// The event between two states.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Event {
     /// Compression ends: v_n rises through zero (47).
@@ -17,7 +17,7 @@ pub(super) enum Event {
     End,
 }
 
-/// The law, and what it has seen.
+/// The law with its target, and the events recorded so far.
 #[derive(Clone, Copy)]
 pub(super) struct Ending {
     law: Law,
@@ -48,7 +48,7 @@ impl Ending {
         }
     }
 
-    /// Takes note of the end of slip, if there was any.
+    /// Records the end of slip, if there was any slip.
     pub fn slip_stopped(&mut self, problem: &Problem, at: State) -> State {
         self.slip_end = (problem.start()[S] > 0.0).then_some(at);
         at
@@ -62,7 +62,7 @@ impl Ending {
         }
     }
 
-    /// What lies between two states, if anything. `Approach` may hide an `End` before it.
+    /// The event between the present state and a later one, if there is any. An `End` may lie before an `Approach`.
     pub fn between(&self, to: &State) -> Option<Event> {
         if self.approaching {
             (to[V_N] >= 0.0).then_some(Event::Rest)
@@ -73,12 +73,12 @@ impl Ending {
         }
     }
 
-    /// Whether the law's quantity has reached its end.
+    /// Whether the quantity of the law has reached its target.
     pub fn is_over(&self, at: &State) -> bool {
         self.watched(at) >= self.target
     }
 
-    /// A number that rises through zero where the event happens.
+    /// A function that rises through zero at the event.
     pub fn height(&self, event: Event, state: &State) -> f64 {
         match event {
             Event::Rest => state[V_N],
@@ -96,7 +96,7 @@ impl Ending {
         }
     }
 
-    /// Takes note of an event at its state; true if the collision is over.
+    /// Records an event at its state; true if the collision is over.
     pub fn note(&mut self, event: Event, at: &mut State) -> bool {
         match event {
             Event::Rest => {
@@ -172,7 +172,7 @@ impl Ending {
         Ok(at)
     }
 
-    /// Where slip and normal velocity stop together and neither can move again, the error of a method must not tell them apart.
+    /// Where slip and normal velocity vanish together and neither changes again, the error of the method must not decide which vanished first.
     pub fn settle(&mut self, arc: &Terminal, at: &mut State, slack: f64) {
         if arc.v_n <= 0.0 && at[V_N].abs() <= slack {
             at[V_N] = 0.0;

@@ -1,13 +1,13 @@
 //! The paper's own solutions: numerical integration (55), recursive summation (56), and partial integration or summation (57)-(62).
 //!
-//! [`crate::solve`] gives the same outcomes to machine precision at a lower cost. These are for study and comparison, and a second road
-//! to every outcome: they share nothing with the exact solver but the check of the input.
+//! [`crate::solve`] gives the same outcomes to machine precision at a lower cost. These methods serve study and comparison, and as an independent check
+//! of every outcome: they share nothing with the exact solver but the check of the input.
 //!
-//! All work in `f64`, in the units of the input (1/kg, m/s, N s, J), take the velocity of approach in any tangential axes (phi starts at
-//! atan2(v_s, v_t), not at 0), and know what the paper leaves out: no slip at the start, singular matrices, and repeated compression (compression
+//! All work in `f64`, in the units of the input (1/kg, m/s, N s, J), and take the velocity of approach in any tangential axes (phi starts at
+//! atan2(v_s, v_t), not at 0). They also treat what the paper leaves out: no slip at the start, singular matrices, and repeated compression (compression
 //! ends at each upward zero of v_n; no law ends a collision while v_n < 0).
 //!
-//! They tell the phases of a collision, but set none of the flags of [`crate::Sensitivity`].
+//! They return the phases of a collision, but set none of the flags of [`crate::Sensitivity`].
 //!
 //! # What is corrected
 //!
@@ -39,7 +39,7 @@ pub use self::{
 };
 use crate::ImpactError;
 
-/// Why a method has no answer.
+/// Why a method has no result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MethodError {

@@ -1,4 +1,4 @@
-//! The outcome of a collision that has been followed to its end, in the units of the input.
+//! Converts the final state of a collision to an outcome in the units of the input.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! The bound on the step of summation (6.1).
+//! The stability bound on the step of recursive summation (6.1 of the paper).
 
 use nalgebra::Complex;
 

@@ -1,4 +1,4 @@
-//! Recursive summation (56).
+//! Recursive summation (56): Euler's method with a constant step of normal impulse.
 
 use nalgebra::Vector3;
 
@@ -144,7 +144,7 @@ fn count(made: &mut u32, problem: &Problem, at: &State) -> Result<(), MethodErro
     Ok(())
 }
 
-/// Takes note of all that happens within a step; the state in which the collision ended, if it did.
+/// Records the events within a step; returns the state in which the collision ended, if it did.
 fn events(ending: &mut Ending, from: &State, to: &State) -> Option<State> {
     let mut from = *from;
     while let Some(mut event) = ending.between(to) {

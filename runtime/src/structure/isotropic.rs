@@ -86,8 +86,8 @@ struct Arc<T: Real> {
 }
 
 impl<T: Real> Arc<T> {
-    /// The state where the integrals of P, M and v_2 over sigma are these multiples of their values at the start, and the integral of P times that of M is
-    /// `mixed` times both values; and the normal work since the start.
+    /// The state where the integrals of P, M and v_2 over sigma are `p`, `m` and `across` times their values at the start, and the normal work since the start.
+    /// `mixed` is likewise the double integral of P(sigma) M(sigma') over sigma' < sigma.
     fn state(&self, [p, m, across]: [T; 3], mixed: T) -> (State<T>, T) {
         let half = constant::<T>(0.5);
         let [a, b] = self.gains;
