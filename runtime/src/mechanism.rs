@@ -6,14 +6,17 @@
 mod closed;
 mod contacts;
 mod description;
+mod error;
+pub(crate) mod slices;
 
 pub use closed::ContactOutcome;
 pub use contacts::{CollisionOutcome, ContactState, Contacts};
 pub use description::{Component, Kind};
+pub use error::{ClosedContactError, CollisionError, ParameterError, StateError};
 
 use nalgebra::{Matrix3, Vector3};
 
-use crate::{ParameterError, Scalar, StateError};
+use crate::Scalar;
 
 /// A state, borrowed. Numbers stand in the order of the model, in the units that it declares.
 ///

@@ -1,7 +1,7 @@
 //! Checks of generated routines: singular states, numbers that are not finite, impossible parameters, lengths of slices.
 
-use super::{ParameterError, StateError, mul_add, number};
-use crate::Scalar;
+use super::{mul_add, number};
+use crate::{ParameterError, Scalar, StateError};
 
 /// A value counts as zero where it is at most this times its scale: 2^-40.
 const VANISHING: f64 = 1.0 / (1u64 << 40) as f64;
@@ -79,38 +79,4 @@ pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Resul
     } else {
         Err(ParameterError::Inertia { body })
     }
-}
-
-/// An error unless the slice has this length.
-#[inline]
-pub fn check_length<T>(slice: &[T], expected: usize, what: &'static str) -> Result<(), StateError> {
-    if slice.len() == expected {
-        Ok(())
-    } else {
-        Err(StateError::Length { what, expected, found: slice.len() })
-    }
-}
-
-/// An error unless the slice has this length or more.
-#[inline]
-pub fn check_room<T>(slice: &[T], needed: usize, what: &'static str) -> Result<(), StateError> {
-    if slice.len() >= needed {
-        Ok(())
-    } else {
-        Err(StateError::Length { what, expected: needed, found: slice.len() })
-    }
-}
-
-/// The slice as an array; an error if it has another length.
-#[inline]
-pub fn array<T: Copy, const N: usize>(slice: &[T], what: &'static str) -> Result<[T; N], StateError> {
-    <[T; N]>::try_from(slice).map_err(|_| StateError::Length { what, expected: N, found: slice.len() })
-}
-
-/// Writes numbers into a slice of their length.
-#[inline]
-pub fn write<T: Copy>(slice: &mut [T], numbers: &[T], what: &'static str) -> Result<(), StateError> {
-    check_length(slice, numbers.len(), what)?;
-    slice.copy_from_slice(numbers);
-    Ok(())
 }

@@ -7,12 +7,14 @@ mod closed;
 #[doc(hidden)]
 pub mod construction;
 mod contact;
-mod error;
 mod records;
 mod saltation;
 mod serial;
 mod slices;
 
+#[doc(hidden)]
+pub use crate::mechanism::slices::{array, check_length, write};
+pub use crate::mechanism::{ClosedContactError, CollisionError, ParameterError, StateError};
 #[doc(hidden)]
 pub use angles::sines_cosines;
 #[doc(hidden)]
@@ -22,7 +24,6 @@ pub use checks::*;
 #[doc(hidden)]
 pub use closed::{closed_contact, kept_contact, slip_noise};
 pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured, resolve_without_collision};
-pub use error::{ClosedContactError, CollisionError, ParameterError, StateError};
 #[doc(hidden)]
 pub use saltation::{by_coordinate, reset, salted, state};
 #[doc(hidden)]

@@ -2,8 +2,10 @@
 
 use nalgebra::SMatrix;
 
-use super::{check_length, write};
-use crate::{Component, Kind, Scalar, State, StateError};
+use crate::{
+    Component, Kind, Scalar, State, StateError,
+    mechanism::slices::{check_length, write},
+};
 
 /// The names and units of a mechanism, in the order of the model.
 #[derive(Clone, Copy, Debug)]

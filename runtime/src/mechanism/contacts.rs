@@ -2,8 +2,10 @@
 
 use nalgebra::Vector3;
 
-use super::{ContactOutcome, Mechanism, State};
-use crate::generated::{check_length, check_room};
+use super::{
+    ContactOutcome, Mechanism, State,
+    slices::{check_length, check_room},
+};
 use crate::{
     ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError, Surface,
 };

@@ -3,6 +3,7 @@
 mod curves;
 mod expression;
 mod film;
+mod gap;
 mod inputs;
 mod lines;
 mod surfaces;
@@ -10,7 +11,7 @@ mod surfaces;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use hodograph::{Contacts, State as Borrowed};
+use hodograph::State as Borrowed;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::operation::Operation;
 use hodograph_interpreter::InterpretedMechanism;
@@ -220,9 +221,4 @@ fn borrowed(state: &State) -> Borrowed<'_> {
 
 fn fault(error: SimulationError) -> Stop {
     Stop::Fault(error.to_string())
-}
-
-/// The gap of a contact; none where the model gives none.
-fn gap(mechanism: &dyn Contacts<f64>, contact: usize, state: &Borrowed<'_>) -> Option<f64> {
-    mechanism.gap(contact, state).ok().flatten()
 }

@@ -6,7 +6,7 @@ use hodograph::{Contacts, Kind as Of, Mechanism, State};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Simulation;
 
-use super::gap;
+use super::gap::gap;
 use crate::plot::figure::{Axis, Figure, Panel, Series};
 use crate::plot::file::Format;
 use crate::plot::label::Label;

@@ -10,7 +10,7 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, EventKind, Simulation};
 use nalgebra::Vector3;
 
-use super::gap;
+use super::gap::gap;
 use crate::animation::{self, Animation, Force, Frame, Point, Series, segments};
 use crate::json::state::State;
 use crate::output;

@@ -2,7 +2,7 @@
 
 use hodograph::{Contacts, ImpactError, Kind as Of, State, Surface};
 
-use super::gap;
+use super::gap::gap;
 use crate::json::{Failure, Kind};
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
