@@ -11,9 +11,7 @@ use quote::{format_ident, quote};
 use super::Emitter;
 use super::record::Record;
 use super::routine::Arguments;
-use crate::model::mechanism::{Orientation, Variable};
-use crate::program::{PointQuantity, Quantity};
-use crate::rust_names::snake_case;
+use crate::program::Quantity;
 
 /// What a method of the traits writes, and where.
 struct Written {
