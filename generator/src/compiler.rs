@@ -1,4 +1,4 @@
-//! What the compiler tells of the tokens of a macro's input: where they stand. Outside of a compiler nobody knows.
+//! File, line and column of the tokens of a macro's input, from the compiler that runs the macro; unknown outside of a compiler.
 
 extern crate proc_macro;
 

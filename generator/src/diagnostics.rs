@@ -1,4 +1,4 @@
-//! Mistakes in a model: where, what, and what to do about it.
+//! Diagnostics: mistakes in a model, each with place, cause and cure.
 
 pub mod codes;
 
@@ -6,12 +6,12 @@ pub use codes::Code;
 
 use crate::span::Span;
 
-/// Does it stop the model from being used?
+/// Whether a mistake prevents the use of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Severity {
-    /// yes
+    /// it does
     Error,
-    /// no, but it is probably not meant
+    /// it does not, but what the model says is probably not meant
     Warning,
 }
 

@@ -1,6 +1,6 @@
-//! The reference meaning of a program, in doubles.
+//! Interprets programs in doubles: the reference for what a program computes.
 //!
-//! Generated code computes the same bits under the same floating-point backend: it consists of the same operations.
+//! Generated code consists of the same operations and computes the same bits with the same implementation of floating-point functions.
 
 mod prepared;
 

@@ -1,4 +1,4 @@
-//! Letters of other scripts that look like Latin ones.
+//! Recognises Cyrillic and Greek letters that look like Latin ones.
 
 /// Letters, each with the Latin one that it looks like.
 const CYRILLIC: &[(char, char)] = &[

@@ -1,4 +1,4 @@
-//! Exact numbers: what a decimal in a model means, until code is emitted.
+//! Exact rational numbers: decimals of a model stay exact until code is emitted.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;

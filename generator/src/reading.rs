@@ -1,4 +1,4 @@
-//! Files read up to a bound. Whatever a path names, reading it ends: pipes and devices are refused, and so is what is too large.
+//! Reads files up to a maximum size. Pipes, devices and larger files are refused, so that reading always ends.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};

@@ -1,4 +1,4 @@
-//! Messages as text, in the manner of rustc.
+//! Renders diagnostics as text in the style of rustc.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! How the names of a model are written in Rust.
+//! Converts names of a model to Rust identifiers.
 
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;

@@ -1,4 +1,4 @@
-//! The text of a model: a file, or the input of a macro.
+//! The text of a model, from a file or from the input of a macro.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! "Did you mean": the nearest of the names that would be right.
+//! Suggests the name nearest to a misspelled one.
 
 /// The candidate nearest to `word`, if one is near enough to be meant.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {

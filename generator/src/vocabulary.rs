@@ -1,5 +1,5 @@
-//! Words that authors bring from other languages and textbooks, and what is written here instead. "Did you mean" looks here
-//! first: the nearest spelling of such a word is often something quite different.
+//! Words that authors know from other modelling languages and textbooks, with the words of this language. Suggestions are sought here first, since the name with
+//! the nearest spelling often means something else.
 
 /// What a table says of a word.
 fn look(table: &[(&str, &'static str)], word: &str) -> Option<&'static str> {

@@ -1,4 +1,4 @@
-//! From expressions to the graph of a derivation.
+//! Writes expressions of the algebra engine as nodes of the graph of a derivation.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Expressions held by the algebra engine. With `session`, the only file that names it.
+//! Algebraic expressions, as a wrapper of the algebra engine's. Only this file and `session` name the engine.
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};

@@ -1,8 +1,8 @@
-//! Intermediate symbols: the z's that keep expressions short, and differentiation through them.
+//! Intermediate symbols (the paper's Z's), which keep expressions short, and differentiation through them.
 //!
-//! Every symbol has a meaning: a number from outside, a named expression, or a function of expressions. Names are given
-//! to what would otherwise be repeated inside larger expressions; equal expressions get the same name, so that work is
-//! shared wherever it arises. The chain rule goes through names, each derivative computed once.
+//! Every symbol stands for an input, a named expression, or a function of expressions. A subexpression that would otherwise be written out inside larger
+//! ones gets a name; equal expressions get the same name, so that they are computed once. Derivatives follow from the chain rule through the names, and
+//! each is computed once.
 
 mod simplify;
 
@@ -17,7 +17,7 @@ pub use simplify::size;
 /// What a symbol stands for.
 #[derive(Clone, Debug)]
 pub enum Meaning {
-    /// a number from outside
+    /// an input: a parameter, coordinate, speed, named input or time
     Input(Input),
     /// pi
     Pi,
@@ -100,12 +100,12 @@ impl Intermediates {
         self.new_symbol(Meaning::Unknown)
     }
 
-    /// Says what an unknown turned out to be.
+    /// Defines an unknown by its solution.
     pub fn define(&mut self, unknown: SymbolId, value: Expr) {
         self.meanings[unknown as usize] = Meaning::Named(value);
     }
 
-    /// The same expression, short: a number, a symbol, or a number times a symbol.
+    /// The expression as a number, a symbol, or a number times a symbol; gives it a name if it is none of these.
     pub fn name(&mut self, expr: Expr) -> Expr {
         match expr.view() {
             View::Number(_) | View::Symbol(_) => expr,

@@ -1,4 +1,4 @@
-//! Computer algebra: the only folder that names the engine.
+//! Computer algebra. Only this folder uses the algebra engine.
 
 mod export;
 mod expr;

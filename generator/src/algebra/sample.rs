@@ -1,7 +1,7 @@
-//! Expressions at arbitrary numbers: what is 0 at all of them is 0.
+//! Decides whether an expression is identically 0, by evaluating it at arbitrary values of its inputs.
 //!
-//! Named expressions are not multiplied out, so the algebra does not see that what passes to turning axes and back cancels.
-//! An expression that is not identically 0 is 0 at arbitrary numbers with probability 0.
+//! The algebra does not see all cancellation, since named expressions are not multiplied out; a vector that is transformed to turning axes and back is an
+//! example. An expression that is not identically 0 is 0 at random inputs with probability 0.
 
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use super::intermediates::{Intermediates, Meaning};
 use crate::arithmetic::Function;
 use crate::program::graph::Input;
 
-/// What rounding can make of 0, in units of the size of the terms.
+/// The rounding error of a sum that is exactly 0, relative to the size of its terms.
 const ROUNDING: f64 = 1e-12;
 
 /// A value, and the size of the terms that rounding errors come from.

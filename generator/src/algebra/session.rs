@@ -1,7 +1,7 @@
-//! One derivation at a time: the engine may be used by a single thread of a user, and aborts the process otherwise.
+//! Runs one derivation at a time. The engine allows one thread per user and aborts the process otherwise.
 //!
-//! A lock file excludes other processes, a mutex other threads of this one; the work then runs on a fresh thread with a
-//! large stack, returns owned data only, and is joined before the locks go. Nothing else starts the engine.
+//! A lock file excludes other processes and a mutex excludes other threads of this one. The work runs on a new thread with a large stack, returns owned
+//! data only, and ends before the locks are released. Nothing else starts the engine.
 
 mod lock;
 

@@ -1,4 +1,4 @@
-//! What operations and functions mean in doubles.
+//! The operations and functions of programs in doubles, and the trait [`Arithmetic`] of all number types in which programs are evaluated.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -6,7 +6,7 @@ use hodograph_arithmetic::{hyperbolic, mul_add, trigonometry};
 
 use super::function::Function;
 
-/// What the operations of a program mean in a kind of numbers.
+/// A number type in which programs can be evaluated.
 pub trait Arithmetic:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {

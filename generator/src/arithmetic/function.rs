@@ -1,4 +1,4 @@
-//! The functions of the language.
+//! The functions of the model language.
 
 /// A function of scalars.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,4 +1,4 @@
-//! What is left of a large angle beside the nearest right angle: with as many digits of pi as any double needs.
+//! Reduces large angles by multiples of pi/2, with enough digits of pi for every double.
 
 use std::sync::OnceLock;
 

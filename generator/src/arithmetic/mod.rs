@@ -1,5 +1,5 @@
-//! What operations and functions mean in doubles, in numbers of twice the digits, and in numbers that are the same on every machine.
-//! Generated code means the same (`hodograph::generated`).
+//! The operations and functions of programs in three number types: doubles, numbers of twice the digits, and numbers that are the same on every machine.
+//! Generated code computes the same bits (`hodograph::generated`).
 
 mod double_double;
 mod doubles;

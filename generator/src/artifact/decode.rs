@@ -1,4 +1,4 @@
-//! Reads a derivation. Whatever the text, the answer is a valid program or an error.
+//! Reads a derivation file. Every text gives either a valid program or an error.
 
 use std::borrow::Cow;
 use std::fmt;

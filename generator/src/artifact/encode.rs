@@ -1,4 +1,4 @@
-//! Writes a derivation.
+//! Writes a derivation file.
 
 use std::fmt::Write;
 

@@ -1,4 +1,4 @@
-//! The checked-in derivation: a program as lines of text, beside the model that it belongs to.
+//! Derivation files: a program as lines of text, checked in beside the model that it belongs to.
 //!
 //! ```text
 //! hodograph derivation 2
@@ -16,7 +16,8 @@
 //! digest 9f4e01..                     hash of all that stands above, to the byte
 //! ```
 //!
-//! A text that was changed in any way since it was written is refused: it does not agree with its digest. Numbers are the shortest decimals that read back exactly. The same program gives the same bytes.
+//! A text that was changed since it was written does not agree with its digest and is refused. Numbers are the shortest decimals that read back exactly.
+//! The same program gives the same bytes.
 
 mod decode;
 mod encode;

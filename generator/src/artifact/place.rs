@@ -1,4 +1,4 @@
-//! Where derivations are kept.
+//! The paths of derivation files.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! No shipped derivation computes what is identically 0, or divides by what it multiplies with.
+//! Tests that no shipped derivation computes a value that is identically 0, or multiplies and divides by the same value.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Masses and inertias that no body has.
+//! Reports masses and inertias that no body can have.
 
 use std::collections::HashMap;
 

@@ -1,5 +1,5 @@
-//! Is a point a point of the body that is named? In `P of B = Q + ..` the velocity of P is that of Q plus the turning of B about
-//! Q, which is so only if Q moves with B. That shows in numbers.
+//! Reports points that do not move with the body that they are said to belong to. In `P of B = Q + ..` the velocity of P is that of Q plus the angular
+//! velocity of B times the arm, which is right only if Q moves with B. The check evaluates velocities.
 
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};

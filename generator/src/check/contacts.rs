@@ -1,4 +1,4 @@
-//! Contacts: what moves in them, and whose points they are.
+//! Checks contacts by numbers: whether the point can move along the normal, and whether it belongs to the bodies that are named.
 
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};

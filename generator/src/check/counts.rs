@@ -1,4 +1,4 @@
-//! Equations and unknowns must agree in number, as far as that shows without numbers.
+//! Checks that there are as many equations as unknowns, as far as counting shows.
 
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;

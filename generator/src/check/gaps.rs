@@ -1,4 +1,4 @@
-//! Gaps: their rates must be the normal velocities of their contacts, and at the start nothing is inside what it strikes.
+//! Checks gaps: the rate of a gap must be the normal velocity of its contact, and no gap may be negative at the initial values.
 
 use super::states::{Seen, at_rest, stated};
 use crate::diagnostics::{Diagnostic, codes};

@@ -1,11 +1,11 @@
-//! Loops with more constraints than they need: which of them determine the dependent speeds.
+//! Overconstrained loops: chooses the velocity constraints that determine the dependent speeds.
 //!
-//! Of an overconstrained loop (Bennett's linkage, a plate on three parallel cranks) more velocity constraints are true than there are
-//! dependent speeds. They agree wherever the loop is closed and contradict each other where it is not, so no algebra with arbitrary
-//! coordinates can see that some follow from the others. Numbers can: at closed states the rank of all constraints is the number of
-//! dependent speeds, whatever the parameters are. Then as many constraints are chosen as there are dependent speeds: those that
-//! are farthest from depending on each other at the worst of many states, near and far, so that they determine the dependent speeds
-//! wherever all of them do, as far as possible.
+//! An overconstrained loop (Bennett's linkage, a plate on three parallel cranks) satisfies more velocity constraints than it has dependent speeds. They are
+//! consistent where the loop is closed and contradict each other where it is open, so that algebra with arbitrary coordinates cannot show that some follow
+//! from the others. Numbers show it: at closed states the rank of all constraints is the number of dependent speeds, for all parameters. As many constraints
+//! are then chosen as there are dependent speeds: those that are most independent at the worst of many states.
+//!
+//! Theory: docs/theory.md, section 16.5.
 
 use super::states;
 use crate::model::mechanism::{Equation, EquationSides, FrameId, Mechanism, Scalar, Vector};

@@ -1,4 +1,4 @@
-//! Loads: on which points and about which axes they act.
+//! Checks loads by numbers: the points on which forces act, and the axes and angles of torsion springs.
 
 use super::contacts::Places;
 use super::states::Seen;

@@ -1,4 +1,4 @@
-//! Loops that are stated by velocities alone must be closed from the beginning.
+//! Checks that loops which are stated by velocity constraints only are closed at the initial values.
 
 use super::states::stated;
 use crate::diagnostics::{Diagnostic, codes};

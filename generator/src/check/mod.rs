@@ -1,4 +1,4 @@
-//! Reads a model and checks it as a whole: counts of equations and unknowns, and what shows only in numbers.
+//! Reads a model and checks it as a whole: numbers of equations and unknowns, and properties that only evaluation at states shows.
 
 mod bodies;
 mod body_points;
@@ -56,7 +56,7 @@ pub fn check(source: &Source) -> Checked {
         let (mechanism, readable, diagnostics) = model::lower(&tree, diagnostics);
         (Some((mechanism, readable)), diagnostics)
     };
-    // what could not be read stands in for something else, so only what rests on none of it is looked at
+    // parts that could not be read hold placeholders: only checks that do not depend on them are made
     if let Some((mechanism, readable)) = &mut mechanism {
         if readable.motion {
             mechanism.determining_constraints = physics::determining_constraints(mechanism, readable);
@@ -67,7 +67,7 @@ pub fn check(source: &Source) -> Checked {
         let name = tree.name.as_ref().map_or(Span::default(), |name| name.span);
         diagnostics.extend(physics::physics(mechanism, readable, name));
     }
-    // one mistake at a place: what else is found there follows from it
+    // only the first mistake at a place is reported: others there follow from it
     let mut places = std::collections::HashSet::new();
     diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
     diagnostics.sort_by_key(|d| (d.primary.span, d.code));

@@ -1,4 +1,4 @@
-//! What must hold of the motion: rates and dependent speeds that the equations determine, and inertia along every speed.
+//! Checks the motion by numbers: the equations must determine the rates and the dependent speeds, and every speed must have inertia.
 
 use super::states::{Seen, at_rest};
 use crate::diagnostics::{Diagnostic, codes};
@@ -125,7 +125,7 @@ fn count(n: usize, word: &str) -> String {
 
 /// Speeds along which nothing resists.
 pub fn inertia_of_speeds(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Diagnostic> {
-    // that there is none at all is said already
+    // a model without bodies has been reported already
     if m.bodies.is_empty() {
         return None;
     }

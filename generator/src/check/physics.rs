@@ -1,5 +1,5 @@
-//! Checks that need numbers: they look at the mechanism at several arbitrary states near its initial values. What is wrong at
-//! all of them is wrong with the mechanism; what is wrong at one may be a singular state, which is no mistake of the model.
+//! The checks that evaluate the mechanism at several arbitrary states near its initial values. What is wrong at all of them is a mistake of the model; what
+//! is wrong at one may be a singular state, which is none.
 
 use super::states::Seen;
 use super::{
@@ -39,13 +39,13 @@ fn parts(m: &Mechanism) -> usize {
     m.points.len() + m.frames.len() + m.definitions.len() + m.bodies.len() + m.contacts.len()
 }
 
-/// Runs what follows names that refer to names deeply: on a stack of its own, and the thread's end is the end of any trouble.
+/// Runs deeply recursive work on a thread with a large stack; a panic there gives the default value.
 fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, look);
         match thread.map(|thread| thread.join()) {
             Ok(Ok(found)) => found,
-            // tests and the fuzzer must see trouble; a build must go on
+            // tests and the fuzzer must see a panic; a user's build must go on
             Ok(Err(panic)) if cfg!(debug_assertions) => std::panic::resume_unwind(panic),
             Ok(Err(_)) | Err(_) => T::default(),
         }
@@ -102,7 +102,7 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     out.extend(vector_constraints::inseparable(m, &seen));
     let of_contacts = contacts::contacts(m, &seen, &out);
     out.extend(of_contacts);
-    // what follows takes velocities at their word
+    // the following checks rely on the stated velocities
     let of_one_part = [codes::MASS, codes::INERTIA, codes::NORMAL, codes::CONTACT, codes::CONTACT_STILL];
     if !out.iter().any(|found| found.hides_meaning() && !of_one_part.contains(&found.code)) {
         out.extend(gaps::gaps(m, &seen, &out));

@@ -1,4 +1,4 @@
-//! The states at which checks look: arbitrary ones near the initial values.
+//! The states at which the checks evaluate a mechanism: arbitrary ones near the initial values, and some all over the ranges of the coordinates.
 
 use crate::model::mechanism::{Mechanism, Orientation};
 use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual};

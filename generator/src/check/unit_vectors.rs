@@ -1,4 +1,4 @@
-//! What must be a unit vector, and quaternions that must have the length 1.
+//! Checks that axes and normals are unit vectors and that initial quaternions have the length 1.
 
 use super::bodies::number;
 use super::states::at_rest;

@@ -1,4 +1,4 @@
-//! Vector constraints whose components depend on each other: the derivation needs axes along which the components without content are
+//! Reports vector constraints with dependent components for which no frame separates them: the derivation needs axes along which the redundant components are
 //! identically 0.
 
 use super::states::Seen;

@@ -1,4 +1,4 @@
-//! The list of all kinds of mistakes.
+//! The codes and titles of all kinds of mistakes.
 
 use super::Severity;
 

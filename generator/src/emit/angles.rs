@@ -1,4 +1,4 @@
-//! Sines and cosines of several angles at once: vector instructions take little longer for eight than for one.
+//! Emits the computation of several sines and cosines at once: with vector instructions eight take little longer than one.
 
 use std::collections::BTreeSet;
 

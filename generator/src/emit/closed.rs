@@ -1,4 +1,4 @@
-//! Mode and force of a closed contact.
+//! Emits the methods for mode and force of a closed contact, and their result type.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

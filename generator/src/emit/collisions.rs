@@ -1,4 +1,4 @@
-//! The collision of a contact, and its impact without collision.
+//! Emits the methods for the collision and the impact without collision of a contact, and their result type.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

@@ -1,4 +1,5 @@
-//! Is a program one of a mechanism? Derivations can be edited; generated code must compile all the same.
+//! Checks that a program fits a mechanism: that all inputs, contacts, points and frames exist and all quantities have their shapes. Without it a derivation
+//! of another mechanism would become code that does not compile.
 
 use crate::model::mechanism::Mechanism;
 use crate::program::Program;

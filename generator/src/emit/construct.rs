@@ -1,4 +1,4 @@
-//! The mechanism's own type: parameters, and what follows from them alone.
+//! Emits the type of the mechanism, which holds the parameters and all values that depend on them only, and its constructor.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! The methods of a contact: gap, velocities, reduced matrix, and what `collisions` and `closed` emit.
+//! Emits the methods of a contact: gap, velocities, reduced matrix, and those of `collisions` and `closed`.
 
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -1,4 +1,4 @@
-//! Derivatives as matrices: those of accelerations and inverse dynamics, and the linearised equations x' = A x + B w made of them.
+//! Emits the derivatives of accelerations and inverse dynamics as matrices, and the linearised equations x' = A x + B w formed from them.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! A method per quantity of the mechanism, its points and frames.
+//! Emits a method for each quantity of the mechanism, its points and its frames, with its documentation.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! From a program to the Rust module that a user sees.
+//! Emits the Rust module of a mechanism from its program.
 //!
 //! The module holds the structs of named numbers (`record`), the mechanism's own type with its constructor
 //! (`construct`), a method per quantity (`methods`) and per contact (`contacts`). Every path in it starts at the

@@ -1,4 +1,4 @@
-//! Structs of named numbers: parameters, coordinates, speeds, inputs.
+//! Emits structs of named numbers: parameters, coordinates, speeds, inputs.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};

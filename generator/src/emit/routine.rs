@@ -1,4 +1,4 @@
-//! The body of a routine: statements, checks, result.
+//! Emits the body of a routine (statements, checks, result) and its arguments.
 
 use std::collections::BTreeSet;
 

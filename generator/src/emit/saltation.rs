@@ -1,4 +1,4 @@
-//! Derivatives of a collision, and its saltation matrix.
+//! Emits the methods for the derivatives of a collision and its saltation matrix.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

@@ -1,4 +1,5 @@
-//! The traits `Mechanism` and `Contacts` for the mechanism's type: slices in, the type's own methods, slices out.
+//! Emits the implementation of the traits `Mechanism` and `Contacts`: it converts slices to the arguments of the type's own methods, and their results to
+//! slices.
 
 mod contacts;
 mod description;

@@ -1,7 +1,7 @@
-//! Long routines in parts, each a function of its own: compilers take more than proportionally long for long functions.
+//! Splits long routines into several functions, since the time to compile a function grows faster than its length.
 //!
-//! A part takes what earlier parts and the routine's inputs give it, and returns what later parts and the result need. The
-//! operations are the same, and so are the bits.
+//! A part receives values of earlier parts and inputs of the routine, and returns the values that later parts or the result need. The operations are the
+//! same as in one function, and so are the bits.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What stands in for the module of a model that has none: its mistakes, and no others.
+//! Emits the module of a model with mistakes: compile errors for the mistakes, and names that keep the compiler from reporting others.
 
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -1,4 +1,4 @@
-//! Checks of masses and inertias at construction, where they depend on parameters alone.
+//! Emits the checks of masses and inertias in the constructor, where they depend on parameters only.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;

@@ -1,4 +1,4 @@
-//! Operations as Rust statements.
+//! Emits operations of a program as Rust statements.
 
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};

@@ -1,4 +1,4 @@
-//! The program of a model: from its checked-in derivation, or derived here where that is switched on.
+//! Finds the program of a model: reads its derivation file, or derives it if the feature `derive` is on.
 
 use std::path::Path;
 
@@ -51,8 +51,8 @@ fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) 
     }
 }
 
-/// The algebra engine greets on standard output, which here belongs to the compiler or to an editor's macro server: until
-/// the guard is dropped it goes to standard error, or where that cannot be, nowhere.
+/// The algebra engine prints a greeting to standard output, which here belongs to the compiler or to an editor's macro server. Until the guard is dropped,
+/// standard output goes to standard error or, where that is not possible, is discarded.
 #[cfg(all(feature = "derive", unix))]
 fn lead_stdout_elsewhere() -> Box<dyn std::any::Any> {
     let stderr = std::fs::OpenOptions::new().write(true).open("/dev/stderr").ok();

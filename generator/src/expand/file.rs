@@ -1,4 +1,4 @@
-//! Models in files: `mechanism!("models/two_sleds.mech")`.
+//! Expands `mechanism!("models/two_sleds.mech")`: a model in a file.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Models in the source: `mechanism! { mechanism Name; .. }`. Their derivations are in `derived/` beside Cargo.toml.
+//! Expands `mechanism! { mechanism Name; .. }`: a model in the Rust source. Its derivation is in `derived/` beside Cargo.toml.
 
 use std::path::{Path, PathBuf};
 

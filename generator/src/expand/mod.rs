@@ -1,5 +1,5 @@
-//! What `mechanism!` does: finds the model and its derivation, reports mistakes, or gives the module. It runs in the compiler and
-//! in editors' macro servers, which live long and expand often, from several threads.
+//! Expands `mechanism!`: finds the model and its derivation, and returns the module or the mistakes. It runs in the compiler and in macro servers of
+//! editors, which run for a long time and expand often, from several threads.
 
 mod derivation;
 mod file;

@@ -1,4 +1,4 @@
-//! Mistakes as `compile_error!`.
+//! Converts mistakes to calls of `compile_error!`.
 
 use crate::diagnostics::{Diagnostic, Severity};
 use crate::source::Source;

@@ -1,4 +1,4 @@
-//! Sums, products and quotients of terms, as one would write them.
+//! Builds sums, products and quotients of terms in the form in which a person would write them.
 
 use super::{Term, product};
 

@@ -1,4 +1,4 @@
-//! Operations become expressions; what is shared gets a name.
+//! Converts the operations of a program to expressions; a value that is used more than once gets a name.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,5 @@
-//! What rounding takes from a sum is nothing in the equations: a program keeps it beside sums of angles, a reader does without.
+//! Leaves out operations that are 0 in exact arithmetic: a program computes the rounding error of sums of angles to correct it; in the equations it has
+//! no place.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! What the quantities of a mechanism are called, and the symbols and places of their entries.
+//! Titles, symbols and units of the quantities of a mechanism, and the left sides of their equations.
 
 use super::Left;
 use crate::model::mechanism::{Mechanism, Variable};

@@ -1,4 +1,4 @@
-//! Equations as a LaTeX document.
+//! Writes equations as a LaTeX document.
 
 use super::collect::size;
 use super::symbols::{Form, Symbol, form, greek_name, unit};

@@ -1,7 +1,7 @@
-//! The equations of a mechanism, to be read: as text, LaTeX or HTML.
+//! Writes the equations of a mechanism for people: as text, LaTeX or HTML.
 //!
-//! The operations of a program become expressions again, like terms collected and what only mends rounding left out. What is used
-//! more than once, or would make a line too long, gets a name: z1, z2 .. as in the paper.
+//! The operations of a program are converted back to expressions, with like terms collected and without the operations that only correct rounding. An
+//! expression that is used more than once, or would make a line too long, gets a name: z1, z2 .. as in the paper.
 
 mod arithmetic;
 mod collect;

@@ -1,4 +1,4 @@
-//! How names, units and numbers are written.
+//! Symbols of names, printed forms of units, and forms of numbers (decimal, power of ten, quotient).
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Equations of a pendulum, and what they mean.
+//! Tests of the equations of a pendulum in all formats, and of their values.
 
 use super::*;
 use crate::arithmetic::Function;

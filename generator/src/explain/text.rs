@@ -1,4 +1,4 @@
-//! Equations as plain text.
+//! Writes equations as plain text.
 
 use super::symbols::{Form, form, unit};
 use super::{Document, Equation, Left, Rank, Term};

@@ -1,4 +1,4 @@
-//! E052 to E082 and W006: frames, points, bodies, loads, equations, contacts.
+//! Explanations of E052 to E082 and W006: frames, points, bodies, loads, equations, contacts.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;

@@ -1,5 +1,4 @@
-//! What each code means, with a wrong and a right example. `docs/errors.md` is written from this, and the tests run the
-//! examples.
+//! Explanations of all error codes, each with a wrong and a right example. `docs/errors.md` is generated from them, and the tests run the examples.
 
 mod mechanics;
 mod names;

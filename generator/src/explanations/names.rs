@@ -1,4 +1,4 @@
-//! E020 to E025: names.
+//! Explanations of E020 to E025: names.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;

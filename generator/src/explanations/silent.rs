@@ -1,4 +1,4 @@
-//! W007 to W012: models that can be read and solved, but hardly mean what their author means.
+//! Explanations of W007 to W012: models that can be solved, but probably do not say what their author means.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;

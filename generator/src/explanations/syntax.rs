@@ -1,4 +1,4 @@
-//! E001 to E015: reading.
+//! Explanations of E001 to E015: syntax.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;

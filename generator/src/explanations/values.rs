@@ -1,4 +1,4 @@
-//! E030 to E051 and warnings: units, dimensions, scalars and vectors, speeds.
+//! Explanations of E030 to E051 and of warnings: units, dimensions, scalars and vectors, speeds.
 
 use super::Explanation;
 use crate::diagnostics::codes::*;

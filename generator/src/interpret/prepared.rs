@@ -1,5 +1,5 @@
-//! Quantities that are evaluated often: what they need is sliced, numbered anew and, as far as it depends on parameters alone, computed
-//! once. The bits are those of [`super::Evaluator`].
+//! Prepares quantities that are evaluated often: selects and renumbers the operations that they need, and computes once what depends on parameters only. The
+//! results have the same bits as those of [`super::Evaluator`].
 
 use crate::arithmetic::DoubleDouble;
 use crate::program::graph::Input;

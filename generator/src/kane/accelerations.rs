@@ -1,4 +1,6 @@
-//! Accelerations: derivatives of velocities, passed along the graph from the ground outwards.
+//! Accelerations of points and frames: differentiates the relations of the graph of velocities, from the ground outwards.
+//!
+//! Theory: docs/theory.md, section 16.1.
 
 use std::collections::BTreeMap;
 

@@ -1,10 +1,9 @@
-//! Inertia, lumped and regrouped: fewer parameters that mean the same.
+//! Base parameters of robot dynamics: combines and regroups the inertia parameters, so that fewer of them describe the same mechanism.
 //!
-//! What moves rigidly with a frame is described about a reference point of that frame by mass, first moment and second
-//! moments (the matrix of `integral r r' dm`, the pseudo-inertia). Bodies that share frame and reference point become
-//! one. Then whatever lies on the axis of a revolute joint is handed to the body on the other side of the joint, of
-//! which it is a part just as well: mass, first moment and second moment along the axis. What arrives at a fixed axis does
-//! nothing at all and is dropped. (These are the base parameters of robot dynamics, found from the graph of velocities.)
+//! Mass that moves rigidly with a frame is described, about a reference point of the frame, by mass, first moment and second moments (the matrix of
+//! `integral r r' dm`, the pseudo-inertia). Bodies with the same frame and reference point are added. Mass on the axis of a revolute joint moves with the
+//! bodies on both sides of it; its mass, first moment and second moment along the axis are therefore moved to the body on the inner side. Mass on an axis
+//! that is fixed in N does not move and is dropped.
 
 use std::collections::BTreeMap;
 

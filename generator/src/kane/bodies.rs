@@ -1,4 +1,4 @@
-//! What a body brings: mass and central inertia.
+//! Mass and central inertia of a body as expressions.
 
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesId, ENTRIES, Symmetric};

@@ -1,9 +1,9 @@
-//! How large the diagonal of the mass matrix can be, whatever the angles: the scale of its pivots.
+//! Upper bounds of the diagonal entries of the mass matrix for all configurations, which serve as scale for its pivots.
 //!
-//! The kinetic energy of one speed alone is at most what it would be if everything that adds up were parallel. So in the
-//! graph of velocities magnitudes take the place of vectors, and inserting the relations one after the other, as for the mass
-//! matrix itself, leaves a number per speed. Magnitudes do not change when axes turn; bounds of components would double
-//! at every joint. Where nothing slides, the bounds depend on parameters alone and cost nothing at run time.
+//! The kinetic energy of one speed alone is at most what it would be if all vectors that add up were parallel. So magnitudes take the place of vectors in the
+//! relations of the graph of velocities; inserting these one after the other, as for the mass matrix, gives one bound per speed. Magnitudes do not change
+//! when axes turn, while bounds of components would double at every joint. Without sliding joints the bounds depend on parameters only and cost nothing at
+//! run time.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ use Magnitude::{Of, Speed};
 
 /// A bound of each diagonal entry of the mass matrix of all speeds.
 pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>) -> Vec<Expr> {
-    // DoubleDouble the kinetic energy: coefficients of products of magnitudes, each pair once.
+    // Twice the kinetic energy: coefficients of products of magnitudes, each pair once.
     let mut form: BTreeMap<(Magnitude, Magnitude), Expr> = BTreeMap::new();
     let two = Expr::integer(2);
     for (&(frame, point), lump) in lumps {

@@ -1,4 +1,4 @@
-//! Contacts: basis, relative velocity, and partial velocities V_n, V_t, V_s.
+//! Forms the basis, the relative velocity and the partial velocities V_n, V_t, V_s of a contact.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! In which order velocities are eliminated.
+//! The order in which the velocities of frames and points are eliminated from a quadratic form.
 
 use std::collections::BTreeSet;
 

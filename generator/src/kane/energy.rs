@@ -1,4 +1,4 @@
-//! Kinetic and potential energy.
+//! Forms the kinetic and the potential energy.
 
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;

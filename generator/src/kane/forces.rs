@@ -1,8 +1,10 @@
 //! Generalized active and inertia forces, passed along the graph of velocities from the leaves back to the ground.
 //!
-//! F_r = sum of partial velocities . forces. Instead of forming every partial velocity, each force is passed from a point
-//! to the point its velocity is stated relative to, leaving its moment on the frames of the arms and its work on the
-//! speeds that enter there.
+//! The generalized force F_r is the sum of partial velocities times forces. Instead of forming all partial velocities, each force is passed from its point to
+//! the base of that point; its moment acts on the frames of the arms, and its product with the partial velocities of the relation is added to the
+//! generalized forces of the speeds in the relation.
+//!
+//! Theory: docs/theory.md, section 16.1.
 
 use std::collections::BTreeMap;
 

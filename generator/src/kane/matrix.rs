@@ -1,4 +1,4 @@
-//! Matrices of expressions that couple velocities along different axes.
+//! Matrices of expressions in quadratic forms, with rows and columns along different axes.
 
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;

@@ -1,4 +1,4 @@
-//! Kane's equations: mass matrix, generalized forces, constraints eliminated, contacts; written as a value graph.
+//! Derives Kane's equations: mass matrix, generalized forces, elimination of constraints, contacts; written as a graph of values.
 
 pub mod accelerations;
 pub mod articulated;

@@ -1,4 +1,4 @@
-//! Everything a derivation delivers, exported from algebra to nodes of a value graph.
+//! Writes all quantities of a derivation as nodes of a graph.
 
 mod contact;
 mod derivatives;
@@ -35,7 +35,7 @@ struct Writer<'k, 'm> {
     lumps: BTreeMap<Seat, Lump>,
     /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where dependent speeds enter
     largest: Vec<Node>,
-    /// the mass matrix in another guise, where the mechanism permits
+    /// the mass matrix factorised by articulated inertias, where the mechanism permits
     articulated: Option<Articulated>,
     /// dependent coordinates: how each changes with independent ones
     followers: Vec<(Input, Vec<(Input, Node)>)>,

@@ -1,4 +1,4 @@
-//! What is left of a quadratic form once velocities are inserted: coefficients of products of speeds.
+//! The coefficients of a quadratic form in the speeds, as which a form in velocities ends.
 
 use std::collections::BTreeMap;
 

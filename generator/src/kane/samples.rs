@@ -1,4 +1,4 @@
-//! Sample states of a mechanism: where passes weigh what rounding costs.
+//! Sample states of a mechanism, at which passes estimate rounding errors.
 
 use std::f64::consts::PI;
 

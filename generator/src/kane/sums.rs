@@ -1,4 +1,4 @@
-//! Sums that gather in maps, and what is taken out of them again.
+//! Maps of sums: adds to entries and takes entries out.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Sets of axes and how vectors pass from one to another, one rotation at a time.
+//! Sets of axes, and the transformation of vectors and dyadics from one set to another, one rotation at a time.
 
 use super::linear_forms::{Triple, cross, dot, name, scale, zero};
 use crate::algebra::{Expr, Intermediates};

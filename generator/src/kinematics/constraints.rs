@@ -1,4 +1,4 @@
-//! Velocity constraints: the dependent speeds as forms in the independent ones, and how both change.
+//! Solves the velocity constraints for the dependent speeds, and their time derivatives for the rates of the dependent speeds.
 
 use super::linear_forms::LinearScalar;
 use super::solve::{SolveError, Solver};

@@ -1,8 +1,8 @@
-//! Equations as forms linear in the speeds: left minus right, without what is identically 0.
+//! Converts equations to forms linear in the speeds (left side minus right side) without components that are identically 0.
 //!
-//! A vector equation may be void in some direction: a point of a ball that rolls on a plane has no velocity along the
-//! normal whatever the speeds. That shows only along axes to which the direction belongs, and after it has been turned to other
-//! axes not to the algebra; so axes are looked for along which the equation has as few components as it has independent ones.
+//! A vector equation may say nothing in some direction: the contact point of a ball that rolls on a plane has no velocity along the normal, whatever the
+//! speeds. Its component along that direction is identically 0, but along other axes the algebra does not see the dependence. So axes are sought along
+//! which the equation has as few components as are independent.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Expressions of the model as algebra: as values, and as forms linear in the speeds.
+//! Converts expressions of the model to algebraic expressions: values, and forms linear in the speeds.
 
 use super::linear_forms::{self, LinearScalar, LinearVector};
 use super::vectors::{add, add_linear, constant, mixed, scale, scale_linear};

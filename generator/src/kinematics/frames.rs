@@ -1,4 +1,4 @@
-//! Frames: their axes, and their angular velocities relative to their parents.
+//! Sets up the axes of all frames, and their angular velocities relative to their parents.
 
 use super::axes::{self, AxesId, AxesTree, Turn};
 use super::linear_forms::{self, LinearScalar, LinearVector, Triple};

@@ -1,4 +1,4 @@
-//! Forms that are linear in the generalized speeds: what every velocity is.
+//! Scalars and vectors as forms linear in the generalized speeds: every velocity is such a form.
 
 use std::collections::BTreeMap;
 

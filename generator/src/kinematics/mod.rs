@@ -1,9 +1,10 @@
-//! Kinematics: axes, angular velocities, velocities, and what the generalized speeds have to do with them.
+//! Kinematics: axes, angular velocities and velocities as forms linear in the generalized speeds.
 //!
-//! Velocities are forms linear in the speeds. They are kept as a graph of small relations, one per frame
-//! (`angular velocity = that of another frame + sum of a_r u_r`) and one per point (`velocity = that of another point +
-//! angular velocity x arm + sum of b_r u_r`); partial velocities, mass matrix and generalized forces are all found by
-//! passing along that graph, which is what keeps their cost near-linear in the number of bodies.
+//! The forms are kept as a graph of small relations, one per frame (`angular velocity = that of another frame + sum of a_r u_r`) and one per point
+//! (`velocity = that of another point + angular velocity x arm + sum of b_r u_r`). Partial velocities, mass matrix and generalized forces are computed by
+//! passing along that graph, so that their cost is nearly linear in the number of bodies.
+//!
+//! Theory: docs/theory.md, section 16.1.
 
 pub mod axes;
 pub mod constraints;
@@ -28,7 +29,7 @@ use crate::span::Span;
 use axes::{AxesId, AxesTree};
 use linear_forms::{LinearScalar, LinearVector, Triple};
 
-/// What stops a derivation: a property of the model that only the derivation can see.
+/// Why a model cannot be derived: a mistake that only the derivation finds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct DeriveError {
     /// its kind
@@ -276,7 +277,7 @@ impl<'m> Kinematics<'m> {
         linear_forms::name(&mut self.z, rates)
     }
 
-    /// Does some work on behalf of a named part of the model, which messages about divisors then name.
+    /// Does some work for a named part of the model; messages about divisors then name that part.
     pub fn within<R>(&mut self, place: String, work: impl FnOnce(&mut Self) -> R) -> R {
         let outer = std::mem::replace(&mut self.place, place);
         let result = work(self);

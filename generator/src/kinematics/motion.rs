@@ -1,4 +1,4 @@
-//! The graph of velocities: one small relation per frame and per point, and what follows from it along the graph.
+//! Builds the graph of velocities, one relation per frame and per point, and computes velocities and partial velocities from it.
 
 use std::collections::BTreeMap;
 

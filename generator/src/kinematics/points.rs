@@ -1,4 +1,4 @@
-//! Points: positions, and velocities while the kinematical equations are being set up.
+//! Positions of points, and their velocities while the kinematical equations are being set up.
 
 use super::linear_forms::{self, LinearVector};
 use super::vectors::{add, add_linear, scale};

@@ -1,4 +1,4 @@
-//! Kinematical equations: from what the model says of the generalized speeds to the rates of the coordinates.
+//! Solves the kinematical equations for the rates of the coordinates.
 
 use super::linear_forms::LinearScalar;
 use super::solve::{SolveError, Solver};

@@ -1,7 +1,7 @@
-//! Linear systems that kinematics poses: for the rates of coordinates, and for dependent speeds.
+//! Solves linear systems of equations symbolically: for the rates of coordinates, and for dependent speeds.
 //!
-//! Equations and unknowns are matched and split into the smallest blocks that can be solved one after another; each block
-//! is solved with its adjugate, so that the only divisor is a determinant, which vanishes only where no solution exists.
+//! Equations and unknowns are matched and split into the smallest blocks that can be solved one after another. Each block is solved by its adjugate, so that
+//! the only divisor is its determinant, which is zero only where the block is singular.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Vectors given along several sets of axes at once.
+//! Vectors as sums of components along several sets of axes, and operations on them.
 
 use super::linear_forms::{self, LinearScalar, LinearVector, Triple};
 use super::{AxesId, Kinematics, Mixed, MixedLinear};

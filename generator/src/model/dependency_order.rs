@@ -1,4 +1,4 @@
-//! The order in which definitions, frames and points can be understood, and the cycles that forbid one.
+//! The order in which definitions, frames and points can be resolved, each after those that it refers to; reports cycles.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! A mechanism with every name resolved: what the front end hands to the derivation.
+//! A mechanism with all names resolved: the result of reading a model, and the input of the derivation.
 //!
 //! Invariants that the front end guarantees: ids are in range; definitions, frames and points are acyclic; dimensions agree;
 //! every expression is in SI units (a symbol declared in another unit appears multiplied by its factor); constraints are

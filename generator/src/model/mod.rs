@@ -1,4 +1,4 @@
-//! The meaning of a model: names resolved, dimensions checked.
+//! Gives a model its meaning: resolves names and checks dimensions.
 
 mod dependency_order;
 mod lower;

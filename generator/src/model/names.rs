@@ -1,4 +1,4 @@
-//! The names of a model: one space for all kinds.
+//! The names of a model. All kinds share one name space.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Which declarations a dimension comes from: the powers in which declared names enter it.
+//! The declared names from which the dimension of an expression follows, with their powers.
 
 use num_traits::{CheckedAdd, CheckedMul, Zero};
 

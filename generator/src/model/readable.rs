@@ -1,4 +1,4 @@
-//! Which parts of a mechanism could be read.
+//! Records which parts of a mechanism were read without mistakes.
 
 /// The parts of a mechanism that say what the model says; the others, which hold a mistake or rest on one, hold stand-ins.
 #[derive(Clone, Debug, Default)]

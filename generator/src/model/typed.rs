@@ -1,4 +1,4 @@
-//! An expression with all that is known of it: scalar or vector, dimension, dependence on speeds.
+//! An expression with its type: scalar or vector, dimension, and dependence on speeds, coordinates, time and inputs.
 
 use num_rational::BigRational;
 

@@ -1,4 +1,4 @@
-//! Dependent coordinates from the configuration equations.
+//! Solves the configuration equations for the dependent coordinates.
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::HyperDual;

@@ -1,4 +1,4 @@
-//! Kane's equations in numbers: mass matrix and forcing as sums over bodies and loads.
+//! Evaluates Kane's equations numerically: mass matrix and forcing as sums over bodies and loads.
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;

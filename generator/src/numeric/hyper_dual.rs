@@ -1,6 +1,6 @@
-//! Numbers that carry derivatives: `a + b e1 + c e2 + d e1 e2` with e1^2 = e2^2 = 0.
+//! Hyper-dual numbers, which carry derivatives: `a + b e1 + c e2 + d e1 e2` with e1^2 = e2^2 = 0.
 //!
-//! e1 leads from positions to velocities, e2 from velocities to accelerations.
+//! The coefficient of e1 gives velocities from positions, that of e2 accelerations from velocities.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

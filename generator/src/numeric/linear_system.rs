@@ -1,4 +1,4 @@
-//! Linear equations, more than unknowns if they agree.
+//! Solves linear equations by elimination; there may be more equations than unknowns if they are consistent.
 
 use super::hyper_dual::HyperDual;
 

@@ -1,4 +1,4 @@
-//! Closed loops that are stated by velocities: when a constraint holds two points together.
+//! Finds closed loops that are stated by velocities: pairs of points that a velocity constraint holds together.
 
 use super::state::State;
 use super::views::{Vector3, Views, alike};

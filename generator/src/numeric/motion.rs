@@ -1,4 +1,4 @@
-//! Rates of coordinates and dependent speeds as functions of the independent speeds.
+//! Solves kinematical equations and constraints numerically: rates of coordinates and dependent speeds as affine functions of the independent speeds.
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;

@@ -1,4 +1,4 @@
-//! What is given to an evaluation, and what comes of it.
+//! Input and result of a numerical evaluation: state, evaluated quantities, reasons of failure.
 
 use crate::model::mechanism::{CoordinateId, Mechanism, Orientation, SpeedId, Variable};
 use crate::span::Span;

@@ -1,4 +1,4 @@
-//! A state seen as it is, per unit of each speed, and as it goes on: where partial velocities and accelerations come from.
+//! Evaluates a state several times: as it is, with all speeds zero, with one speed 1 and the others 0 (partial velocities), and moving on (accelerations).
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;
@@ -46,7 +46,7 @@ pub fn alike(a: &[Vector3], b: &[Vector3]) -> bool {
     apart <= 1e-9 * (size(a) + size(b))
 }
 
-/// The state seen from all sides.
+/// The evaluations of a state.
 pub struct Views<'m> {
     /// as it is
     pub now: Evaluator<'m>,

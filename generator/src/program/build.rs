@@ -1,4 +1,4 @@
-//! Builds a program operation by operation: equal operations once, numbers folded, signs absorbed.
+//! Builds a program operation by operation: equal operations become one value, constants are folded, negations are absorbed where possible.
 
 use std::collections::HashMap;
 

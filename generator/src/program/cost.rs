@@ -1,4 +1,4 @@
-//! How many operations a program takes: per routine, per stage, and after each pass.
+//! Counts the operations of a program: per routine, per stage, and after each pass.
 
 use std::fmt;
 use std::ops::AddAssign;

@@ -1,4 +1,4 @@
-//! What a derivation delivers: a graph, the quantities that its nodes make up, and what must not vanish.
+//! The result of a derivation: a graph, the quantities that its nodes form, and the values that must not be zero.
 
 use super::graph::{Graph, Node};
 use super::inputs::Inputs;

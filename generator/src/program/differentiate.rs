@@ -1,4 +1,4 @@
-//! Directional derivatives of nodes, written into the same graph.
+//! Forms directional derivatives of nodes in the same graph.
 
 use std::collections::HashMap;
 

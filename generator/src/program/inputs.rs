@@ -1,4 +1,4 @@
-//! The numbers that a program is given.
+//! The input numbers of a program.
 
 use super::graph::Input;
 

@@ -1,7 +1,7 @@
-//! Jacobians of nodes, written into the same graph by eliminating one intermediate node after the other.
+//! Forms Jacobians of nodes in the same graph, by eliminating one intermediate node after the other.
 //!
-//! The derivatives of nodes by their operands are the edges of a graph that leads from the directions to the results. To eliminate a node is
-//! to join every edge into it with every edge out of it; what is left in the end is the Jacobian. Each order of elimination gives the same
+//! The derivatives of nodes with respect to their operands are the edges of a graph from the directions to the results. Eliminating a node joins every edge
+//! into it with every edge out of it; the edges that remain at the end are the Jacobian. Each order of elimination gives the same
 //! numbers: operands first is forward differentiation, results first is backward differentiation, and an order between both gathers
 //! the forces of a whole branch before they meet the velocities on which they depend.
 

@@ -1,4 +1,4 @@
-//! Symmetric positive definite systems as straight lines: LDL^T that skips zeros, and solves that do.
+//! LDL^T factorisation and solution of symmetric positive definite systems as straight-line programs that skip structural zeros.
 
 use super::graph::{Graph, Node};
 

@@ -1,10 +1,10 @@
-//! From sums, products and powers to binary operations.
+//! Lowers a graph of sums, products and powers to binary operations.
 //!
-//! * Signs travel beside the values and end in additions and subtractions, not in multiplications by -1.
+//! * Signs are kept beside the values and become additions or subtractions, not multiplications by -1.
 //! * Factors and terms are ordered by stage, so that what depends on parameters alone forms a value of its own and is hoisted.
 //! * A divisor that occurs once divides; one that occurs more often is inverted once.
-//! * Sine and cosine of one angle are computed together. What rounding takes from a sum of angles is kept beside it and
-//!   given back to them: absolute angles of long chains would lose as many digits as they have turns.
+//! * Sine and cosine of one angle are computed together. The rounding error of a sum of angles is computed too, and sine and cosine are corrected by it:
+//!   absolute angles of long chains would lose digits otherwise.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Two programs as one: equal operations are one value.
+//! Merges two programs; equal operations become one value.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Straight-line programs: what is computed, in which order, at which stage.
+//! Straight-line programs: sequences of operations, each with the stage at which it can be computed.
 //!
 //! ```text
 //! graph (sums, products, functions)  ->  passes, one of which lowers it to binary operations  ->  program

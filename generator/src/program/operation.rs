@@ -1,4 +1,4 @@
-//! The operations of a program, and the stage at which each can be computed.
+//! The operations of a program, and the stages: build time, construction, configuration, velocity.
 
 use super::graph::Input;
 use crate::arithmetic::Function;

@@ -1,4 +1,4 @@
-//! Quantities made of values, and values that must not vanish: nodes of a derivation, or values of a program.
+//! Outputs (quantities with their values) and guards (values that must not be zero), of a derivation or of a program.
 
 use super::operation::Value;
 use super::quantity::Quantity;

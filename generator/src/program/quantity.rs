@@ -1,4 +1,4 @@
-//! What a program can compute, and how derivations and cost tables write it.
+//! The quantities that a program can compute, and their names in derivation files and cost tables.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What each operation means, in any kind of numbers.
+//! Evaluates one operation in any number type.
 
 use super::inputs::Inputs;
 use super::operation::{Operation, Value};

@@ -1,4 +1,4 @@
-//! The part of a program that a routine needs, in an order that keeps few values alive.
+//! Selects the operations of a program that a routine needs, in an order in which few values are live at a time.
 
 use super::operation::{Operation, Stage, Value};
 use super::output::{Guard, Output};

@@ -1,4 +1,4 @@
-//! The program itself.
+//! The type of programs.
 
 use super::operation::{Operation, Stage, Value};
 use super::output::{Guard, Output};

@@ -1,4 +1,4 @@
-//! What stands in each section: quantities, points, records, loads, equations.
+//! Parses the entries of sections: quantities, points, records, loads, equations.
 
 use super::parser::{Lost, Parser};
 use super::token::TokenKind;

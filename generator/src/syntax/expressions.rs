@@ -1,4 +1,4 @@
-//! Expressions.
+//! Parses expressions.
 
 use super::parser::{Lost, MAX_DEPTH, Parser};
 use super::token::TokenKind;

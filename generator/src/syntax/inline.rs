@@ -1,4 +1,4 @@
-//! The input of a macro to tokens. Positions count the tokens, so that a message can underline the user's own.
+//! Converts the input of a macro to tokens. Their positions are indices of the macro's tokens, so that a message can underline these.
 
 use proc_macro2::{Delimiter, Span as RustSpan, TokenStream, TokenTree};
 

@@ -1,5 +1,4 @@
-//! Text of a file to tokens, by the rules of Rust as far as models need them. Never fails: what cannot be read becomes a bad
-//! token.
+//! Converts the text of a file to tokens, by those lexical rules of Rust that models need. It never fails: text that is not a token becomes a bad token.
 
 use super::token::{Bad, Token, TokenKind, is_decimal};
 use crate::span::Span;

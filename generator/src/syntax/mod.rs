@@ -1,4 +1,4 @@
-//! Text to an untyped tree. Reading never fails: it returns a tree and the mistakes found.
+//! Parses text to an untyped tree. Parsing never fails: it returns a tree and the mistakes found.
 
 mod entries;
 mod expressions;

@@ -1,4 +1,4 @@
-//! The outline of a model: its documentation, its name, its sections and their order.
+//! Parses the outline of a model: documentation, name, sections and their order.
 
 use super::parser::{Docs, Lost, Parser};
 use super::token::TokenKind;

@@ -1,4 +1,4 @@
-//! The parser: a cursor over tokens that reports what it does not find and carries on behind it.
+//! The cursor of the parser: reads tokens, reports what is missing, and continues after it.
 
 use std::borrow::Cow;
 use std::collections::HashSet;

@@ -1,4 +1,4 @@
-//! Sections as lists of entries: what separates them, and how reading goes on after one that is broken.
+//! Parses sections as lists of entries: their separators, and recovery after an entry that cannot be parsed.
 
 use super::parser::{Lost, Parser};
 use super::token::TokenKind;

@@ -1,4 +1,4 @@
-//! Tokens: what a model's text is made of, whether it comes from a file or from a macro's input.
+//! The tokens of a model's text, from a file or from the input of a macro.
 
 use crate::span::Span;
 

@@ -1,4 +1,4 @@
-//! The untyped tree of a model, with the place of everything.
+//! The untyped syntax tree of a model, with the place of every part.
 
 use crate::span::Span;
 

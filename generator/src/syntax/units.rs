@@ -1,4 +1,4 @@
-//! Units: what `kg*m^2` or `mm` means in SI.
+//! Units: dimension and SI factor of expressions such as `kg*m^2` or `mm`.
 
 use super::tree::{Expr, ExprKind};
 use crate::diagnostics::{Diagnostic, codes};

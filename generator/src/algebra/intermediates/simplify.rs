@@ -1,4 +1,4 @@
-//! The same expression, shorter: products multiplied out, squares of sines and cosines, names opened.
+//! Shortens expressions: multiplies products out, replaces squares of sines or cosines, and replaces names by what they stand for.
 
 use super::{Intermediates, Meaning};
 use crate::algebra::expr::{Expr, SymbolId, View};

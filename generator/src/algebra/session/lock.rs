@@ -1,4 +1,4 @@
-//! The lock file: one for all processes of a user, whatever their environment says of home and temporary directories.
+//! The lock file: one for all processes of a user, even where their environment variables name different home and temporary directories.
 
 use std::fs::{DirBuilder, File, OpenOptions, TryLockError};
 use std::io::{self, Write};

@@ -1,4 +1,4 @@
-//! The trait `Contacts` for the mechanism's type.
+//! Emits the implementation of the trait `Contacts`.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};

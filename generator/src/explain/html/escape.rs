@@ -1,4 +1,4 @@
-//! Text in which nothing is taken for markup.
+//! Escapes text for HTML.
 
 /// Text as HTML wants it.
 pub fn plain(text: &str) -> String {

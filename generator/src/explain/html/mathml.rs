@@ -1,4 +1,4 @@
-//! Terms as MathML.
+//! Writes terms as MathML.
 //!
 //! A long right side is several `math` elements, one for each summand, between which a browser may begin a new line; MathML itself
 //! has no lines.

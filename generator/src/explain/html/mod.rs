@@ -1,6 +1,6 @@
-//! Equations as an HTML page with MathML, which browsers show without help and without a network.
+//! Writes equations as an HTML page with MathML, which browsers display without scripts and without a network.
 //!
-//! An equation is a row of three columns, so that all equal signs of a section stand under each other. The page is well-formed XML too.
+//! An equation is a row of three columns, so that the equal signs of a section are aligned. The page is also well-formed XML.
 
 mod escape;
 mod mathml;

@@ -1,4 +1,6 @@
-//! Forces on their way from the leaves to the ground, past eliminated derivatives of speeds.
+//! Passes forces and torques from the leaves to the ground while derivatives of speeds are eliminated: the inward pass of the articulated body algorithm.
+//!
+//! Theory: docs/theory.md, section 16.2.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,6 @@
-//! What is left of the mechanism while velocities are inserted and derivatives of speeds eliminated.
+//! The quadratic form of Gauss's principle, while relations are inserted and derivatives of speeds are eliminated.
+//!
+//! Theory: docs/theory.md, section 16.2.
 
 use std::collections::BTreeMap;
 

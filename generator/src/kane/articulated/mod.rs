@@ -1,13 +1,15 @@
-//! The mass matrix factorised and never formed, in time linear in the number of bodies, by Gauss's principle.
+//! The articulated body algorithm (ABA) on the graph of velocities: factorises the mass matrix without forming it, in time linear in the number of bodies.
 //!
-//! The accelerations make `1/2 sum m |a|^2 + .. - forces . accelerations` least. That form is
-//! passed along the graph of velocities from the leaves to the ground as the kinetic energy is for the mass matrix, but
-//! each `u'` is eliminated as soon as nothing further in mentions it: what is left of its subtree is an articulated
-//! inertia ([`Articulated::new`]). Forces passed inwards the same way leave at each `u'` the load that it bears
-//! ([`Articulated::inwards`]), which is what a half-solve with the factorised mass matrix leaves: `f' M^-1 g` is the sum
-//! of load times load over articulated inertia. Going outwards again gives the `u'` one after the other
-//! ([`Articulated::outwards`]). For long chains this beats factorising the mass matrix; for short ones it takes more operations
-//! and keeps more digits, for each pivot is a sum of what resists there, not a small difference of what the whole subtree weighs.
+//! By Gauss's principle the accelerations minimise `1/2 sum m |a|^2 + .. - forces . accelerations`. The relations of the graph are inserted into that form
+//! from the leaves to the ground, as into the kinetic energy for the mass matrix, but each `u'` is eliminated (minimised over) as soon as no relation
+//! further in contains it; what remains of its subtree is an articulated inertia ([`Articulated::new`]). Forces passed inwards in the same way leave at
+//! each `u'` a load ([`Articulated::inwards`]). The loads are the half-solve with the factorised mass matrix: `f' M^-1 g` is the sum of load times load over
+//! articulated inertia. An outward pass gives the `u'` one after the other ([`Articulated::outwards`]).
+//!
+//! For long chains this takes fewer operations than factorising the mass matrix. For short chains it takes more, but keeps more digits: each pivot is
+//! computed as a sum of inertias and not as a small difference of composite inertias.
+//!
+//! Theory: docs/theory.md, section 16.2.
 
 mod acting;
 mod eliminated;

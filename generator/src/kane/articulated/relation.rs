@@ -1,4 +1,4 @@
-//! How the acceleration of a point follows from those of its base and its frame, as matrices.
+//! The relation of the acceleration of a point to those of its base and its frame, as matrices.
 
 use std::collections::BTreeMap;
 

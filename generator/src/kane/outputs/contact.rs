@@ -1,4 +1,4 @@
-//! What a derivation delivers of contacts: bases, velocities, reduced matrices, and how they change along a direction.
+//! Writes the quantities of contacts as nodes: bases, velocities, reduced matrices, and their directional derivatives.
 
 use std::collections::HashMap;
 
@@ -16,7 +16,7 @@ use crate::program::{ContactQuantity, Quantity, Structure};
 /// Where the entries of a reduced matrix stand.
 const UPPER: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
-/// What a mechanism answers to unit impulses at a contact.
+/// The response of a mechanism to unit impulses at a contact.
 struct Responses {
     /// V M^-1 V', its upper half
     reduced: Vec<Node>,

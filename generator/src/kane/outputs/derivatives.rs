@@ -1,7 +1,7 @@
-//! Derivatives of the dynamics by coordinates, speeds and named inputs, each with its value in a derivation of its own.
+//! Derivatives of the dynamics with respect to coordinates, speeds and named inputs; each is written together with its value as a separate derivation.
 //!
-//! With r(q, u, a, w) = M a - forcing, the inverse dynamics, accelerations a(q, u, w) satisfy r = 0, so that da/dx = -M^-1 dr/dx at a held: one
-//! program r is differentiated, whatever the constraints, and the factor of M serves all columns.
+//! With the inverse dynamics r(q, u, a, w) = M a - forcing, the accelerations a(q, u, w) satisfy r = 0, so that da/dx = -M^-1 dr/dx, where dr/dx is taken at
+//! constant a. So only r is differentiated, with any constraints, and one factorisation of M serves all columns.
 
 use std::collections::HashMap;
 

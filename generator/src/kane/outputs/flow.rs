@@ -1,4 +1,4 @@
-//! Velocities differentiated along the motion: accelerations of points, and of contacts without contact forces.
+//! Accelerations of points and free accelerations of contacts, by differentiating velocities along the motion.
 
 use std::collections::HashMap;
 

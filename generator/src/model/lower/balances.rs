@@ -1,4 +1,4 @@
-//! Where dimensions must be the same: what agrees, and what contradicts.
+//! Records the places where two dimensions must be the same: those that agree, and those that contradict each other.
 
 use std::collections::HashMap;
 

@@ -1,7 +1,7 @@
-//! Which declaration is wrong where dimensions contradict each other.
+//! Finds the declaration that is wrong where dimensions contradict each other.
 //!
-//! A name that is declared in a wrong unit contradicts all of its uses. They are collected, and where another dimension of one name
-//! resolves several of them, and no use agrees with the declared one, the declaration is wrong: it is reported once.
+//! A name that is declared with a wrong unit contradicts all of its uses. If another dimension of one name resolves several contradictions, and no use
+//! agrees with the declared dimension, the declaration is taken for wrong and is reported once instead of all its uses.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,4 +1,4 @@
-//! Bodies and particles.
+//! Lowers bodies and particles.
 
 use super::super::mechanism::{Body, FrameId, Inertia, PointId, Scalar};
 use super::Lowering;

@@ -1,4 +1,4 @@
-//! Functions, axes and what is asked of points and frames.
+//! Lowers function calls, axes, and `position`, `velocity` and `angular_velocity`.
 
 use super::super::mechanism::{Axis, FrameId, PointId, Scalar, Vector};
 

@@ -1,4 +1,4 @@
-//! Contacts, and what is never used.
+//! Lowers contacts, and warns of names that are never used.
 
 use super::super::mechanism::{Against, BodyId, Contact, FrameId, PointId, Vector};
 use super::super::names::Symbol;

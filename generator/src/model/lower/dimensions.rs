@@ -1,4 +1,4 @@
-//! Dimensions that must be the same: in sums, in equations and where a place wants its own.
+//! Checks dimensions: of terms in sums, of both sides of equations, and of values that must have a certain dimension.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Kinematical equations, velocity constraints and configuration constraints.
+//! Lowers kinematical equations, velocity constraints and configuration constraints.
 
 use super::super::mechanism::{Equation, EquationSides, Scalar, Vector};
 use super::super::names::Symbol;

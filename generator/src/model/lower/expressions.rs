@@ -1,4 +1,4 @@
-//! Sums, products, powers and names.
+//! Lowers expressions: sums, products, powers and names.
 
 use num_bigint::BigInt;
 use num_rational::{BigRational, Ratio};

@@ -1,4 +1,4 @@
-//! Frames: orientation and angular velocity.
+//! Lowers orientations and angular velocities of frames.
 
 use super::super::dependency_order::base_frame;
 use super::super::mechanism::{Axis, FrameId, Orientation, Scalar};

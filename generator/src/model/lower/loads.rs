@@ -1,4 +1,4 @@
-//! Loads.
+//! Lowers loads.
 
 use super::super::mechanism::{Load, LoadKind, Scalar};
 use super::super::typed::Typed;

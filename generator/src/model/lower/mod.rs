@@ -1,4 +1,4 @@
-//! From the tree to a [`Mechanism`]: every name resolved, every dimension checked, all mistakes collected.
+//! Lowers a syntax tree to a [`Mechanism`]: resolves all names, checks all dimensions, collects all mistakes.
 
 mod balances;
 mod blame;

@@ -1,4 +1,4 @@
-//! Points: positions and velocities.
+//! Lowers positions and velocities of points.
 
 use super::super::mechanism::{Place, PointId, Vector};
 use super::super::names::Symbol;

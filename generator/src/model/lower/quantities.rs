@@ -1,4 +1,4 @@
-//! Parameters, inputs, coordinates and speeds.
+//! Lowers parameters, inputs, coordinates and speeds, with their units and values.
 
 use std::collections::{HashMap, HashSet};
 

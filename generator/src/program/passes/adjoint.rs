@@ -1,5 +1,5 @@
-//! How much an error of each operation would matter: the numbers of a program at sample states, and by how much its answers change with
-//! each of them (reverse differentiation), relative to the largest entry of an answer. All of it is the same on every machine.
+//! The sensitivity of the outputs of a program to rounding errors of its operations: evaluates the program at sample states and differentiates backwards
+//! (adjoints), relative to the largest entry of each output. The numbers are the same on every machine.
 
 use crate::arithmetic::reproducible::Reproducible;
 use crate::program::inputs::Inputs;
@@ -14,7 +14,7 @@ const NOTHING: f64 = 1e-24;
 
 /// A sample state.
 pub struct Weighed {
-    /// the number of each value; of a sine-cosine pair both
+    /// the value of each operation; of a sine-cosine pair both
     numbers: Vec<(f64, f64)>,
     /// per value, the mean square of what an error of 1 does to an answer; 0 where that is no number
     pub weights: Vec<f64>,

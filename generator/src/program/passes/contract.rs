@@ -1,4 +1,4 @@
-//! Marks a * b + c as one operation where the product serves sums alone: then no product is computed twice for it.
+//! Contracts a * b + c to one operation where the product is used in sums only, so that no product is computed twice.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Drops operations that nothing needs.
+//! Removes operations that no output and no guard needs.
 
 use crate::program::operation::Value;
 use crate::program::output::{Guard, Output};

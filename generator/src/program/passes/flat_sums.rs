@@ -1,4 +1,4 @@
-//! Sums of operations taken apart, and put together in another order.
+//! Flattens nested sums of operations to lists of terms, and builds them again in another order.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Folds what is known at build time: exactly while it is rational, then in doubles.
+//! Folds constants: exactly while they are rational, then in doubles.
 
 use num_rational::BigRational;
 

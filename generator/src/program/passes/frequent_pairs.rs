@@ -1,4 +1,4 @@
-//! Finds pairs of items that many lists have, most frequent first: the shared parts of sums and products.
+//! Finds pairs of items that occur in several lists, the most frequent first: the common parts of sums and products.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};

@@ -1,9 +1,8 @@
-//! Replaces what is identically 0, 1 or another simple number, although its symbols do not show it: cos^2 + sin^2, or a term and its
-//! opposite by another way.
+//! Replaces nodes that are identically 0, 1 or another simple number although their form does not show it: cos^2 + sin^2, or a term and its opposite in
+//! different forms.
 //!
-//! Nodes are evaluated at arbitrary inputs in twice the digits. Sums, products, quotients, sines and exponentials are analytic, so what is the
-//! same number at all of them is that number everywhere but for a chance of nothing. Functions with branches (roots, magnitudes, arcs) count as
-//! unknowns of their own.
+//! Nodes are evaluated at arbitrary inputs with twice the digits. Sums, products, quotients, sines and exponentials are analytic; a node with the same value at
+//! all of the inputs is therefore constant with probability 1. Functions with branches (roots, magnitudes, arc functions) count as independent unknowns.
 
 use super::known::{Known, PLACES, analytic, arbitrary, seed_of};
 use super::rewrite::{Survey, rebuild, rewrite};

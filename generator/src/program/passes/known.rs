@@ -1,4 +1,4 @@
-//! Numbers in twice the digits with a bound of their error, at arbitrary inputs: what tells whether something vanishes identically.
+//! Numbers of twice the digits with an error bound, for evaluation at arbitrary inputs: they tell whether a value is identically zero.
 
 use crate::arithmetic::reproducible::Reproducible;
 use crate::arithmetic::{Arithmetic, Function};

@@ -1,4 +1,4 @@
-//! Drops the guards that no output needs: what nobody computes need not be checked.
+//! Removes guards of values that no output uses.
 
 use crate::program::derivation::Derived;
 

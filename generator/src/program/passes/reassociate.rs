@@ -1,8 +1,8 @@
-//! Adds the terms of a sum in the order that loses least.
+//! Adds the terms of a sum in the order with the least rounding error.
 //!
-//! Every partial sum is rounded in proportion to its size. Sums that serve one other sum alone are opened into it, and of all orders in
-//! which its terms can be added with as few operations, the one is taken whose partial sums are smallest in the mean over the
-//! sample states, each state weighed by what an error there does to the answers: what cancels is brought together early.
+//! The rounding error of a partial sum is proportional to its size. A sum that is used in one other sum only is merged into it. Of all orders of the terms that
+//! take the fewest operations, the one is chosen whose partial sums are smallest in the mean over the sample states, each state being weighted by the effect
+//! of an error on the outputs. Terms that cancel are thereby added early.
 
 use super::adjoint::Weighed;
 use super::dead_code;

@@ -1,4 +1,4 @@
-//! What passes on the graph share: facts about its nodes, and how a new graph is made of an old one.
+//! Common code of the passes on the graph: facts about nodes, and building a new graph from an old one.
 
 use std::collections::HashMap;
 

@@ -1,4 +1,4 @@
-//! Terms of sums and factors of products, taken apart.
+//! Splits sums into terms and products into factors.
 
 use crate::number::Number;
 use crate::program::graph::{Graph, Node, NodeKind};

@@ -1,4 +1,4 @@
-//! What the tests of the passes share: small and random derivations, and the comparison of programs by the interpreter.
+//! Common code of the tests of passes: small and random derivations, and comparison of programs by the interpreter.
 
 use super::lower;
 use crate::arithmetic::Function;

@@ -1,6 +1,6 @@
-//! Drops operations whose result is identically 0, as partial sums may be once the terms of a sum have their order.
+//! Removes operations whose result is identically 0, as partial sums may be after reassociation.
 //!
-//! It looks at operations as [`super::identities`] looks at nodes. What rounding takes from a sum of angles is 0 but for rounding: it stays.
+//! It tests operations as [`super::identities`] tests nodes. The computed rounding error of a sum of angles is 0 in exact arithmetic; it is kept.
 
 use super::known::{Known, PLACES, analytic, arbitrary, seed_of};
 use crate::arithmetic::reproducible::Reproducible;
