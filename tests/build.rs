@@ -1,5 +1,5 @@
-//! Writes down how the modules of `hodograph-models` are called: one `impl Emitted` per file in `models/`, from what the
-//! generator emits for it. So the tests try every routine of every model, and adding a model needs no entry anywhere.
+//! Generates calls of all routines of the modules of `hodograph-models`: one `impl Emitted` per file in `models/`, from what the generator emits for it.
+//! So the tests call every routine of every model, and a new model needs no entry anywhere.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! One mistake, one error: mistakes made by hand in every shipped model.
+//! One mistake gives one error: mistakes are made in every shipped model, one at a time.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What is said of malformed models, word for word: `tests/diagnostics/NAME.mech` and the expected `NAME.txt`.
+//! Compares the messages about malformed models word for word: `tests/diagnostics/NAME.mech` and the expected `NAME.txt`.
 //!
 //! `HODOGRAPH_UPDATE=1 cargo test -p hodograph-generator --test diagnostics` writes the expectations anew; read the difference
 //! before you commit it.

@@ -1,4 +1,4 @@
-//! `docs/errors.md` is what the code says, and its examples do what they claim.
+//! Compares `docs/errors.md` with the explanations in the code, and runs its examples.
 
 use std::path::Path;
 

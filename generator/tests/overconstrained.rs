@@ -1,5 +1,5 @@
 //! Loops with more constraints than they need: accepted where all agree wherever the loop is closed, whatever the parameters; refused
-//! otherwise. Their numbers are held against the numeric road with all constraints in `generator/cli/tests/unusual.rs`.
+//! otherwise. `generator/cli/tests/unusual.rs` compares their numbers with the numeric evaluation that uses all constraints.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Whatever the input: an answer, soon, and no panic.
+//! Arbitrary input: every text gives a result within bounded time, without a panic.
 
 use std::time::{Duration, Instant};
 

@@ -1,4 +1,4 @@
-//! The numeric road reproduces numbers that were computed outside this project, for every mechanism that ships.
+//! The numeric evaluation of models reproduces numbers that were computed outside this project, for every shipped mechanism.
 
 use std::path::{Path, PathBuf};
 

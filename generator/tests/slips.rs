@@ -1,4 +1,4 @@
-//! Honest slips in sound models (`tests/slips`): each is told, by the code that names it, where it was made.
+//! Common slips in otherwise correct models (`tests/slips`): each is reported at its place with the right code.
 
 use std::path::Path;
 

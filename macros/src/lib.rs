@@ -1,4 +1,4 @@
-//! The procedural macro of Hodograph. Use it as `hodograph::mechanism!`, which says where the runtime is under whatever name.
+//! The procedural macro of Hodograph. Use it as `hodograph::mechanism!`, which passes the path of the runtime, whatever its name in the user's crate.
 
 use hodograph_generator::expand::{expand, package};
 

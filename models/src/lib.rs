@@ -1,7 +1,7 @@
-//! Ready-made mechanisms: a module per model file, with its equations of motion and the collisions of its contacts.
+//! Ready-made mechanisms: one module per model file, with the equations of motion and the collisions of the contacts.
 //!
-//! Every module is documented from the comments of its model, `models/<module>.mech`; `docs/gallery.md` shows them all. Equations are
-//! derived beforehand and checked in, so this builds without the algebra engine. `no_std` without the default feature `std`.
+//! The documentation of a module comes from the comments of its model, `models/<module>.mech`; `docs/gallery.md` shows all mechanisms. Their equations
+//! have been derived and checked in, so that this package builds without the algebra engine. It is `no_std` without the default feature `std`.
 //!
 //! ```
 //! use hodograph::{Law, Surface};

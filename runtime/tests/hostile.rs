@@ -1,7 +1,7 @@
-//! No answer that breaks a law leaves the solver: random contacts made to hurt, with friction from none to 1e308, ranks 1 to 3, entries that
-//! are rounding noise, anisotropy, and numbers near both ends of the range, in single and double precision.
+//! No outcome violates a law of impact, for random contacts chosen to be difficult: friction from 0 to 1e308, ranks 1 to 3, entries that are rounding
+//! noise, anisotropy, and numbers near both ends of the range, in single and double precision.
 //!
-//! The laws are evaluated in numbers of twice the digits and share nothing with the solver's own check but what they say.
+//! The laws are evaluated in numbers of twice the digits, independently of the solver's own verification.
 
 mod common;
 

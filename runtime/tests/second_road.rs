@@ -1,4 +1,5 @@
-//! Outcomes against a second road in numbers of twice the digits: ill-conditioned, singular, nearly straight, in any axes and units.
+//! Compares outcomes with an independent solution in numbers of twice the digits (`common/second_road.rs`): ill-conditioned, singular and nearly
+//! straight contacts, in any axes and units.
 
 mod common;
 

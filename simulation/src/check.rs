@@ -1,4 +1,4 @@
-//! What is checked before a motion begins.
+//! Checks options, surfaces and start state before a motion begins.
 
 use hodograph::{Kind, State, Surface};
 

@@ -1,8 +1,8 @@
-//! Which modes several closed contacts take at an event.
+//! Chooses the modes of several closed contacts at an event.
 //!
-//! Each contact by itself is decided exactly by the runtime, for given forces at the others; going round until nothing changes (block Gauss-Seidel,
-//! as Jean and Moreau's method of contact dynamics does for time steps) gives the modes, and one linear system then gives the forces to rounding.
-//! Where going round does not settle, all combinations of modes of few contacts are tried.
+//! For given forces at the other contacts the runtime gives the exact mode and force of one contact. Repeating this for all contacts in turn until nothing
+//! changes (block Gauss-Seidel, as Jean and Moreau's method of contact dynamics does for time steps) gives the modes; one linear system then gives the
+//! forces to rounding. Where the iteration does not converge and there are few contacts, all combinations of modes are tried.
 
 use hodograph::{ContactError, ContactMode, Selection, contact_mode, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2};

@@ -1,4 +1,4 @@
-//! What integration lets drift is put right after each step: quaternions, closed loops, gaps and velocities of closed contacts.
+//! Corrects the drift of the integration after each step: lengths of quaternions, closed loops, gaps and velocities of closed contacts.
 
 use hodograph::{Contacts, Kind, State, StateError};
 use nalgebra::{DMatrix, DVector};

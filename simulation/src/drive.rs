@@ -1,4 +1,4 @@
-//! What drives a mechanism: its named inputs as functions of time and state.
+//! The named inputs of a mechanism as functions of time and state, or from a sampled controller.
 
 use std::fmt;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What is due at given times: samples of a controller, the ends of bounces.
+//! Events at known times: samples of a controller, and the ends of sequences of bounces.
 
 use hodograph::Kind;
 
@@ -6,13 +6,13 @@ use crate::simulation::Simulation;
 use crate::{Drive, Reason, SimulationError};
 
 impl Simulation<'_> {
-    /// The next time at which something is due.
+    /// The time of the next of these events.
     pub(crate) fn limit(&self) -> Option<f64> {
         let chatter = self.chatter.iter().map(|(time, _)| *time);
         chatter.chain(self.next_sample).filter(|&time| time > self.t).reduce(f64::min)
     }
 
-    /// What is due at this time.
+    /// Handles the ends of bounces at this time.
     pub(crate) fn on_time(&mut self) -> Result<(), SimulationError> {
         let now = self.t;
         let due: Vec<usize> =
@@ -26,7 +26,7 @@ impl Simulation<'_> {
         self.look_for_rest()
     }
 
-    /// Lets a controller act where its time has come.
+    /// Calls the controller if its sampling time has come.
     pub(crate) fn sample(&mut self) -> Result<(), SimulationError> {
         let Some(due) = self.next_sample else { return Ok(()) };
         if due > self.t {

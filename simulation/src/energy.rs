@@ -1,4 +1,4 @@
-//! Where the energy of a motion goes.
+//! The energy account of a motion: kinetic and potential energy, and the works of friction, impacts and inputs.
 
 /// The energies at a time and the works since the start, J. Kinetic and potential energy change by the sum of the works, and by the work of
 /// loads that have no potential and of prescribed motion.

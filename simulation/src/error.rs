@@ -1,4 +1,4 @@
-//! Why a motion cannot be followed.
+//! The errors of a simulation.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What happens in a motion.
+//! The events of a motion: collisions, beginning and end of contact, stick and slip.
 
 use hodograph::{CollisionOutcome, ContactMode, Selection};
 

@@ -1,4 +1,4 @@
-//! The forces of contacts whose modes are known.
+//! Solves for the forces of closed contacts whose modes are known.
 
 use hodograph::{ContactError, ContactMode, contact_force};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};

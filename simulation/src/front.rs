@@ -1,4 +1,4 @@
-//! The front of a motion: the state at the end of the last step, free of drift.
+//! Advances the front of a motion, that is the state at the end of the last step, and corrects its drift.
 
 use hodograph::{Kind, State};
 
@@ -30,7 +30,7 @@ impl Simulation<'_> {
         Ok(())
     }
 
-    /// Puts right what drifted.
+    /// Corrects the drift of the front.
     pub(crate) fn correct(&mut self) -> Result<(), SimulationError> {
         let mut y = std::mem::take(&mut self.y);
         let modes = self.modes();
@@ -44,7 +44,7 @@ impl Simulation<'_> {
         Modes { closed: self.closed(), held: self.held.clone(), resting: self.resting }
     }
 
-    /// Puts right what drifted while these modes lasted.
+    /// Corrects the drift of a state that was integrated in these modes.
     fn put_right(&self, modes: &Modes, t: f64, y: &mut [f64]) -> Result<(), SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
         let p = self.mechanism.count(Kind::Speed);

@@ -1,4 +1,4 @@
-//! An event in a step: its time to rounding, the state there, and what follows.
+//! Handles an event within a step: refines its time to rounding, goes to the state there, and changes the modes.
 
 use crate::locate::Crossing;
 use crate::motion::Evaluation;
@@ -9,11 +9,11 @@ use crate::stepper::Step;
 use crate::watch::Watched;
 use crate::{EventKind, Reason, SimulationError};
 
-/// Most events without progress in time.
+/// The greatest number of events without progress in time.
 const CROWD: usize = 2000;
 
 impl Simulation<'_> {
-    /// Finds the time of an event to rounding, goes there and answers it.
+    /// Refines the time of an event to rounding, goes to it and handles it.
     pub(crate) fn happen(
         &mut self,
         closed: &[Closed],

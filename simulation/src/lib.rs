@@ -1,8 +1,8 @@
-//! Motion of mechanisms with exact impacts and contact that lasts.
+//! Simulates the motion of mechanisms with impacts and lasting contact.
 //!
-//! [`Simulation`] follows a motion from event to event: between events it integrates the equations of motion with the forces of the contacts that
-//! are closed, which follow from their modes (stick, slide) exactly; impacts are solved exactly. Nothing is penalised, nothing creeps, and what rigid
-//! bodies do not determine is said. See `docs/contact.md`.
+//! [`Simulation`] follows a motion from event to event. Between events it integrates the equations of motion with the forces of the closed contacts, which
+//! follow exactly from their modes (stick, slide). Impacts are solved exactly. There is no penalty stiffness, and a sticking contact does not creep; where
+//! rigid bodies do not determine an outcome, the event says so. See `docs/contact.md`.
 //!
 //! It works for everything that implements [`hodograph::Contacts`]: generated modules, and the interpreter of the command line tool.
 

@@ -1,9 +1,9 @@
-//! Location of events: the first place in a step where one of several functions falls below zero.
+//! Locates events: finds the first point of a step at which one of several functions falls below zero.
 //!
-//! Each function is interpolated at Chebyshev points, more of them or on a part of the step until the last coefficients tell that nothing is left.
-//! What the polynomial does between its points is bounded: on an interval of half width r about m it is at least p(m) - |p'(m)| r - P r^2 / 2 with
-//! P a bound of |p''|. Intervals in which this excludes a zero are left, those in which p' cannot vanish have their ends compared, and all others are
-//! halved: so every extremum is looked at.
+//! Each function is interpolated at Chebyshev points; their number is increased, or the step divided, until the last coefficients are negligible. Between its
+//! points the polynomial p is bounded: on an interval of half width r about m it is at least p(m) - |p'(m)| r - P r^2 / 2, where P bounds |p''|. Intervals in
+//! which this excludes a zero are skipped, on intervals in which p' cannot vanish the ends are compared, and all others are halved. So no extremum is
+//! missed.
 
 /// Degrees tried, each twice the one before: points are used again.
 const DEGREES: [usize; 3] = [8, 16, 32];

@@ -1,4 +1,4 @@
-//! The rates of the state while the modes of all contacts stay.
+//! The right-hand side of the integration: the rates of the state while the modes of all contacts stay the same.
 
 use hodograph::{ContactError, Contacts, Kind, State, StateError};
 use nalgebra::Vector2;

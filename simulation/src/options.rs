@@ -1,4 +1,4 @@
-//! What a simulation may be told.
+//! The options of a simulation.
 
 use std::fmt;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What the contacts do: apart, sticking, sliding.
+//! The phases of contacts: open, sticking, sliding.
 
 use nalgebra::Vector2;
 

@@ -1,4 +1,4 @@
-//! One step of the motion: integrate, find the first event in the step, answer it.
+//! Makes one step of the motion: integrates, finds the first event in the step and handles it.
 
 use std::cell::RefCell;
 
@@ -106,7 +106,7 @@ impl Simulation<'_> {
         Err(self.error(None, Reason::Stalled))
     }
 
-    /// The integration came to a place that it cannot pass.
+    /// Handles an integration that cannot continue.
     fn stuck_integration(&mut self, failed: Option<Failure>) -> Result<(), SimulationError> {
         match failed {
             Some(Failure::Contact(

@@ -1,9 +1,10 @@
-//! The end of rattling: several contacts of a body that strike in turn, ever faster and ever lower.
+//! Ends rattling: several contacts of a body that strike in turn, faster and faster and lower and lower.
 //!
-//! A block that rocks, or a box that falls flat on its corners, strikes the ground infinitely often in a finite time, also with e = 0. The speeds vanish with
-//! the heights. To the first order in the speeds that are left, the impulses p of the series and of gravity over its time T satisfy W p = -v - beta T with
-//! friction along one direction: p = p0 + lambda T, where p0 makes the velocities vanish at once and lambda are the forces of lasting contact. So: where the
-//! heights are below the tolerance, and lasting contact presses everywhere, give the impulses p0 and go on in contact. It is the rule of one contact for several.
+//! A block that rocks, or a box that falls flat on its corners, strikes the ground infinitely often in a finite time T, even with e = 0; speeds and heights
+//! tend to zero. To first order in the remaining speeds v, the impulses p of the whole sequence satisfy W p = -v - beta T, with friction along one direction:
+//! p = p0 + lambda T, where the impulses p0 make the velocities zero at once and lambda are the forces of lasting contact. Rule: if the heights are below the
+//! tolerance and all forces of lasting contact press, apply the impulses p0 and continue in contact. For one contact it is the rule of docs/theory.md,
+//! section 17.7.
 
 use hodograph::{Kind, State};
 use nalgebra::DVector;

@@ -1,4 +1,4 @@
-//! Modes of closed contacts at events.
+//! Decides the modes of closed contacts at events, and records the events that follow.
 
 use hodograph::{ContactError, ContactMode, Kind, Selection, State};
 use nalgebra::{DVector, Vector2, Vector3};
@@ -15,11 +15,11 @@ use crate::{EventKind, Reason, SimulationError};
 const NO_SLIP: f64 = 1e-11;
 /// The first step of a slip that begins, s.
 const FIRST: f64 = 1e-7;
-/// So many events at one time make a contact change its mode even where another share of the forces might keep it.
+/// After this many events at one time a contact changes its mode even if another distribution of the forces might keep it.
 const PATIENCE: usize = 40;
 
 impl Simulation<'_> {
-    /// Something from outside changed the forces: modes that still fit are kept.
+    /// Decides the modes after a change of inputs; modes that still fit are kept.
     pub(crate) fn settle_again(&mut self) -> Result<(), SimulationError> {
         if self.keeps()? {
             return Ok(());

@@ -1,4 +1,4 @@
-//! Which sliding contacts have a direction of slip that has settled: it follows from the state ([`crate::slip_direction`]).
+//! Finds the sliding contacts whose small slip has settled in a direction that follows from the state ([`crate::slip_direction`]).
 
 use hodograph::State;
 use nalgebra::Vector2;

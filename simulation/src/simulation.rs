@@ -1,4 +1,4 @@
-//! A motion from a start state on.
+//! [`Simulation`]: a motion from a start state on.
 
 use std::collections::VecDeque;
 

@@ -1,8 +1,8 @@
-//! The direction of slip that is too small to be integrated, from the state.
+//! The direction of very small slip, computed from the state instead of by integration.
 //!
-//! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration across it: while s is small the direction settles
-//! in the time s / |h_phi|, and an explicit integration would have to follow it in steps of that size. Once it has settled it is known from the state:
-//! h(phi) = s omega, with omega the rate at which the settled direction turns. What is dropped is of the second order in s / |h_phi| times that rate.
+//! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration across the slip. While s is small the direction
+//! settles within the time s / |dh/dphi|, and an explicit integration would need steps of that length. A settled direction follows from the state:
+//! h(phi) = s omega, where omega is the rate at which the settled direction turns. The error is of second order in omega s / |dh/dphi|.
 
 use nalgebra::Vector2;
 

@@ -1,8 +1,8 @@
-//! The end of slip, which in three dimensions is no sign change of anything.
+//! The end of slip. In three dimensions no smooth function changes its sign there (docs/theory.md, section 17.5).
 //!
-//! Close to the end only the direction of slip changes: with dt = s dtau and the contact otherwise as it is, phi' = h(phi) and (ln s)' = g(phi),
-//! where g and h are the tangential acceleration along and across slip. If phi comes to rest where g < 0, slip ends, after a time that this flow gives; if
-//! g becomes positive, slip passes by.
+//! Close to the end only the slip changes: with dt = s dtau, phi' = h(phi) and (ln s)' = g(phi), where g and h are the tangential accelerations along and across
+//! the slip. If phi tends to a direction with g < 0, slip ends, after a time that these equations give; if g becomes positive, slip grows again and passes zero
+//! by.
 
 use nalgebra::Vector2;
 

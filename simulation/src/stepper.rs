@@ -1,4 +1,4 @@
-//! One step of the integrator, with dense output.
+//! Makes one step of the integration, with dense output.
 //!
 //! Dormand and Prince's method of order 8 of the crate `differential-equations`. Only its steps, its step size control and its dense output are
 //! used; time is local to the step, so that short steps late in a motion lose no digits.

@@ -1,4 +1,4 @@
-//! Impacts: of one contact, or of several that are struck together.
+//! Solves impacts of one contact, or of several that are struck at the same time.
 
 use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface, impact_without_collision};
 use nalgebra::{Vector2, Vector3};
@@ -205,7 +205,7 @@ impl Simulation<'_> {
         let plastic = Surface { e: 0.0, ..surface };
         let (outcome, after) = solve(if faded { &plastic } else { &surface })?;
         let mut hit = Hit { contact, outcome, before: speeds.to_vec(), after, bounces: None };
-        // The honest rule: the next bounce is lower than the tolerance, and what presses goes on pressing.
+        // The rule of chatter (theory, 17.7): the next bounce is lower than the tolerance, and the contact is pressed together.
         let (before, rebound) = (-hit.outcome.approach.x, hit.outcome.impact.velocity.x);
         if faded || rebound <= 0.0 || rebound >= before {
             return Ok(hit);

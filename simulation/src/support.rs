@@ -1,4 +1,4 @@
-//! The closed contacts of a mechanism in a state, together: W, beta, velocities.
+//! Evaluates all closed contacts of a mechanism in a state together: the matrix W, the free accelerations beta and the velocities.
 
 use hodograph::{Contacts, Kind, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};

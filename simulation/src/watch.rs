@@ -1,4 +1,4 @@
-//! What is watched in a step: the functions whose zeros are events.
+//! The functions of a step whose zeros are events: gaps, normal forces, cones of friction, functions of the user.
 
 use hodograph::{Kind, State};
 

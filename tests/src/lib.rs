@@ -1,1 +1,1 @@
-//! Tests of the whole; see the files beside `src`.
+//! Tests of all packages together; see the files beside `src`.

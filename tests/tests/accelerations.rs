@@ -1,5 +1,5 @@
-//! Accelerations of points and free accelerations of contacts, each by three roads: the derived program, numbers that carry derivatives,
-//! and differences along the motion.
+//! Accelerations of points and free accelerations of contacts, each computed in three ways: by the derived program, by numbers that carry derivatives,
+//! and by differences along the motion.
 
 mod common;
 

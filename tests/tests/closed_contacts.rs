@@ -1,4 +1,5 @@
-//! Mode and force of closed contacts of all shipped models in random states: never silent, and every answer obeys mechanics.
+//! Mode and force of closed contacts of all shipped models in random states: every state gives a result or an error, and every result satisfies the
+//! laws of mechanics.
 //!
 //! `HODOGRAPH_STATES=100000 cargo test --workspace --test closed_contacts -- --nocapture` tries so many states.
 

@@ -1,4 +1,4 @@
-//! What the derived programs cost, held to what others needed.
+//! Compares the numbers of operations of derived programs with those of other generators.
 
 mod common;
 

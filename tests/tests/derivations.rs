@@ -1,4 +1,4 @@
-//! What is checked in beside the models: it reads back to the same bytes, and every guard still guards something.
+//! The derivation files beside the models: reading and writing gives the same bytes, and every guard belongs to a value that is used.
 
 use std::path::Path;
 

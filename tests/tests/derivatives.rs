@@ -1,5 +1,5 @@
-//! Derivatives of the dynamics, each by several roads: the matrices of the emitted modules, numbers that carry derivatives through the same
-//! modules' values, and the derivative of the accelerations along a direction that the derivation delivers.
+//! Derivatives of the dynamics, each computed in several ways: by the matrices of the emitted modules, by running these modules on numbers that carry
+//! derivatives, and by the directional derivative of the accelerations.
 
 mod common;
 

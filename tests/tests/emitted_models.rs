@@ -1,4 +1,4 @@
-//! The emitted modules of all shipped models compute the bits that the interpreter computes, and their collisions obey mechanics.
+//! The emitted modules of all shipped models compute the same bits as the interpreter, and their collisions satisfy the laws of mechanics.
 
 mod common;
 

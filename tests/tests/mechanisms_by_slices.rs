@@ -1,4 +1,4 @@
-//! The traits `Mechanism` and `Contacts`: generated modules and the interpreter answer with the same bits, and as their own methods do.
+//! The traits `Mechanism` and `Contacts`: generated modules and the interpreter compute the same bits, and the same as the modules' own methods.
 
 mod common;
 

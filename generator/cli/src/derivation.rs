@@ -1,4 +1,4 @@
-//! Derivations: read where they are kept, made in a child process, written whole or not at all.
+//! Reads derivation files, derives in a child process, and writes derivation files completely or not at all.
 
 use std::io::{IsTerminal, Write};
 use std::path::Path;

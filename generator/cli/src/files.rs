@@ -1,4 +1,4 @@
-//! Which models a command is about: files, directories, Rust files with inline models.
+//! Finds the models that a command's arguments name: files, directories, Rust files with inline models.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! Inline models: `mechanism! { .. }` in Rust files.
+//! Finds inline models, `mechanism! { .. }`, in Rust files.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;

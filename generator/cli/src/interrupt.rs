@@ -1,4 +1,4 @@
-//! What a signal leaves behind: nothing. A file that is being written is removed before the process ends.
+//! Handles signals: a file that is being written is removed before the process ends.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,4 +1,4 @@
-//! The command line tool of Hodograph: models to equations, states to numbers, collisions to outcomes.
+//! The command line tool of Hodograph: checks and derives models, evaluates them in states, solves collisions, simulates motions.
 
 use std::process::ExitCode;
 

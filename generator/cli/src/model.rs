@@ -1,4 +1,4 @@
-//! Models from files: read, checked, and with their equations.
+//! Reads models from files, checks them and finds their equations.
 
 use std::path::Path;
 

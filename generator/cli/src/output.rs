@@ -1,4 +1,4 @@
-//! Standard output, to which nothing but results goes, and files, which are written whole or not at all.
+//! Writes results to standard output, and files completely or not at all.
 
 use std::io::{self, Write};
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! "Did you mean": the name most like one that is not there.
+//! Suggests the name nearest to an unknown one.
 
 use hodograph_generator::suggest::distance;
 

@@ -1,4 +1,4 @@
-//! How a command ends when it does not end well.
+//! The ways in which a command fails, with messages and exit codes.
 
 use std::fmt;
 

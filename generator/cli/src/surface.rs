@@ -1,4 +1,4 @@
-//! The laws by name, and what the two surfaces are like.
+//! Reads laws of restitution by name, and the surfaces of a contact from options.
 
 use hodograph::{Law, Surface};
 

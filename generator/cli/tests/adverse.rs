@@ -1,5 +1,5 @@
-//! Whatever stands at the other end: full disks, readers that leave, signals, names and files made to do harm. No panic, a true exit code,
-//! and nothing left behind.
+//! Adverse conditions: full disks, closed pipes, signals, hostile names and files. The tool must not panic, must return the right exit code, and must
+//! leave no files behind.
 #![cfg(unix)]
 
 mod common;

@@ -1,4 +1,4 @@
-//! Imported robots and long chains against the numeric second road: mass matrix, forces, accelerations and contacts at random states.
+//! Compares imported robots and long chains with the numeric evaluation of the model: mass matrix, forces, accelerations and contacts at random states.
 #![cfg(feature = "derive")]
 
 mod common;

@@ -1,4 +1,4 @@
-//! The examples of the documentation run, and answer what the pages say.
+//! Runs the examples of the documentation and compares their output with that in the pages.
 #![cfg(unix)]
 
 mod common;

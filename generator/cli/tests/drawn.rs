@@ -1,4 +1,4 @@
-//! `plot`, `explain` and `simulate`.
+//! Tests of `plot`, `explain` and the figures of `simulate`.
 
 mod common;
 

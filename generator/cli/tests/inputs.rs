@@ -1,4 +1,4 @@
-//! Whatever a path names, a command ends soon and says why: directories, devices, pipes, files that are not there or too large.
+//! Unusual paths: for directories, devices, pipes, and missing or too large files a command ends soon and says why.
 
 mod common;
 

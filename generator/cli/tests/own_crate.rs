@@ -1,5 +1,5 @@
-//! What the README says of a crate of one's own, done to the letter: its manifest, its source, the model of CONTRIBUTING.md, and the
-//! command that derives it.
+//! Follows the README's instructions for a crate of one's own literally: its manifest, its source, the model of CONTRIBUTING.md, and the command that
+//! derives it.
 
 mod common;
 

@@ -1,5 +1,5 @@
-//! Balls that roll, said in every way the language has: along some direction the vector equation says nothing, and along which,
-//! the derivation must find.
+//! Rolling balls, stated in every way that the language allows. The vector equation says nothing along one direction, which the derivation must
+//! find.
 
 mod common;
 

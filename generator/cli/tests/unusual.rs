@@ -1,5 +1,5 @@
 //! Valid mechanisms of unusual kinds (`tests/data/unusual`: gears, belts, rolling in drums, knife edges, struck frames, springs of all
-//! forms, quaternions, linkages, very small and very large parts): accepted without a warning, derived, and the same as the numeric road.
+//! forms, quaternions, linkages, very small and very large parts): accepted without a warning, derived, and equal to the numeric evaluation.
 #![cfg(feature = "derive")]
 
 mod common;

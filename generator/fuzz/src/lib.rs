@@ -1,4 +1,4 @@
-//! What a run of the fuzzer does: it checks a text, renders what is said of it, and holds the results to their promises.
+//! One run of the fuzzer: checks a text, renders the diagnostics, and tests properties that must always hold.
 
 use hodograph_generator::artifact::model_hash;
 use hodograph_generator::rendering::render;

@@ -1,4 +1,4 @@
-//! The trait `Contacts` by interpretation.
+//! Implements the trait `Contacts` by interpreting the program of a model.
 
 use hodograph::generated::{
     Contact, Resolved, check_length, closed_contact, kept_contact, resolve, resolve_structured,
@@ -76,7 +76,7 @@ impl InterpretedMechanism {
         }
     }
 
-    /// What the runtime reads of a contact, of the numbers of `COLLISION`.
+    /// The contact as the runtime takes it, from the numbers of `COLLISION`.
     fn known(&self, contact: usize, numbers: &[f64]) -> Contact<f64> {
         let remainder = CORE + self.size(contact, ContactQuantity::Response);
         let prescribed = remainder + self.size(contact, ContactQuantity::Remainder);

@@ -1,4 +1,4 @@
-//! Why a model cannot be interpreted.
+//! The errors of loading a model for interpretation.
 
 use std::fmt;
 
@@ -8,11 +8,11 @@ use hodograph::ParameterError;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// The model has mistakes: they, as `hodograph check` prints them.
+    /// The model has mistakes: the text that `hodograph check` prints.
     Model(String),
     /// The derivation is missing, stale or damaged: what is wrong and what to do.
     Derivation(String),
-    /// The parameters belong to no mechanism.
+    /// The parameters are refused.
     Parameters(ParameterError),
     /// The model gives no value for this parameter.
     NoValue(String),

@@ -1,4 +1,4 @@
-//! Texts that live as long as the program: errors of the runtime hold `&'static str`, the texts of an interpreted model are dynamic.
+//! Keeps texts of interpreted models for the rest of the process, because errors of the runtime hold `&'static str`.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};

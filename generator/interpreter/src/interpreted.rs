@@ -1,4 +1,4 @@
-//! A model with its program and parameters.
+//! [`InterpretedMechanism`]: a model with its program and parameters.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -1,6 +1,8 @@
-//! Mechanisms at run time: a model file and its derivation become an [`InterpretedMechanism`], which has the traits
-//! [`Mechanism`](hodograph::Mechanism) and [`Contacts`](hodograph::Contacts) as generated modules have. The numbers are the same to the last
-//! bit, so that whoever sweeps over models, or comes from another language, needs no compiler.
+//! Loads mechanisms at run time: a model file and its derivation become an [`InterpretedMechanism`], which implements the traits
+//! [`Mechanism`](hodograph::Mechanism) and [`Contacts`](hodograph::Contacts) as generated modules do.
+//!
+//! Its numbers have the same bits as those of the generated module. So a program that works on many models, or is called from another language, needs no
+//! compiler.
 //!
 //! ```no_run
 //! use hodograph::{Kind, Mechanism};

@@ -1,4 +1,4 @@
-//! The trait `Mechanism` by interpretation.
+//! Implements the trait `Mechanism` by interpreting the program of a model.
 
 use hodograph::generated::{check_length, normalize_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};

@@ -1,4 +1,4 @@
-//! Are parameters those of a mechanism? The same questions as at the construction of a generated module, in the same order.
+//! Checks parameters, with the same checks in the same order as the constructor of a generated module.
 
 use hodograph::ParameterError;
 use hodograph::generated::{abs, check_inertia, check_mass, exp, log, power, recip, sqrt};

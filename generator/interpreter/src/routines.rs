@@ -1,4 +1,4 @@
-//! Prepared routines: each is made when it is first asked for.
+//! The prepared routines of a mechanism: each is prepared at its first call.
 
 use std::sync::OnceLock;
 

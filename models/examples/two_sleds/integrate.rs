@@ -1,4 +1,4 @@
-//! The paper's own road, as a check: integrate (34), then (45) or (46), up to a known normal impulse.
+//! The paper's own method as a check: integrates (34), then (45) or (46), up to a known normal impulse.
 
 use nalgebra::Vector3;
 

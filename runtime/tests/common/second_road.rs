@@ -1,9 +1,9 @@
-//! A second road to every outcome, to some 25 digits: Taylor's method for the sliding equations (34) in Cartesian components, with numbers of
-//! 32 digits.
+//! An independent solution of every collision, to some 25 digits: Taylor's method for the sliding equations (34) in Cartesian components, with numbers
+//! of 32 digits.
 //!
 //! With dI_n = s dtau the equations are v_tan' = s b - mu T v_tan, v_n' = m_nn s - mu b.v_tan, I_tan' = -mu v_tan, I_n' = s, W' = s v_n, and
-//! s follows from s^2 = v_tan^2. It shares no equation in phi, no chart and no series with the solver. What it sees, it takes as exact: a
-//! matrix is singular only if its determinant is zero to 28 digits.
+//! s follows from s^2 = v_tan^2. It shares no equation in phi, no chart and no series with the solver. It takes its input as exact: a matrix counts as
+//! singular only if its determinant is zero to 28 digits.
 
 use hodograph::{Impact, Law, ReducedMatrix, Surface};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};

@@ -1,4 +1,4 @@
-//! What stands in the place of a literal: its value, or that times a factor while it is the one examined.
+//! The function that replaces a literal: returns its value, or the value times a factor if it is the literal under examination.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering::Relaxed};
 

@@ -1,4 +1,4 @@
-//! Multiplies one literal of the solver after the other by factors, and shows what becomes of errors and work.
+//! Multiplies the literals of the solver by factors, one literal at a time, and shows how errors and work change.
 
 #[path = "@COMMON@/double_double.rs"]
 #[allow(dead_code)]

@@ -1,4 +1,4 @@
-//! Two thousand collisions, most of them chosen to be hard: for the most that one may cost.
+//! Two thousand collisions, most of them chosen to be difficult, to find the greatest cost of one.
 
 use hodograph::{Characteristics, Law, ReducedMatrix, Surface, rates};
 use nalgebra::{Matrix3, Vector3};

@@ -1,4 +1,4 @@
-//! What is measured: collisions, methods, the error of an answer, and the modes of closed contacts.
+//! The objects of the measurements: collisions, methods, errors of outcomes, and modes of closed contacts.
 
 mod hostile;
 pub mod modes;

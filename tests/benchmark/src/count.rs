@@ -1,4 +1,4 @@
-//! Instructions and code size of the measured routines.
+//! Counts instructions and measures the code size of routines.
 //!
 //! valgrind's callgrind executes the program and counts every instruction that retires between entry and return of a routine,
 //! whatever it calls (sines, cosines) included, loops and argument hiding around it excluded. Counts do not depend on load.

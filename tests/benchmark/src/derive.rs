@@ -1,4 +1,4 @@
-//! From a mechanism to its module: import, derivation and expansion by the command line tool.
+//! Imports, derives and expands a mechanism with the command line tool.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

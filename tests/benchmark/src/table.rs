@@ -1,4 +1,4 @@
-//! The table.
+//! Writes the table of results.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Compiling a module with every one of its methods, in doubles: the worst case, for code that nobody calls is not compiled.
+//! Measures the time to compile a module with all of its methods called in doubles: the worst case, since methods that are not called are not compiled.
 
 use std::fmt::Write;
 use std::time::Instant;

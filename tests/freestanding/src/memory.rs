@@ -1,4 +1,4 @@
-//! What the compiler calls to move memory. Byte by byte, and not recognised as what it is.
+//! The memory functions that compiled code calls, byte by byte, written so that the compiler does not replace them by calls of themselves.
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, count: usize) -> *mut u8 {

@@ -1,7 +1,6 @@
-//! A mechanism in motion as an HTML page: points and the lines between them, contacts, impulses and forces, and curves over time.
+//! Writes a motion as an animated HTML page: points and the lines between them, contacts, impulses and forces, and curves over time.
 //!
-//! [`page`] makes the text of the page from an [`Animation`] and nothing else. The page loads nothing, and works with a pointer, a
-//! finger and a keyboard.
+//! [`page`] makes the text of the page from an [`Animation`]. The page loads no other files, and works with mouse, touch and keyboard.
 
 mod segments;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Which points of a mechanism are joined by lines.
+//! Chooses the points of a mechanism that the animation joins by lines.
 
 /// Lines that make a stick figure: from each point to the one it is defined from (`from`, by place in the list; `None` for a point
 /// by itself), and from the centre of each body to its points. A line is drawn once, and none from a point to itself.

@@ -1,4 +1,4 @@
-//! Pages in which a mechanism moves.
+//! Tests of the animated pages.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! `hodograph check`: every mistake in models.
+//! `hodograph check`: reports every mistake in models.
 
 use std::path::PathBuf;
 

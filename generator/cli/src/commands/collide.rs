@@ -1,4 +1,4 @@
-//! `hodograph collide`: a collision of a model in a state.
+//! `hodograph collide`: solves a collision of a model in a state.
 
 use std::path::PathBuf;
 

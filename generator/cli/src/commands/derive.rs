@@ -1,4 +1,4 @@
-//! `hodograph derive`: derivations to be checked in.
+//! `hodograph derive`: derives models and writes the derivation files that are checked in.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

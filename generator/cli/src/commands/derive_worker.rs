@@ -1,4 +1,4 @@
-//! The process that uses the algebra engine. Its standard output belongs to the engine, up to the answer.
+//! The child process that uses the algebra engine. The engine prints to standard output; the result comes after that.
 
 use crate::stop::Outcome;
 

@@ -1,4 +1,4 @@
-//! `hodograph eval`: the equations of a model in a state, as numbers.
+//! `hodograph eval`: evaluates the equations of a model in a state.
 
 use std::path::PathBuf;
 

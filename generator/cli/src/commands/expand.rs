@@ -1,4 +1,4 @@
-//! `hodograph expand`: the Rust module of a model.
+//! `hodograph expand`: writes the Rust module of a model.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `hodograph explain`: the equations of a model, to be read.
+//! `hodograph explain`: writes the equations of a model for people, or the explanation of an error code.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `hodograph import`: a URDF becomes a model.
+//! `hodograph import`: converts a URDF file to a model.
 
 use std::path::PathBuf;
 

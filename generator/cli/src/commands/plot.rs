@@ -1,4 +1,4 @@
-//! `hodograph plot`: the course of collisions as a drawing.
+//! `hodograph plot`: draws the course of collisions.
 
 use std::io::IsTerminal;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! `hodograph simulate`: motion with collisions and with contact that lasts.
+//! `hodograph simulate`: simulates motion with collisions and lasting contact.
 
 mod curves;
 mod expression;

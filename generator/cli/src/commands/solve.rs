@@ -1,4 +1,4 @@
-//! `hodograph solve`: JSON lines in, JSON lines out.
+//! `hodograph solve`: solves collisions given as JSON lines, and writes their outcomes as JSON lines.
 
 use std::io::{self, BufRead, IsTerminal};
 

@@ -1,4 +1,4 @@
-//! A collision of a model in a state.
+//! Evaluates a collision of a model in a state.
 
 use hodograph::{ReducedMatrix, Surface};
 use hodograph_generator::program::{ContactQuantity, Quantity};

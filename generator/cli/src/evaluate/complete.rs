@@ -1,4 +1,4 @@
-//! Closed loops: dependent coordinates that satisfy the configuration equations.
+//! Completes a state: finds dependent coordinates that satisfy the configuration equations of closed loops.
 
 use hodograph_generator::numeric;
 use hodograph_generator::program::{PointQuantity, Quantity};

@@ -1,4 +1,4 @@
-//! A contact along its own axes n, t, s: t along the slip of approach.
+//! Evaluates a contact along its axes n, t, s, with t along the slip of approach.
 
 use hodograph_generator::program::ContactQuantity;
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! A model in a state: numbers for all that `eval` writes.
+//! Evaluates a model in a state: all numbers that `eval` writes.
 
 pub mod collision;
 pub mod complete;

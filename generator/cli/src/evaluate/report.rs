@@ -1,4 +1,4 @@
-//! What `eval` writes.
+//! Writes the result of `eval`.
 
 use hodograph_generator::program::Quantity;
 use nalgebra::Vector3;

@@ -1,4 +1,4 @@
-//! What the attributes of a robot description must be: every fault is told at its own place.
+//! Reads and checks the attributes of a robot description; each mistake is reported at its place.
 
 use roxmltree::{Attribute, Node};
 

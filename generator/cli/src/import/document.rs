@@ -1,4 +1,4 @@
-//! The XML of a robot description: where its elements stand, and which of them are not used.
+//! The XML document of a robot description: places of its elements, and a report of the elements that are not used.
 
 use std::collections::{BTreeMap, HashMap};
 

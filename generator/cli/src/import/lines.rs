@@ -1,4 +1,4 @@
-//! Lines and columns of a text, found without walking through the text for each.
+//! Line and column of an offset in a text, by binary search.
 
 /// Where the lines of a text begin.
 pub struct Lines<'a> {

@@ -1,4 +1,4 @@
-//! Links that do not move against each other become one body.
+//! Combines links that are fixed to each other into one body.
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 

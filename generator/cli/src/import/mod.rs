@@ -1,10 +1,10 @@
-//! A robot description (URDF) becomes the text of a model.
+//! Converts a robot description (URDF) to the text of a model.
 //!
 //! ```text
 //! URDF -> document  the XML, places of its elements, what is not used
-//!               and what its attributes must be
-//!      -> tree      links and joints that hang together, checked
-//!      -> lumps     what is fixed to a moving link becomes part of it
+//!               and its attributes, checked
+//!      -> tree      links and joints as a tree, checked
+//!      -> lumps     links that are fixed to a moving link become part of it
 //!      -> text      the model
 //! ```
 

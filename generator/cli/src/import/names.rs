@@ -1,4 +1,4 @@
-//! Names of links and joints as names of the model language.
+//! Converts names of links and joints to names of the model language.
 
 use std::collections::HashSet;
 

@@ -1,4 +1,4 @@
-//! Imports of small robots, and what is refused.
+//! Tests of the import: small robots, and descriptions that are refused.
 
 use super::{Options, import};
 

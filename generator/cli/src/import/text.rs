@@ -1,4 +1,4 @@
-//! The model's text, section by section.
+//! Writes the text of the model, section by section.
 
 use nalgebra::Vector3;
 

@@ -1,4 +1,4 @@
-//! Links and joints as a tree.
+//! Builds the tree of links and joints, and checks it.
 
 use std::collections::HashMap;
 

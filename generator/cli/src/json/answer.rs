@@ -1,4 +1,4 @@
-//! What `solve` and `collide` write of an impact.
+//! Writes an impact as JSON for `solve` and `collide`.
 
 use hodograph::Impact;
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! The fields of a JSON object, asked for by name.
+//! Reads the fields of a JSON object by name.
 
 use super::{Failure, Json, Kind};
 use crate::spelling::nearest;

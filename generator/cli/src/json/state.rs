@@ -1,4 +1,4 @@
-//! The state in which a model is evaluated: names to numbers.
+//! Reads the state in which a model is evaluated from a JSON object of names and numbers.
 
 use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 

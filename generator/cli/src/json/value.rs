@@ -1,4 +1,4 @@
-//! JSON as it was written: fields in their order, also those given twice, numbers as the nearest double.
+//! JSON values with fields in the order of the text (including repeated ones) and numbers as the nearest double.
 
 use std::fmt;
 

@@ -1,4 +1,4 @@
-//! What is drawn, in hundredths of a pixel: a backend of `plotters` that keeps shapes, for others to write.
+//! A backend of the library `plotters` that records shapes, in hundredths of a pixel; `svg` and `png` write them.
 
 use std::cell::RefCell;
 use std::convert::Infallible;

@@ -1,4 +1,4 @@
-//! The course of a collision, as in Fig. 3 of the paper: v_s over v_t, v_n and the speed of slip over I_n.
+//! The figure of a collision's course, as Fig. 3 of the paper: v_s over v_t, and v_n and the speed of slip over I_n.
 
 use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};
 use super::label::Label;

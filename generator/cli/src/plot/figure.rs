@@ -1,4 +1,4 @@
-//! What a figure shows.
+//! The contents of a figure: panels with axes, curves and marks.
 //!
 //! ```ignore
 //! let mut panel = Panel::new(Axis::new(Label::symbol("t", ""), "s"), Axis::new(Label::words("gap"), "m"));

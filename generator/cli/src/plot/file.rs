@@ -1,4 +1,4 @@
-//! Figures as files.
+//! Writes figures to files.
 
 use std::path::Path;
 

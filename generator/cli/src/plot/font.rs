@@ -1,4 +1,4 @@
-//! The letters of figures: DejaVu Sans, which is compiled in, so that a figure looks the same on every machine.
+//! The font of figures: DejaVu Sans, compiled in, so that a figure looks the same on every machine.
 
 use std::sync::LazyLock;
 

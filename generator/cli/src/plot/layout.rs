@@ -1,4 +1,4 @@
-//! Where the parts of a figure stand.
+//! Computes the positions of the parts of a figure.
 
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::coord::ranged1d::{BoldPoints, Ranged};

@@ -1,4 +1,4 @@
-//! Legends: what the curves and marks are.
+//! Draws legends.
 
 use super::canvas::{Anchor, Canvas, Shape};
 use super::figure::{Panel, Sign};

@@ -1,4 +1,4 @@
-//! A sheet as PNG, two points of the picture to a pixel of the figure.
+//! Writes a drawing as PNG, with two pixels of the image per unit of the figure.
 
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform,

@@ -1,4 +1,4 @@
-//! Curves and marks on a canvas.
+//! Draws curves and marks.
 
 use super::canvas::{Canvas, Colour, Shape};
 use super::figure::Sign;

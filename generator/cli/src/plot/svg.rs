@@ -1,4 +1,4 @@
-//! A sheet as SVG.
+//! Writes a drawing as SVG.
 
 use std::fmt::Write;
 

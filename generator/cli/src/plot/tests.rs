@@ -1,4 +1,4 @@
-//! Figures: what stands where, and what is written.
+//! Tests of the layout and the files of figures.
 
 use super::canvas::{Shape, Sheet};
 use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};

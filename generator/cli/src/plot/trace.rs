@@ -1,4 +1,4 @@
-//! The course of a collision over the normal impulse, dense enough to be drawn.
+//! Samples the course of a collision over the normal impulse, densely enough to be drawn.
 
 use hodograph::{Hodograph, ReducedMatrix, Surface};
 

@@ -1,4 +1,4 @@
-//! Pages in a real browser: Chromium without a window, which runs a script beside the page and tells what it found.
+//! Loads pages in headless Chromium together with a script, and returns what the script reports.
 
 use std::path::PathBuf;
 use std::process::Command;

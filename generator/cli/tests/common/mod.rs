@@ -1,4 +1,4 @@
-//! Running the tool.
+//! Runs the tool in tests.
 #![allow(dead_code)] // each test file uses a part
 
 use std::io::Write;

@@ -1,5 +1,5 @@
 //! `cargo run --bin derive --features derive -- [COUNT] [SEED]` in `generator/fuzz`: mutated models that the front end accepts are
-//! derived and lowered. A derivation must end, in a result or a reason; a panic inside is a failure and names its seed.
+//! derived and lowered. A derivation must end with a result or an error; a panic is a failure, and its seed is printed.
 
 use std::path::Path;
 use std::time::{Duration, Instant};

@@ -1,4 +1,4 @@
-//! What valgrind executes: every method, or the one named, once over every collision of a set; or the modes of closed contacts.
+//! The program that valgrind executes: runs every method, or the one named, once over every collision of a set; or selects modes of closed contacts.
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

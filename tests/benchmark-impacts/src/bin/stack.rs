@@ -1,4 +1,4 @@
-//! How much stack the solver takes: `cargo run --release --bin stack`, for x86-64 (needs `objdump`).
+//! Computes how much stack the solver needs: `cargo run --release --bin stack`, for x86-64 (needs `objdump`).
 //!
 //! Builds `tests/freestanding`, and adds the frames on the deepest way of calls from each of its functions: return address, saved registers, and what is
 //! taken off the stack pointer.

@@ -1,4 +1,4 @@
-//! What valgrind executes: every routine of a shipped model once, or the solver over the nine collisions of the paper and the random ones.
+//! The program that valgrind executes: every routine of a shipped model once, or the solver over the nine collisions of the paper and random ones.
 
 use std::hint::black_box;
 

@@ -1,4 +1,4 @@
-//! Expressions of time, in the words of the model language.
+//! Expressions of time in the syntax of the model language.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The page in which a motion is seen: what is kept of it while it is followed.
+//! Records the states and events of a motion for its animated page.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! The lines that `simulate` writes.
+//! Writes the JSON lines of `simulate`.
 
 use hodograph::{Kind as Of, Mechanism, Selection, State};
 use hodograph_interpreter::InterpretedMechanism;
