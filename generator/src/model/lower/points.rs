@@ -4,7 +4,7 @@ use super::super::mechanism::{Place, PointId, Vector};
 use super::super::names::Symbol;
 use super::super::typed::{Traits, Typed};
 use super::Lowering;
-use super::expressions::negated;
+use super::sums::negated;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::span::Span;
