@@ -20,36 +20,7 @@ impl Kinematics<'_> {
         let mechanism = self.mechanism;
         let slots = mechanism.speeds.len();
         let quaternions = self.quaternion_rates()?;
-        let mut equations = Vec::new();
-        for equation in &mechanism.kinematics {
-            let forms = self.equation_forms(&equation.sides);
-            equations.extend(forms.into_iter().map(|form| (form, equation.span)));
-        }
-        for (id, frame) in mechanism.frames.iter().enumerate() {
-            let Some((base, declared)) = &frame.angular_velocity else { continue };
-            if matches!(frame.orientation, Orientation::Quaternion(_)) {
-                continue;
-            }
-            let declared = self.linear_vector(declared);
-            let own = self.derived_angular_velocity(FrameId(id));
-            let of_base = self.derived_angular_velocity(*base);
-            let home = self.home_axes(FrameId(id));
-            let difference =
-                add_linear(&own, &scale_linear(&Expr::integer(-1), &add_linear(&of_base, &declared)));
-            self.push_components(&difference, home, frame.span, &mut equations);
-        }
-        for (id, point) in mechanism.points.iter().enumerate() {
-            let (Some(declared), Place::Offset { .. } | Place::Material { .. }) =
-                (&point.velocity, &point.place)
-            else {
-                continue;
-            };
-            let own = self.derived_velocity(PointId(id));
-            let declared = self.linear_vector(declared);
-            let axes = own.keys().next().copied().unwrap_or(0);
-            let difference = add_linear(&own, &scale_linear(&Expr::integer(-1), &declared));
-            self.push_components(&difference, axes, point.span, &mut equations);
-        }
+        let mut equations = self.stated_equations();
         self.push_defaults(&quaternions, &mut equations)?;
 
         let quaternion = |slot: usize| quaternions.get(slot.wrapping_sub(slots)).and_then(Option::as_ref);
@@ -81,13 +52,7 @@ impl Kinematics<'_> {
                 self.rates[i] = form;
             }
         }
-        let mut directions = vec![(self.z.input_symbol(Input::Time), Expr::one())];
-        for i in 0..self.coordinates.len() {
-            let value = self.value(&self.rates[i].clone());
-            let value = self.z.name(value);
-            directions.push((self.coordinates[i], value));
-        }
-        self.time = Direction::new(directions);
+        self.set_time_derivative();
         let rates: Vec<(String, LinearScalar)> = unknowns
             .iter()
             .map(|slot| (mechanism.coordinates[slot - slots].name.clone(), self.rates[slot - slots].clone()))
@@ -101,6 +66,54 @@ impl Kinematics<'_> {
         self.solved = true;
         self.definitions.clear();
         Ok(())
+    }
+
+    /// What the model states: kinematical equations, and motions of frames and points that have an orientation or a position too, whose
+    /// derivative must agree. Each form is zero, and has its place in the model.
+    fn stated_equations(&mut self) -> Vec<(LinearScalar, Span)> {
+        let mechanism = self.mechanism;
+        let mut equations = Vec::new();
+        for equation in &mechanism.kinematics {
+            let forms = self.equation_forms(&equation.sides);
+            equations.extend(forms.into_iter().map(|form| (form, equation.span)));
+        }
+        for (id, frame) in mechanism.frames.iter().enumerate() {
+            let Some((base, declared)) = &frame.angular_velocity else { continue };
+            if matches!(frame.orientation, Orientation::Quaternion(_)) {
+                continue;
+            }
+            let declared = self.linear_vector(declared);
+            let own = self.derived_angular_velocity(FrameId(id));
+            let of_base = self.derived_angular_velocity(*base);
+            let home = self.home_axes(FrameId(id));
+            let difference =
+                add_linear(&own, &scale_linear(&Expr::integer(-1), &add_linear(&of_base, &declared)));
+            self.push_components(&difference, home, frame.span, &mut equations);
+        }
+        for (id, point) in mechanism.points.iter().enumerate() {
+            let (Some(declared), Place::Offset { .. } | Place::Material { .. }) =
+                (&point.velocity, &point.place)
+            else {
+                continue;
+            };
+            let own = self.derived_velocity(PointId(id));
+            let declared = self.linear_vector(declared);
+            let axes = own.keys().next().copied().unwrap_or(0);
+            let difference = add_linear(&own, &scale_linear(&Expr::integer(-1), &declared));
+            self.push_components(&difference, axes, point.span, &mut equations);
+        }
+        equations
+    }
+
+    /// The direction of the time derivative: time by 1, each coordinate by its rate.
+    fn set_time_derivative(&mut self) {
+        let mut directions = vec![(self.z.input_symbol(Input::Time), Expr::one())];
+        for i in 0..self.coordinates.len() {
+            let value = self.value(&self.rates[i].clone());
+            let value = self.z.name(value);
+            directions.push((self.coordinates[i], value));
+        }
+        self.time = Direction::new(directions);
     }
 
     fn push_components(
