@@ -6,7 +6,7 @@ use super::super::names::Symbol;
 use super::super::provenance::Provenance;
 use super::super::typed::Traits;
 use super::Lowering;
-use super::calls::axis_named;
+use super::axes::axis_named;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::suggest;

@@ -1,5 +1,6 @@
 //! Lowers a syntax tree to a [`Mechanism`]: resolves all names, checks all dimensions, collects all mistakes.
 
+mod axes;
 mod balances;
 mod blame;
 mod bodies;
