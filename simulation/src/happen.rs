@@ -34,8 +34,9 @@ impl Simulation<'_> {
                 _ => {
                     let d = 1e-4 * after.min(whole.h - after).max(1e-3 * whole.h);
                     let value = |simulation: &Self, h: f64| {
-                        let step = simulation.part(closed, h)?;
-                        simulation.values(closed, &[watched], h, &step.end).ok().map(|values| values[0])
+                        let mut step = simulation.part(closed, h)?;
+                        let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
+                        simulation.values(closed, &[watched], h, &mut at).ok().map(|values| values[0])
                     };
                     let (here, there) = (value(self, after), value(self, after - d));
                     match (here, there) {
@@ -57,10 +58,10 @@ impl Simulation<'_> {
         self.crowded(start)?;
         match watched {
             Watched::Gap(contact) => {
-                let (_, rate) = self.gap_at(&step, contact)?;
+                let (gap, rate) = self.gap_at(&step, contact)?;
                 if rate >= 0.0 {
                     // It only touches.
-                    self.phases[contact] = Phase::Open(Leaving::Lifted);
+                    self.phases[contact] = Phase::Open(Leaving::Lifted(gap.min(0.0)));
                     return Ok(());
                 }
                 self.arm_others(contact)?;

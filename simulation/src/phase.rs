@@ -7,10 +7,10 @@ use nalgebra::Vector2;
 pub(crate) enum Leaving {
     /// Its gap is open.
     Apart,
-    /// It separated with a speed now, at this gap, which is zero but for rounding.
-    Bounced(f64),
-    /// It lifted off: gap and its rate begin at zero.
-    Lifted,
+    /// It separated with a speed now; its gap is zero but for rounding.
+    Bounced,
+    /// It lifted off: its rate begins at zero, and its gap at this, which is zero but for rounding.
+    Lifted(f64),
 }
 
 /// What a contact does.

@@ -91,10 +91,10 @@ impl Simulation<'_> {
                 most = 0.5 * step.h;
                 continue;
             }
-            let (watched, noise) = self.watched(closed, step.h);
+            let (watched, noise) = self.watched(closed);
             let found = first_crossing(watched.len(), &noise, &mut |fraction| {
-                let y = step.at(fraction);
-                self.values(closed, &watched, step.h * fraction, &y).ok()
+                let h = step.h;
+                self.values(closed, &watched, h * fraction, &mut |after| step.at(after / h)).ok()
             });
             let Ok(found) = found else {
                 most = 0.5 * step.h;

@@ -92,16 +92,15 @@ impl Simulation<'_> {
             let rate = support.velocity[3 * place];
             let size = support.velocity_size(place, speeds).max(support.velocity_size(place, &self.scale));
             if rate > 1e-11 * size {
-                let gap = self.mechanism.gap(contact, &state).map_err(fault)?.unwrap_or(0.0);
-                phases[contact] = Phase::Open(Leaving::Bounced(gap));
+                phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
                 // Slip may have changed in the impact.
-                phases[contact] = Phase::Open(Leaving::Lifted);
+                phases[contact] = Phase::Open(Leaving::Lifted(0.0));
                 stay.push(contact);
             }
         }
         for (contact, phase) in phases.iter().enumerate() {
-            if was[contact].is_closed() && matches!(phase, Phase::Open(Leaving::Bounced(_))) {
+            if was[contact].is_closed() && matches!(phase, Phase::Open(Leaving::Bounced)) {
                 self.forces[contact] = nalgebra::Vector3::zeros();
             }
         }
@@ -356,9 +355,9 @@ impl Simulation<'_> {
                     strikes.get_or_insert(contact);
                 }
             } else if rate > rounding {
-                self.phases[contact] = Phase::Open(Leaving::Bounced(gap.min(0.0)));
+                self.phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
-                self.phases[contact] = Phase::Open(Leaving::Lifted);
+                self.phases[contact] = Phase::Open(Leaving::Lifted(0.0));
                 stay.push(contact);
             }
         }

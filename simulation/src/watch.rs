@@ -8,11 +8,21 @@ use crate::motion::Failure;
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::simulation::Simulation;
 use crate::stepper::Step;
+use crate::support::Support;
 
-/// A contact that lifts off is apart where its gap is above this, m.
+/// A contact that lifts off is apart where its gap is above this, m; it has come back where its gap has fallen by this.
 const LIFTED: f64 = 1e-11;
 /// A sliding contact with f / m_nn below this jams.
 const JAM: f64 = 1e-6;
+
+/// Places and weights of Gauss's rule on [0, 1].
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668, 0.118_463_442_528_094_54),
+    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
+    (0.5, 0.284_444_444_444_444_44),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
+];
 
 /// What is watched in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,7 +41,7 @@ pub(crate) enum Watched {
 
 impl Simulation<'_> {
     /// What must be watched from here on, and what rounding may do to it.
-    pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
+    pub(crate) fn watched(&self, closed: &[Closed]) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(Kind::Coordinate);
         let size = self.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
@@ -42,8 +52,7 @@ impl Simulation<'_> {
             {
                 watched.push(Watched::Gap(contact));
                 noise.push(match leaving {
-                    // Divided by the time, at the second point of the step.
-                    Leaving::Bounced(_) => rounding / (0.0024 * h),
+                    Leaving::Bounced => 4.0 * f64::EPSILON * self.velocity_size(contact),
                     _ => rounding,
                 });
             }
@@ -68,23 +77,33 @@ impl Simulation<'_> {
         (watched, noise)
     }
 
-    /// The values of what is watched, a time after the front.
+    /// The sizes of the terms that make up the velocity of a contact.
+    fn velocity_size(&self, contact: usize) -> f64 {
+        let n = self.mechanism.count(Kind::Coordinate);
+        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
+        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        Support::new(self.mechanism, &state, &[contact], false)
+            .map_or(0.0, |support| support.velocity_size(0, speeds).max(support.velocity.amax()))
+    }
+
+    /// The values of what is watched, a time after the front; `at` gives the states in between.
     pub(crate) fn values(
         &self,
         closed: &[Closed],
         watched: &[Watched],
         after: f64,
-        y: &[f64],
+        at: &mut dyn FnMut(f64) -> Vec<f64>,
     ) -> Result<Vec<f64>, Failure> {
+        let y = at(after);
         let motion = self.motion(closed);
         let t = self.t + after;
-        let (q, u) = motion.split(y);
-        let inputs = motion.inputs(t, y)?;
+        let (q, u) = motion.split(&y);
+        let inputs = motion.inputs(t, &y)?;
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
         let mut conditions = Vec::new();
         let mut f = 1.0;
         if !closed.is_empty() {
-            let evaluation = motion.evaluate(t, y)?;
+            let evaluation = motion.evaluate(t, &y)?;
             if let Some(forces) = &evaluation.forces {
                 conditions = margins(forces, &evaluation.holds, &mus(closed));
                 f = forces.f;
@@ -94,15 +113,12 @@ impl Simulation<'_> {
             .iter()
             .map(|what| match *what {
                 Watched::Gap(contact) => {
-                    let gap = self.mechanism.gap(contact, &state)?.unwrap_or(1.0);
-                    Ok(match self.phases[contact] {
-                        Phase::Open(Leaving::Bounced(start)) if after > 0.0 => (gap - start) / after,
-                        Phase::Open(Leaving::Bounced(_)) => {
-                            self.mechanism.contact_velocity(contact, &state)?.x
-                        }
-                        Phase::Open(Leaving::Lifted) => gap + LIFTED,
-                        _ => gap,
-                    })
+                    let gap = || Ok(self.mechanism.gap(contact, &state)?.unwrap_or(1.0));
+                    match self.phases[contact] {
+                        Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
+                        Phase::Open(Leaving::Lifted(start)) => Ok(gap()? - start + LIFTED),
+                        _ => gap(),
+                    }
                 }
                 Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
                 Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
@@ -112,11 +128,41 @@ impl Simulation<'_> {
             .collect()
     }
 
+    /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the gap's rounding, which a short time would
+    /// magnify, and does not vanish at the front. By Gauss's five points.
+    fn mean_rate(
+        &self,
+        contact: usize,
+        after: f64,
+        at: &mut dyn FnMut(f64) -> Vec<f64>,
+    ) -> Result<f64, Failure> {
+        let motion = self.motion(&[]);
+        let mut mean = 0.0;
+        for (place, weight) in GAUSS {
+            let after = place * after;
+            let y = at(after);
+            let (q, u) = motion.split(&y);
+            let inputs = motion.inputs(self.t + after, &y)?;
+            let state = State { time: self.t + after, coordinates: q, speeds: u, inputs: &inputs };
+            mean += weight * self.mechanism.contact_velocity(contact, &state)?.x;
+        }
+        Ok(mean)
+    }
+
     /// Gap and normal velocity of a contact at the end of a step.
     pub(crate) fn gap_at(&self, step: &Step, contact: usize) -> Result<(f64, f64), SimulationError> {
+        self.gap_in(step.t + step.h, &step.end, contact)
+    }
+
+    /// Gap and normal velocity of a contact at the front.
+    pub(crate) fn gap_here(&self, contact: usize) -> Result<(f64, f64), SimulationError> {
+        self.gap_in(self.t, &self.y, contact)
+    }
+
+    fn gap_in(&self, time: f64, y: &[f64], contact: usize) -> Result<(f64, f64), SimulationError> {
         let motion = self.motion(&[]);
-        let (q, u) = motion.split(&step.end);
-        let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &self.held };
+        let (q, u) = motion.split(y);
+        let state = State { time, coordinates: q, speeds: u, inputs: &self.held };
         let fault = |error| self.failure(Failure::State(error));
         let gap = self.mechanism.gap(contact, &state).map_err(fault)?.unwrap_or(1.0);
         Ok((gap, self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x))
@@ -134,12 +180,12 @@ impl Simulation<'_> {
                 continue;
             }
             match self.phases[contact] {
-                Phase::Open(Leaving::Bounced(_)) if step.h > 0.0 => {
+                Phase::Open(Leaving::Bounced) if step.h > 0.0 => {
                     let (gap, _) = self.gap_at(&step, contact)?;
                     self.phases[contact] =
-                        Phase::Open(if gap > 0.0 { Leaving::Apart } else { Leaving::Lifted });
+                        Phase::Open(if gap > 0.0 { Leaving::Apart } else { Leaving::Lifted(gap) });
                 }
-                Phase::Open(Leaving::Lifted) => {
+                Phase::Open(Leaving::Lifted(_)) => {
                     let (gap, _) = self.gap_at(&step, contact)?;
                     if gap > LIFTED {
                         self.phases[contact] = Phase::Open(Leaving::Apart);

@@ -45,6 +45,16 @@ fn a_tumbling_box_comes_to_rest_on_a_face() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
+/// Slow bounces in short steps of the corners of an edge that slides: where a gap's return was taken for rounding, the box sank in by 1e-11 m again and again, which
+/// cost 6e-9 of the energy (72), and corners moved by each other's correction struck without end (81).
+#[test]
+fn corners_that_rattle_while_they_slide_keep_the_account() {
+    for seed in [72, 81] {
+        let figures = tumble(seed).unwrap_or_else(|message| panic!("start {seed}: {message}"));
+        assert!(figures.account < 1e-11, "start {seed}: {:e}", figures.account);
+    }
+}
+
 /// One box, from its fall to its rest.
 fn tumble(seed: u64) -> Result<Figures, String> {
     let body = TumblingBox::<f64>::default();
