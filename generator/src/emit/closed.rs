@@ -30,14 +30,14 @@ impl Emitter<'_> {
         let has_dependent = !self.dependent.is_empty();
         let dependent = has_dependent.then(|| {
             quote! {
-                /// rates of the dependent speeds under the contact force, per second
+                /// rates of the dependent speeds under the contact force, in the units of the speeds per second
                 pub dependent_accelerations: DependentSpeeds<T>,
             }
         });
         let dependent_field = has_dependent.then(|| quote!(dependent_accelerations));
         let count = Literal::usize_unsuffixed(10 + usize::from(has_dependent));
         quote! {
-            /// What a closed contact does. n, t, s are the axes `normal`, `first`, `second` of the contact basis.
+            /// Mode, force and accelerations of a closed contact. n, t, s are the axes `normal`, `first`, `second` of the contact basis.
             #[derive(Clone, Copy, Debug, PartialEq)]
             #[must_use]
             #[non_exhaustive]
@@ -46,22 +46,22 @@ impl Emitter<'_> {
                 pub mode: #krate::ContactMode,
                 /// whether another mode would fit too
                 pub selection: #krate::Selection,
-                /// rates of the independent speeds under the contact force, per second
+                /// rates of the independent speeds under the contact force, in the units of the speeds per second
                 pub accelerations: Speeds<T>,
                 #dependent
                 /// force on the striking point along n, t, s, in N
                 pub force: #vector,
                 /// force on the striking point along N.x, N.y, N.z, in N
                 pub force_on_point: #vector,
-                /// force on what is touched along N.x, N.y, N.z, in N: the opposite
+                /// force on what is touched along N.x, N.y, N.z, in N: the opposite of `force_on_point`
                 pub force_on_struck: #vector,
                 /// rate of the contact velocity under the force, along n, t, s, in m/s^2
                 pub contact_acceleration: #vector,
                 /// direction of slip, or in which slip begins, along N.x, N.y, N.z; of length one
                 pub direction: ::core::option::Option<#vector>,
-                /// what ends the mode: it holds while all that are given are positive
+                /// the mode holds while all margins that are `Some` are positive
                 pub margins: #krate::Margins<T>,
-                /// everything that the decision tells, with what it was computed from
+                /// the same in the type that all mechanisms share, with the quantities from which it was computed
                 pub outcome: #krate::ContactOutcome<T>,
             }
 
@@ -96,14 +96,14 @@ impl Emitter<'_> {
         let [mode, force, shared] = ["contact_mode", "contact_force", "touching"].map(named);
         let collision = self.contact_method("impact_without_collision", contact);
         let docs_mode = docs(&format!(
-            "Selects what {words} does while it is closed (stick, slide, begin to slip, separate), with the force, the accelerations under it and \
-             the margins of what ends the mode, coming from no contact force.\n\nThe gap and the normal velocity count as zero: neither is \
-             looked at. Of the surface only `mu` is read. Slip that rounding alone may make of zero counts as none. Where no \
-             finite force exists, an error says whether `{collision}` follows or no mode fits."
+            "Selects the mode (stick, slide, begin to slip, separate) of the closed contact {words}, with its force, the accelerations under that force \
+             and the margins of the mode. The contact had no force before.\n\nThe gap and the normal velocity are taken for zero and not read. Of the \
+             surface only `mu` is read. Slip within rounding of zero counts as none. Where no finite force exists, the error says whether \
+             `{collision}` follows or no mode fits."
         ));
         let docs_force = docs(&format!(
-            "The force that keeps {words} in a mode, as `{mode}` gives it for the mode that it selects. A margin that is not positive says that \
-             the mode has ended. Where no force keeps the mode the error is `NoMode`."
+            "The force that keeps the closed contact {words} in a given mode, in the form of `{mode}`. A margin that is not positive says that the mode has \
+             ended. Where no force keeps the mode the error is `NoMode`."
         ));
         let arguments = self.closed_arguments(contact);
         let (signature, passed) = (self.signature(arguments), self.passed(arguments));

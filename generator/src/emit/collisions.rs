@@ -46,14 +46,14 @@ impl Emitter<'_> {
             #[must_use]
             #[non_exhaustive]
             pub struct Collision<T: #krate::nalgebra::Scalar = f64> {
-                /// independent speeds after the collision: (12a)
+                /// independent speeds after the collision (12a)
                 pub speeds: Speeds<T>,
                 #dependent
                 /// impulse on the striking point along n, t, s, in N s
                 pub impulse: #vector,
                 /// impulse on the striking point along N.x, N.y, N.z, in N s
                 pub impulse_on_point: #vector,
-                /// impulse on what is struck along N.x, N.y, N.z, in N s: the opposite
+                /// impulse on what is struck along N.x, N.y, N.z, in N s: the opposite of `impulse_on_point`
                 pub impulse_on_struck: #vector,
                 /// n along N.x, N.y, N.z
                 pub normal: #vector,
@@ -67,16 +67,16 @@ impl Emitter<'_> {
                 pub separation: #vector,
                 /// reduced mass matrix along n, t, s, in 1/kg
                 pub reduced: #krate::ReducedMatrix<T>,
-                /// change of the kinetic energy, in J; it differs from `impact.contact_work` where motion is prescribed: (24)
+                /// change of the kinetic energy, in J; it differs from `impact.contact_work` where motion is prescribed (24)
                 pub energy_change: T,
-                /// the phases gone through
+                /// the phases of the collision
                 pub path: #krate::Path,
-                /// everything that the solver tells
+                /// the outcome of the impact solver, along n, t, s: works, phases, sensitivity
                 pub impact: #krate::Impact<T>,
             }
 
             impl<T: #krate::Scalar> Collision<T> {
-                /// The collision without the speeds after it, in the type that all mechanisms share.
+                /// The collision in the type that all mechanisms share, without the speeds after it.
                 #[inline]
                 #[must_use]
                 pub fn outcome(&self) -> #krate::CollisionOutcome<T> {
@@ -171,12 +171,12 @@ impl Emitter<'_> {
         let named = |prefix: &str| crate::rust_names::ident(&self.contact_method(prefix, contact));
         let [collide, without, shared] = ["collide", "impact_without_collision", "struck"].map(named);
         let docs = crate::rust_names::docs(&format!(
-            "Solves the collision at {words}.\n\nConfiguration and time stay, the speeds jump: du = M^-1 V^T I (12a)."
+            "Solves the collision at {words}.\n\nThe coordinates do not change; the speeds change by M^-1 V^T I (12a), I being the impulse."
         ));
         let docs_without = crate::rust_names::docs(&format!(
-            "Solves the impact without collision at {words}: it touches and slides with f < 0 (31) and is pressed together, so that no finite force \
-             holds it (Painleve). The normal velocity counts as zero; the speeds jump as in `{collide}`. Where f > 0 \
-             or nothing slips the error is `NoImpact`: then a finite force exists."
+            "Solves the impact without collision at {words}. The contact is closed, slides with f < 0 (31) and is pressed together, so that no finite force \
+             exists (Painleve's paradox). The normal velocity is taken for zero; the speeds change as in `{collide}`. Where f > 0 or without slip \
+             a finite force exists, and the error is `NoImpact`."
         ));
         // What the symbols of the reduced matrix show selects a closed form.
         let closed = |marker: TokenStream| quote!(#krate::generated::resolve_structured::<#krate::structure::#marker, T>);

@@ -31,11 +31,11 @@ impl Emitter<'_> {
                     &self.parameters
                 }
 
-                /// Changes the parameters and computes anew what depends on them alone.
+                /// Changes the parameters and recomputes the values that depend on them only.
                 ///
                 /// # Errors
                 ///
-                /// As [`Self::new`]; the mechanism then stays as it is.
+                /// Those of [`Self::new`]; the mechanism is then unchanged.
                 #[inline]
                 pub fn set_parameters(
                     &mut self,
@@ -50,7 +50,7 @@ impl Emitter<'_> {
             let parameters = has_parameters
                 .then(|| quote!(let parameters = <Parameters<T> as ::core::default::Default>::default();));
             quote! {
-                /// With the parameters that the model states.
+                /// The mechanism with the parameters that the model gives.
                 impl<T: #krate::Scalar> ::core::default::Default for #name<T> {
                     #[inline]
                     fn default() -> Self {
@@ -71,12 +71,11 @@ impl Emitter<'_> {
             }
 
             impl<T: #krate::Scalar> #name<T> {
-                /// The mechanism with these parameters. What depends on them alone is computed here, once.
+                /// The mechanism with these parameters. Values that depend on them only are computed here, once.
                 ///
                 /// # Errors
                 ///
-                /// Where a parameter is not finite, a mass is not positive, an inertia is one that no body can have, or a
-                /// divisor vanishes.
+                /// A parameter is not finite, a mass is not positive, no body can have an inertia, or a divisor is zero.
                 pub fn new(#argument) -> ::core::result::Result<Self, #krate::ParameterError> {
                     Self::check(#borrowed)?;
                     let hoisted = Self::hoist(#borrowed);

@@ -23,7 +23,11 @@ impl Emitter<'_> {
 
     fn contact(&self, contact: usize) -> TokenStream {
         let queries = [
-            (ContactQuantity::Gap, "gap", "Distance at"),
+            (
+                ContactQuantity::Gap,
+                "gap",
+                "Gap (distance of the striking point from what it strikes), in m, at",
+            ),
             (
                 ContactQuantity::Velocity,
                 "contact_velocity",
@@ -37,12 +41,12 @@ impl Emitter<'_> {
             (
                 ContactQuantity::Response,
                 "response",
-                "Response M^-1 V^T: change of the independent speeds (rows) per unit of impulse along the contact basis (columns), and of their rates per unit of force, at",
+                "Response M^-1 V^T: change of the independent speeds (rows) per N s of impulse along the contact basis (columns), or of their rates per N of force, at",
             ),
             (
                 ContactQuantity::FreeAcceleration,
                 "free_acceleration",
-                "Rates of the contact velocity along the contact basis (rows: normal, first, second) without contact forces, in m/s^2: the derivative of its components as functions of time, coordinates and speeds along (1, q', u'), with named inputs held, at",
+                "Free acceleration: time derivatives of the three components of the contact velocity (rows: normal, first, second) without contact forces and at constant named inputs, in m/s^2, at",
             ),
             (
                 ContactQuantity::Remainder,
@@ -109,7 +113,7 @@ impl Emitter<'_> {
             None => quote!(::core::option::Option::None),
         };
         let docs = format!(
-            "Gap, basis, velocity and reduced mass matrix at {} at once.",
+            "Gap, contact basis, velocity and reduced mass matrix at {} in one call.",
             self.contact_words(contact)
         );
         let value = quote! {
@@ -176,7 +180,7 @@ impl Emitter<'_> {
         let (shape, velocities) = self.matrix(partial);
         let matrix = self.reduced(reduced);
         let docs = format!(
-            "Partial velocities and reduced mass matrix at {} together, as `{}` and `{}` give them one by one.",
+            "Partial velocities and reduced mass matrix at {} in one call: those of `{}` and `{}`.",
             self.contact_words(contact),
             self.contact_method("partial_velocities", contact),
             self.contact_method("reduced_matrix", contact)

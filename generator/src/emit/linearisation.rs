@@ -48,9 +48,9 @@ impl Emitter<'_> {
             #[must_use]
             #[non_exhaustive]
             pub struct Linearisation<T> {
-                /// A: rates of the states (rows) per state (columns)
+                /// A: derivatives of the rates of the states (rows) with respect to the states (columns)
                 pub a: #krate::nalgebra::SMatrix<T, #n, #n>,
-                /// B: rates of the states (rows) per named input (columns)
+                /// B: derivatives of the rates of the states (rows) with respect to the named inputs (columns)
                 pub b: #krate::nalgebra::SMatrix<T, #n, #m>,
             }
         }
@@ -70,16 +70,16 @@ impl Emitter<'_> {
         ]
         .map(Literal::usize_unsuffixed);
         quote! {
-            /// Accelerations or generalized forces, and how they change with the state. Rows: independent speeds.
+            /// Accelerations or generalized forces with their derivatives. Rows: independent speeds.
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct Derivatives<T> {
-                /// what is differentiated
+                /// the quantity itself
                 pub value: #krate::nalgebra::SVector<T, #rows>,
-                /// derivatives by the independent coordinates (columns, in their order)
+                /// derivatives with respect to the independent coordinates (columns, in their order)
                 pub by_coordinates: #krate::nalgebra::SMatrix<T, #rows, #coordinates>,
-                /// derivatives by the independent speeds (columns, in their order)
+                /// derivatives with respect to the independent speeds (columns, in their order)
                 pub by_speeds: #krate::nalgebra::SMatrix<T, #rows, #rows>,
-                /// derivatives by the named inputs (columns, in their order)
+                /// derivatives with respect to the named inputs (columns, in their order)
                 pub by_inputs: #krate::nalgebra::SMatrix<T, #rows, #inputs>,
             }
         }
@@ -112,8 +112,8 @@ impl Emitter<'_> {
             None => self.by_tangents(arguments),
         };
         quote! {
-            /// The equations linearised about a state, exactly (by differentiation, not by differences). Dependent
-            /// coordinates and speeds follow the independent ones; parameters and time are held.
+            /// The equations linearised about a state, by exact differentiation. Dependent coordinates and speeds follow the independent ones; parameters
+            /// and time are constant.
             pub fn linearise(#signature) -> ::core::result::Result<Linearisation<T>, #krate::StateError> {
                 #body
                 ::core::result::Result::Ok(Linearisation { a, b })

@@ -106,54 +106,62 @@ impl Emitter<'_> {
     fn describe(&self, quantity: Quantity) -> Option<(String, String)> {
         let plain = |name: &str, docs: &str| Some((name.to_string(), docs.to_string()));
         match quantity {
-            Quantity::CoordinateRates => {
-                plain("coordinate_rates", "Rates q' of the generalized coordinates, per second.")
-            }
-            Quantity::DependentSpeeds => {
-                plain("dependent_speeds", "Dependent generalized speeds, from the constraints (4).")
-            }
+            Quantity::CoordinateRates => plain(
+                "coordinate_rates",
+                "Rates q' of the generalized coordinates, in their units per second.",
+            ),
+            Quantity::DependentSpeeds => plain(
+                "dependent_speeds",
+                "Dependent generalized speeds, which the velocity constraints determine from the independent ones.",
+            ),
             Quantity::MassMatrix => plain(
                 "mass_matrix",
                 "Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite.",
             ),
-            Quantity::Forcing => {
-                plain("forcing", "Forcing: M u' = forcing. Loads and inertia terms quadratic in the speeds.")
-            }
-            Quantity::Accelerations => {
-                plain("accelerations", "Rates u' of the independent speeds, per second.")
-            }
-            Quantity::DependentAccelerations => {
-                plain("dependent_accelerations", "Rates of the dependent speeds, per second.")
-            }
+            Quantity::Forcing => plain(
+                "forcing",
+                "Forcing, the right side of M u' = forcing: loads, and inertia terms without u'.",
+            ),
+            Quantity::Accelerations => plain(
+                "accelerations",
+                "Rates u' of the independent speeds without contact forces, in the units of the speeds per second.",
+            ),
+            Quantity::DependentAccelerations => plain(
+                "dependent_accelerations",
+                "Rates of the dependent speeds without contact forces, in the units of the speeds per second.",
+            ),
             Quantity::InverseDynamics => plain(
                 "inverse_dynamics",
                 "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing.",
             ),
             Quantity::StateTangent => plain(
                 "state_tangent",
-                "How the rates of the independent coordinates and speeds change along a direction: a column of `linearise`, or a sum of columns.",
+                "Derivative of the rates of the independent coordinates and speeds along a direction: a linear combination of the columns of `linearise`.",
             ),
             Quantity::AccelerationsDerivatives => plain(
                 "accelerations_derivatives",
-                "Rates u' of the independent speeds, per second, and their derivatives. Dependent coordinates and speeds follow the independent ones; \
-                 parameters and time are held. The value is that of `accelerations` but for rounding.",
+                "Rates u' of the independent speeds and their derivatives. Dependent coordinates and speeds follow the independent ones; parameters and \
+                 time are constant. The value is that of `accelerations` up to rounding.",
             ),
             Quantity::InverseDynamicsDerivatives => plain(
                 "inverse_dynamics_derivatives",
-                "What `inverse_dynamics` gives, but for rounding, and its derivatives while the independent speeds have the rates `acceleration` (by those, it is \
-                 `mass_matrix`). Dependent coordinates and speeds follow the independent ones; parameters and time are held. At zero rates it is the opposite of `forcing`.",
+                "The value of `inverse_dynamics` (up to rounding) and its derivatives at constant rates `acceleration` of the independent speeds; its derivative with \
+                 respect to these rates is `mass_matrix`. Dependent coordinates and speeds follow the independent ones; parameters and time are constant. At zero \
+                 rates the value is minus `forcing`.",
             ),
             Quantity::RatesDerivatives => plain(
                 "coordinate_rates_derivatives",
-                "Derivatives of the rates of the independent coordinates (rows) by the independent coordinates, the independent speeds and the named inputs (columns).",
+                "Derivatives of the rates of the independent coordinates (rows) with respect to the independent coordinates, the independent speeds and the named inputs (columns).",
             ),
-            Quantity::KineticEnergy => plain("kinetic_energy", "Kinetic energy in N, in J."),
+            Quantity::KineticEnergy => {
+                plain("kinetic_energy", "Kinetic energy of the motion relative to N, in J.")
+            }
             Quantity::PotentialEnergy => {
                 plain("potential_energy", "Potential energy of gravity and springs, in J.")
             }
             Quantity::ConfigurationResidual => plain(
                 "configuration_residual",
-                "Residual of the configuration equations; zero where the loops are closed.",
+                "Left side minus right side of the configuration equations; zero where the loops are closed.",
             ),
             Quantity::ConfigurationJacobian => plain(
                 "configuration_jacobian",
@@ -161,7 +169,7 @@ impl Emitter<'_> {
             ),
             Quantity::ConstraintResidual => plain(
                 "constraint_residual",
-                "Residual of the velocity constraints with the dependent speeds inserted; zero up to rounding.",
+                "Left side minus right side of the velocity constraints with the dependent speeds inserted; zero up to rounding.",
             ),
             Quantity::Contact(..) => None,
             Quantity::Point(index, quantity) => {
@@ -179,7 +187,7 @@ impl Emitter<'_> {
                     PointQuantity::Acceleration => (
                         format!("acceleration_{name}"),
                         format!(
-                            "Acceleration of {docs} in N along N.x, N.y, N.z, in m/s^2, while the independent speeds have the rates `acceleration`: those of `accelerations`, or with contact forces."
+                            "Acceleration of {docs} in N along N.x, N.y, N.z, in m/s^2, for given rates `acceleration` of the independent speeds, such as those of `accelerations` or those under contact forces."
                         ),
                     ),
                     PointQuantity::Jacobian => (
@@ -195,7 +203,7 @@ impl Emitter<'_> {
                 let docs = about(&frame.name, &frame.docs);
                 Some((
                     format!("orientation_{}", snake_case(&frame.name)),
-                    format!("Orientation of {docs}: the columns are its x, y, z along N.x, N.y, N.z."),
+                    format!("Orientation of {docs}: the columns are its axes x, y, z along N.x, N.y, N.z."),
                 ))
             }
         }

@@ -106,7 +106,7 @@ impl Record {
             #krate::generated::serialize_record! { #name #count #(#names)* }
             #krate::generated::record! { #name #count #(#names #labels #units)* }
 
-            /// The values that the model states, 0 where it states none.
+            /// The values that the model gives, and 0 where it gives none.
             impl<T: #krate::Scalar> ::core::default::Default for #name<T> {
                 #[inline]
                 fn default() -> Self {

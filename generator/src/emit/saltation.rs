@@ -46,14 +46,14 @@ impl Emitter<'_> {
             #[must_use]
             #[non_exhaustive]
             pub struct CollisionDerivative<T: #krate::nalgebra::Scalar = f64> {
-                /// speeds after by speeds before: 1 + M^-1 V^T (dI/dv) V
+                /// derivative of the speeds after the collision with respect to those before: 1 + M^-1 V^T (dI/dv) V
                 pub speeds: #krate::nalgebra::SMatrix<T, #p, #p>,
-                /// speeds after by the coefficient of friction
+                /// derivative of the speeds after with respect to the coefficient of friction
                 pub by_friction: #krate::nalgebra::SVector<T, #p>,
-                /// speeds after by the coefficient of restitution
+                /// derivative of the speeds after with respect to the coefficient of restitution
                 pub by_restitution: #krate::nalgebra::SVector<T, #p>,
-                /// impulse and velocity of separation by velocity of approach, reduced matrix, mu and e, all along the contact basis (normal,
-                /// first, second); `outcome.non_smoothness` names why there is no derivative, if there is none
+                /// derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the
+                /// contact basis (normal, first, second); if there is no derivative `outcome.non_smoothness` says why
                 pub outcome: #krate::ImpactDerivative<T>,
             }
         }
@@ -64,8 +64,8 @@ impl Emitter<'_> {
         let tangent = self.contact_output(contact, ContactQuantity::Tangent).map(|output| {
             let (result, value) = self.shaped(output);
             let docs = format!(
-                "How velocity (3), reduced matrix (6) and response M^-1 V^T (by rows){} change along a direction at {}, in the contact basis.",
-                if self.contact_output(contact, ContactQuantity::Gap).is_some() { ", and the gap," } else { "" },
+                "Directional derivative of velocity (3 numbers), reduced matrix (6: nn, nt, ns, tt, ts, ss) and response M^-1 V^T (by rows){} at {}, along the contact basis.",
+                if self.contact_output(contact, ContactQuantity::Gap).is_some() { " and gap" } else { "" },
                 self.contact_words(contact)
             );
             self.routine(&self.contact_method("contact_tangent", contact), &docs, &[output.quantity], result, value)
@@ -178,8 +178,8 @@ impl Emitter<'_> {
             .map(|q| format!("`{}`", q.name))
             .collect();
         let docs = docs(&format!(
-            "The saltation matrix of the collision at {}: to first order, deviation after = matrix * deviation before, of {} (in this order) \
-             at the same time, for trajectories that meet the surface a little earlier or later. Where there is no derivative, `non_smoothness` says why.",
+            "The saltation matrix of the collision at {}: to first order it maps the deviation of a neighbouring trajectory before the collision to that \
+             after it, at the same time. The states are {}, in this order. Where there is no derivative, `non_smoothness` says why.",
             self.contact_words(contact),
             states.join(", ")
         ));
