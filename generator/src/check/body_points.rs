@@ -17,7 +17,7 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
             continue;
         }
         let (p, q, b) = (&m.points[i].name, &m.points[from.0].name, &m.frames[frame.0].name);
-        let message = format!("`{q}` is no point of `{b}`: it does not move with it");
+        let message = format!("`{q}` is not a point of `{b}`: it does not move with it");
         let help = format!(
             "in `{p} of {b} = {q} + ..` {q} must move with {b}, as a hinge or the mass centre does; place {p} from such a point, or leave out \
              `of {b}` if {p} moves in {b} too"
@@ -33,7 +33,7 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
         };
         if !seen.is_empty() && seen.iter().all(|seen| apart(&seen.at) == Some(true)) {
             let (p, centre) = (&m.points[contact.point.0].name, &m.points[particle.centre.0].name);
-            let message = format!("`{p}` is no point of the particle `{}`", particle.name);
+            let message = format!("`{p}` is not the point of the particle `{}`", particle.name);
             let help = format!("a particle is one point: `{centre}`");
             out.push(Diagnostic::new(codes::CONTACT, contact.span, message).help(help));
         }

@@ -54,12 +54,12 @@ fn approach(m: &Mechanism, contact: &Contact, index: usize, seen: &[Seen<'_>]) -
     }
     if !moves {
         let message =
-            format!("the relative velocity of `{}` is always zero: nothing can strike", contact.name);
+            format!("the relative velocity of `{}` is always zero: there can be no impact", contact.name);
         let help = "check `point`, `against` and the bodies they belong to";
         return Some(Diagnostic::new(codes::CONTACT_STILL, contact.span, message).help(help));
     }
     if !approaches {
-        let message = format!("`{}` never moves along its normal: nothing can strike", contact.name);
+        let message = format!("`{}` never moves along its normal: there can be no impact", contact.name);
         let help = "check `normal`; it points from what is struck to the body that strikes";
         return Some(Diagnostic::new(codes::NEVER_APPROACHES, contact.span, message).help(help));
     }
@@ -165,7 +165,7 @@ impl Places<'_> {
         let Some(body) = body else {
             let body = self.forgotten_body(point)?;
             let message = format!(
-                "`{name}` is no point of a body here, only a place: its velocity knows nothing of the turning of `{body}`"
+                "`{name}` is a geometric point here, not a point of a body: its velocity does not contain the rotation of `{body}`"
             );
             let help = format!("say of which body the point is that strikes: `{field}: {name} of {body}`");
             return Some(Diagnostic::new(codes::CONTACT_POINT, span, message).help(help));
@@ -193,7 +193,7 @@ impl Places<'_> {
         let home = self.homes(point).first().map(|home| &self.m.bodies[home.0].name)?;
         let stated = &self.m.bodies[body.0].name;
         let message = format!(
-            "`{name}` is no point of `{stated}`, but of `{home}`: it moves through `{stated}` along the normal"
+            "`{name}` is not a point of `{stated}`, but of `{home}`: it moves through `{stated}` along the normal"
         );
         let help =
             format!("write `{field}: {name} of {home}`, or place `{name}` on the surface of `{stated}`");

@@ -70,7 +70,7 @@ fn strange(m: &Mechanism, contact: &Contact, gap: &Scalar, seen: &[Seen<'_>]) ->
         ),
         _ => (
             format!("the rate of the gap of `{name}` is not the velocity of its point along its normal"),
-            "it is the distance along the normal of the very point that strikes, such as `dot(position(P), N.y)`; check which point and which normal",
+            "the gap is the distance, along the normal, of the point that strikes, such as `dot(position(P), N.y)`; check the point and the normal",
         ),
     };
     let related = (contact.normal_span, "this is the normal");

@@ -81,7 +81,7 @@ fn on_a_place(places: &Places<'_>, point: PointId, span: Span) -> Option<Diagnos
     }
     let (p, b) = (&m.points[point.0].name, &m.bodies[body.0].name);
     let message = format!(
-        "`{p}` is only a place here, no point of `{b}`: this load has no moment on the turning of `{b}`"
+        "`{p}` is a geometric point here, not a point of `{b}`: this load does not act on the rotation of `{b}`"
     );
     let help = format!("place the point of the body that is there under `points`, as in `{p} of {b} = ..;`");
     let related = format!("the contact `{}` acts on the point of `{b}`", contact.name);
@@ -123,7 +123,7 @@ impl Turns<'_> {
         } else {
             format!("this is not the angle by which `{b}` turns in `{a}` about the axis")
         };
-        let help = "the rate of the angle must be the angular velocity about the axis, or the work of the torque is not the energy of the spring; check signs, frames and axis";
+        let help = "the rate of the angle must be the angular velocity about the axis, so that the torque belongs to the energy of the spring; check signs, frames and axis";
         Some(Diagnostic::new(codes::TORSION_ANGLE, span, message).help(help))
     }
 

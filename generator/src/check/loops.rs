@@ -30,7 +30,7 @@ pub fn open_at_the_start(m: &Mechanism) -> Vec<Diagnostic> {
             let [a, b] = [p, q].map(|point| &m.points[point.0].name);
             let span = m.constraints.first().map_or(m.points[p.0].span, |equation| equation.span);
             let message = format!(
-                "with the initial values `{a}` and `{b}` are {} m apart: a loop closed by velocities stays open as it begins",
+                "with the initial values `{a}` and `{b}` are {} m apart: a loop that is stated by velocities stays as open as it begins",
                 super::bodies::number(apart)
             );
             let help = format!(

@@ -60,8 +60,7 @@ pub fn nowhere(m: &Mechanism, state: &State, failure: &Failure) -> Option<Diagno
                 .help("as many independent equations are needed as there are coordinates; those that `velocities` and `angular_velocities` state count")
         }
         Failure::MotionInconsistent(span, _) => {
-            let message =
-                "the motion stated of this contradicts its position or another kinematical equation";
+            let message = "the motion stated here contradicts the position or another kinematical equation";
             let help = "a stated velocity must be one that the position can have, and no rate may be stated twice with different values";
             Diagnostic::new(codes::INCONSISTENT, *span, message).help(help)
         }
@@ -105,7 +104,7 @@ pub fn nowhere(m: &Mechanism, state: &State, failure: &Failure) -> Option<Diagno
                 .help("each independent constraint needs a speed under `dependent`")
         }
         Failure::DivisionByZero(span) => {
-            let message = "this is zero at every state that was tried";
+            let message = "this is zero at every state at which the model was evaluated";
             Diagnostic::new(codes::ZERO_DIVISOR, *span, message).help(
                 "division by it is not possible; if a parameter is 0 only by default, give it another value",
             )
@@ -148,7 +147,7 @@ pub fn inertia_of_speeds(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Diagnostic>
             speed.name
         )
     };
-    let help = "give what it moves a mass or inertia, remove the speed, or make it dependent by a constraint";
+    let help = "give a mass or an inertia to what moves with the speed, remove the speed, or make it dependent by a constraint";
     Some(Diagnostic::new(codes::NO_INERTIA, speed.span, message).help(help))
 }
 

@@ -19,9 +19,9 @@ pub const MOST_PARTS: usize = 2000;
 pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
     let parts = parts(m);
     if parts > MOST_PARTS {
-        let message = format!("a mechanism of {parts} parts is not looked at in numbers");
-        let help = "what shows in numbers alone (impossible inertias, singular constraints, normals that are no unit vectors) is not found \
-                    in more than 2000 points, frames, definitions, bodies and contacts";
+        let message = format!("a mechanism of {parts} parts is too large for numerical checks");
+        let help = "mistakes that only evaluation shows (impossible inertias, singular constraints, normals that are not unit vectors) are not \
+                    found in more than 2000 points, frames, definitions, bodies and contacts";
         return vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
     }
     with_room(|| look(m, readable))

@@ -47,7 +47,7 @@ codes! {
     SECTION_UNKNOWN = "E007", "no section has this name";
     SECTION_ORDER = "E008", "sections are out of order";
     SECTION_TWICE = "E009", "a section appears twice";
-    STRAY_DOCS = "E010", "documentation that documents nothing";
+    STRAY_DOCS = "E010", "documentation without an entry";
     TOO_DEEP = "E011", "brackets are nested too deeply";
     BAD_EXPRESSION = "E012", "not an expression";
     FIELD = "E013", "a field is unknown, missing or given twice";
@@ -89,19 +89,19 @@ codes! {
     INCONSISTENT = "E075", "a declared velocity contradicts the positions";
     NO_INERTIA = "E076", "a degree of freedom without inertia";
     EMPTY_EQUATION = "E077", "an equation that says nothing";
-    NORMAL = "E080", "the normal is no unit vector";
+    NORMAL = "E080", "the normal is not a unit vector";
     CONTACT_STILL = "E081", "a contact that never moves";
     CONTACT = "E082", "a contact is not stated correctly";
     UNUSED_PARAMETER = "W001", "a parameter is never used";
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";
-    UNCHECKED = "W004", "a mechanism too large to be looked at in numbers";
+    UNCHECKED = "W004", "a mechanism too large for numerical checks";
     NOT_CLOSED = "W005", "a loop that does not close";
     NEVER_APPROACHES = "W006", "a contact that only slides";
     GAP_RATE = "W007", "a gap that does not belong to its contact";
-    CONTACT_POINT = "W008", "a contact point that is no point of its body";
+    CONTACT_POINT = "W008", "a contact point that does not belong to its body";
     BEGINS_INSIDE = "W009", "a start inside what is struck";
-    LOAD_POINT = "W010", "a load on a place where a body is meant";
+    LOAD_POINT = "W010", "a load on a geometric point where a body is meant";
     TORSION_ANGLE = "W011", "a torsion spring whose angle is not that of its axis";
     NO_EFFECT = "W012", "a load that does nothing";
 }

@@ -28,23 +28,38 @@ configuration { dot(position(E), N.x) = q2; }";
 pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: FRAME,
-        text: "A frame is the same as another, or comes from it by rotate, euler, space, quaternion or spin. Axes are `x`, `y`, `z`, their opposites, or `[a, b, c]`, which must have the length 1.",
+        text: "A frame is the same as another, or comes from it by rotate, euler, space, quaternion or \
+            spin. An axis is `x`, `y`, `z`, the opposite of one of these, or `[a, b, c]` with the length 1.",
         wrong: Some("frames { B = N.rotate([0, 0, 2], q1); }"),
         right: Some("frames { B = N.rotate([0, 0, 1], q1); }"),
     },
     Explanation {
         code: QUATERNION,
-        text: "A quaternion is made of four different coordinates with the unit 1, the scalar part first. Their rates follow from the angular velocity, which must be stated under `angular_velocities`.",
+        text: "A quaternion is made of four different coordinates with the unit 1, the scalar part first. \
+            Their rates follow from the angular velocity, which must be stated under `angular_velocities`.",
         wrong: Some(
-            "mechanism Top;\nparameters { J: kg*m^2 = 1, m: kg = 1 }\ncoordinates { e0: 1 = 1, e1: 1, e2: 1, e3: 1 }\nspeeds { u1: rad/s, u2: rad/s, u3: rad/s }\nframes { B = N.quaternion(e0, e1, e2, e3); }\nbodies { Top { frame: B, centre: O, mass: m, inertia: [J, J, J] } }",
+            "mechanism Top;\n\
+            parameters { J: kg*m^2 = 1, m: kg = 1 }\n\
+            coordinates { e0: 1 = 1, e1: 1, e2: 1, e3: 1 }\n\
+            speeds { u1: rad/s, u2: rad/s, u3: rad/s }\n\
+            frames { B = N.quaternion(e0, e1, e2, e3); }\n\
+            bodies { Top { frame: B, centre: O, mass: m, inertia: [J, J, J] } }",
         ),
         right: Some(
-            "mechanism Top;\nparameters { J: kg*m^2 = 1, m: kg = 1 }\ncoordinates { e0: 1 = 1, e1: 1, e2: 1, e3: 1 }\nspeeds { u1: rad/s, u2: rad/s, u3: rad/s }\nframes { B = N.quaternion(e0, e1, e2, e3); }\nangular_velocities { B = u1*B.x + u2*B.y + u3*B.z; }\nbodies { Top { frame: B, centre: O, mass: m, inertia: [J, J, J] } }",
+            "mechanism Top;\n\
+            parameters { J: kg*m^2 = 1, m: kg = 1 }\n\
+            coordinates { e0: 1 = 1, e1: 1, e2: 1, e3: 1 }\n\
+            speeds { u1: rad/s, u2: rad/s, u3: rad/s }\n\
+            frames { B = N.quaternion(e0, e1, e2, e3); }\n\
+            angular_velocities { B = u1*B.x + u2*B.y + u3*B.z; }\n\
+            bodies { Top { frame: B, centre: O, mass: m, inertia: [J, J, J] } }",
         ),
     },
     Explanation {
         code: POINT,
-        text: "A position is another point plus a vector. Points are not added or subtracted; the vector from Q to P is `position(P, Q)`. In `P of B = Q + ..` Q moves with B: it is its mass centre, a hinge, or another point of it.",
+        text: "A position is another point plus a vector. Points are not added or subtracted; the vector \
+            from Q to P is `position(P, Q)`. In `P of B = Q + ..` Q must move with B: it is the mass centre \
+            of B, a hinge, or another point of B.",
         wrong: Some("points { G = -l/2*B.y; P = O - l*B.y; }"),
         right: Some("points { G = O - l/2*B.y; P = O - l*B.y; }"),
     },
@@ -56,10 +71,13 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: INPUT_MOVES,
-        text: "Inputs are values without a history: their rates are not known. So nothing whose rate is needed may depend on them: no position, no orientation, nothing in `d( )/dt`. Prescribe motion as a function of `time` and parameters, or make it a coordinate and give its speed.",
+        text: "The value of an input is given, but not its rate. So nothing whose rate is needed may depend \
+            on an input: no position, no orientation, nothing in `d( )/dt`. Prescribe motion as a function \
+            of `time` and parameters, or make it a coordinate and give its speed.",
         wrong: Some("inputs { a: m }\npoints { G = O - l/2*B.y; P = O - (l + a)*B.y; }"),
         right: Some(
-            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, a: m = 0.1, w: rad/s = 3 }\npoints { G = O - l/2*B.y; P = O - (l + a*sin(w*time))*B.y; }",
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, a: m = 0.1, w: rad/s = 3 }\n\
+            points { G = O - l/2*B.y; P = O - (l + a*sin(w*time))*B.y; }",
         ),
     },
     Explanation {
@@ -70,7 +88,8 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: MASS,
-        text: "Masses are positive and depend on parameters only. Where all parameters have values the mass is checked with them.",
+        text: "Masses are positive and depend on parameters only. Where all parameters have values the mass \
+            is checked with them.",
         wrong: Some(
             "bodies { Rod { frame: B, centre: G, mass: m*cos(q1), inertia: [m*l^2/12, 0, m*l^2/12] } }",
         ),
@@ -78,39 +97,59 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: INERTIA,
-        text: "An inertia has three or six components, constant in their frame. About the mass centre no principal moment exceeds the sum of the two others, for moments of inertia are sums of squares of distances. Products enter with a plus sign.",
+        text: "An inertia has three or six components, constant in their frame. About the mass centre no \
+            principal moment exceeds the sum of the two others, for moments of inertia are sums of squares \
+            of distances. Products enter with a plus sign.",
         wrong: Some("bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/3] } }"),
         right: Some("bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }"),
     },
     Explanation {
         code: LOAD,
-        text: "A load and its opposite act on two different things. Loads are `gravity: g`, `force on P: F`, `force on P from Q: F`, `torque on B: T`, `torque on B from A: T`, `spring P to Q: { .. }` and `torsion B from A about v: { .. }`.",
+        text: "A load and its opposite act on two different things. Loads are `gravity: g`, `force on P: \
+            F`, `force on P from Q: F`, `torque on B: T`, `torque on B from A: T`, `spring P to Q: { .. }` \
+            and `torsion B from A about v: { .. }`.",
         wrong: Some("loads { gravity: -g*N.y; force P: m*g*N.x; }"),
         right: Some("loads { gravity: -g*N.y; force on P: m*g*N.x; }"),
     },
     Explanation {
         code: CONSTRAINT_COUNT,
-        text: "As many independent constraints as dependent speeds. An equation of vectors counts its components that are not identically zero. More are allowed in a loop whose `configuration` makes them agree wherever it is closed, whatever the parameters that are not `fixed`.",
+        text: "There must be as many independent constraints as dependent speeds. A vector equation counts \
+            as its components that are not identically zero. More constraints are allowed in a loop with a \
+            `configuration`, if they agree at every closed configuration for all values of the parameters \
+            that are not `fixed`.",
         wrong: Some("speeds { u1: rad/s }\ndependent { u2: rad/s }"),
         right: Some(SLED),
     },
     Explanation {
         code: CONSTRAINT_SINGULAR,
-        text: "The constraints are as many as the dependent speeds but do not determine them, at any state: they do not contain one of them, or speak of a combination only. Declare other speeds dependent.",
+        text: "The constraints are as many as the dependent speeds but do not determine them, at any state: \
+            one of them does not occur, or occurs only in combination with another. Declare other speeds \
+            dependent.",
         wrong: Some(
-            "mechanism Sled;\nparameters { m: kg = 1, J: kg*m^2 = 0.5, a: m = 0.3 }\ncoordinates { q1: m, q2: m, q3: rad }\nspeeds { u1: m/s, u3: rad/s }\ndependent { u2: m/s }\nframes { B = N.rotate(z, q3); }\npoints { G = O + q1*N.x + q2*N.y; K = G - a*B.x; }\nvelocities { G = u1*B.x + u2*B.y; }\nbodies { Body { frame: B, centre: G, mass: m, inertia: [J, J, J] } }\nconstraints { dot(velocity(K), B.x) = 0; }",
+            "mechanism Sled;\n\
+            parameters { m: kg = 1, J: kg*m^2 = 0.5, a: m = 0.3 }\n\
+            coordinates { q1: m, q2: m, q3: rad }\n\
+            speeds { u1: m/s, u3: rad/s }\n\
+            dependent { u2: m/s }\n\
+            frames { B = N.rotate(z, q3); }\n\
+            points { G = O + q1*N.x + q2*N.y; K = G - a*B.x; }\n\
+            velocities { G = u1*B.x + u2*B.y; }\n\
+            bodies { Body { frame: B, centre: G, mass: m, inertia: [J, J, J] } }\n\
+            constraints { dot(velocity(K), B.x) = 0; }",
         ),
         right: Some(SLED),
     },
     Explanation {
         code: CONFIGURATION_COUNT,
-        text: "As many configuration equations as coordinates marked `dependent`.",
+        text: "There must be as many configuration equations as coordinates marked `dependent`.",
         wrong: Some("coordinates { dependent q1: rad }"),
         right: Some(LOOP),
     },
     Explanation {
         code: NO_RATE,
-        text: "The rates of all coordinates must follow from the speeds. A coordinate `q3` of which no equation speaks has `d(q3)/dt = u3` if there is a speed `u3`; others need an equation under `kinematics`.",
+        text: "The rates of all coordinates must follow from the speeds. For a coordinate `q3` whose rate \
+            occurs in no equation, `d(q3)/dt = u3` is assumed if there is a speed `u3`; others need an \
+            equation under `kinematics`.",
         wrong: Some("coordinates { phi: rad }\nframes { B = N.rotate(z, phi); }"),
         right: Some(
             "coordinates { phi: rad }\nframes { B = N.rotate(z, phi); }\nkinematics { d(phi)/dt = u1; }",
@@ -118,61 +157,101 @@ pub(super) const TABLE: &[Explanation] = &[
     },
     Explanation {
         code: KINEMATICS_SINGULAR,
-        text: "There are equations for the rates of the coordinates, but they do not determine them, at any state: two say the same.",
+        text: "There are equations for the rates of the coordinates, but they do not determine them at any \
+            state: two of them are equivalent.",
         wrong: Some(
-            "mechanism Point;\nparameters { m: kg = 1 }\ncoordinates { q1: m, q2: m }\nspeeds { u1: m/s, u2: m/s }\npoints { P = O + q1*N.x + q2*N.y; }\nparticles { Point { point: P, mass: m } }\nkinematics { d(q1)/dt + d(q2)/dt = u1; 2*d(q1)/dt + 2*d(q2)/dt = 2*u1; }",
+            "mechanism Point;\n\
+            parameters { m: kg = 1 }\n\
+            coordinates { q1: m, q2: m }\n\
+            speeds { u1: m/s, u2: m/s }\n\
+            points { P = O + q1*N.x + q2*N.y; }\n\
+            particles { Point { point: P, mass: m } }\n\
+            kinematics { d(q1)/dt + d(q2)/dt = u1; 2*d(q1)/dt + 2*d(q2)/dt = 2*u1; }",
         ),
         right: Some(
-            "mechanism Point;\nparameters { m: kg = 1 }\ncoordinates { q1: m, q2: m }\nspeeds { u1: m/s, u2: m/s }\npoints { P = O + q1*N.x + q2*N.y; }\nparticles { Point { point: P, mass: m } }\nkinematics { d(q1)/dt + d(q2)/dt = u1; d(q1)/dt - d(q2)/dt = u2; }",
+            "mechanism Point;\n\
+            parameters { m: kg = 1 }\n\
+            coordinates { q1: m, q2: m }\n\
+            speeds { u1: m/s, u2: m/s }\n\
+            points { P = O + q1*N.x + q2*N.y; }\n\
+            particles { Point { point: P, mass: m } }\n\
+            kinematics { d(q1)/dt + d(q2)/dt = u1; d(q1)/dt - d(q2)/dt = u2; }",
         ),
     },
     Explanation {
         code: INCONSISTENT,
-        text: "A stated velocity or angular velocity is one that the position cannot have, or two equations give different rates for one coordinate.",
+        text: "A stated velocity or angular velocity contradicts the stated position or orientation, or two \
+            equations give different rates for one coordinate.",
         wrong: Some(
-            "mechanism Point;\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\npoints { P = O + q1*N.x; }\nvelocities { P = u1*N.y; }\nparticles { Point { point: P, mass: m } }",
+            "mechanism Point;\n\
+            parameters { m: kg = 1 }\n\
+            coordinates { q1: m }\n\
+            speeds { u1: m/s }\n\
+            points { P = O + q1*N.x; }\n\
+            velocities { P = u1*N.y; }\n\
+            particles { Point { point: P, mass: m } }",
         ),
         right: Some(
-            "mechanism Point;\nparameters { m: kg = 1 }\ncoordinates { q1: m }\nspeeds { u1: m/s }\npoints { P = O + q1*N.x; }\nvelocities { P = u1*N.x; }\nparticles { Point { point: P, mass: m } }",
+            "mechanism Point;\n\
+            parameters { m: kg = 1 }\n\
+            coordinates { q1: m }\n\
+            speeds { u1: m/s }\n\
+            points { P = O + q1*N.x; }\n\
+            velocities { P = u1*N.x; }\n\
+            particles { Point { point: P, mass: m } }",
         ),
     },
     Explanation {
         code: NO_INERTIA,
-        text: "The mass matrix is singular at every state: with some speed nothing moves that has mass or inertia, or two speeds move the same.",
+        text: "The mass matrix is singular at every state: some speed moves nothing that has mass or \
+            inertia, or two speeds cause the same motion.",
         wrong: Some(
-            "coordinates { q1: rad, q2: rad }\nspeeds { u1: rad/s, u2: rad/s }\nframes { B = N.rotate(z, q1); C = B.rotate(x, q2); }\npoints { G = O - l/2*B.y; P = O - l*C.y; }",
+            "coordinates { q1: rad, q2: rad }\n\
+            speeds { u1: rad/s, u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = B.rotate(x, q2); }\n\
+            points { G = O - l/2*B.y; P = O - l*C.y; }",
         ),
         right: Some(
-            "coordinates { q1: rad, q2: rad }\nspeeds { u1: rad/s, u2: rad/s }\nframes { B = N.rotate(z, q1); C = B.rotate(x, q2); }\npoints { G = O - l/2*B.y; P = O - l*C.y; }\nparticles { Tip { point: P, mass: m } }",
+            "coordinates { q1: rad, q2: rad }\n\
+            speeds { u1: rad/s, u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = B.rotate(x, q2); }\n\
+            points { G = O - l/2*B.y; P = O - l*C.y; }\n\
+            particles { Tip { point: P, mass: m } }",
         ),
     },
     Explanation {
         code: EMPTY_EQUATION,
-        text: "A constraint or kinematical equation contains speeds or rates; a configuration equation contains coordinates.",
+        text: "A constraint or kinematical equation must contain speeds or rates; a configuration equation \
+            must contain coordinates.",
         wrong: Some("kinematics { d(q1)/dt = u1; q1 = 0; }"),
         right: Some("kinematics { d(q1)/dt = u1; }"),
     },
     Explanation {
         code: NORMAL,
-        text: "A normal is a unit vector. `unit(v)` is the unit vector along v.",
+        text: "A normal must have the length 1. `unit(v)` is the unit vector along v.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x + N.y } }"),
         right: Some("contacts { tip { point: P of Rod, normal: unit(-N.x + N.y) } }"),
     },
     Explanation {
         code: CONTACT_STILL,
-        text: "The point never moves relative to what it strikes: it may be a point of the body that is struck, or fixed.",
+        text: "The point never moves relative to what it strikes: it may be a point of the body that is \
+            struck, or be fixed in N.",
         wrong: Some("contacts { tip { point: P of Rod, against: Rod, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },
     Explanation {
         code: NEVER_APPROACHES,
-        text: "The point moves relative to what it strikes, but never along the normal: no impact can happen. The normal may be another than was meant.",
+        text: "The point moves relative to what it strikes, but never along the normal: no impact can \
+            happen. Check the normal.",
         wrong: Some("contacts { tip { point: P of Rod, normal: N.z } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },
     Explanation {
         code: CONTACT,
-        text: "What is struck is a point (`against: Q` or `against: Q of Body`), the material point of a body that coincides with P (`against: Body`), a point of a frame that carries no body (`against: Frame`, turning about O, or `against: Frame about Q`), or a surface with a velocity (`against: velocity v`). Left out, it is a point fixed in N. Two points of one body never meet.",
+        text: "What is struck is a point (`against: Q` or `against: Q of Body`), the material point of a \
+            body that coincides with P (`against: Body`), a point of a frame that carries no body \
+            (`against: Frame`, turning about O, or `against: Frame about Q`), or a surface with a velocity \
+            (`against: velocity v`). Left out, it is a point fixed in N. Two points of one body never meet.",
         wrong: Some("contacts { tip { point: P of Rod, against: N, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },

@@ -1,4 +1,5 @@
-//! Explanations of all error codes, each with a wrong and a right example. `docs/errors.md` is generated from them, and the tests run the examples.
+//! Explanations of all error codes, each with a wrong and a right example. `docs/errors.md` is generated from
+//! them, and the tests run the examples.
 
 mod mechanics;
 mod names;
@@ -53,12 +54,14 @@ fn tables() -> impl Iterator<Item = &'static Explanation> {
     syntax::TABLE.iter().chain(names::TABLE).chain(values::TABLE).chain(mechanics::TABLE).chain(silent::TABLE)
 }
 
-/// The whole model of an example: its sections take the place of those of [`FRAME`]; a model with a head is whole already.
+/// The whole model of an example: its sections take the place of those of [`FRAME`]; a model with a head is
+/// whole already.
 pub fn whole(example: &str) -> String {
     within(FRAME, example)
 }
 
-/// The whole model of an example whose sections take the place of those of another model. Sections begin at the beginning of a
+/// The whole model of an example whose sections take the place of those of another model. Sections begin at
+/// the beginning of a
 /// line.
 pub fn within(frame: &str, example: &str) -> String {
     if example.starts_with("mechanism") || example.starts_with("//!") {
@@ -93,9 +96,10 @@ pub fn within(frame: &str, example: &str) -> String {
 pub fn page() -> String {
     let mut out = String::from(
         "# Errors and warnings\n\n\
-         Every mistake in a model has a code. Codes keep their meaning from version to version. This page is written from the\n\
-         sources (`generator/src/explanations`); a test checks that each wrong example gives its code and that each\n\
-         right one gives none. An example that does not begin with `mechanism` shows sections that take the place of those of\n\
+         Every mistake in a model has a code. Codes keep their meaning from version to version. This page\n\
+         is generated from the sources (`generator/src/explanations`); a test checks that each wrong example\n\
+         gives its code and that each right one gives none. An example that does not begin with `mechanism`\n\
+         shows sections that replace those of\n\
          this model:\n\n",
     );
     out.push_str(&format!("```text\n{FRAME}```\n\n"));

@@ -17,51 +17,91 @@ contacts { floor { point: C of Ball, normal: N.y, gap: q2 - r } }";
 pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: GAP_RATE,
-        text: "The gap is the distance along the normal between the point that strikes and what it strikes. Its rate is then the velocity of the point along the normal, and the bodies approach while the gap closes. Here the two differ, also where the gap is closed: the normal points the wrong way, the gap has the wrong sign, or it is that of another point. A simulation would let the bodies pass through each other or stop them in the air.",
+        text: "The gap is the distance along the normal between the point that strikes and what it strikes. \
+            Its rate is then the velocity of the point along the normal, and the bodies approach while the \
+            gap closes. Here the two differ, even where the gap is closed: the normal points the wrong way, \
+            the gap has the wrong sign, or it is that of another point. A simulation would let the bodies \
+            pass through each other or stop them in the air.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: dot(position(P), N.x) + 0.2*l } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: 0.2*l - dot(position(P), N.x) } }"),
     },
     Explanation {
         code: CONTACT_POINT,
-        text: "In `point: P of Body` the velocity of the contact is that of the matter of Body that is at P. P may wander over the surface of Body, as the lowest point of a wheel does, but here it moves through Body along the normal: P belongs to another body. Without `of` the velocity is that of the place P, which for the lowest point of a wheel knows nothing of the turning of the wheel.",
+        text: "In `point: P of Body` the velocity of the contact is that of the material point of Body at \
+            P. P may wander over the surface of Body, as the lowest point of a wheel does, but here it \
+            moves through Body along the normal: P belongs to another body. Without `of` the velocity is \
+            that of the geometric point P, which for the lowest point of a wheel does not contain the \
+            rotation of the wheel.",
         wrong: Some(
-            "coordinates { q1: rad = 0.3, q2: rad }\nspeeds { u1: rad/s, u2: rad/s }\nframes { B = N.rotate(z, q1); C = B.rotate(z, q2); }\npoints { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\nbodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\ncontacts { tip { point: P of Rod, normal: -N.x } }",
+            "coordinates { q1: rad = 0.3, q2: rad }\n\
+            speeds { u1: rad/s, u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = B.rotate(z, q2); }\n\
+            points { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: \
+            C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\n\
+            contacts { tip { point: P of Rod, normal: -N.x } }",
         ),
         right: Some(
-            "coordinates { q1: rad = 0.3, q2: rad }\nspeeds { u1: rad/s, u2: rad/s }\nframes { B = N.rotate(z, q1); C = B.rotate(z, q2); }\npoints { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\nbodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\ncontacts { tip { point: P of Fore, normal: -N.x } }",
+            "coordinates { q1: rad = 0.3, q2: rad }\n\
+            speeds { u1: rad/s, u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = B.rotate(z, q2); }\n\
+            points { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: \
+            C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\n\
+            contacts { tip { point: P of Fore, normal: -N.x } }",
         ),
     },
     Explanation {
         code: BEGINS_INSIDE,
-        text: "With the initial values of the model the gap of a contact is negative: the body begins inside what it strikes. Either the initial values are wrong or the sign of the gap is.",
+        text: "With the initial values of the model the gap of a contact is negative: the body begins \
+            inside what it strikes. Either the initial values are wrong or the sign of the gap is.",
         wrong: Some(
-            "coordinates { q1: rad = 0.9 }\ncontacts { tip { point: P of Rod, normal: -N.x, gap: 0.2*l - dot(position(P), N.x) } }",
+            "coordinates { q1: rad = 0.9 }\n\
+            contacts { tip { point: P of Rod, normal: -N.x, gap: 0.2*l - dot(position(P), N.x) } }",
         ),
         right: Some(
-            "coordinates { q1: rad = 0.1 }\ncontacts { tip { point: P of Rod, normal: -N.x, gap: 0.2*l - dot(position(P), N.x) } }",
+            "coordinates { q1: rad = 0.1 }\n\
+            contacts { tip { point: P of Rod, normal: -N.x, gap: 0.2*l - dot(position(P), N.x) } }",
         ),
     },
     Explanation {
         code: LOAD_POINT,
-        text: "A contact acts on the point of a body that is at a place, as the lowest point of a wheel, and a load on the place itself. The place moves differently: the load has no moment on the turning of the body. `C of Body = ..` under `points` makes C the point of the body.",
+        text: "A contact acts on the material point of a body, such as the lowest point of a wheel; a load \
+            on the same name acts on the geometric point. That moves differently: the load does not act on \
+            the rotation of the body. `C of Body = ..` under `points` makes C a material point of the body.",
         wrong: Some(
-            "mechanism Ball;\nparameters { m: kg = 1, r: m = 0.1, J: kg*m^2 = 4e-3, g: m/s^2 = 9.81 }\ninputs { F: N }\ncoordinates { q1: m, q2: m = 0.5, q3: rad }\nspeeds { u1: m/s, u2: m/s, u3: rad/s }\nframes { B = N.rotate(z, q3); }\npoints { G = O + q1*N.x + q2*N.y; C = G - r*N.y; }\nbodies { Ball { frame: B, centre: G, mass: m, inertia: [J, J, J] } }\nloads { gravity: -g*N.y; force on C: F*N.x; }\ncontacts { floor { point: C of Ball, normal: N.y, gap: q2 - r } }",
+            "mechanism Ball;\n\
+            parameters { m: kg = 1, r: m = 0.1, J: kg*m^2 = 4e-3, g: m/s^2 = 9.81 }\n\
+            inputs { F: N }\n\
+            coordinates { q1: m, q2: m = 0.5, q3: rad }\n\
+            speeds { u1: m/s, u2: m/s, u3: rad/s }\n\
+            frames { B = N.rotate(z, q3); }\n\
+            points { G = O + q1*N.x + q2*N.y; C = G - r*N.y; }\n\
+            bodies { Ball { frame: B, centre: G, mass: m, inertia: [J, J, J] } }\n\
+            loads { gravity: -g*N.y; force on C: F*N.x; }\n\
+            contacts { floor { point: C of Ball, normal: N.y, gap: q2 - r } }",
         ),
         right: Some(BALL),
     },
     Explanation {
         code: TORSION_ANGLE,
-        text: "A torsion spring acts with the torque -stiffness*(angle - rest) about its axis and stores the energy stiffness*(angle - rest)^2/2. Both fit only if the rate of the angle is the angular velocity of the body, relative to that of `from`, about the axis. Here it is another: a wrong sign, another joint's angle, or a wrong axis.",
+        text: "A torsion spring acts with the torque -stiffness*(angle - rest) about its axis and stores \
+            the energy stiffness*(angle - rest)^2/2. These agree only if the rate of the angle is the \
+            angular velocity of the body, relative to that of `from`, about the axis. Here they do not: a \
+            wrong sign, another joint's angle, or a wrong axis.",
         wrong: Some(
-            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, k: N*m/rad = 3 }\nloads { gravity: -g*N.y; torsion B about N.z: { angle: -q1, stiffness: k }; }",
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, k: N*m/rad = 3 }\n\
+            loads { gravity: -g*N.y; torsion B about N.z: { angle: -q1, stiffness: k }; }",
         ),
         right: Some(
-            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, k: N*m/rad = 3 }\nloads { gravity: -g*N.y; torsion B about N.z: { angle: q1, stiffness: k }; }",
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, k: N*m/rad = 3 }\n\
+            loads { gravity: -g*N.y; torsion B about N.z: { angle: q1, stiffness: k }; }",
         ),
     },
     Explanation {
         code: NO_EFFECT,
-        text: "A force on a point that never moves and a torque on a frame that never turns do nothing. Perhaps another point or body is meant.",
+        text: "A force on a point that never moves and a torque on a frame that never turns do nothing. \
+            Perhaps another point or body is meant.",
         wrong: Some("loads { gravity: -g*N.y; force on O: m*g*N.x; }"),
         right: Some("loads { gravity: -g*N.y; force on P: m*g*N.x; }"),
     },

@@ -137,10 +137,10 @@ impl Graph<'_> {
             format!("a cycle of {} items: {} -> .. -> {first}", chain.len(), chain[..6].join(" -> "))
         };
         let mut error = Diagnostic::new(codes::CYCLE, *place, message);
-        for (item, place) in circle.iter().take(circle.len().min(6) - 1) {
-            error = error.related(*place, format!("{} refers to the next here", self.name(*item)));
+        for ((_, place), names) in circle.iter().zip(chain.windows(2)).take(5) {
+            error = error.related(*place, format!("{} refers to {} here", names[0], names[1]));
         }
-        error.help("each must follow from what is already known")
+        error.help("break the cycle: one of them must be defined without the others")
     }
 
     fn too_deep(&self, item: Item) -> Diagnostic {

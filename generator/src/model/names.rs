@@ -128,14 +128,14 @@ impl Names {
                         format!("the name `{}` is declared twice", name.text),
                     )
                     .related(*place, format!("first declared here, as {}", first.kind()))
-                    .help("all names of a model live in one space: choose another name"),
+                    .help("all names of a model share one name space: choose another name"),
                 );
             }
             Some((first, None)) => diagnostics.push(
                 Diagnostic::new(
                     codes::RESERVED_NAME,
                     name.span,
-                    format!("`{}` is given: {}", name.text, given(*first)),
+                    format!("`{}` is predefined: {}", name.text, given(*first)),
                 )
                 .help("choose another name"),
             ),

@@ -60,7 +60,7 @@ impl Parser<'_> {
                 let error = Diagnostic::new(
                     codes::BAD_EXPRESSION,
                     self.before().to(self.here()),
-                    "`**` is no operator",
+                    "`**` is not an operator",
                 )
                 .help("write `^` for a power");
                 self.report(error);

@@ -367,8 +367,9 @@ impl<'a> Parser<'a> {
             self.at += 1;
         }
         if !docs.0.is_empty() && self.is_close() {
-            let error = Diagnostic::new(codes::STRAY_DOCS, self.before(), "this documents nothing")
-                .help("`///` stands before what it documents; `//` begins a plain comment");
+            let error =
+                Diagnostic::new(codes::STRAY_DOCS, self.before(), "there is no entry that this documents")
+                    .help("`///` stands before what it documents; `//` begins a plain comment");
             self.report(error);
         }
         docs.0

@@ -10,7 +10,8 @@ use crate::{
     ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError, Surface,
 };
 
-/// Gap, contact basis, velocity and reduced matrix of a contact in a state. The contact basis is `normal`, `first`, `second`: unit vectors, right-handed.
+/// Gap, contact basis, velocity and reduced matrix of a contact in a state. The contact basis is `normal`,
+/// `first`, `second`: unit vectors, right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -48,16 +49,18 @@ pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
     pub reduced: ReducedMatrix<T>,
     /// impulse on the striking point along N.x, N.y, N.z, N s; what is struck receives its opposite
     pub impulse_on_point: Vector3<T>,
-    /// change of the kinetic energy, J; it differs from `impact.contact_work` where motion is prescribed: (24)
+    /// change of the kinetic energy, J; it differs from `impact.contact_work` where motion is prescribed:
+    /// (24)
     pub energy_change: T,
     /// the outcome of the solver along n, t, s: impulse, velocity of separation, phases
     pub impact: Impact<T>,
 }
 
-/// The contacts of a mechanism, by number; [`Mechanism::index`] with [`Kind::Contact`](crate::Kind::Contact) gives the number of a name. A mechanism without contacts has the trait too, and its count is 0.
+/// The contacts of a mechanism, by number; [`Mechanism::index`] with [`Kind::Contact`](crate::Kind::Contact)
+/// gives the number of a name. A mechanism without contacts has the trait too, and its count is 0.
 ///
-/// `p` is the number of independent speeds; matrices are written by rows; components along the contact basis stand in the order normal,
-/// first, second (see [`ContactState`]).
+/// `p` is the number of independent speeds; matrices are written by rows; components along the contact basis
+/// stand in the order normal, first, second (see [`ContactState`]).
 ///
 /// # Errors
 ///
@@ -69,9 +72,10 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     fn gap(&self, contact: usize, state: &State<'_, T>) -> Result<Option<T>, StateError>;
     /// Velocity of the striking point relative to what it strikes, along the contact basis, m/s.
     fn contact_velocity(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
-    /// beta: rates of the three components of the contact velocity without contact forces, m/s^2. It is the derivative of these components,
-    /// as functions of (t, q, u), along (1, q', u'), so that the turning of the contact basis counts. Named inputs are held: where a velocity
-    /// depends on an input, the input's own rate is not in beta.
+    /// beta: rates of the three components of the contact velocity without contact forces, m/s^2. It is the
+    /// derivative of these components, as functions of (t, q, u), along (1, q', u'), so that the turning of
+    /// the contact basis counts. Named inputs are held: where a velocity depends on an input, the input's own
+    /// rate is not in beta.
     fn free_acceleration(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
     /// V (3 x `p`): partial velocities along the contact basis (rows) for the independent speeds (columns).
     fn partial_velocities(
@@ -80,7 +84,8 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         state: &State<'_, T>,
         partial_velocities: &mut [T],
     ) -> Result<(), StateError>;
-    /// M^-1 V^T (`p` x 3): change of the independent speeds per unit of impulse along the contact basis, and of their rates per unit of force.
+    /// M^-1 V^T (`p` x 3): change of the independent speeds per unit of impulse along the contact basis, and
+    /// of their rates per unit of force.
     fn response(&self, contact: usize, state: &State<'_, T>, response: &mut [T]) -> Result<(), StateError>;
     /// Solves the collision of a contact. `speeds` (`p`) receives the independent speeds after it: (12a).
     ///
@@ -95,14 +100,15 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         speeds: &mut [T],
     ) -> Result<CollisionOutcome<T>, CollisionError<T>>;
 
-    /// Selects the mode of a closed contact (stick, slide, begin to slip, separate) with its force, coming from no contact force. The gap
-    /// and v_n count as zero: neither is looked at. Of the surface only `mu` is read. Slip that rounding alone may make of zero counts as none.
+    /// Selects the mode of a closed contact (stick, slide, begin to slip, separate) with its force, coming
+    /// from no contact force. The gap and v_n count as zero: neither is looked at. Of the surface only `mu`
+    /// is read. Slip that rounding alone may make of zero counts as none.
     /// `accelerations` (`p`) receives the rates u' of the independent speeds under that force.
     ///
     /// # Errors
     ///
-    /// [`ClosedContactError::Contact`] where no finite force exists: an impact without collision follows, or no mode fits.
-    /// [`StateError::Undefined`] where the mechanism does not tell it.
+    /// [`ClosedContactError::Contact`] where no finite force exists: an impact without collision follows, or
+    /// no mode fits. [`StateError::Undefined`] where the mechanism does not tell it.
     fn contact_mode(
         &self,
         contact: usize,
@@ -113,8 +119,9 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         let _ = (contact, state, surface, accelerations);
         Err(StateError::Undefined { what: "mode of this contact" }.into())
     }
-    /// Force of a closed contact in a mode that is kept, as [`Contacts::contact_mode`] gives it for the mode that it selects. A margin that is not
-    /// positive says that the mode has ended; the force is then the one that would keep it.
+    /// Force of a closed contact in a mode that is kept, as [`Contacts::contact_mode`] gives it for the mode
+    /// that it selects. A margin that is not positive says that the mode has ended; the force is then the one
+    /// that would keep it.
     ///
     /// # Errors
     ///
@@ -130,8 +137,9 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         let _ = (contact, mode, state, surface, accelerations);
         Err(StateError::Undefined { what: "force of this contact" }.into())
     }
-    /// Solves the impact without collision of a contact that slides with f < 0 and is pressed together; v_n counts as zero. See
-    /// [`impact_without_collision`](crate::impact_without_collision). `speeds` (`p`) receives the independent speeds after it.
+    /// Solves the impact without collision of a contact that slides with f < 0 and is pressed together; v_n
+    /// counts as zero. See [`impact_without_collision`](crate::impact_without_collision). `speeds` (`p`)
+    /// receives the independent speeds after it.
     ///
     /// # Errors
     ///
@@ -147,8 +155,9 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         Err(StateError::Undefined { what: "impact without collision of this contact" }.into())
     }
 
-    /// W (3k x 3k) of the k `contacts`, symmetric: forces along their contact bases accelerate the contact velocities by W times the forces.
-    /// The blocks are W_ij = V_i M^-1 V_j^T, also called the Delassus matrix. `workspace` needs 3 p (k + 1) numbers.
+    /// W (3k x 3k) of the k `contacts`, symmetric: forces along their contact bases accelerate the contact
+    /// velocities by W times the forces. The blocks are W_ij = V_i M^-1 V_j^T, also called the Delassus
+    /// matrix. `workspace` needs 3 p (k + 1) numbers.
     #[doc(alias = "Delassus")]
     fn coupled_matrix(
         &self,
@@ -189,8 +198,10 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         Ok(())
     }
 
-    /// Rates u' of the independent speeds (`p`) with forces at contacts: those without, plus M^-1 V^T times each force. A force acts on the
-    /// striking point, its opposite on what is struck; its components are along the contact basis, N. `workspace` needs 3 p numbers.
+    /// Rates u' of the independent speeds (`p`) with forces at contacts: those without, plus M^-1 V^T times
+    /// each force. A force acts on the striking point, its opposite on what is struck; its components are
+    /// along the contact basis, N.
+    /// `workspace` needs 3 p numbers.
     fn accelerations_with_forces(
         &self,
         state: &State<'_, T>,

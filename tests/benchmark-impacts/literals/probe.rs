@@ -1,4 +1,5 @@
-//! Multiplies the literals of the solver by factors, one literal at a time, and shows how errors and work change.
+//! Multiplies the literals of the solver by factors, one literal at a time, and shows how errors and work
+//! change.
 
 #[path = "@COMMON@/double_double.rs"]
 #[allow(dead_code)]
@@ -55,7 +56,12 @@ struct Case {
     bound: f64,
 }
 
-fn run(shape: Shape, m: &ReducedMatrix<f64>, v: &Vector3<f64>, s: &Surface<f64>) -> Result<Impact<f64>, ImpactError<f64>> {
+fn run(
+    shape: Shape,
+    m: &ReducedMatrix<f64>,
+    v: &Vector3<f64>,
+    s: &Surface<f64>,
+) -> Result<Impact<f64>, ImpactError<f64>> {
     match shape {
         Shape::General => solve(m, v, s),
         Shape::Balanced => solve_structured::<Balanced, _>(m, v, s),
@@ -75,32 +81,60 @@ fn exact(random: &mut Random, rank: usize) -> (ReducedMatrix<f64>, Vector3<f64>)
     }
 }
 
-/// Collisions that were a weakness once (`runtime/tests/second_road.rs`): a direction left half exact, slip that falls ever faster, terms that rise before they fall, a target
-/// just before v_n falls.
+/// Collisions that were a weakness once (`runtime/tests/second_road.rs`): a direction left half exact, slip
+/// that falls ever faster, terms that rise before they fall, a target just before v_n falls.
 const WEAK: [([f64; 6], [f64; 3], f64, f64, Law); 4] = [
     (
-        [1.562693923703253e-1, 9.517281270427472e-2, -3.6941659398012014e-3, 4.295014268951763e-1, 5.199858484536779e-2, 1.7671524112743349],
+        [
+            1.562693923703253e-1,
+            9.517281270427472e-2,
+            -3.6941659398012014e-3,
+            4.295014268951763e-1,
+            5.199858484536779e-2,
+            1.7671524112743349,
+        ],
         [-5.467858501108753e-1, -3.7649437140756475e-1, -2.2024437970540553e-1],
         7.099815424891492e-2,
         1.0,
         Law::Poisson,
     ),
     (
-        [1.553754583019265, 1.4859946114461262, -2.0440832295277946, 1.4731919552954202, -1.9587032696991438, 2.7435798911894107],
+        [
+            1.553754583019265,
+            1.4859946114461262,
+            -2.0440832295277946,
+            1.4731919552954202,
+            -1.9587032696991438,
+            2.7435798911894107,
+        ],
         [-6.586426026214272e-1, -3.96145708894763e-1, 6.356833928469813e-1],
         6.137566184111034e-1,
         1.0,
         Law::Stronge,
     ),
     (
-        [1.1354636731283674e-2, 1.0661031149869021e-2, -8.66209183775131e-2, 1.1241334296777679, 2.8624731590636654e-3, 1.1062228549630624],
+        [
+            1.1354636731283674e-2,
+            1.0661031149869021e-2,
+            -8.66209183775131e-2,
+            1.1241334296777679,
+            2.8624731590636654e-3,
+            1.1062228549630624,
+        ],
         [-1.2901713053276833, 1.9798927217006306, -9.80689889706402e-2],
         5.36145915745949,
         9.999881602346368e-1,
         Law::Poisson,
     ),
     (
-        [1.4188186905498252e1, -6.776239075011882, 4.627156408538082, 8.30539003853021, -1.594162874491028, 2.3577605336339817],
+        [
+            1.4188186905498252e1,
+            -6.776239075011882,
+            4.627156408538082,
+            8.30539003853021,
+            -1.594162874491028,
+            2.3577605336339817,
+        ],
         [-2.4695891634244527, 3.55054109332601, 1.146693921511248],
         3.865491895603112,
         9.999824176319805e-1,
@@ -153,14 +187,38 @@ fn cases(count: usize) -> Vec<Case> {
     let mut random = Random(2012);
     let mut cases: Vec<Case> = Vec::new();
     let families = [
-        "any rank", "ill-conditioned", "nearly straight", "merging zeros", "slow", "fast", "steep", "near mu_c", "little e",
-        "repeated", "hardly mobile", "lasting", "balanced", "isotropic", "singular, turned", "next to immobile", "f small", "out of range",
+        "any rank",
+        "ill-conditioned",
+        "nearly straight",
+        "merging zeros",
+        "slow",
+        "fast",
+        "steep",
+        "near mu_c",
+        "little e",
+        "repeated",
+        "hardly mobile",
+        "lasting",
+        "balanced",
+        "isotropic",
+        "singular, turned",
+        "next to immobile",
+        "f small",
+        "out of range",
     ];
     for (m, v, mu, e, law) in WEAK {
         let (matrix, approach, surface) = (ReducedMatrix::from(m), Vector3::from(v), Surface { mu, e, law });
         let Ok(road) = second_road::solve(&matrix, &approach, &surface) else { continue };
         let bound = (32.0 * condition(&matrix) * 2.2e-16).max(1e-13);
-        cases.push(Case { family: "weak once", shape: Shape::General, matrix, approach, surface, road: Some(road), bound });
+        cases.push(Case {
+            family: "weak once",
+            shape: Shape::General,
+            matrix,
+            approach,
+            surface,
+            road: Some(road),
+            bound,
+        });
     }
     for (kind, family) in families.into_iter().enumerate() {
         for n in 0..count {
@@ -174,7 +232,8 @@ fn cases(count: usize) -> Vec<Case> {
                     m = ReducedMatrix::from(b * b.transpose());
                 }
                 "nearly straight" => {
-                    let phi = zero(&mut random, &m, surface.mu) + random.next().signum() * random.between(1e-13, 1e-1);
+                    let phi = zero(&mut random, &m, surface.mu)
+                        + random.next().signum() * random.between(1e-13, 1e-1);
                     let speed = v.yz().norm();
                     (v.y, v.z) = (speed * phi.cos(), speed * phi.sin());
                 }
@@ -186,7 +245,9 @@ fn cases(count: usize) -> Vec<Case> {
                     surface.mu = hodograph::Characteristics::of(&m, 1.0).mu_c * (1.0 + random.next() * 0.02);
                     v.yz_mut_scale(0.2);
                 }
-                "little e" => surface = Surface { e: random.between(1e-8, 0.3), law: Law::Stronge, ..surface },
+                "little e" => {
+                    surface = Surface { e: random.between(1e-8, 0.3), law: Law::Stronge, ..surface }
+                }
                 "repeated" => {
                     // f changes sign: mu |b| > m_nn.
                     surface.mu = m.nn / m.nt.hypot(m.ns) * random.between(1.0, 10.0);
@@ -195,7 +256,8 @@ fn cases(count: usize) -> Vec<Case> {
                 "hardly mobile" => {
                     let (nn, tt) = (random.between(0.1, 10.0), random.between(0.1, 10.0));
                     let ss = tt * random.between(1e-12, 1e-3);
-                    let (nt, ns) = (0.6 * random.next() * (nn * tt).sqrt(), 0.7 * random.next() * (nn * ss).sqrt());
+                    let (nt, ns) =
+                        (0.6 * random.next() * (nn * tt).sqrt(), 0.7 * random.next() * (nn * ss).sqrt());
                     m = ReducedMatrix::new(nn, nt, ns, tt, 0.0, ss);
                     let turn = random.next() * 3.0;
                     m = m.turned(turn.cos(), turn.sin());
@@ -217,7 +279,8 @@ fn cases(count: usize) -> Vec<Case> {
                 _ => {}
             }
             if family == "singular, turned" {
-                // Exact in the axes where it is solved the second way, rounded in those where the solver sees it.
+                // Exact in the axes where it is solved the second way, rounded in those where the solver sees
+                // it.
                 (m, v) = exact(&mut random, 1 + n % 2);
                 if n % 3 == 0 {
                     surface.mu *= 5.0;
@@ -229,16 +292,30 @@ fn cases(count: usize) -> Vec<Case> {
                     Err(second_road::Failure::Unfinished) => continue,
                 };
                 let (sin, cos) = (3.0 * random.next()).sin_cos();
-                let turned = |v: &Vector3<f64>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
-                let road = road.map(|road| Outcome { impulse: turned(&road.impulse), velocity: turned(&road.velocity), ..road });
+                let turned =
+                    |v: &Vector3<f64>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
+                let road = road.map(|road| Outcome {
+                    impulse: turned(&road.impulse),
+                    velocity: turned(&road.velocity),
+                    ..road
+                });
                 let bound = (8.0 * condition(&m) * 2.2e-16).max(1e-12) * (1.0 + surface.mu);
-                cases.push(Case { family, shape, matrix: m.turned(cos, sin), approach: turned(&v), surface, road, bound });
+                cases.push(Case {
+                    family,
+                    shape,
+                    matrix: m.turned(cos, sin),
+                    approach: turned(&v),
+                    surface,
+                    road,
+                    bound,
+                });
                 continue;
             }
             if family == "next to immobile" {
                 let (nn, tt) = (random.between(0.1, 10.0), random.between(0.1, 10.0));
                 let ss = tt * random.between(1e-20, 1e-13);
-                let (nt, ns) = (0.6 * random.next() * (nn * tt).sqrt(), 0.7 * random.next() * (nn * ss).sqrt());
+                let (nt, ns) =
+                    (0.6 * random.next() * (nn * tt).sqrt(), 0.7 * random.next() * (nn * ss).sqrt());
                 m = ReducedMatrix::new(nn, nt, ns, tt, 0.0, ss);
                 v = Vector3::new(-1.0, random.next(), random.next() * (ss / tt).sqrt());
                 surface.mu = random.between(0.05, 100.0);
@@ -252,7 +329,8 @@ fn cases(count: usize) -> Vec<Case> {
                 (m, v, surface) = merging(&mut random, n);
                 let d = v.yz() / v.yz().norm();
                 let along = m.nt * d.x + m.ns * d.y;
-                let least = (m.ss * m.nt * m.nt - 2.0 * m.ts * m.nt * m.ns + m.tt * m.ns * m.ns) / (m.tt * m.ss - m.ts * m.ts);
+                let least = (m.ss * m.nt * m.nt - 2.0 * m.ts * m.nt * m.ns + m.tt * m.ns * m.ns)
+                    / (m.tt * m.ss - m.ts * m.ts);
                 let nn = surface.mu * along * (1.0 + random.next().signum() * random.between(1e-14, 1e-2));
                 if nn < 1.01 * least {
                     continue;
@@ -304,7 +382,9 @@ struct Seen {
 fn error(case: &Case, hit: &Result<Impact<f64>, ImpactError<f64>>) -> f64 {
     let error = match hit {
         Ok(hit) => match &case.road {
-            Some(road) if hit.compressions == road.compressions => road.error(hit, &case.approach) / case.bound,
+            Some(road) if hit.compressions == road.compressions => {
+                road.error(hit, &case.approach) / case.bound
+            }
             _ => 1e9,
         },
         Err(error) if error.kind() == "wedged" && case.road.is_none() => 0.0,
@@ -325,8 +405,10 @@ fn examine(cases: &[Case]) -> Seen {
         }
     }
     seen.counts = probe::work();
-    // Instructions of a stretch, of a short step, of a block of the series and of the direct integration of work, about.
-    seen.work = @WEIGHTS@.iter().zip(seen.counts).map(|(w, n)| w * n as f64).sum::<f64>() / cases.len() as f64;
+    // Instructions of a stretch, of a short step, of a block of the series and of the direct integration of
+    // work, about.
+    seen.work =
+        @WEIGHTS@.iter().zip(seen.counts).map(|(w, n)| w * n as f64).sum::<f64>() / cases.len() as f64;
     seen.digits = (seen.digits / cases.len() as f64).exp();
     seen
 }
@@ -342,7 +424,10 @@ fn main() {
         let hit = run(case.shape, &case.matrix, &case.approach, &case.surface);
         let error = error(case, &hit);
         if error > 1.0 {
-            println!("left out, error {error:.1e}: {} {:?} {:?} {:?}", case.family, case.matrix, case.approach, case.surface);
+            println!(
+                "left out, error {error:.1e}: {} {:?} {:?} {:?}",
+                case.family, case.matrix, case.approach, case.surface
+            );
         }
         error <= 1.0
     });
@@ -350,7 +435,12 @@ fn main() {
     let normal = examine(&cases);
     println!(
         "{} collisions; as it is: {} above the bound, worst {:.1} ({}), work {:.0} = {:?}",
-        cases.len(), normal.above, normal.worst, normal.family, normal.work, normal.counts
+        cases.len(),
+        normal.above,
+        normal.worst,
+        normal.family,
+        normal.work,
+        normal.counts
     );
     for (number, (section, name)) in names.iter().enumerate() {
         if only.as_deref().is_some_and(|only| !name.contains(only) && !section.contains(only)) {
@@ -362,7 +452,11 @@ fn main() {
             let seen = examine(&cases);
             println!(
                 "    x {factor:<9} above {:>5}  worst {:>9.2e} {:<16} mean {:>5.3}  work {:>+6.1} %",
-                seen.above, seen.worst, seen.family, seen.digits / normal.digits, 100.0 * (seen.work / normal.work - 1.0)
+                seen.above,
+                seen.worst,
+                seen.family,
+                seen.digits / normal.digits,
+                100.0 * (seen.work / normal.work - 1.0)
             );
         }
     }

@@ -60,7 +60,7 @@ impl Lowering<'_> {
         let (name, place) = (self.out.frames[frame.0].name.clone(), self.out.frames[frame.0].span);
         let error =
             Diagnostic::new(codes::NO_AXES, at, format!("`{name}` has an angular velocity but no axes"))
-                .related(place, "its angle is ignorable, for it is made by `spin`")
+                .related(place, "it is made by `spin`: its angle is not known")
                 .help("use the axes of the frame that it spins in");
         self.report(error);
         None

@@ -312,7 +312,7 @@ impl Lowering<'_> {
                     let error = Diagnostic::new(codes::NO_AXES, field.value.span, message)
                         .related(
                             self.out.frames[frame.0].span,
-                            "its angle is ignorable, for it is made by `spin`",
+                            "it is made by `spin`: its angle is not known",
                         )
                         .help("say in which frame they are: `inertia: [..] in A`");
                     self.report(error);

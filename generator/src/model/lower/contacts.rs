@@ -91,7 +91,7 @@ impl Lowering<'_> {
         }
         let unknown = if a != 0 { a } else { b };
         let (name, place) = (self.out.points[unknown].name.clone(), self.out.points[unknown].span);
-        let message = "which point of the body is struck is not known";
+        let message = "it is not known which point of the body is struck";
         let error = Diagnostic::new(codes::NO_POSITION, record.name.span, message)
             .related(place, format!("`{name}` is given by its velocity only"))
             .help("state its position, or name the point that is struck");
@@ -163,7 +163,7 @@ impl Lowering<'_> {
                 let mut error = Diagnostic::new(
                     codes::CONTACT,
                     name.span,
-                    format!("a point or a body is struck, but `{}` is {}", name.text, symbol.kind()),
+                    format!("`against` needs a point or a body, but `{}` is {}", name.text, symbol.kind()),
                 );
                 if symbol == Symbol::Frame(0) {
                     error = error.help("leave `against` out: then a point fixed in N is struck");
@@ -209,7 +209,7 @@ impl Lowering<'_> {
         if a != b {
             let unknown = if a != 0 { a } else { b };
             let (called, place) = (self.out.points[unknown].name.clone(), self.out.points[unknown].span);
-            let message = format!("which point of `{}` is struck is not known", name.text);
+            let message = format!("it is not known which point of `{}` is struck", name.text);
             let error = Diagnostic::new(codes::NO_POSITION, name.span, message)
                 .related(place, format!("`{called}` is given by its velocity only"))
                 .help("state its position, or name the point that is struck");

@@ -1,4 +1,4 @@
-//! Declared definitions, frames and points receive their numbers; motions that are stated name each of them once.
+//! Numbers the declared definitions, frames and points, and assigns stated motions to them, each once.
 
 use std::collections::HashMap;
 

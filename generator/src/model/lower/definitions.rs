@@ -1,4 +1,4 @@
-//! Values of definitions.
+//! Lowers the values of definitions.
 
 use super::super::mechanism::DefinitionValue;
 use super::super::names::Symbol;

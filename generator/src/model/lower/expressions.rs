@@ -42,7 +42,7 @@ impl Lowering<'_> {
                     self.expression(item);
                 }
                 let error =
-                    Diagnostic::new(codes::BAD_EXPRESSION, expr.span, "a list in brackets is no vector")
+                    Diagnostic::new(codes::BAD_EXPRESSION, expr.span, "a list in brackets is not a vector")
                         .help("name the frame of its components: `N.vec(a, b, c)`");
                 self.report(error);
                 Typed::poison(expr.span)
@@ -57,7 +57,7 @@ impl Lowering<'_> {
         match typed.constant {
             Some(value) if !value.is_finite() => {
                 let error = if value.is_nan() {
-                    Diagnostic::new(codes::NUMBER_RANGE, typed.span, "this constant is no number")
+                    Diagnostic::new(codes::NUMBER_RANGE, typed.span, "this constant is not a number")
                         .help("sqrt and log take no negative number; asin and acos take numbers from -1 to 1")
                 } else {
                     Diagnostic::new(codes::NUMBER_RANGE, typed.span, "this constant is out of range")

@@ -123,7 +123,7 @@ impl Lowering<'_> {
             return Some((Orientation::Simple { axis, negative, angle }, traits));
         }
         let ExprKind::List(items) = &axis.kind else {
-            let error = Diagnostic::new(codes::FRAME, axis.span, "this is no axis");
+            let error = Diagnostic::new(codes::FRAME, axis.span, "this is not an axis");
             let is_axis =
                 |expr: &Expr| matches!(&expr.kind, ExprKind::Name(text) if axis_named(text).is_some());
             let meant = match &inner.kind {
@@ -180,7 +180,7 @@ impl Lowering<'_> {
         };
         let angles: Vec<Option<(Scalar, Traits)>> = angles.iter().map(|angle| self.angle(angle)).collect();
         let Some(Ok(axes)) = axes.map(<[Axis; 3]>::try_from) else {
-            let error = Diagnostic::new(codes::FRAME, sequence.span, "this is no sequence of axes");
+            let error = Diagnostic::new(codes::FRAME, sequence.span, "this is not a sequence of axes");
             self.report(match sequence_meant(sequence) {
                 Some(meant) => error.help(format!("did you mean `{meant}`?")),
                 None => error.help("write three of x, y, z together, as in `xyz` or `zxz`"),

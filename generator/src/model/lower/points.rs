@@ -97,8 +97,8 @@ impl Lowering<'_> {
                     1 => rest.remove(0),
                     _ => self.add(rest, value.span),
                 };
-                let vector = self.need_vector(&by, "the way from one point to another")?;
-                self.demand(&by, Dimension::of(1, 0, 0), "the way from one point to another");
+                let vector = self.need_vector(&by, "the vector from one point to another")?;
+                self.demand(&by, Dimension::of(1, 0, 0), "the vector from one point to another");
                 self.need_free_of_speeds(&by, "a position");
                 self.need_rate(&by, "a position");
                 Some((from, vector, by.traits.given()))

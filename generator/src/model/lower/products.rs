@@ -1,4 +1,4 @@
-//! Products, quotients and powers.
+//! Lowers products, quotients and powers.
 
 use num_rational::Ratio;
 use num_traits::{Signed, ToPrimitive, Zero};
@@ -171,7 +171,11 @@ impl Lowering<'_> {
             }
             product.take_facts(&typed, divides);
             if !product.take_dimension(&typed, divides) {
-                self.error(codes::EXPONENT, span, "the dimension of this product is out of bounds");
+                self.error(
+                    codes::EXPONENT,
+                    span,
+                    "the exponents in the dimension of this product are out of range",
+                );
                 product.wrong = true;
             }
             if let Err(error) = product.take_value(typed, divides) {
@@ -200,7 +204,7 @@ impl Lowering<'_> {
         {
             let message = format!("exponents are fractions between -{MAX_EXPONENT} and {MAX_EXPONENT}");
             self.report(
-                Diagnostic::new(codes::EXPONENT, exponent.span, message).label("this is out of bounds"),
+                Diagnostic::new(codes::EXPONENT, exponent.span, message).label("this is out of range"),
             );
             return Typed::poison(span);
         }
@@ -221,7 +225,11 @@ impl Lowering<'_> {
             (Some(d), Some(e)) => match d.power(e) {
                 Some(d) => Some(d),
                 None => {
-                    self.error(codes::EXPONENT, span, "the dimension of this power is out of bounds");
+                    self.error(
+                        codes::EXPONENT,
+                        span,
+                        "the exponents in the dimension of this power are out of range",
+                    );
                     return Typed::poison(span);
                 }
             },

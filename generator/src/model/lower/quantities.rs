@@ -100,7 +100,7 @@ impl Lowering<'_> {
                 let error = Diagnostic::new(
                     codes::EXPECTED,
                     span,
-                    "dependent speeds stand in a section of their own",
+                    "dependent speeds are declared in a section of their own",
                 );
                 self.report(error.help("move it to `dependent { .. }`"));
             }

@@ -102,7 +102,7 @@ impl Lowering<'_> {
                     self.agreement(provenance);
                 } else {
                     let message = format!(
-                        "`d({})/dt = {}` is meant where nothing else is said, but their units do not fit",
+                        "without another equation `d({})/dt = {}` is assumed, but the units do not agree",
                         coordinate.name, rate.name
                     );
                     let error = Diagnostic::new(codes::DIMENSION, rate.span, message)
@@ -163,7 +163,7 @@ impl Lowering<'_> {
         let mut error =
             Diagnostic::new(codes::NO_RATE, self.out.coordinates[*first].span, message).help(help);
         for (i, _) in others.iter().take(5) {
-            error = error.related(self.out.coordinates[*i].span, "nor has this");
+            error = error.related(self.out.coordinates[*i].span, "this has none either");
         }
         self.report(error);
     }

@@ -1,4 +1,4 @@
-//! What the place of an expression requires of it: a scalar or a vector, free of speeds, linear in them, with a known rate.
+//! Checks what a place in the model requires of an expression: to be a scalar or a vector, free of speeds, linear in them, or to have a known rate.
 
 use super::super::mechanism::{Scalar, Vector};
 use super::super::typed::{Typed, TypedValue};
@@ -77,7 +77,7 @@ impl Lowering<'_> {
                 }
                 _ => error = error.label("this does not enter linearly"),
             }
-            error = error.help("each term holds one speed at most, times a factor that is free of speeds");
+            error = error.help("each term may contain one speed at most, times a factor without speeds");
             self.report(error);
         }
     }

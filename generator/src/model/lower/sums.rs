@@ -1,4 +1,4 @@
-//! Sums, differences and opposites.
+//! Lowers sums, differences and opposites.
 
 use num_rational::BigRational;
 use num_traits::Zero;
