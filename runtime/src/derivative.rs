@@ -99,7 +99,7 @@ impl<T: Scalar> ImpactDerivative<T> {
 
 /// Solves a collision and differentiates its outcome.
 ///
-/// [`solve`] runs on dual numbers, so that there is no step size and no truncation error. It allocates nothing and does not panic; it needs about 50 kB of
+/// [`solve`] runs on dual numbers, so that there is no step size and no truncation error. It allocates nothing and does not panic; it needs about 62 kB of
 /// stack (`f64` on x86-64), thirteen times that of [`solve`].
 ///
 /// ```
