@@ -10,7 +10,9 @@ use std::collections::BTreeMap;
 use super::base_parameters::{Lump, Seat};
 use super::matrix::{Matrix, both_halves, full, name_matrix, times, transposed, turn_rows};
 use super::products::Products;
-use super::sums::{sum_matrix, sum_scalar, sum_symmetric, sum_triple, take_by_first, take_by_second};
+use super::sums::{
+    sum_matrix, sum_scalar, sum_symmetric, sum_triple, take_by_first, take_by_second, take_where,
+};
 use crate::algebra::Expr;
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{ENTRIES, Symmetric};
@@ -148,9 +150,7 @@ impl Form {
                 sum_symmetric(&mut self.inertia, base, &turned);
             }
         }
-        let coupled: Vec<_> =
-            self.coupling.extract_if(.., |key, _| key.0 == frame || key.1 == frame).collect();
-        for ((f, g), x) in coupled {
+        for ((f, g), x) in take_where(&mut self.coupling, |key| key.0 == frame || key.1 == frame) {
             let (other, x) = if f == frame { (g, x) } else { (f, transposed(&x)) };
             let x = name_matrix(k, x);
             for (slot, a) in &partials {

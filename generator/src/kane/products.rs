@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::sums::sum_scalar;
+use super::sums::{sum_scalar, take_where};
 use crate::algebra::Expr;
 use crate::kinematics::linear_forms::{self, Triple};
 
@@ -46,7 +46,7 @@ impl Products {
 
     /// Takes out what is left beside a slot, with the slots of the other factors.
     pub fn take(&mut self, slot: usize) -> Vec<(usize, Expr)> {
-        let entries = self.0.extract_if(.., |key, _| key.0 == slot || key.1 == slot);
+        let entries = take_where(&mut self.0, |key| key.0 == slot || key.1 == slot).into_iter();
         entries.map(|(key, value)| (if key.0 == slot { key.1 } else { key.0 }, value)).collect()
     }
 

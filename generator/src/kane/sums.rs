@@ -42,12 +42,18 @@ pub fn sum_symmetric<K: Ord>(map: &mut BTreeMap<K, Symmetric>, key: K, value: &S
     map.insert(key, sum);
 }
 
+/// Takes out the entries whose keys pass, in the order of the keys.
+pub fn take_where<K: Ord + Copy, V>(map: &mut BTreeMap<K, V>, passes: impl Fn(&K) -> bool) -> Vec<(K, V)> {
+    let keys: Vec<K> = map.keys().copied().filter(passes).collect();
+    keys.into_iter().filter_map(|key| map.remove_entry(&key)).collect()
+}
+
 /// Takes out everything whose key begins with this, in the order of the rest of the keys.
 pub fn take_by_first<A: Ord + Copy, B: Ord + Copy, V>(
     map: &mut BTreeMap<(A, B), V>,
     first: A,
 ) -> Vec<(B, V)> {
-    map.extract_if(.., |key, _| key.0 == first).map(|(key, value)| (key.1, value)).collect()
+    take_where(map, |key| key.0 == first).into_iter().map(|(key, value)| (key.1, value)).collect()
 }
 
 /// Takes out everything whose key ends with this, in the order of the rest of the keys.
@@ -55,5 +61,5 @@ pub fn take_by_second<A: Ord + Copy, B: Ord + Copy, V>(
     map: &mut BTreeMap<(A, B), V>,
     second: B,
 ) -> Vec<(A, V)> {
-    map.extract_if(.., |key, _| key.1 == second).map(|(key, value)| (key.0, value)).collect()
+    take_where(map, |key| key.1 == second).into_iter().map(|(key, value)| (key.0, value)).collect()
 }
