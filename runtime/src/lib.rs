@@ -73,6 +73,7 @@ mod sensitivity;
 mod solve;
 pub mod structure;
 mod surface;
+mod tangential_block;
 
 pub use crate::{
     characteristics::{Characteristics, Renewal, rates},

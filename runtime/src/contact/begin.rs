@@ -9,7 +9,10 @@
 use nalgebra::Vector2;
 
 use super::{roots::zeros, tangential::Closed};
-use crate::scalar::{Real, constant, length};
+use crate::{
+    scalar::{Real, constant, length},
+    tangential_block::TangentialBlock,
+};
 
 /// A way to begin to slip.
 #[derive(Clone, Copy)]
@@ -27,7 +30,7 @@ pub(super) const MOST: usize = 4;
 pub(super) fn beginnings<T: Real>(closed: &Closed<T>, wedged: bool) -> [Option<Beginning<T>>; MOST] {
     let mut found = [None; MOST];
     let mut count = 0;
-    let Closed { mu, b, tt, ts, ss, normal, tangential, .. } = *closed;
+    let Closed { mu, b, block: TangentialBlock { tt, ts, ss }, normal, tangential, .. } = *closed;
     let c = tangential - b * normal;
     let (s11, s12) = (normal * tt - tangential.x * b.x, normal * ts - tangential.x * b.y);
     let (s21, s22) = (normal * ts - tangential.y * b.x, normal * ss - tangential.y * b.y);

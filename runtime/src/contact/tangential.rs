@@ -7,6 +7,7 @@ use nalgebra::{Vector2, Vector3};
 use crate::{
     ReducedMatrix,
     scalar::{Real, constant, larger, length},
+    tangential_block::TangentialBlock,
 };
 
 /// M and beta in these units; the tangential part of M is T, its coupling to the normal b.
@@ -14,9 +15,7 @@ use crate::{
 pub(super) struct Closed<T: Real> {
     pub mu: T,
     pub b: Vector2<T>,
-    pub tt: T,
-    pub ts: T,
-    pub ss: T,
+    pub block: TangentialBlock<T>,
     /// beta_n and the tangential part of beta
     pub normal: T,
     pub tangential: Vector2<T>,
@@ -39,19 +38,11 @@ impl<T: Real> Closed<T> {
         Self {
             mu,
             b: Vector2::new(m.nt / m.nn, m.ns / m.nn),
-            tt: m.tt / m.nn,
-            ts: m.ts / m.nn,
-            ss: m.ss / m.nn,
+            block: TangentialBlock { tt: m.tt / m.nn, ts: m.ts / m.nn, ss: m.ss / m.nn },
             normal: beta.x / unit,
             tangential: Vector2::new(beta.y / unit, beta.z / unit),
             force: unit / m.nn,
         }
-    }
-
-    /// T x.
-    #[inline]
-    pub fn pulled(&self, x: &Vector2<T>) -> Vector2<T> {
-        Vector2::new(self.tt * x.x + self.ts * x.y, self.ts * x.x + self.ss * x.y)
     }
 
     /// f (31) over m_nn.
@@ -67,10 +58,10 @@ impl<T: Real> Closed<T> {
             return false;
         }
         let pull = self.tangential / self.normal;
-        let tt = self.tt - pull.x * self.b.x;
-        let ss = self.ss - pull.y * self.b.y;
-        let ts = self.ts - (pull.x * self.b.y + pull.y * self.b.x) * constant(0.5);
-        let size = self.tt + self.ss + length(&pull) * length(&self.b);
+        let tt = self.block.tt - pull.x * self.b.x;
+        let ss = self.block.ss - pull.y * self.b.y;
+        let ts = self.block.ts - (pull.x * self.b.y + pull.y * self.b.x) * constant(0.5);
+        let size = self.block.tt + self.block.ss + length(&pull) * length(&self.b);
         let noise = constant::<T>(64.0) * T::default_epsilon() * size;
         tt > noise && ss > noise && tt * ss - ts * ts > noise * size
     }
@@ -81,33 +72,20 @@ impl<T: Real> Closed<T> {
         constant::<T>(8.0) * T::default_epsilon() * (T::one() + self.mu * length(&self.b))
     }
 
-    /// The least-squares solution x of T x = rhs of least norm, by elimination with the larger pivot first; a second pivot within rounding of zero counts as zero.
+    /// The least-squares solution x of T x = rhs of least norm; a second pivot within rounding of zero counts as zero.
     pub fn hold(&self, rhs: &Vector2<T>) -> Held<T> {
-        let swap = self.ss > self.tt;
-        let (p, q, r) =
-            if swap { (self.ss, self.tt, Vector2::new(rhs.y, rhs.x)) } else { (self.tt, self.ss, *rhs) };
-        // b^2 <= m_nn T, so where T underflows b counts as zero too.
-        if p <= T::zero() {
-            return Held { x: Vector2::zeros(), left: length(rhs) };
+        match self.block.eliminate(rhs) {
+            // b^2 <= m_nn T, so where T underflows b counts as zero too.
+            None => Held { x: Vector2::zeros(), left: length(rhs) },
+            Some(elimination) if elimination.is_singular() => {
+                Held { x: elimination.least_squares(), left: elimination.residual() }
+            }
+            Some(elimination) => Held { x: elimination.solution(elimination.pivot), left: T::zero() },
         }
-        let l = self.ts / p;
-        let (pivot, left) = (q - l * self.ts, r.y - l * r.x);
-        let square = T::one() + l * l;
-        let (x, left) = if pivot > constant::<T>(64.0) * T::default_epsilon() * p {
-            let y = left / pivot;
-            (Vector2::new(r.x / p - l * y, y), T::zero())
-        } else {
-            let scale = (r.x + l * r.y) / (p * square * square);
-            (Vector2::new(scale, l * scale), left.abs() / square.sqrt())
-        };
-        Held { x: if swap { Vector2::new(x.y, x.x) } else { x }, left }
     }
 
-    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from slipping; zero where it is below its rounding
-    /// error.
+    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from slipping.
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
-        let rate = T::one() - (self.b + self.b - self.pulled(hold)).dot(hold);
-        let known = T::one() + (self.tt + self.ss) * hold.dot(hold);
-        if rate <= constant::<T>(32.0) * T::default_epsilon() * known { T::zero() } else { rate }
+        self.block.held_rate(&self.b, hold)
     }
 }

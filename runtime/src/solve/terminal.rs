@@ -5,50 +5,38 @@
 use nalgebra::Vector2;
 
 use super::contact::Contact;
-use crate::scalar::{Real, constant, dot, fma, larger, length};
+use crate::scalar::{Real, constant, dot, larger, length};
+use crate::tangential_block::TangentialBlock;
 
 impl<T: Real> Contact<T> {
-    /// The solution x of T x = b of least norm, by elimination with the larger pivot first. The tangential impulse -x per I_n keeps the contact from slipping.
+    /// The solution x of T x = b of least norm. The tangential impulse -x per I_n keeps the contact from slipping.
     ///
     /// A second pivot within rounding of zero counts as zero if b lies in the range of T. If b does not, the pivot is small but not zero: in a positive
     /// semidefinite matrix it is at least the square of what elimination leaves of b.
     #[inline]
     pub fn hold(&self) -> Vector2<T> {
-        let swap = self.ss > self.tt;
-        let (p, q, b) = if swap {
-            (self.ss, self.tt, Vector2::new(self.b.y, self.b.x))
-        } else {
-            (self.tt, self.ss, self.b)
-        };
-        if p <= T::zero() {
-            return Vector2::zeros();
+        let Some(elimination) = self.tangential().eliminate(&self.b) else { return Vector2::zeros() };
+        if !elimination.is_singular() {
+            return elimination.solution(elimination.pivot);
         }
-        let eps = T::default_epsilon();
-        let l = self.ts / p;
-        let (pivot, left) = (q - l * self.ts, b.y - l * b.x);
-        let lost = pivot <= constant::<T>(64.0) * eps * p;
-        let x = if !lost || left.abs() > constant::<T>(4096.0) * eps * p.sqrt() {
-            let y = left / if lost { larger(pivot, left * left) } else { pivot };
-            Vector2::new(b.x / p - l * y, y)
+        let left = elimination.left;
+        if left.abs() > constant::<T>(4096.0) * T::default_epsilon() * elimination.p.sqrt() {
+            elimination.solution(larger(elimination.pivot, left * left))
         } else {
-            let scale = (b.x + l * b.y) / (p * (T::one() + l * l) * (T::one() + l * l));
-            Vector2::new(scale, l * scale)
-        };
-        if swap { Vector2::new(x.y, x.x) } else { x }
+            elimination.least_squares()
+        }
     }
 
-    /// dv_n / dI_n while the tangential impulse -`hold` per I_n keeps the contact from slipping; zero where the contact cannot move along n without slip.
-    ///
-    /// The formula is such that an error of `hold` enters by its square. What remains is the rounding of the matrix entries, which counts much where `hold` is
-    /// large. A rate below that error is taken for zero; it would depend on the choice of axes.
+    /// dv_n / dI_n while the tangential impulse -`hold` per I_n keeps the contact from slipping.
     #[inline]
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
-        let pulled =
-            Vector2::new(dot(self.tt, hold.x, self.ts, hold.y), dot(self.ts, hold.x, self.ss, hold.y));
-        let left = self.b + self.b - pulled;
-        let rate = T::one() - dot(left.x, hold.x, left.y, hold.y);
-        let known = fma(self.tt + self.ss, dot(hold.x, hold.x, hold.y, hold.y), T::one());
-        if rate <= constant::<T>(32.0) * T::default_epsilon() * known { T::zero() } else { rate }
+        self.tangential().held_rate(&self.b, hold)
+    }
+
+    /// T.
+    #[inline]
+    fn tangential(&self) -> TangentialBlock<T> {
+        TangentialBlock { tt: self.tt, ts: self.ts, ss: self.ss }
     }
 
     /// The direction phi_hat of renewed sliding for mu < mu_c: (mu T + g) d = b with g > 0.
