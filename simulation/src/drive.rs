@@ -6,7 +6,7 @@ use std::sync::Arc;
 /// A function that writes the inputs for a time, coordinates and speeds.
 pub type InputFunction = Arc<dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync>;
 
-/// Computes inputs at its sampling times; it may remember. Every cloneable closure of that signature is one.
+/// A controller: computes inputs at its sampling times, and may keep a state. Every cloneable closure with this signature is one.
 pub trait Controller: Send {
     /// Writes the inputs for a time, coordinates and speeds; the slice holds the inputs so far.
     fn control(&mut self, time: f64, coordinates: &[f64], speeds: &[f64], inputs: &mut [f64]);
@@ -30,7 +30,7 @@ where
 /// Where the inputs of a mechanism come from.
 #[derive(Default)]
 pub enum Drive {
-    /// They stay as they are in the start state.
+    /// They keep their values of the start state.
     #[default]
     Held,
     /// They are a smooth function of time and state, evaluated within steps.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use hodograph::{CollisionError, ContactError, StateError};
 
-/// Why a motion cannot be followed further, when, and at which contact.
+/// Why a simulation cannot continue, with time and contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SimulationError {
     /// when, s

@@ -2,7 +2,7 @@
 
 use hodograph::{CollisionOutcome, ContactMode, Selection};
 
-/// Something that happened at one time.
+/// An event, with the state at its time.
 #[derive(Clone, Debug)]
 pub struct Event {
     /// s
@@ -25,14 +25,14 @@ pub enum EventKind {
     Collision(Box<Struck>),
     /// A sliding contact that no finite force can hold suffered an impact with zero speed of approach.
     ImpactWithoutCollision(Box<Struck>),
-    /// The bodies touch from now on.
+    /// Lasting contact begins.
     Contact {
         /// how they touch
         mode: ContactMode,
         /// whether this was the only possibility
         selection: Selection,
     },
-    /// The bodies part without a collision.
+    /// The bodies separate without a collision.
     LiftOff {
         /// whether this was the only possibility
         selection: Selection,
@@ -74,13 +74,13 @@ impl EventKind {
 /// A solved collision.
 #[derive(Clone, Debug)]
 pub struct Struck {
-    /// the solver's answer along n, t, s, and the axes
+    /// the outcome along n, t, s, and these axes
     pub outcome: CollisionOutcome<f64>,
     /// independent speeds before
     pub speeds_before: Vec<f64>,
     /// whether it was solved with e = 0 because the next bounce would be lower than the tolerance
     pub last_bounce: bool,
-    /// for the first of several contacts struck together: the greatest difference of a speed after all of them between the orders in which
-    /// they may answer; zero where the order does not matter
+    /// for the first of several contacts struck together: the greatest difference of a speed after all collisions between the orders in which
+    /// they may be solved; zero if the order does not matter
     pub spread: Option<f64>,
 }

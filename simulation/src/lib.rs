@@ -4,7 +4,28 @@
 //! follow exactly from their modes (stick, slide). Impacts are solved exactly. There is no penalty stiffness, and a sticking contact does not creep; where
 //! rigid bodies do not determine an outcome, the event says so. See `docs/contact.md`.
 //!
-//! It works for everything that implements [`hodograph::Contacts`]: generated modules, and the interpreter of the command line tool.
+//! It works for everything that implements [`hodograph::Contacts`]: generated modules, and models that the package `hodograph-interpreter` reads at run time.
+//!
+//! ```
+//! use hodograph::{Law, State, Surface};
+//! use hodograph_models::slender_rod_5dof::{Coordinates, SlenderRod5dof, Speeds};
+//! use hodograph_simulation::{Options, Progress, Simulation};
+//!
+//! let rod = SlenderRod5dof::<f64>::default();
+//! let q: [f64; 5] = Coordinates { z: 2.0, ..Coordinates::default() }.into();
+//! let u: [f64; 5] = Speeds::default().into();
+//! let start = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] };
+//! let surface = Surface { mu: 0.3, e: 0.5, law: Law::Stronge };
+//! let options = Options { surface: Some(surface), ..Options::default() };
+//!
+//! let mut simulation = Simulation::new(&rod, &start, options)?;
+//! while let Progress::Event(event) = simulation.advance(1.0)? {
+//!     println!("{} s: {}", event.time, event.kind.name());
+//! }
+//! assert_eq!(simulation.time(), 1.0);
+//! println!("{:?}", simulation.coordinates());
+//! # Ok::<(), hodograph_simulation::SimulationError>(())
+//! ```
 
 mod check;
 mod choose;

@@ -28,10 +28,10 @@ impl Phase {
     }
 }
 
-/// What a contact does at the moment, for whoever asks.
+/// The phase of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactPhase {
-    /// The bodies are apart, or leave each other.
+    /// The bodies are apart or separate.
     Open,
     /// They touch, without slip.
     Stick,

@@ -10,9 +10,9 @@ use crate::phase::{Closed, ContactPhase, Leaving, Modes, Phase};
 use crate::stepper::Step;
 use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
 
-/// A motion that is followed on demand. Clones go on independently, with the same results.
+/// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same results.
 ///
-/// Steps of the integration and the times of events do not depend on the times at which the motion is looked at.
+/// Steps of the integration and times of events do not depend on the times to which the simulation is advanced.
 #[derive(Clone)]
 pub struct Simulation<'m> {
     pub(crate) mechanism: &'m dyn Contacts<f64>,
@@ -76,12 +76,12 @@ pub enum Progress {
 }
 
 impl<'m> Simulation<'m> {
-    /// A motion that begins in a state. What touches and approaches there collides at once; what touches and does not approach is in contact.
+    /// A simulation that begins in this state. Bodies that touch and approach there collide at once; bodies that touch and do not approach are in contact.
     ///
     /// # Errors
     ///
-    /// What is wrong with the options or the state: a missing or impossible surface, a contact that begins with a negative gap, a state in which the
-    /// mechanism cannot be evaluated.
+    /// An option or the state is wrong: a surface is missing or impossible, a contact begins with a negative gap, or the mechanism cannot be evaluated in the
+    /// state.
     pub fn new(
         mechanism: &'m dyn Contacts<f64>,
         state: &State<'_>,
@@ -129,11 +129,12 @@ impl<'m> Simulation<'m> {
         Ok(simulation)
     }
 
-    /// Goes on until the next event or until a time, whichever comes first.
+    /// Advances to the next event or to the time `until` (s), whichever comes first.
     ///
     /// # Errors
     ///
-    /// Why the motion cannot be followed, with time and contact. States and events before are not lost: ask for an earlier time.
+    /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and events remain available: advance to an earlier
+    /// time.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
         loop {
             if self.queue.front().is_some_and(|event| event.time <= until)
@@ -158,11 +159,11 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Goes on to a time and returns the events on the way.
+    /// Advances to a time (s) and returns the events until then.
     ///
     /// # Errors
     ///
-    /// As [`Simulation::advance`]; the events before are in the order in which they happened, and lost: use that to keep them.
+    /// As [`Simulation::advance`]. The events before the error are lost; use [`Simulation::advance`] to keep them.
     pub fn advance_to(&mut self, time: f64) -> Result<Vec<Event>, SimulationError> {
         let mut events = Vec::new();
         loop {
@@ -189,7 +190,7 @@ impl<'m> Simulation<'m> {
         let _ = self.mechanism.normalize(&mut self.view.1[..n]);
     }
 
-    /// The time up to which the motion was looked at, s.
+    /// The time to which the simulation was advanced, s.
     pub fn time(&self) -> f64 {
         self.view.0
     }
@@ -210,8 +211,7 @@ impl<'m> Simulation<'m> {
         &self.held
     }
 
-    /// What a contact does after the events so far. It may be ahead of [`Simulation::time`] by a step of the integration in which nothing
-    /// happens.
+    /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`], by less than a step of the integration.
     pub fn phase(&self, contact: usize) -> Option<ContactPhase> {
         self.phases.get(contact).map(|phase| match phase {
             Phase::Open(_) => ContactPhase::Open,
@@ -220,11 +220,11 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// Forces (n, t, s along the contact bases) of the contacts that are closed, at [`Simulation::time`], and whether no others are possible.
+    /// Forces of the closed contacts at [`Simulation::time`], along n, t, s of their contact bases, N, and whether these forces are unique.
     ///
     /// # Errors
     ///
-    /// Where the forces cannot be evaluated.
+    /// The forces cannot be evaluated.
     pub fn contact_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
         let closed = self.closed();
         if closed.is_empty() {
@@ -239,11 +239,11 @@ impl<'m> Simulation<'m> {
         Ok((forces, self.unique))
     }
 
-    /// Where the energy went since the start, at the end of the last step.
+    /// The energy account since the start, at the end of the last step.
     ///
     /// # Errors
     ///
-    /// Where the mechanism cannot be evaluated.
+    /// The mechanism cannot be evaluated.
     pub fn energy(&self) -> Result<EnergyAccount, SimulationError> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&self.y);

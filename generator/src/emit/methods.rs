@@ -116,11 +116,11 @@ impl Emitter<'_> {
             ),
             Quantity::MassMatrix => plain(
                 "mass_matrix",
-                "Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite.",
+                "Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.",
             ),
             Quantity::Forcing => plain(
                 "forcing",
-                "Forcing, the right side of M u' = forcing: loads, and inertia terms without u'.",
+                "Forcing, the right side of M u' = forcing: loads, and inertia terms without u'. An entry times its speed is in W.",
             ),
             Quantity::Accelerations => plain(
                 "accelerations",
@@ -132,7 +132,7 @@ impl Emitter<'_> {
             ),
             Quantity::InverseDynamics => plain(
                 "inverse_dynamics",
-                "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing.",
+                "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing. An entry times its speed is in W.",
             ),
             Quantity::StateTangent => plain(
                 "state_tangent",

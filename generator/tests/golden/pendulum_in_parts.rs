@@ -424,7 +424,7 @@ pub mod pendulum_in_parts {
             }
             ::core::result::Result::Ok(Coordinates { q1: v4 })
         }
-        /// Mass matrix M of the independent speeds: M u' = forcing, symmetric and positive definite.
+        /// Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.
         #[inline]
         pub fn mass_matrix(
             &self,
@@ -436,7 +436,7 @@ pub mod pendulum_in_parts {
             let v12 = self.hoisted[0];
             ::core::result::Result::Ok(::hodograph::nalgebra::SMatrix::from([[v12]]))
         }
-        /// Forcing, the right side of M u' = forcing: loads, and inertia terms without u'.
+        /// Forcing, the right side of M u' = forcing: loads, and inertia terms without u'. An entry times its speed is in W.
         #[inline]
         pub fn forcing(
             &self,
