@@ -254,8 +254,8 @@ fn the_runtime_imports_downwards_only() {
 }
 
 #[test]
-fn no_files_of_the_tool_and_the_interpreter_import_each_other() {
-    for source in ["generator/cli/src", "generator/interpreter/src"] {
+fn no_files_of_the_tool_the_interpreter_and_the_library_of_motions_import_each_other() {
+    for source in ["generator/cli/src", "generator/interpreter/src", "simulation/src"] {
         let wrong = Imports::read(&repository().join(source)).circles();
         assert!(wrong.is_empty(), "{source}:\n{}", wrong.join("\n"));
     }
