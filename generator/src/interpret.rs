@@ -2,6 +2,7 @@
 //!
 //! Generated code consists of the same operations and computes the same bits with the same implementation of floating-point functions.
 
+pub mod columns;
 mod prepared;
 
 use std::collections::BTreeSet;
@@ -12,6 +13,8 @@ use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Guard, Inputs, Program, Quantity, Slice, VANISHING, operate};
 
+pub use columns::{Column, Columns, Table};
+use prepared::holds;
 pub use prepared::{Arguments, Constants, Failed, Prepared};
 
 /// The numbers of a quantity.
@@ -132,8 +135,7 @@ impl<'a> Evaluator<'a> {
     fn check(&self, guard: &Guard, numbers: &[(f64, f64)]) -> Result<(), Failure> {
         let value = numbers[guard.value.index()].0;
         let bound = guard.scale.map_or(0.0, |scale| VANISHING * numbers[scale.index()].0.abs());
-        // a divisor that overflows is large, and what it divides is 0
-        if value.abs() > bound || value.is_infinite() {
+        if holds(value, bound) {
             Ok(())
         } else if value.is_finite() && bound.is_finite() {
             let coordinates = self.coordinates_of(guard.value);

@@ -42,7 +42,7 @@ impl Arguments<'_> {
 /// What a program computes of parameters alone, in twice the digits and rounded once.
 #[derive(Clone, Debug)]
 pub struct Constants {
-    stages: Vec<Stage>,
+    pub(super) stages: Vec<Stage>,
     /// by the number of the value; later values are 0
     rounded: Vec<(f64, f64)>,
 }
@@ -94,7 +94,7 @@ impl Constants {
 }
 
 /// Is a value no vanishing one? A divisor that overflows is large, and what it divides is 0.
-fn holds(value: f64, bound: f64) -> bool {
+pub(super) fn holds(value: f64, bound: f64) -> bool {
     value.abs() > bound || value.is_infinite()
 }
 

@@ -84,6 +84,19 @@ pub fn near_zero(r: f64, low: f64) -> (f64, f64) {
     (sine, cosine)
 }
 
+/// Exchanges sine and cosine and changes their signs according to the quadrant, without a table: what [`sin_cos`] makes of them, for loops over many
+/// angles.
+#[inline(always)]
+pub fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
+    let odd = (turns & 1).wrapping_neg();
+    let exchanged = (sine.to_bits() ^ cosine.to_bits()) & odd;
+    let sign = |turns: u64| (turns & 2) << 62;
+    let sine = f64::from_bits(sine.to_bits() ^ exchanged ^ sign(turns));
+    let cosine = f64::from_bits(cosine.to_bits() ^ exchanged ^ sign(turns.wrapping_add(1)));
+    // one zero: the positive one
+    (sine + 0.0, cosine)
+}
+
 #[inline(always)]
 fn polynomial(coefficients: [f64; 6], z: f64) -> f64 {
     let [a, b, c, d, e, f] = coefficients;

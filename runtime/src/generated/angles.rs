@@ -2,7 +2,7 @@
 
 use core::{any::TypeId, array::from_fn, hint::black_box};
 
-use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced};
+use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced, turned};
 use nalgebra::convert;
 
 use super::arithmetic::sin_cos;
@@ -75,18 +75,6 @@ fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
 /// Compilers unroll loops of this many turns before they look for vector instructions, and then find these only up to a dozen operations before a store.
 /// Intermediate results are therefore stored, which costs less than missing vector instructions would.
 const UNROLLED: usize = 4;
-
-/// Exchanges sine and cosine and changes their signs according to the quadrant, without a table.
-#[inline(always)]
-fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
-    let odd = (turns & 1).wrapping_neg();
-    let exchanged = (sine.to_bits() ^ cosine.to_bits()) & odd;
-    let sign = |turns: u64| (turns & 2) << 62;
-    let sine = f64::from_bits(sine.to_bits() ^ exchanged ^ sign(turns));
-    let cosine = f64::from_bits(cosine.to_bits() ^ exchanged ^ sign(turns.wrapping_add(1)));
-    // one zero: the positive one
-    (sine + 0.0, cosine)
-}
 
 #[cold]
 #[inline(never)]
