@@ -16,12 +16,17 @@ use hodograph_generator::program::{ContactQuantity, Quantity, Structure};
 use crate::InterpretedMechanism;
 use crate::routines::{CLOSED, COLLISION, OfContact, Request};
 
+/// Without these a contact has no collision.
+pub const COLLISION_NEEDS: &[ContactQuantity] = COLLISION.split_at(6).0;
+/// What is undefined then.
+pub const NO_COLLISION: &str = "collision of this contact";
+
 /// Normal, first, second, velocity and reduced matrix.
 const CORE: usize = 3 + 3 + 3 + 3 + 6;
 
 impl InterpretedMechanism {
     /// How many numbers the program has for a quantity of a contact.
-    fn size(&self, contact: usize, quantity: ContactQuantity) -> usize {
+    pub(crate) fn size(&self, contact: usize, quantity: ContactQuantity) -> usize {
         self.program()
             .output(Quantity::Contact(contact as u32, quantity))
             .map_or(0, |output| output.values.len())
@@ -123,11 +128,32 @@ impl InterpretedMechanism {
         what: &'static str,
         resolve: impl FnOnce(&Contact<f64>) -> Result<Resolved<f64>, ImpactError<f64>>,
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
-        let numbers = self.numbers(contact, OfContact::Collision, &COLLISION[..6], state, what)?;
-        let known = self.known(contact, &numbers);
-        let hit = resolve(&known)?;
+        let numbers = self.numbers(contact, OfContact::Collision, COLLISION_NEEDS, state, what)?;
         check_length(speeds, state.speeds.len(), "the speeds after the collision")?;
         speeds.iter_mut().zip(state.speeds).for_each(|(after, &before)| *after = before);
+        Ok(self.outcome(contact, &numbers, speeds, resolve)?)
+    }
+
+    /// The collision of a contact of which `numbers` are those of `COLLISION`. `speeds` are those before it and become those after it.
+    pub(crate) fn struck_by_numbers(
+        &self,
+        contact: usize,
+        numbers: &[f64],
+        surface: &Surface<f64>,
+        speeds: &mut [f64],
+    ) -> Result<CollisionOutcome<f64>, ImpactError<f64>> {
+        self.outcome(contact, numbers, speeds, |known| self.resolve(contact, known, surface))
+    }
+
+    fn outcome(
+        &self,
+        contact: usize,
+        numbers: &[f64],
+        speeds: &mut [f64],
+        resolve: impl FnOnce(&Contact<f64>) -> Result<Resolved<f64>, ImpactError<f64>>,
+    ) -> Result<CollisionOutcome<f64>, ImpactError<f64>> {
+        let known = self.known(contact, numbers);
+        let hit = resolve(&known)?;
         let response = CORE + self.size(contact, ContactQuantity::Response);
         self.after(contact, speeds, numbers.get(CORE..response).unwrap_or(&[]), hit.impulse.into());
         Ok(CollisionOutcome {
@@ -247,8 +273,7 @@ impl Contacts for InterpretedMechanism {
         surface: &Surface<f64>,
         speeds: &mut [f64],
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
-        let what = "collision of this contact";
-        self.struck(contact, state, speeds, what, |known| self.resolve(contact, known, surface))
+        self.struck(contact, state, speeds, NO_COLLISION, |known| self.resolve(contact, known, surface))
     }
 
     fn impact_without_collision(

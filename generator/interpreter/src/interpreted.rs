@@ -5,13 +5,12 @@ use std::sync::Arc;
 
 use hodograph::generated::check_length;
 use hodograph::{ParameterError, State, StateError};
-use hodograph_generator::interpret::{Arguments, Constants, Failed};
+use hodograph_generator::interpret::{Arguments, Constants};
 use hodograph_generator::model::mechanism::{self, Mechanism, Orientation};
 use hodograph_generator::program::Program;
 use hodograph_generator::source::Source;
 use hodograph_generator::{artifact, check, emit, reading, rendering};
 
-use crate::intern::intern;
 use crate::routines::{Request, Routines};
 use crate::{Error, parameters};
 
@@ -114,6 +113,11 @@ impl InterpretedMechanism {
         &self.program
     }
 
+    /// What the equations compute of the parameters alone.
+    pub fn constants(&self) -> &Constants {
+        &self.constants
+    }
+
     /// All parameters in file order, `fixed` ones too.
     pub fn all_parameters(&self) -> &[f64] {
         &self.parameters
@@ -164,13 +168,7 @@ impl InterpretedMechanism {
             tangent: &[],
         };
         let prepared = self.routines.get(request, &self.program, &self.constants);
-        prepared.evaluate(&arguments, with).map_err(|failed| match failed {
-            Failed::Singular(guard) => {
-                let message = self.program.guards.get(guard).map_or("", |guard| guard.message.as_str());
-                StateError::Singular { what: intern(message) }
-            }
-            Failed::NotFinite => StateError::NotFinite,
-        })
+        prepared.evaluate(&arguments, with).map_err(|failed| self.state_error(failed))
     }
 
     /// Does the program have what is requested?

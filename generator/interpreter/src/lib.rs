@@ -4,6 +4,8 @@
 //! Its numbers have the same bits as those of the generated module. So a program that works on many models, or is called from another language, needs no
 //! compiler.
 //!
+//! [`columns`] evaluates many states at once.
+//!
 //! ```no_run
 //! use hodograph::{Kind, Mechanism};
 //! use hodograph_interpreter::InterpretedMechanism;
@@ -13,6 +15,7 @@
 //! # Ok::<(), hodograph_interpreter::Error>(())
 //! ```
 
+pub mod columns;
 mod contacts;
 mod error;
 mod intern;

@@ -91,7 +91,8 @@ pub enum Request {
 }
 
 impl Request {
-    fn quantities(self) -> Vec<Quantity> {
+    /// What is asked for, in order.
+    pub fn quantities(self) -> Vec<Quantity> {
         match self {
             Request::Whole(quantity) => vec![quantity],
             Request::Point(point, quantity) => vec![Quantity::Point(point as u32, quantity)],
