@@ -14,7 +14,7 @@ use crate::plot::svg::escaped;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
-/// A page holds about so many moments at most; of more, every second or third .. is kept, and those of events.
+/// A page holds this many instants at most, about; of more, every second or third .. is kept, and those of events.
 const MOMENTS: usize = 6000;
 
 /// What is to be seen. Lengths are in metres along N.x, N.y, N.z.
@@ -60,7 +60,7 @@ pub struct Frame {
     pub axes: Vec<[[f64; 3]; 3]>,
 }
 
-/// Something that happens at a moment.
+/// An event at one instant.
 #[derive(Clone, Debug, Serialize)]
 pub struct Event {
     /// s

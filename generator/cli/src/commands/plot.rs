@@ -73,7 +73,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     for failure in traces.iter().flat_map(|trace| &trace.failures) {
         output::say(format_args!("note: {failure}"));
     }
-    if traces.iter().all(|trace| trace.moments.is_empty()) {
+    if traces.iter().all(|trace| trace.samples.is_empty()) {
         return Err(Stop::Fault("there is nothing to draw: no collision has an outcome".to_owned()));
     }
     let figure = figure(&title, &traces);

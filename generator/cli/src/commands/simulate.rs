@@ -2,10 +2,10 @@
 
 mod curves;
 mod expression;
-mod film;
 mod gap;
 mod inputs;
 mod lines;
+mod recording;
 mod surfaces;
 
 use std::io::IsTerminal;
@@ -18,8 +18,8 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Options, Progress, Simulation, SimulationError, Together};
 
 use self::curves::Curves;
-use self::film::Film;
 use self::lines::{Format, Lines};
+use self::recording::Recording;
 use self::surfaces::MotionSurfaces;
 use crate::derivation::{self, Limits};
 use crate::json::state::State;
@@ -136,15 +136,15 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let mut lines = Lines::new(&mechanism, arguments.format)?;
     let mut shown = Shown {
         curves: arguments.plot.as_ref().map(|_| Curves::new(&mechanism)),
-        film: arguments.html.as_ref().map(|_| Film::new(&mechanism, &state)),
+        recording: arguments.html.as_ref().map(|_| Recording::new(&mechanism, &state)),
     };
     let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut shown);
     // What was seen before the motion ended is worth seeing, above all where it ended with an error.
     if let (Some(curves), Some(path)) = (shown.curves, &arguments.plot) {
         curves.save(path)?;
     }
-    if let (Some(film), Some(path)) = (shown.film, &arguments.html) {
-        film.save(path)?;
+    if let (Some(recording), Some(path)) = (shown.recording, &arguments.html) {
+        recording.save(path)?;
     }
     done
 }
@@ -152,7 +152,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// What is kept of a motion for figures and pages.
 struct Shown<'m> {
     curves: Option<Curves<'m>>,
-    film: Option<Film<'m>>,
+    recording: Option<Recording<'m>>,
 }
 
 impl Shown<'_> {
@@ -160,8 +160,8 @@ impl Shown<'_> {
         if let Some(curves) = &mut self.curves {
             curves.add(simulation);
         }
-        if let Some(film) = &mut self.film {
-            film.add(simulation);
+        if let Some(recording) = &mut self.recording {
+            recording.add(simulation);
         }
     }
 }
@@ -184,8 +184,8 @@ fn follow(
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
             lines.event(&event)?;
             shown.add(&simulation);
-            if let Some(film) = &mut shown.film {
-                film.event(&event);
+            if let Some(recording) = &mut shown.recording {
+                recording.event(&event);
             }
         }
         if end > state.time {

@@ -1,7 +1,7 @@
 //! Evaluates a model in a state: all numbers that `eval` writes.
 
+pub mod assembly;
 pub mod collision;
-pub mod complete;
 pub mod contact;
 pub mod report;
 
@@ -142,8 +142,8 @@ impl Machine {
         };
         self.check_bodies(&state)?;
         self.check_quaternions(&state)?;
-        complete::complete(self, &mut state)?;
-        complete::check_loops(self, &state)?;
+        assembly::assemble(self, &mut state)?;
+        assembly::check_loops(self, &state)?;
         Ok(state)
     }
 

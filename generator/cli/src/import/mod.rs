@@ -4,14 +4,14 @@
 //! URDF -> document  the XML, places of its elements, what is not used
 //!               and its attributes, checked
 //!      -> tree      links and joints as a tree, checked
-//!      -> lumps     links that are fixed to a moving link become part of it
+//!      -> bodies    links that are fixed to a moving link become part of it
 //!      -> text      the model
 //! ```
 
 mod attributes;
 mod document;
+mod fixed_links;
 mod lines;
-mod lump;
 mod names;
 mod text;
 mod tree;
@@ -49,7 +49,7 @@ pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, V
     let document = document::read(source, file, &mut notes)?;
     let mut tree = tree::grow(&document, &mut notes)?;
     tree.choose_base(options.floating, &mut notes);
-    let groups = lump::lump(&tree, &document, &mut notes)?;
+    let groups = fixed_links::combined(&tree, &document, &mut notes)?;
     let model = text::write(&tree, &groups, &document, options, &mut notes)?;
     Ok(Imported { model, notes })
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::Options;
 use super::document::Robot;
-use super::lump::{Groups, across};
+use super::fixed_links::{Groups, across};
 use super::names::{Names, mechanism};
 use super::tree::{Joint, Motion, Tree};
 
@@ -269,7 +269,7 @@ impl Writer<'_> {
     fn body(&mut self, here: usize) {
         let index = self.groups.of_link[here];
         let group = &self.groups.groups[index];
-        let Some(lump) = group.lump.as_ref().filter(|_| group.link == here) else { return };
+        let Some(properties) = group.properties.as_ref().filter(|_| group.link == here) else { return };
         let link = &self.tree.links[here];
         let Called { axes, origin } = self.called[here].clone();
         let name = self.names.give(&link.name);
@@ -279,13 +279,14 @@ impl Writer<'_> {
                 group.fixed.iter().map(|&other| format!("`{}`", self.tree.links[other].name)).collect();
             docs = format!("{docs} with {}", fixed.join(", "));
         }
-        let mass = self.parameter(&format!("m_{}", link.name), "kg", lump.mass, &format!("mass of {docs}"));
-        let centre = match self.offset(["cx", "cy", "cz"], &link.name, &lump.centre, &axes) {
+        let mass =
+            self.parameter(&format!("m_{}", link.name), "kg", properties.mass, &format!("mass of {docs}"));
+        let centre = match self.offset(["cx", "cy", "cz"], &link.name, &properties.centre, &axes) {
             None => origin,
             Some(offset) => self.point(&format!("{}_centre", link.name), &origin, &offset),
         };
         self.bodies[index] = Some(name.clone());
-        let i = &lump.inertia;
+        let i = &properties.inertia;
         if i.iter().all(|&number| number == 0.0) {
             self.out.particles.push(format!("/// {docs}\n    {name} {{ point: {centre}, mass: {mass} }},"));
             return;
@@ -320,8 +321,8 @@ impl Writer<'_> {
             return;
         }
         let origin = self.called[here].origin.clone();
-        let of = match (&self.bodies[group], &self.groups.groups[group].lump) {
-            (Some(body), Some(lump)) if lump.inertia.amax() > 0.0 => format!(" of {body}"),
+        let of = match (&self.bodies[group], &self.groups.groups[group].properties) {
+            (Some(body), Some(properties)) if properties.inertia.amax() > 0.0 => format!(" of {body}"),
             _ => String::new(),
         };
         let name = self.names.give(&format!("contact_{wanted}"));

@@ -2,14 +2,14 @@
 
 use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};
 use super::label::Label;
-use super::trace::{Moment, Trace};
+use super::trace::{Sample, Trace};
 use crate::surface::LAWS;
 
 /// The marks of where the laws end a collision, in the order of [`LAWS`].
 const SIGNS: [Sign; 3] = [Sign::Circle, Sign::Cross, Sign::Square];
 
-/// What a panel shows of a moment.
-type Pick = fn(&Moment) -> [f64; 2];
+/// What a panel shows of a sample.
+type Pick = fn(&Sample) -> [f64; 2];
 
 /// The figure of collisions that differ in friction.
 pub fn figure(title: &str, traces: &[Trace]) -> Figure {
@@ -17,13 +17,13 @@ pub fn figure(title: &str, traces: &[Trace]) -> Figure {
     let impulse = || Axis::new(Label::symbol("I", "n"), "N\u{b7}s");
     let slip = Axis::new(Label::words("speed of slip ").with("s", ""), "m/s");
     let panels: [(&str, Panel, Pick); 3] = [
-        ("hodograph of slip", Panel::new(velocity("t"), velocity("s")), |moment| {
-            [moment.velocity[1], moment.velocity[2]]
+        ("hodograph of slip", Panel::new(velocity("t"), velocity("s")), |sample| {
+            [sample.velocity[1], sample.velocity[2]]
         }),
-        ("normal velocity", Panel::new(impulse(), velocity("n")), |moment| {
-            [moment.impulse, moment.velocity[0]]
+        ("normal velocity", Panel::new(impulse(), velocity("n")), |sample| {
+            [sample.impulse, sample.velocity[0]]
         }),
-        ("slip", Panel::new(impulse(), slip), |moment| [moment.impulse, moment.slip()]),
+        ("slip", Panel::new(impulse(), slip), |sample| [sample.impulse, sample.slip()]),
     ];
     let empty =
         Figure { columns: 3, panel_size: [410.0, 400.0], legend: Legend::Below, ..Figure::new(title) };
@@ -37,8 +37,8 @@ pub fn figure(title: &str, traces: &[Trace]) -> Figure {
 
 fn fill(panel: &mut Panel, traces: &[Trace], pick: Pick) {
     for (index, trace) in traces.iter().enumerate() {
-        let Some(first) = trace.moments.first() else { continue };
-        let points = trace.moments.iter().map(pick).collect();
+        let Some(first) = trace.samples.first() else { continue };
+        let points = trace.samples.iter().map(pick).collect();
         let label = Label::symbol("\u{3bc}", "").then(&format!(" = {}", trace.mu));
         panel.series.push(Series { directed: true, ..Series::new(label, index, points) });
         let start = Label::words("approach");

@@ -4,25 +4,25 @@ use hodograph::{Hodograph, ReducedMatrix, Surface};
 
 use crate::surface::LAWS;
 
-/// A moment of a collision.
+/// A sample of a collision.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct Sample {
     /// normal impulse so far, N s
     pub impulse: f64,
     /// v_n, v_t, v_s, m/s
     pub velocity: [f64; 3],
 }
 
-impl Moment {
+impl Sample {
     /// The speed of slip.
     pub fn slip(&self) -> f64 {
         self.velocity[1].hypot(self.velocity[2])
     }
 }
 
-impl From<hodograph::Snapshot<f64>> for Moment {
+impl From<hodograph::Snapshot<f64>> for Sample {
     fn from(snapshot: hodograph::Snapshot<f64>) -> Self {
-        Moment { impulse: snapshot.impulse.x, velocity: snapshot.velocity.into() }
+        Sample { impulse: snapshot.impulse.x, velocity: snapshot.velocity.into() }
     }
 }
 
@@ -32,15 +32,15 @@ pub struct Trace {
     /// coefficient of friction
     pub mu: f64,
     /// from approach to the latest end
-    pub moments: Vec<Moment>,
+    pub samples: Vec<Sample>,
     /// where each law ends, in the order of [`LAWS`]; `None`: it has no outcome
-    pub ends: [Option<Moment>; 3],
+    pub ends: [Option<Sample>; 3],
     /// why a law has no outcome
     pub failures: Vec<String>,
 }
 
-/// Moments while slip lasts, and in all if it lasts to the end.
-const MOMENTS: usize = 400;
+/// Samples while slip lasts, and in all if it lasts to the end.
+const SAMPLES: usize = 400;
 
 /// Follows a collision to the latest of its ends.
 pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Trace {
@@ -58,23 +58,23 @@ pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Tra
             Err(error) => failures.push(format!("mu = {mu}, {name}: {error}")),
         }
     }
-    let moments = longest.as_ref().map_or(Vec::new(), course);
-    Trace { mu, moments, ends, failures }
+    let samples = longest.as_ref().map_or(Vec::new(), course);
+    Trace { mu, samples, ends, failures }
 }
 
-fn course(hodograph: &Hodograph<f64>) -> Vec<Moment> {
+fn course(hodograph: &Hodograph<f64>) -> Vec<Sample> {
     let all = hodograph.normal_impulse();
-    let stop = hodograph.impact().phases.slip_end.map_or(all, |moment| moment.impulse.x);
+    let stop = hodograph.impact().phases.slip_end.map_or(all, |sample| sample.impulse.x);
     // Slip turns most where it is about to stop: the steps get smaller towards there. What follows is a straight line.
-    let arc = (0..=MOMENTS).map(|index| {
-        let left = 1.0 - index as f64 / MOMENTS as f64;
+    let arc = (0..=SAMPLES).map(|index| {
+        let left = 1.0 - index as f64 / SAMPLES as f64;
         hodograph.at(stop * (1.0 - left * left))
     });
-    let mut moments: Vec<Moment> = arc.map(Moment::from).collect();
+    let mut samples: Vec<Sample> = arc.map(Sample::from).collect();
     if stop < all {
-        moments.push(hodograph.at(all).into());
+        samples.push(hodograph.at(all).into());
     }
-    moments
+    samples
 }
 
 #[cfg(test)]
@@ -90,17 +90,17 @@ mod tests {
         for mu in [0.6, 1.1, 1.6] {
             let trace = trace(&M.into(), V, mu, 0.8);
             assert!(trace.failures.is_empty());
-            assert_eq!(trace.moments[0].velocity, V);
-            assert_eq!(trace.moments.last(), trace.ends[0].as_ref(), "Newton's is the longest");
-            assert!(trace.moments.windows(2).all(|pair| pair[0].impulse < pair[1].impulse));
+            assert_eq!(trace.samples[0].velocity, V);
+            assert_eq!(trace.samples.last(), trace.ends[0].as_ref(), "Newton's is the longest");
+            assert!(trace.samples.windows(2).all(|pair| pair[0].impulse < pair[1].impulse));
             // Slip stops exactly where it does.
-            assert_eq!(trace.moments.iter().any(|moment| moment.slip() == 0.0), mu > 1.0);
+            assert_eq!(trace.samples.iter().any(|sample| sample.slip() == 0.0), mu > 1.0);
             // No corner that is not there: neighbours are close.
             assert!(
                 trace
-                    .moments
+                    .samples
                     .windows(2)
-                    .take(MOMENTS)
+                    .take(SAMPLES)
                     .all(|pair| (0..3).all(|i| (pair[0].velocity[i] - pair[1].velocity[i]).abs() < 0.02))
             );
         }

@@ -23,7 +23,7 @@ const STEPS: usize = 200;
 /// # Errors
 ///
 /// `inconsistent_state` with the residual; `singular_state`.
-pub fn complete(machine: &Machine, state: &mut State) -> Result<(), Failure> {
+pub fn assemble(machine: &Machine, state: &mut State) -> Result<(), Failure> {
     let dependent: Vec<usize> = machine
         .mechanism
         .coordinates

@@ -7,7 +7,7 @@ use super::tree::{Motion, Tree};
 
 /// The inertia of a body.
 #[derive(Clone, Debug)]
-pub struct Lump {
+pub struct MassProperties {
     /// kg
     pub mass: f64,
     /// mass centre in the axes of the link, from its origin, m
@@ -16,7 +16,7 @@ pub struct Lump {
     pub inertia: Matrix3<f64>,
 }
 
-impl Lump {
+impl MassProperties {
     /// Why no body can have this inertia.
     fn fault(&self) -> Option<String> {
         if self.mass <= 0.0 {
@@ -53,7 +53,7 @@ pub struct Group {
     /// the links fixed to it
     pub fixed: Vec<usize>,
     /// its inertia; `None`: it has none, or is the ground
-    pub lump: Option<Lump>,
+    pub properties: Option<MassProperties>,
     /// is it the ground?
     pub ground: bool,
 }
@@ -90,12 +90,12 @@ pub fn turned(rpy: &Vector3<f64>) -> Matrix3<f64> {
 /// # Errors
 ///
 /// Inertias that no body can have, and links that would move without inertia.
-pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Groups, Vec<String>> {
+pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Groups, Vec<String>> {
     let mut problems = Vec::new();
     let mut groups: Vec<Group> = Vec::new();
     let mut of_link = Vec::new();
     let mut poses: Vec<(Matrix3<f64>, Vector3<f64>)> = Vec::new();
-    let mut parts: Vec<Vec<Lump>> = Vec::new();
+    let mut parts: Vec<Vec<MassProperties>> = Vec::new();
     let mut faulty: Vec<bool> = Vec::new();
     for (here, link) in tree.links.iter().enumerate() {
         let fixed_to = match link.joint.motion {
@@ -111,7 +111,7 @@ pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Gr
             }
             None => {
                 let ground = link.joint.motion == Motion::Fixed;
-                groups.push(Group { link: here, fixed: Vec::new(), lump: None, ground });
+                groups.push(Group { link: here, fixed: Vec::new(), properties: None, ground });
                 parts.push(Vec::new());
                 faulty.push(false);
                 (groups.len() - 1, (Matrix3::identity(), Vector3::zeros()))
@@ -134,24 +134,29 @@ pub fn lump(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Result<Gr
         }
     }
     for (group, parts) in groups.iter_mut().zip(&parts) {
-        group.lump = joined(parts);
+        group.properties = joined(parts);
     }
-    let largest =
-        groups.iter().flat_map(|group| &group.lump).map(|lump| lump.inertia.amax()).fold(0.0, f64::max);
+    let largest = groups
+        .iter()
+        .flat_map(|group| &group.properties)
+        .map(|properties| properties.inertia.amax())
+        .fold(0.0, f64::max);
     for group in &mut groups {
         // Rounding that an exporter left where there is none.
-        if let Some(lump) = group.lump.as_mut().filter(|lump| lump.inertia.amax() <= 1e-12 * largest) {
-            lump.inertia = Matrix3::zeros();
+        if let Some(properties) =
+            group.properties.as_mut().filter(|properties| properties.inertia.amax() <= 1e-12 * largest)
+        {
+            properties.inertia = Matrix3::zeros();
         }
         // Files have odd numbers for small fixed parts; what counts is the body that they are part of.
-        if let Some(fault) = group.lump.as_ref().and_then(Lump::fault) {
+        if let Some(fault) = group.properties.as_ref().and_then(MassProperties::fault) {
             let link = &tree.links[group.link];
             let with = if group.fixed.is_empty() { "" } else { " with what is fixed to it" };
             problems.push(format!("{}: link `{}`{with}: {fault}", document.link(link.index), link.name));
         }
     }
     for (index, group) in groups.iter().enumerate() {
-        if group.lump.is_some() || group.ground || faulty[index] {
+        if group.properties.is_some() || group.ground || faulty[index] {
             continue;
         }
         let link = &tree.links[group.link];
@@ -181,7 +186,7 @@ fn read_inertial(
     document: &Robot,
     notes: &mut Vec<String>,
     problems: &mut Vec<String>,
-) -> Option<Lump> {
+) -> Option<MassProperties> {
     let link = &tree.links[here];
     if !document.has_inertial(link.index) {
         return None;
@@ -204,12 +209,12 @@ fn read_inertial(
         return None;
     }
     let turn = turned(&rpy);
-    Some(Lump { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
+    Some(MassProperties { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
 }
 
 /// The inertia in the axes of the group.
-fn carried(part: &Lump, (axes, origin): &(Matrix3<f64>, Vector3<f64>)) -> Lump {
-    Lump {
+fn carried(part: &MassProperties, (axes, origin): &(Matrix3<f64>, Vector3<f64>)) -> MassProperties {
+    MassProperties {
         mass: part.mass,
         centre: origin + axes * part.centre,
         inertia: symmetric(axes * part.inertia * axes.transpose()),
@@ -217,7 +222,7 @@ fn carried(part: &Lump, (axes, origin): &(Matrix3<f64>, Vector3<f64>)) -> Lump {
 }
 
 /// All parts as one body, by the parallel-axis theorem.
-fn joined(parts: &[Lump]) -> Option<Lump> {
+fn joined(parts: &[MassProperties]) -> Option<MassProperties> {
     if let [only] = parts {
         return Some(only.clone());
     }
@@ -236,7 +241,7 @@ fn joined(parts: &[Lump]) -> Option<Lump> {
             part.inertia + (Matrix3::identity() * arm.norm_squared() - arm * arm.transpose()) * part.mass
         })
         .sum();
-    Some(Lump { mass, centre, inertia: symmetric(inertia) })
+    Some(MassProperties { mass, centre, inertia: symmetric(inertia) })
 }
 
 fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {

@@ -17,7 +17,7 @@ use crate::output;
 use crate::stop::Outcome;
 
 /// A motion as it will be shown.
-pub struct Film<'m> {
+pub struct Recording<'m> {
     mechanism: &'m InterpretedMechanism,
     shown: Animation,
     /// kinetic, potential and total energy, J
@@ -27,7 +27,7 @@ pub struct Film<'m> {
     pressures: Vec<Vec<f64>>,
 }
 
-impl<'m> Film<'m> {
+impl<'m> Recording<'m> {
     /// Nothing yet, of a motion from a state.
     pub fn new(mechanism: &'m InterpretedMechanism, state: &State) -> Self {
         let model = mechanism.model();
@@ -73,7 +73,7 @@ impl<'m> Film<'m> {
             ..Animation::default()
         };
         let none = || vec![Vec::new(); mechanism.count(Of::Contact)];
-        Film { mechanism, shown, energies: [const { Vec::new() }; 3], gaps: none(), pressures: none() }
+        Recording { mechanism, shown, energies: [const { Vec::new() }; 3], gaps: none(), pressures: none() }
     }
 
     /// The state of a simulation.
