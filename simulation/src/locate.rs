@@ -85,9 +85,13 @@ impl Chebyshev {
     fn first_below(&self, low: f64, high: f64, noise: f64, depth: usize) -> Option<f64> {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let (value, slope) = self.at(middle);
-        let least = value - slope.abs() * half - 0.5 * self.bend * half * half;
-        if least > -noise {
+        let reach = slope.abs() * half + 0.5 * self.bend * half * half;
+        if value - reach >= -noise {
             return None;
+        }
+        if reach <= f64::EPSILON * self.size() {
+            // It changes no more: a function that is zero all the time is not halved for ever.
+            return (value < -noise).then_some(low);
         }
         let monotone = slope.abs() > self.bend * half;
         if monotone || depth == 0 || half < 1e-13 {
@@ -288,6 +292,18 @@ mod tests {
         // As rough as it is large.
         let (_, count) = evaluated(&|x| Some(1.0001 + (1e9 * x).sin()));
         assert!(count <= MOST, "{count}");
+    }
+
+    /// A force that is zero as long as the contact lasts, exactly or but for rounding, neither crosses nor costs more than a few halvings.
+    #[test]
+    fn functions_that_stay_zero_are_not_halved_for_ever() {
+        assert!(first(|_| 0.0).is_none());
+        assert!(first(|x| 1e-30 * x * (1.0 - x)).is_none());
+        for k in 0..60 {
+            let tiny = 1e-16 * f64::from(k).exp2();
+            let _ = first(|x| tiny * (1e5 * x).sin());
+            let _ = first_crossing(1, &[1.0], &mut |x| Some(vec![tiny * (20.0 * x).sin() - 1.0]));
+        }
     }
 
     #[test]

@@ -80,8 +80,8 @@ impl<'m> Simulation<'m> {
     ///
     /// # Errors
     ///
-    /// An option or the state is wrong: a surface is missing or impossible, a contact begins with a negative gap, or the mechanism cannot be evaluated in the
-    /// state.
+    /// An option or the state is wrong: a surface is missing or impossible, a contact begins with a negative gap, the mechanism cannot be evaluated in the
+    /// state, or the first sample of the inputs is not finite.
     pub fn new(
         mechanism: &'m dyn Contacts<f64>,
         state: &State<'_>,
@@ -124,6 +124,8 @@ impl<'m> Simulation<'m> {
             options,
         };
         simulation.check(state)?;
+        // The inputs of the first sample decide what contacts do at the start.
+        simulation.sample()?;
         simulation.begin()?;
         simulation.view = (simulation.t, simulation.y.clone());
         Ok(simulation)
@@ -134,8 +136,13 @@ impl<'m> Simulation<'m> {
     /// # Errors
     ///
     /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and events remain available: advance to an earlier
-    /// time.
+    /// time. A time that is not finite is refused, and nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
+        if until.is_nan() || until == f64::INFINITY {
+            return Err(
+                self.error(None, Reason::Option(format!("the time asked for is {until}: it must be finite")))
+            );
+        }
         loop {
             if self.queue.front().is_some_and(|event| event.time <= until)
                 && let Some(event) = self.queue.pop_front()

@@ -30,7 +30,12 @@ fn a_tumbling_box_comes_to_rest_on_a_face() {
     let mut failures = Vec::new();
     for seed in count.clone() {
         match tumble(seed) {
-            Ok(figures) => all.push(figures),
+            Ok(figures) => {
+                if count.end - count.start > 5 {
+                    println!("start {seed}: {} events, account {:.1e}", figures.events, figures.account);
+                }
+                all.push(figures);
+            }
             Err(message) => failures.push(format!("start {seed}: {message}")),
         }
     }
