@@ -1,0 +1,80 @@
+//! What generated modules answer, bit by bit, for the tests of the wheel: lines of `model routine row bits..`; states come first.
+
+use hodograph::{Contacts, Kind, Law, State, Surface};
+
+macro_rules! models {
+    ($($module:ident::$name:ident),* $(,)?) => {
+        vec![$((stringify!($module), Box::new(hodograph_models::$module::$name::<f64>::default()) as Box<dyn Contacts>)),*]
+    };
+}
+
+fn models() -> Vec<(&'static str, Box<dyn Contacts>)> {
+    models![
+        arm_7dof::Arm7dof,
+        ball_joint_body::BallJointBody,
+        ball_on_turntable::BallOnTurntable,
+        cart_5_link::Cart5Link,
+        chaplygin_sleigh::ChaplyginSleigh,
+        driven_rotary_pendulum::DrivenRotaryPendulum,
+        five_bar::FiveBar,
+        four_bar::FourBar,
+        free_box_corner::FreeBoxCorner,
+        free_box_quaternion::FreeBoxQuaternion,
+        planar_double_pendulum::PlanarDoublePendulum,
+        planar_triple_pendulum::PlanarTriplePendulum,
+        puma_560::Puma560,
+        rattleback::Rattleback,
+        rolling_disc::RollingDisc,
+        shaken_pendulum_moving_plate::ShakenPendulumMovingPlate,
+        slender_rod_5dof::SlenderRod5dof,
+        slider_crank::SliderCrank,
+        spherical_pendulum::SphericalPendulum,
+        spring_damper_cart_rod::SpringDamperCartRod,
+        stanford_arm::StanfordArm,
+        two_sleds::TwoSleds,
+        two_sleds_planar::TwoSledsPlanar,
+        whipple_bicycle::WhippleBicycle,
+    ]
+}
+
+fn line(model: &str, routine: &str, row: usize, numbers: &[f64]) {
+    let bits: Vec<String> = numbers.iter().map(|number| format!("{:016x}", number.to_bits())).collect();
+    println!("{model} {routine} {row} {}", bits.join(" "));
+}
+
+/// A number between -1 and 1.
+fn number(row: usize, index: usize) -> f64 {
+    ((row * 71 + index * 13 + 5) as f64 * 0.618_033_988_749_895).fract() * 2.0 - 1.0
+}
+
+fn main() {
+    for (model, m) in models() {
+        let [n, p, w] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| m.count(kind));
+        let (mut q0, mut u0, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
+        m.initial_state(&mut q0, &mut u0, &mut inputs).expect("an initial state");
+        for row in 0..40 {
+            let q: Vec<f64> = (0..n).map(|index| q0[index] + 0.2 * number(row, index)).collect();
+            let u: Vec<f64> = (0..p).map(|index| u0[index] + 2.0 * number(row, index + 100)).collect();
+            let inputs: Vec<f64> = (0..w).map(|index| number(row, index + 200)).collect();
+            let state = State { time: 0.1 * row as f64, coordinates: &q, speeds: &u, inputs: &inputs };
+            line(model, "q", row, &q);
+            line(model, "u", row, &u);
+            line(model, "inputs", row, &inputs);
+            let answer = |routine: &str, size: usize, write: &dyn Fn(&mut [f64]) -> bool| {
+                let mut numbers = vec![0.0; size];
+                if write(&mut numbers) {
+                    line(model, routine, row, &numbers);
+                }
+            };
+            answer("accelerations", p, &|x| m.accelerations(&state, x).is_ok());
+            answer("mass_matrix", p * p, &|x| m.mass_matrix(&state, x).is_ok());
+            answer("forcing", p, &|x| m.forcing(&state, x).is_ok());
+            answer("coordinate_rates", n, &|x| m.coordinate_rates(&state, x).is_ok());
+            answer("inverse_dynamics", p, &|x| m.inverse_dynamics(&state, &u, x).is_ok());
+            for contact in 0..m.count(Kind::Contact) {
+                let surface = Surface { mu: 0.1 * (row % 8) as f64, e: 0.7, law: Law::Stronge };
+                answer(&format!("collide{contact}"), p, &|x| m.collide(contact, &state, &surface, x).is_ok());
+            }
+        }
+    }
+}

@@ -1,0 +1,259 @@
+"""Mechanisms."""
+
+from __future__ import annotations
+
+import html
+from typing import NamedTuple, Optional
+
+import numpy as np
+
+from . import hodograph_native as _native
+from .errors import ArgumentError, HodographError
+from .results import Collision, Simulation
+
+
+class Quantity(NamedTuple):
+    """A quantity of a model: its name, its unit ('1' without one) and its value or initial value."""
+
+    name: str
+    unit: str
+    value: Optional[float]
+
+
+class Derivatives(NamedTuple):
+    """A value (p,) with its derivatives by independent coordinates, independent speeds and inputs, each (p, k)."""
+
+    value: np.ndarray
+    by_coordinates: np.ndarray
+    by_speeds: np.ndarray
+    by_inputs: np.ndarray
+
+
+class Linearisation(NamedTuple):
+    """x' = a x + b w for small deviations; x: independent coordinates, then independent speeds; w: inputs."""
+
+    a: np.ndarray
+    b: np.ndarray
+
+
+class Contact(NamedTuple):
+    """A contact in a state: unit vectors along N.x, N.y, N.z; the rest along normal, first, second (1/kg, m/s, m, m/s^2)."""
+
+    normal: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+    velocity: np.ndarray
+    reduced: np.ndarray
+    gap: Optional[np.ndarray]
+    partial_velocities: np.ndarray
+    response: np.ndarray
+
+
+class Mechanism(_native.Mechanism):
+    """A mechanism with its equations. See :func:`hodograph.load`; :meth:`with_parameters` gives one with other parameters.
+
+    Every method takes ``q`` (n,), ``u`` (p,), ``inputs`` (w,), ``time`` (s), or many of them, (k, n) and so on; arrays of one state serve all others.
+    States without an answer raise :class:`StateError`; with ``errors='nan'`` their answers are NaN.
+    """
+
+    __slots__ = ()
+
+    parameters = property(lambda self: self._quantities("parameters"), doc="Parameters that can be changed.")
+    coordinates = property(lambda self: self._quantities("coordinates"), doc="Coordinates, with initial values.")
+    speeds = property(lambda self: self._quantities("speeds"), doc="Independent speeds, with initial values.")
+    dependent_speeds = property(lambda self: self._quantities("dependent_speeds"), doc="Dependent speeds.")
+    inputs = property(lambda self: self._quantities("inputs"), doc="Named inputs, with initial values.")
+    points = property(lambda self: [name for name, *_ in self._describe("points")], doc="Names of points.")
+    frames = property(lambda self: [name for name, *_ in self._describe("frames")], doc="Names of frames.")
+    contacts = property(lambda self: [name for name, *_ in self._describe("contacts")], doc="Names of contacts.")
+
+    def _quantities(self, kind):
+        return [Quantity(*entry) for entry in self._describe(kind)]
+
+    def with_parameters(self, **parameters):
+        """This mechanism with other values of some parameters, as :class:`Mechanism`."""
+        values = {quantity.name: quantity.value for quantity in self.parameters}
+        for name, value in parameters.items():
+            if name not in values:
+                raise _unknown("parameter", name, values)
+            values[name] = float(value)
+        return Mechanism(self, None, list(values.values()))
+
+    def states(self, table):
+        """The arguments ``q``, ``u``, ``inputs`` and ``time`` of many states from a table of columns with the names of the model: a pandas
+        DataFrame, a pyarrow Table, or a dictionary. What has no column is what the model states. ``m.accelerations(**m.states(table))``.
+        """
+        names = list(getattr(table, "column_names", None) or table.keys())
+        column = lambda name: np.asarray(table[name], dtype=np.float64)
+        known = {q.name for q in [*self.coordinates, *self.speeds, *self.inputs]} | {"time"}
+        for name in names:
+            if name not in known:
+                raise _unknown("column", str(name), known)
+        rows = len(column(names[0])) if names else 0
+        states = {}
+        for argument, quantities in (("q", self.coordinates), ("u", self.speeds), ("inputs", self.inputs)):
+            if any(quantity.name in names for quantity in quantities):
+                of = [column(q.name) if q.name in names else np.full(rows, q.value) for q in quantities]
+                states[argument] = np.column_stack(of)
+        if "time" in names:
+            states["time"] = column("time")
+        return states
+
+    def accelerations(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Rates u' of the independent speeds, (p,) or (k, p)."""
+        return self._evaluate("accelerations", q, u, inputs, time, errors)
+
+    def mass_matrix(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """M, (p, p) or (k, p, p)."""
+        return self._evaluate("mass_matrix", q, u, inputs, time, errors)
+
+    def forcing(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Forcing, (p,) or (k, p): M u' = forcing."""
+        return self._evaluate("forcing", q, u, inputs, time, errors)
+
+    def inverse_dynamics(self, accelerations, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Generalized forces, (p,) or (k, p), that must be added to the loads for these u': M u' - forcing."""
+        return self._evaluate("inverse_dynamics", q, u, inputs, time, errors, accelerations)
+
+    def coordinate_rates(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """q', (n,) or (k, n)."""
+        return self._evaluate("coordinate_rates", q, u, inputs, time, errors)
+
+    def compute_dependent_speeds(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Dependent speeds, (d,) or (k, d)."""
+        return self._evaluate("dependent_speeds", q, u, inputs, time, errors)
+
+    def kinetic_energy(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Kinetic energy, J."""
+        return self._evaluate("kinetic_energy", q, u, inputs, time, errors)
+
+    def potential_energy(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Potential energy of gravity and springs, J."""
+        return self._evaluate("potential_energy", q, u, inputs, time, errors)
+
+    def position(self, point, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Position of a point from O along N.x, N.y, N.z, m, (3,) or (k, 3)."""
+        return self._of_point(point, "position", q, u, inputs, time, errors)
+
+    def velocity(self, point, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Velocity of a point along N.x, N.y, N.z, m/s, (3,) or (k, 3)."""
+        return self._of_point(point, "velocity", q, u, inputs, time, errors)
+
+    def jacobian(self, point, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Partial velocities of a point, (3, p) or (k, 3, p)."""
+        return self._of_point(point, "jacobian", q, u, inputs, time, errors)
+
+    def _of_point(self, point, what, q, u, inputs, time, errors):
+        index = _index("point", point, self.points)
+        if index == 0:
+            raise ArgumentError(f"{point} is the origin: it has no {what}", kind="unknown_name", place="point")
+        return self._evaluate(f"point {index} {what}", q, u, inputs, time, errors)
+
+    def accelerations_derivatives(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Accelerations and their derivatives, as :class:`Derivatives`."""
+        return self._split(self._evaluate("accelerations_derivatives", q, u, inputs, time, errors))
+
+    def inverse_dynamics_derivatives(self, accelerations, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Inverse dynamics and its derivatives, as :class:`Derivatives`."""
+        return self._split(self._evaluate("inverse_dynamics_derivatives", q, u, inputs, time, errors, accelerations))
+
+    def _split(self, matrix):
+        p, w = matrix.shape[-2], len(self.inputs)
+        first = matrix.shape[-1] - p - w
+        return Derivatives(
+            matrix[..., 0], matrix[..., 1:first], matrix[..., first : first + p], matrix[..., first + p :]
+        )
+
+    def linearise(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """The equations linearised about states, as :class:`Linearisation`."""
+        rates = self._evaluate("rates_derivatives", q, u, inputs, time, errors)
+        rows = self._evaluate("accelerations_derivatives", q, u, inputs, time, errors)
+        both = np.concatenate([rates, rows[..., 1:]], axis=-2)
+        states = both.shape[-2]
+        return Linearisation(both[..., :states], both[..., states:])
+
+    def contact(self, contact, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """Basis, velocity, reduced matrix (nn, n1, n2, 11, 12, 22), gap and matrices V (3, p), M^-1 V^T (p, 3) of a contact, as :class:`Contact`."""
+        index = _index("contact", contact, self.contacts)
+        of = lambda what: self._evaluate(f"contact {index} {what}", q, u, inputs, time, errors)
+        basis = [of(what) for what in ("normal", "first", "second", "velocity", "reduced")]
+        try:
+            gap = of("gap")
+        except HodographError as error:
+            if error.kind != "undefined":
+                raise
+            gap = None
+        return Contact(*basis, gap, of("partial_velocities"), of("response"))
+
+    def collide(self, contact, q=None, u=None, inputs=None, time=None, *, mu, e, law, errors="raise"):
+        """Collisions of a contact (its name), as :class:`Collision`. ``mu``, ``e``: numbers or (k,); ``law``: 'newton', 'poisson', 'stronge'."""
+        index = _index("contact", contact, self.contacts)
+        return Collision(self._collide(index, (q, u, inputs, time), mu, e, law, errors))
+
+    def simulate(
+        self, until, step, q=None, u=None, inputs=None, time=None, *, mu=0.0, e=0.0, law="poisson", tolerance=1e-10
+    ):
+        """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
+        All contacts have the same surface."""
+        found = self._simulate((q, u, inputs, time), until, step, (mu, e, law), tolerance)
+        names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
+        return Simulation(found, *names)
+
+    def equations(self, format="text"):
+        """The equations to read: 'text', 'latex' or 'html' (a page)."""
+        return self._equations(format)
+
+    def __repr__(self):
+        sizes = f"{len(self.coordinates)} coordinates, {len(self.speeds)} speeds, {len(self.contacts)} contacts"
+        return f"<hodograph.Mechanism {self.name}: {sizes}>"
+
+    def _repr_html_(self):
+        page = html.escape(self.equations("html"), quote=True)
+        return f'<iframe srcdoc="{page}" style="width:100%;height:28em;border:1px solid #ccc"></iframe>'
+
+
+class NumericMechanism:
+    """A model without derivation, evaluated numerically: one state at a time, and fewer methods than :class:`Mechanism`."""
+
+    def __init__(self, model):
+        self._model = model
+
+    def _of(self, what, q, u, inputs, time):
+        lists = [[float(number) for number in np.asarray(given).ravel()] for given in (q, u, inputs)]
+        return np.array(_native.numeric(self._model, *lists, float(time))[what])
+
+    def mass_matrix(self, q, u, inputs=(), time=0.0):
+        """M, (p, p)."""
+        return self._of("mass_matrix", q, u, inputs, time)
+
+    def forcing(self, q, u, inputs=(), time=0.0):
+        """Forcing, (p,): M u' = forcing."""
+        return self._of("forcing", q, u, inputs, time)
+
+    def accelerations(self, q, u, inputs=(), time=0.0):
+        """Rates u' of the independent speeds, (p,)."""
+        return np.linalg.solve(self.mass_matrix(q, u, inputs, time), self.forcing(q, u, inputs, time))
+
+    def coordinate_rates(self, q, u, inputs=(), time=0.0):
+        """q', (n,)."""
+        return self._of("coordinate_rates", q, u, inputs, time)
+
+    def kinetic_energy(self, q, u, inputs=(), time=0.0):
+        """Kinetic energy, J."""
+        return float(self._of("kinetic_energy", q, u, inputs, time))
+
+
+def _unknown(kind, name, known):
+    import difflib
+
+    near = difflib.get_close_matches(name, list(known), 1)
+    hint = f" (did you mean {near[0]}?):" if near else ":"
+    return ArgumentError(
+        f"there is no {kind} {name!r}{hint} expected one of: {', '.join(sorted(known))}", kind="unknown_name", place=name
+    )
+
+
+def _index(kind, name, names):
+    if name in names:
+        return names.index(name)
+    raise _unknown(kind, str(name), names)

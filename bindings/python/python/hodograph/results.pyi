@@ -1,0 +1,52 @@
+from typing import Any, Optional, Union
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Words = Union[str, NDArray[np.object_], None]
+
+class Impact:
+    impulse: Floats
+    velocity: Floats
+    contact_work: Floats
+    normal_work: Floats
+    path: Words
+    kind: Words
+
+class Collision(Impact):
+    speeds: Floats
+    normal: Floats
+    tangent: Floats
+    binormal: Floats
+    approach: Floats
+    reduced: Floats
+    impulse_on_point: Floats
+    energy_change: Floats
+
+class ImpactDerivative:
+    impulse: Floats
+    velocity: Floats
+    smooth: Any
+    path: Words
+    kind: Words
+
+class Hodograph:
+    impulse: Floats
+    velocity: Floats
+    contact_work: Floats
+    normal_work: Floats
+    motion: list[str]
+    path: str
+    compression_end: Optional[float]
+    slip_end: Optional[float]
+    def _repr_html_(self) -> str: ...
+
+class Simulation:
+    time: Floats
+    q: Floats
+    u: Floats
+    events: list[tuple[float, str, Optional[str]]]
+    coordinates: list[str]
+    speeds: list[str]
+    def _repr_html_(self) -> str: ...

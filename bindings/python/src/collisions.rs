@@ -1,0 +1,208 @@
+//! Collisions of a contact of a mechanism.
+
+use hodograph::nalgebra::Vector3;
+use hodograph::{CollisionError, CollisionOutcome, Kind, Mechanism as _, Path};
+use hodograph_interpreter::columns::over_rows;
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arguments::{Surfaces, array, common};
+use crate::errors;
+use crate::mechanism::{Mechanism, States};
+
+/// Why a row has no answer, by number; the first is none.
+pub const KINDS: [&str; 12] = [
+    "",
+    "not_finite",
+    "negative_friction",
+    "restitution_out_of_range",
+    "not_approaching",
+    "not_positive_semidefinite",
+    "no_normal_mobility",
+    "no_impact",
+    "inaccurate",
+    "wedged",
+    "singular_state",
+    "other",
+];
+
+/// The phases that a collision went through, by number.
+pub const PATHS: [Path; 5] =
+    [Path::Sliding, Path::SlidingThenSticking, Path::SlidingThenRenewal, Path::Sticking, Path::Renewal];
+
+/// The number of a kind.
+pub fn number_of_kind(kind: &str) -> u8 {
+    KINDS.iter().position(|known| *known == kind).unwrap_or(KINDS.len() - 1) as u8
+}
+
+/// The number of a path.
+pub fn number_of_path(path: Path) -> u8 {
+    PATHS.iter().position(|known| *known == path).unwrap_or(0) as u8
+}
+
+/// What is told of each row beside the speeds, and how many numbers that are.
+const FIELDS: [(&str, usize); 11] = [
+    ("normal", 3),
+    ("tangent", 3),
+    ("binormal", 3),
+    ("approach", 3),
+    ("reduced", 6),
+    ("impulse", 3),
+    ("velocity", 3),
+    ("impulse_on_point", 3),
+    ("energy_change", 1),
+    ("contact_work", 1),
+    ("normal_work", 1),
+];
+
+/// Rows of numbers, and why rows have none.
+#[derive(Default)]
+pub struct Answers {
+    pub numbers: Vec<f64>,
+    pub paths: Vec<u8>,
+    pub kinds: Vec<u8>,
+}
+
+impl Answers {
+    /// A row without an answer.
+    pub fn none(&mut self, width: usize, kind: &str) {
+        self.numbers.extend(std::iter::repeat_n(f64::NAN, width));
+        self.paths.push(u8::MAX);
+        self.kinds.push(number_of_kind(kind));
+    }
+
+    /// The rows of several answers.
+    pub fn joined(parts: Vec<Answers>) -> Answers {
+        let mut all = Answers::default();
+        for part in parts {
+            all.numbers.extend(part.numbers);
+            all.paths.extend(part.paths);
+            all.kinds.extend(part.kinds);
+        }
+        all
+    }
+
+    /// A dictionary of arrays, one for each field; one row becomes arrays without rows.
+    pub fn into_fields<'py>(
+        self,
+        py: Python<'py>,
+        rows: Option<usize>,
+        fields: &[(&str, usize)],
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let width: usize = fields.iter().map(|(_, size)| size).sum();
+        let all = PyDict::new(py);
+        let mut start = 0;
+        for &(name, size) in fields {
+            let chunks = self.numbers.chunks_exact(width.max(1));
+            let numbers: Vec<f64> =
+                chunks.flat_map(|row| row.get(start..start + size).unwrap_or(&[])).copied().collect();
+            let scalar = size == 1 && name != "speeds";
+            let shape: &[usize] = if scalar { &[] } else { &[size] };
+            all.set_item(name, array(py, rows, shape, numbers)?)?;
+            start += size;
+        }
+        if rows.is_some() {
+            all.set_item("path", PyArray1::from_vec(py, self.paths).to_dyn())?;
+            all.set_item("kind", PyArray1::from_vec(py, self.kinds).to_dyn())?;
+        } else {
+            all.set_item("path", self.paths.first().copied())?;
+            all.set_item("kind", self.kinds.first().copied())?;
+        }
+        Ok(all)
+    }
+}
+
+fn write(numbers: &mut Vec<f64>, outcome: &CollisionOutcome<f64>, speeds: &[f64]) {
+    numbers.extend_from_slice(speeds);
+    let mut put = |vector: &Vector3<f64>| numbers.extend(vector.iter());
+    put(&outcome.normal);
+    put(&outcome.tangent);
+    put(&outcome.binormal);
+    put(&outcome.approach);
+    numbers.extend(<[f64; 6]>::from(outcome.reduced));
+    let impact = &outcome.impact;
+    let mut put = |vector: &Vector3<f64>| numbers.extend(vector.iter());
+    put(&impact.impulse);
+    put(&impact.velocity);
+    put(&outcome.impulse_on_point);
+    numbers.extend([outcome.energy_change, impact.contact_work, impact.normal_work]);
+}
+
+/// Solves the collisions of all rows.
+pub fn collide<'py>(
+    py: Python<'py>,
+    mechanism: &Mechanism,
+    contact: usize,
+    states: States<'py>,
+    (mu, e, law): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, &str),
+    raises: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let surfaces = Surfaces::new(py, mu, e, law)?;
+    let collisions = mechanism
+        .inner
+        .collisions(contact)
+        .map_err(|error| errors::error(py, "StateError", &error.to_string(), error.kind(), None, None))?;
+    // `q` stands for the rows of the state
+    let mut state_rows = states;
+    let tables = [("mu", &surfaces.mu), ("e", &surfaces.e)];
+    let extra = common(py, &tables)?;
+    let rows = match (state_rows.rows, extra) {
+        (Some(rows), Some(extra)) if rows != extra => {
+            let message = format!("`mu` or `e` has {extra} rows, the state has {rows}: expected as many");
+            return Err(errors::argument(py, "mu", "wrong_shape", &message));
+        }
+        (rows, extra) => rows.or(extra),
+    };
+    state_rows.rows = rows;
+    let table = state_rows.table();
+    let freedom = mechanism.inner.count(Kind::Speed);
+    let mut fields = vec![("speeds", freedom)];
+    fields.extend(FIELDS);
+    let width = fields.iter().map(|(_, size)| size).sum();
+    let surface = surfaces.of_rows();
+    let solved = |range: std::ops::Range<usize>| {
+        let mut answers = Answers::default();
+        let mut first: Option<(usize, CollisionError<f64>)> = None;
+        collisions.solve(&table, &surface, range, |row, struck| match struck {
+            Ok((outcome, speeds)) => {
+                write(&mut answers.numbers, &outcome, speeds);
+                answers.paths.push(number_of_path(outcome.impact.path));
+                answers.kinds.push(0);
+            }
+            Err(error) => {
+                answers.none(width, error.kind());
+                first.get_or_insert((row, error));
+            }
+        });
+        (answers, first)
+    };
+    let parts = py.detach(|| over_rows(rows.unwrap_or(1), solved));
+    let (answers, failed): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    let answers = Answers::joined(answers);
+    if raises && let Some((row, error)) = failed.into_iter().flatten().next() {
+        let count = answers.kinds.iter().filter(|&&kind| kind != 0).count();
+        return Err(match error {
+            CollisionError::State(error) => mechanism.state_error(py, &state_rows, &error, row, count),
+            CollisionError::Impact(error) => impact_error(py, &error, rows.map(|rows| (row, rows, count))),
+            error => errors::error(py, "ImpactError", &error.to_string(), error.kind(), None, None),
+        });
+    }
+    answers.into_fields(py, rows, &fields)
+}
+
+/// The exception of a collision without outcome; `place`: its row, of how many, and how many of them have none.
+pub fn impact_error(
+    py: Python<'_>,
+    error: &hodograph::ImpactError<f64>,
+    place: Option<(usize, usize, usize)>,
+) -> PyErr {
+    let message = match place {
+        Some((row, rows, count)) => format!(
+            "row {row}: {error} ({count} of {rows} rows have no answer; errors='nan' answers them with NaN)"
+        ),
+        None => error.to_string(),
+    };
+    let place = place.map(|(row, ..)| format!("row {row}"));
+    errors::error(py, "ImpactError", &message, error.kind(), place, errors::number(error))
+}

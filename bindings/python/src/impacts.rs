@@ -1,0 +1,188 @@
+//! Collisions by themselves: the reduced matrix and the velocity of approach are given.
+
+use hodograph::nalgebra::{SMatrix, Vector3};
+use hodograph::{Hodograph, ImpactError, Motion, ReducedMatrix, Surface};
+use hodograph_interpreter::columns::{Column, Impacts, over_rows};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arguments::{Rows, Surfaces, array, common, raises, rows};
+use crate::collisions::{Answers, impact_error, number_of_path};
+
+const FIELDS: [(&str, usize); 4] = [("impulse", 3), ("velocity", 3), ("contact_work", 1), ("normal_work", 1)];
+
+/// The arguments of a collision.
+struct Given<'py> {
+    matrix: Rows<'py>,
+    velocity: Rows<'py>,
+    surfaces: Surfaces<'py>,
+    rows: Option<usize>,
+}
+
+impl<'py> Given<'py> {
+    fn new(
+        py: Python<'py>,
+        matrix: &Bound<'py, PyAny>,
+        velocity: &Bound<'py, PyAny>,
+        (mu, e, law): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, &str),
+    ) -> PyResult<Self> {
+        let matrix = rows(py, Some(matrix), "matrix", 6, &[])?;
+        let velocity = rows(py, Some(velocity), "velocity", 3, &[])?;
+        let surfaces = Surfaces::new(py, mu, e, law)?;
+        let tables = [("matrix", &matrix), ("velocity", &velocity), ("mu", &surfaces.mu), ("e", &surfaces.e)];
+        let rows = common(py, &tables)?;
+        Ok(Given { matrix, velocity, surfaces, rows })
+    }
+
+    fn impacts(&self) -> Impacts<'_> {
+        let (matrix, velocity) = (self.matrix.columns(), self.velocity.columns());
+        Impacts {
+            matrix: std::array::from_fn(|column| matrix[column]),
+            velocity: std::array::from_fn(|column| velocity[column]),
+        }
+    }
+}
+
+fn input(impacts: &Impacts<'_>, row: usize) -> (ReducedMatrix<f64>, Vector3<f64>) {
+    let get = |column: Column<'_>| column.get(row);
+    (impacts.matrix.map(get).into(), impacts.velocity.map(get).into())
+}
+
+/// The answers of all rows, or the exception of the first without one.
+fn answered(
+    py: Python<'_>,
+    rows: Option<usize>,
+    raise: bool,
+    width: usize,
+    solve: impl Fn(usize, &mut Answers) -> Result<(), ImpactError<f64>> + Sync,
+) -> PyResult<Answers> {
+    let parts = py.detach(|| {
+        over_rows(rows.unwrap_or(1), |range| {
+            let (mut answers, mut first) = (Answers::default(), None);
+            for row in range {
+                match solve(row, &mut answers) {
+                    Ok(()) => answers.kinds.push(0),
+                    Err(error) => {
+                        answers.none(width, error.kind());
+                        first.get_or_insert((row, error));
+                    }
+                }
+            }
+            (answers, first)
+        })
+    });
+    let (answers, failed): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+    let answers = Answers::joined(answers);
+    match failed.into_iter().flatten().next() {
+        Some((row, error)) if raise => {
+            let count = answers.kinds.iter().filter(|&&kind| kind != 0).count();
+            Err(impact_error(py, &error, rows.map(|rows| (row, rows, count))))
+        }
+        _ => Ok(answers),
+    }
+}
+
+/// Solves collisions.
+#[pyfunction]
+#[pyo3(name = "solve")]
+pub fn solve_rows<'py>(
+    py: Python<'py>,
+    matrix: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+    mu: &Bound<'py, PyAny>,
+    e: &Bound<'py, PyAny>,
+    law: &str,
+    errors: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = Given::new(py, matrix, velocity, (mu, e, law))?;
+    let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
+    let answers = answered(py, given.rows, raises(py, errors)?, 8, |row, answers| {
+        let mut outcome = Ok(());
+        impacts.solve(&surface, row..row + 1, |_, impact| match impact {
+            Ok(impact) => {
+                answers.numbers.extend(impact.impulse.iter().chain(impact.velocity.iter()));
+                answers.numbers.extend([impact.contact_work, impact.normal_work]);
+                answers.paths.push(number_of_path(impact.path));
+            }
+            Err(error) => outcome = Err(error),
+        });
+        outcome
+    })?;
+    answers.into_fields(py, given.rows, &FIELDS)
+}
+
+/// Outcomes of collisions and their derivatives.
+#[pyfunction]
+#[pyo3(name = "derivative")]
+pub fn derivative_rows<'py>(
+    py: Python<'py>,
+    matrix: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+    mu: &Bound<'py, PyAny>,
+    e: &Bound<'py, PyAny>,
+    law: &str,
+    errors: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = Given::new(py, matrix, velocity, (mu, e, law))?;
+    let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
+    let by_rows = |m: &SMatrix<f64, 3, 11>| m.transpose().as_slice().to_vec();
+    let answers = answered(py, given.rows, raises(py, errors)?, 67, |row, answers| {
+        let (matrix, velocity) = input(&impacts, row);
+        let found = hodograph::derivative(&matrix, &velocity, &surface(row))?;
+        answers.numbers.extend(by_rows(&found.impulse));
+        answers.numbers.extend(by_rows(&found.velocity));
+        answers.numbers.push(if found.non_smoothness.is_some() { 0.0 } else { 1.0 });
+        answers.paths.push(number_of_path(found.impact.path));
+        Ok(())
+    })?;
+    answers.into_fields(py, given.rows, &[("impulse", 33), ("velocity", 33), ("smooth", 1)])
+}
+
+/// The course of one collision: snapshots at equal steps of the normal impulse.
+#[pyfunction]
+#[pyo3(name = "hodograph")]
+pub fn course<'py>(
+    py: Python<'py>,
+    matrix: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+    mu: &Bound<'py, PyAny>,
+    e: &Bound<'py, PyAny>,
+    law: &str,
+    count: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = Given::new(py, matrix, velocity, (mu, e, law))?;
+    if given.rows.is_some() {
+        let message = "a hodograph is of one collision: expected arrays of shape (6,) and (3,), and numbers";
+        return Err(crate::errors::argument(py, "matrix", "wrong_shape", message));
+    }
+    let (matrix, velocity) = input(&given.impacts(), 0);
+    let surface: Surface<f64> = given.surfaces.of_rows()(0);
+    let found =
+        Hodograph::new(&matrix, &velocity, &surface).map_err(|error| impact_error(py, &error, None))?;
+    let points: Vec<_> = found.points(count).collect();
+    let rows = Some(points.len());
+    let all = PyDict::new(py);
+    let impulses = points.iter().flat_map(|point| point.impulse.iter().copied().collect::<Vec<_>>());
+    let velocities = points.iter().flat_map(|point| point.velocity.iter().copied().collect::<Vec<_>>());
+    all.set_item("impulse", array(py, rows, &[3], impulses.collect())?)?;
+    all.set_item("velocity", array(py, rows, &[3], velocities.collect())?)?;
+    all.set_item(
+        "contact_work",
+        array(py, rows, &[], points.iter().map(|point| point.contact_work).collect())?,
+    )?;
+    all.set_item(
+        "normal_work",
+        array(py, rows, &[], points.iter().map(|point| point.normal_work).collect())?,
+    )?;
+    let motion = |motion: Motion| match motion {
+        Motion::Sliding => "sliding",
+        Motion::Sticking => "sticking",
+        Motion::Renewal => "renewal",
+    };
+    all.set_item("motion", points.iter().map(|point| motion(point.motion)).collect::<Vec<_>>())?;
+    all.set_item("path", found.impact().path.to_string())?;
+    let end = |snapshot: Option<hodograph::Snapshot<f64>>| snapshot.map(|snapshot| snapshot.normal_impulse());
+    all.set_item("compression_end", end(found.impact().phases.compression_end))?;
+    all.set_item("slip_end", end(found.impact().phases.slip_end))?;
+    Ok(all)
+}

@@ -1,0 +1,27 @@
+//! The native part of the Python package `hodograph`; `python/hodograph` makes classes of it that Python users see.
+
+#![forbid(unsafe_code)]
+
+mod arguments;
+mod collisions;
+mod errors;
+mod impacts;
+mod mechanism;
+mod model;
+mod motion;
+
+use pyo3::prelude::*;
+
+/// Module of the package that is compiled from Rust.
+#[pymodule]
+fn hodograph_native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<mechanism::Mechanism>()?;
+    module.add_function(wrap_pyfunction!(model::check_model, module)?)?;
+    module.add_function(wrap_pyfunction!(model::evaluate_numerically, module)?)?;
+    module.add_function(wrap_pyfunction!(impacts::solve_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(impacts::derivative_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(impacts::course, module)?)?;
+    module.add("KINDS", collisions::KINDS)?;
+    module.add("PATHS", collisions::PATHS.map(|path| path.to_string()))?;
+    Ok(())
+}

@@ -1,0 +1,382 @@
+//! A mechanism: its description, and its quantities for one state or many.
+
+use std::collections::HashMap;
+use std::sync::{Arc, PoisonError, RwLock};
+
+use hodograph::{Kind, Mechanism as _, StateError};
+use hodograph_generator::explain::{self, Format};
+use hodograph_generator::interpret::{Arguments, Prepared};
+use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
+use hodograph_generator::{artifact, check, reading};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::columns::{Column, Columns, Table, evaluate_rows};
+use numpy::PyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::arguments::{Rows, array, column, common, raises, rows};
+use crate::{errors, model};
+
+/// A quantity, ready for one state and for many.
+struct Routine {
+    one: Prepared,
+    many: Columns,
+    shape: Vec<usize>,
+}
+
+/// A model with its derivation and parameters.
+#[pyclass(frozen, subclass)]
+pub struct Mechanism {
+    pub inner: InterpretedMechanism,
+    routines: RwLock<HashMap<String, Arc<Routine>>>,
+    /// coordinates, speeds, inputs that the model states
+    initial: [Vec<f64>; 3],
+}
+
+/// The state arguments of a call.
+pub struct States<'py> {
+    pub q: Rows<'py>,
+    pub u: Rows<'py>,
+    pub inputs: Rows<'py>,
+    pub time: Option<Rows<'py>>,
+    pub accelerations: Option<Rows<'py>>,
+    pub tangent: Option<Rows<'py>>,
+    pub rows: Option<usize>,
+}
+
+impl States<'_> {
+    pub fn table(&self) -> Table<'_> {
+        fn columns<'a>(rows: &'a Option<Rows<'_>>) -> Vec<Column<'a>> {
+            rows.as_ref().map(Rows::columns).unwrap_or_default()
+        }
+        Table {
+            rows: self.rows.unwrap_or(1),
+            time: columns(&self.time).into_iter().next(),
+            coordinates: self.q.columns(),
+            speeds: self.u.columns(),
+            inputs: self.inputs.columns(),
+            accelerations: columns(&self.accelerations),
+            tangent: columns(&self.tangent),
+        }
+    }
+}
+
+fn is_matrix(quantity: Quantity) -> bool {
+    use ContactQuantity::{DependentResponse, PartialVelocities, Response};
+    use Quantity as Q;
+    matches!(
+        quantity,
+        Q::MassMatrix
+            | Q::AccelerationsDerivatives
+            | Q::InverseDynamicsDerivatives
+            | Q::RatesDerivatives
+            | Q::ConfigurationJacobian
+            | Q::Orientation(_)
+            | Q::Contact(_, PartialVelocities | Response | DependentResponse)
+            | Q::Point(_, PointQuantity::Jacobian)
+    )
+}
+
+fn is_scalar(quantity: Quantity) -> bool {
+    use Quantity as Q;
+    matches!(quantity, Q::KineticEnergy | Q::PotentialEnergy | Q::Contact(_, ContactQuantity::Gap))
+}
+
+impl Mechanism {
+    fn of(inner: InterpretedMechanism) -> Self {
+        let [n, p, w] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| inner.count(kind));
+        let (mut q, mut u, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
+        // the slices have the lengths asked for
+        let _ = inner.initial_state(&mut q, &mut u, &mut inputs);
+        Mechanism { inner, routines: RwLock::default(), initial: [q, u, inputs] }
+    }
+
+    /// Reads a model and its derivation.
+    fn read(py: Python<'_>, model: &str, derivation: Option<&str>) -> PyResult<InterpretedMechanism> {
+        let source = model::source(model);
+        let checked = check::check(&source);
+        let Some(mechanism) = checked.mechanism.clone() else {
+            return Err(model::mistakes(py, &checked, &source));
+        };
+        let wrong = |message: String, kind: &str, place: Option<String>| {
+            errors::error(py, "DerivationError", &message, kind, place, None)
+        };
+        let path = match derivation {
+            Some(path) => path.to_owned(),
+            None => artifact::place::beside(model.as_ref()).display().to_string(),
+        };
+        let advice = "`hodograph derive` writes it";
+        let text = reading::text(path.as_ref(), artifact::MAX_BYTES).map_err(|error| {
+            wrong(
+                format!("cannot read the derivation {path}: {error}; {advice}"),
+                "no_derivation",
+                Some(path.clone()),
+            )
+        })?;
+        let artifact = artifact::decode(&text).map_err(|error| {
+            wrong(
+                format!("{path} is no derivation: {error}; {advice}"),
+                "damaged_derivation",
+                Some(path.clone()),
+            )
+        })?;
+        if artifact.model != artifact::model_hash(&source) {
+            let message = format!("{path} was derived from another text of the model; {advice} anew");
+            return Err(wrong(message, "stale_derivation", Some(path)));
+        }
+        InterpretedMechanism::new(mechanism, artifact.program)
+            .map_err(|error| wrong(error.to_string(), "parameters", None))
+    }
+
+    fn routine(&self, py: Python<'_>, quantity: &str) -> PyResult<Arc<Routine>> {
+        let known = self.routines.read().unwrap_or_else(PoisonError::into_inner).get(quantity).cloned();
+        if let Some(routine) = known {
+            return Ok(routine);
+        }
+        let unknown = |message: String| errors::argument(py, "quantity", "unknown_name", &message);
+        let words: Vec<&str> = quantity.split(' ').collect();
+        let found = Quantity::from_words(&words)
+            .ok_or_else(|| unknown(format!("there is no quantity '{quantity}'")))?;
+        let Some(output) = self.inner.program().output(found) else {
+            let message = format!("{} does not determine '{quantity}'", self.inner.name());
+            return Err(errors::error(
+                py,
+                "StateError",
+                &message,
+                "undefined",
+                Some(quantity.to_owned()),
+                None,
+            ));
+        };
+        let shape = if is_matrix(found) {
+            vec![output.rows, output.columns]
+        } else if is_scalar(found) {
+            vec![]
+        } else {
+            vec![output.values.len()]
+        };
+        let routine = Arc::new(Routine {
+            one: Prepared::new(self.inner.program(), self.inner.constants(), &[found]),
+            many: self.inner.columns(&[found]),
+            shape,
+        });
+        let mut routines = self.routines.write().unwrap_or_else(PoisonError::into_inner);
+        Ok(routines.entry(quantity.to_owned()).or_insert(routine).clone())
+    }
+
+    /// Reads the arguments that make up a state.
+    pub fn states<'py>(
+        &self,
+        py: Python<'py>,
+        [q, u, inputs, time, accelerations, tangent]: [Option<&Bound<'py, PyAny>>; 6],
+    ) -> PyResult<States<'py>> {
+        let [q0, u0, w0] = &self.initial;
+        let q = rows(py, q, "q", q0.len(), q0)?;
+        let u = rows(py, u, "u", u0.len(), u0)?;
+        let inputs = rows(py, inputs, "inputs", w0.len(), w0)?;
+        let time = time.map(|time| column(py, time, "time")).transpose()?;
+        let model = self.inner.model();
+        let width = model.independent_states() + w0.len();
+        let of = |given: Option<&Bound<'py, PyAny>>, name, width| {
+            given.map(|given| rows(py, Some(given), name, width, &[])).transpose()
+        };
+        let accelerations = of(accelerations, "accelerations", u0.len())?;
+        let tangent = of(tangent, "tangent", width)?;
+        let mut tables = vec![("q", &q), ("u", &u), ("inputs", &inputs)];
+        tables.extend(time.as_ref().map(|table| ("time", table)));
+        tables.extend(accelerations.as_ref().map(|table| ("accelerations", table)));
+        tables.extend(tangent.as_ref().map(|table| ("tangent", table)));
+        let rows = common(py, &tables)?;
+        Ok(States { q, u, inputs, time, accelerations, tangent, rows })
+    }
+
+    /// The exception of a row; `count` rows have none.
+    pub fn state_error(
+        &self,
+        py: Python<'_>,
+        states: &States<'_>,
+        failure: &StateError,
+        row: usize,
+        count: usize,
+    ) -> PyErr {
+        let table = states.table();
+        let at_fault = [
+            (&table.coordinates, Kind::Coordinate, "q"),
+            (&table.speeds, Kind::Speed, "u"),
+            (&table.inputs, Kind::Input, "inputs"),
+        ]
+        .into_iter()
+        .flat_map(|(columns, kind, name)| {
+            columns.iter().enumerate().map(move |(index, column)| (kind, name, index, column.get(row)))
+        })
+        .find(|(.., number)| !number.is_finite());
+        let (mut message, mut number) = (failure.to_string(), None);
+        let mut place = states.rows.map(|_| format!("row {row}"));
+        if let Some((kind, argument, index, value)) = at_fault {
+            let name = self.inner.component(kind, index).map_or(String::new(), |c| c.name.to_owned());
+            message = format!("`{argument}` holds {value} for {name}: expected a finite number");
+            number = Some(value);
+            place = Some(place.map_or(name.clone(), |row| format!("{row}, {name}")));
+        }
+        if let Some(rows) = states.rows {
+            message = format!(
+                "row {row}: {message} ({count} of {rows} rows have no answer; errors='nan' answers them with NaN)"
+            );
+        }
+        errors::error(py, "StateError", &message, failure.kind(), place, number)
+    }
+}
+
+#[pymethods]
+impl Mechanism {
+    /// Reads a model (a path, or a text) and its derivation (a path; by default the file beside the model), or takes those of another mechanism.
+    /// With `parameters`: all that can be changed, in the order of the model.
+    #[new]
+    #[pyo3(signature = (model, derivation = None, parameters = None))]
+    fn new(
+        py: Python<'_>,
+        model: &Bound<'_, PyAny>,
+        derivation: Option<&str>,
+        parameters: Option<Vec<f64>>,
+    ) -> PyResult<Self> {
+        let mut inner = match model.cast::<Mechanism>() {
+            Ok(other) => other.get().inner.clone(),
+            Err(_) => Mechanism::read(py, &model.extract::<String>()?, derivation)?,
+        };
+        if let Some(parameters) = parameters {
+            inner.set_parameters(&parameters).map_err(|error| {
+                errors::error(py, "ParameterError", &error.to_string(), error.kind(), None, None)
+            })?;
+        }
+        Ok(Mechanism::of(inner))
+    }
+
+    /// Quantities of a kind: a list of (name, unit, value).
+    fn _describe<'py>(&self, py: Python<'py>, kind: &str) -> PyResult<Bound<'py, PyList>> {
+        let mut parameters = vec![0.0; self.inner.count(Kind::Parameter)];
+        let _ = self.inner.parameters(&mut parameters);
+        let [q, u, w] = &self.initial;
+        let (kind, values): (Kind, &[f64]) = match kind {
+            "parameters" => (Kind::Parameter, &parameters),
+            "coordinates" => (Kind::Coordinate, q),
+            "speeds" => (Kind::Speed, u),
+            "inputs" => (Kind::Input, w),
+            "dependent_speeds" => (Kind::DependentSpeed, &[]),
+            "points" => (Kind::Point, &[]),
+            "frames" => (Kind::Frame, &[]),
+            _ => (Kind::Contact, &[]),
+        };
+        let all = PyList::empty(py);
+        for index in 0..self.inner.count(kind) {
+            if let Some(component) = self.inner.component(kind, index) {
+                all.append((component.name, component.unit, values.get(index).copied()))?;
+            }
+        }
+        Ok(all)
+    }
+
+    /// The name of the mechanism in the model.
+    #[getter]
+    fn name(&self) -> &str {
+        self.inner.name()
+    }
+
+    /// The equations as an HTML page, LaTeX or plain text.
+    fn _equations(&self, py: Python<'_>, format: &str) -> PyResult<String> {
+        let format = match format {
+            "html" => Format::Html,
+            "latex" => Format::Latex,
+            "text" => Format::Text,
+            other => {
+                let message = format!("the format is '{other}': expected 'text', 'latex' or 'html'");
+                return Err(errors::argument(py, "format", "unknown_option", &message));
+            }
+        };
+        let (model, program) = (self.inner.model(), self.inner.program());
+        Ok(py.detach(|| explain::explain(model, program, &explain::usual(program), format)))
+    }
+
+    /// A quantity at one state or many.
+    #[allow(clippy::too_many_arguments)]
+    #[pyo3(signature = (quantity, q, u, inputs, time, errors, accelerations = None, tangent = None))]
+    fn _evaluate<'py>(
+        &self,
+        py: Python<'py>,
+        quantity: &str,
+        q: Option<&Bound<'py, PyAny>>,
+        u: Option<&Bound<'py, PyAny>>,
+        inputs: Option<&Bound<'py, PyAny>>,
+        time: Option<&Bound<'py, PyAny>>,
+        errors: &str,
+        accelerations: Option<&Bound<'py, PyAny>>,
+        tangent: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+        let routine = self.routine(py, quantity)?;
+        let states = self.states(py, [q, u, inputs, time, accelerations, tangent])?;
+        let raises = raises(py, errors)?;
+        let Some(rows) = states.rows else {
+            let none: &[f64] = &[];
+            let given =
+                |rows: &Option<Rows<'_>>| rows.as_ref().map_or(none.to_vec(), |rows| rows.slice().to_vec());
+            let (accelerations, tangent) = (given(&states.accelerations), given(&states.tangent));
+            let arguments = Arguments {
+                time: states.time.as_ref().map_or(0.0, |time| time.slice()[0]),
+                coordinates: states.q.slice(),
+                speeds: states.u.slice(),
+                inputs: states.inputs.slice(),
+                accelerations: &accelerations,
+                tangent: &tangent,
+            };
+            let mut numbers = vec![f64::NAN; routine.one.len()];
+            let outcome = routine.one.evaluate(&arguments, |index, number| numbers[index] = number);
+            return match outcome {
+                Err(failed) if raises => {
+                    Err(self.state_error(py, &states, &self.inner.state_error(failed), 0, 1))
+                }
+                _ => array(py, None, &routine.shape, numbers),
+            };
+        };
+        let mut numbers = vec![0.0; rows * routine.many.len()];
+        let mut failures = vec![None; rows];
+        let table = states.table();
+        py.detach(|| evaluate_rows(&routine.many, &table, &mut numbers, &mut failures));
+        if raises && let Some((row, Some(failed))) = failures.iter().enumerate().find(|(_, f)| f.is_some()) {
+            let count = failures.iter().filter(|failure| failure.is_some()).count();
+            return Err(self.state_error(py, &states, &self.inner.state_error(*failed), row, count));
+        }
+        array(py, Some(rows), &routine.shape, numbers)
+    }
+
+    /// Collisions of a contact at one state or many.
+    #[allow(clippy::too_many_arguments)]
+    fn _collide<'py>(
+        &self,
+        py: Python<'py>,
+        contact: usize,
+        states: [Option<Bound<'py, PyAny>>; 4],
+        mu: &Bound<'py, PyAny>,
+        e: &Bound<'py, PyAny>,
+        law: &str,
+        errors: &str,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let [q, u, inputs, time] = &states;
+        let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
+        crate::collisions::collide(py, self, contact, states, (mu, e, law), raises(py, errors)?)
+    }
+
+    /// A motion from a state to a time.
+    #[allow(clippy::too_many_arguments)]
+    fn _simulate<'py>(
+        &self,
+        py: Python<'py>,
+        states: [Option<Bound<'py, PyAny>>; 4],
+        until: f64,
+        step: f64,
+        surface: (f64, f64, String),
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let [q, u, inputs, time] = &states;
+        let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
+        crate::motion::simulate(py, self, &states, (until, step), surface, tolerance)
+    }
+}

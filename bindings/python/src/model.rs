@@ -1,0 +1,104 @@
+//! Models: reading, checking, and evaluation without derivation.
+
+use std::path::Path;
+
+use hodograph_generator::check;
+use hodograph_generator::diagnostics::Severity;
+use hodograph_generator::numeric;
+use hodograph_generator::source::Source;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::errors;
+
+/// The model in a file, or in a text that has more than a line.
+pub fn source(model: &str) -> Source {
+    if model.contains('\n') || model.trim_start().starts_with("mechanism") {
+        Source::file("the model", model)
+    } else {
+        Source::read(Path::new(model))
+    }
+}
+
+/// Diagnostics of a model as dictionaries.
+#[pyfunction]
+#[pyo3(name = "check")]
+pub fn check_model<'py>(py: Python<'py>, model: &str) -> PyResult<Bound<'py, PyList>> {
+    let source = source(model);
+    let checked = check::check(&source);
+    diagnostics(py, &checked, &source)
+}
+
+pub fn diagnostics<'py>(
+    py: Python<'py>,
+    checked: &check::Checked,
+    source: &Source,
+) -> PyResult<Bound<'py, PyList>> {
+    let all = PyList::empty(py);
+    for diagnostic in &checked.diagnostics {
+        let entry = PyDict::new(py);
+        entry.set_item("code", diagnostic.code.to_string())?;
+        let severity = if diagnostic.severity == Severity::Error { "error" } else { "warning" };
+        entry.set_item("severity", severity)?;
+        entry.set_item("message", &diagnostic.message)?;
+        let place = source.location(diagnostic.primary.span);
+        entry.set_item("line", place.as_ref().map(|place| place.line))?;
+        entry.set_item("column", place.as_ref().map(|place| place.column))?;
+        entry.set_item("label", &diagnostic.primary.text)?;
+        entry.set_item("help", &diagnostic.help)?;
+        entry.set_item("text", diagnostic.render(source))?;
+        all.append(entry)?;
+    }
+    Ok(all)
+}
+
+/// The exception of a model with mistakes.
+pub fn mistakes(py: Python<'_>, checked: &check::Checked, source: &Source) -> PyErr {
+    let text = hodograph_generator::rendering::render(&checked.diagnostics, source);
+    let first = checked.diagnostics.iter().find(|diagnostic| diagnostic.severity == Severity::Error);
+    let place = first.and_then(|first| source.location(first.primary.span));
+    let place = place.map(|place| format!("line {}, column {}", place.line, place.column));
+    let kind = first.map_or_else(|| "model".to_owned(), |first| first.code.to_string());
+    let error = errors::error(py, "ModelError", &text, &kind, place, None);
+    let attach =
+        || -> PyResult<()> { error.value(py).setattr("_diagnostics", diagnostics(py, checked, source)?) };
+    attach().err().unwrap_or(error)
+}
+
+/// Mass matrix, forcing and rates by the numeric evaluator, which needs no derivation.
+#[pyfunction]
+#[pyo3(name = "numeric")]
+pub fn evaluate_numerically<'py>(
+    py: Python<'py>,
+    model: &str,
+    q: Vec<f64>,
+    u: Vec<f64>,
+    inputs: Vec<f64>,
+    time: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let source = source(model);
+    let checked = check::check(&source);
+    let Some(mechanism) = &checked.mechanism else { return Err(mistakes(py, &checked, &source)) };
+    let mut state = numeric::State::of(mechanism);
+    let given = [
+        (&mut state.coordinates, q, "q"),
+        (&mut state.speeds, u, "u"),
+        (&mut state.inputs, inputs, "inputs"),
+    ];
+    for (list, given, name) in given {
+        if given.len() != list.len() {
+            let message = format!("`{name}` has {} numbers: expected {}", given.len(), list.len());
+            return Err(errors::argument(py, name, "wrong_shape", &message));
+        }
+        *list = given;
+    }
+    state.time = time;
+    let found = numeric::evaluate(mechanism, &state)
+        .map_err(|error| errors::error(py, "StateError", &error.to_string(), "singular_state", None, None))?;
+    let all = PyDict::new(py);
+    all.set_item("mass_matrix", found.mass_matrix)?;
+    all.set_item("forcing", found.forcing)?;
+    all.set_item("coordinate_rates", found.rates)?;
+    all.set_item("kinetic_energy", found.kinetic_energy)?;
+    Ok(all)
+}

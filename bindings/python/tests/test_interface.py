@@ -1,0 +1,211 @@
+"""What Python users see: names, shapes, tables, errors, pictures."""
+
+import threading
+from pathlib import Path
+
+import hodograph
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+def model(name):
+    return hodograph.load(ROOT / f"models/{name}.mech")
+
+
+SLEDS = model("two_sleds")
+SURFACE = dict(mu=0.6, e=0.8, law="stronge")
+MATRIX, APPROACH = np.array([0.25, -0.125, 0.0, 0.5, 0.0, 0.5]), np.array([-1.0, 0.5, 0.0])
+
+
+def test_names_units_and_defaults():
+    assert SLEDS.name == "TwoSleds" and SLEDS.contacts == ["BcAc"]
+    assert [u.name for u in SLEDS.speeds] == ["u1", "u3", "u4", "u6"]
+    assert all(isinstance(p.value, float) and p.unit for p in SLEDS.parameters)
+    assert "TwoSleds" in repr(SLEDS)
+
+
+def test_the_outcome_in_the_readme_and_momentum():
+    hit = SLEDS.collide("BcAc", **SURFACE)
+    contact = SLEDS.contact("BcAc")
+    before = np.array([u.value for u in SLEDS.speeds])
+    # the impulse along the contact basis from that on the point
+    basis = np.stack([contact.normal, contact.first, contact.second])
+    np.testing.assert_allclose(hit.speeds, before + contact.response @ (basis @ hit.impulse_on_point), rtol=1e-12)
+    np.testing.assert_allclose(
+        contact.partial_velocities @ contact.response,
+        np.array([[contact.reduced[i] for i in row] for row in ([0, 1, 2], [1, 3, 4], [2, 4, 5])]),
+        atol=1e-12,
+    )
+    energy = SLEDS.kinetic_energy(u=hit.speeds) - SLEDS.kinetic_energy()
+    assert energy == pytest.approx(hit.energy_change) and hit.path in ("sliding", "sliding, then sticking", "sliding, then renewal")
+
+
+def test_linearise_and_derivatives_agree_with_differences():
+    m = model("spherical_pendulum")
+    q, u = (np.array([x.value for x in xs]) for xs in (m.coordinates, m.speeds))
+    d, h = m.accelerations_derivatives(q, u), 1e-6
+    for k in range(len(u)):
+        step = np.eye(len(u))[k] * h
+        difference = (m.accelerations(q, u + step) - m.accelerations(q, u - step)) / (2 * h)
+        np.testing.assert_allclose(d.by_speeds[:, k], difference, atol=1e-7)
+    a, b = m.linearise(np.tile(q, (3, 1)), u)
+    assert a.shape == (3, len(q) + len(u), len(q) + len(u)) and b.shape[-1] == len(m.inputs)
+    np.testing.assert_array_equal(a[0, len(q) :, len(q) :], d.by_speeds)
+
+
+def test_inverse_dynamics_inverts():
+    m = model("arm_7dof")
+    u = np.linspace(-1, 1, 7)
+    forces = m.inverse_dynamics(u, u=u)
+    np.testing.assert_allclose(m.mass_matrix(u=u) @ u - m.forcing(u=u), forces, atol=1e-12)
+
+
+def test_solve_derivative_hodograph():
+    one = hodograph.solve(MATRIX, APPROACH, **SURFACE)
+    many = hodograph.solve(np.tile(MATRIX, (50, 1)), APPROACH, mu=np.linspace(0, 2, 50), e=0.8, law="stronge")
+    assert one.impulse.shape == (3,) and many.impulse.shape == (50, 3) and many.path.shape == (50,)
+    full = np.array([[MATRIX[i] for i in row] for row in ([0, 1, 2], [1, 3, 4], [2, 4, 5])])
+    np.testing.assert_allclose(APPROACH + full @ one.impulse, one.velocity, atol=1e-14)
+    d = hodograph.derivative(MATRIX, APPROACH, **SURFACE)
+    h = 1e-6
+    change = [hodograph.solve(MATRIX, APPROACH, **{**SURFACE, "mu": 0.6 + s}).impulse for s in (h, -h)]
+    np.testing.assert_allclose(d.impulse[:, 9], (change[0] - change[1]) / (2 * h), atol=1e-7)
+    course = hodograph.hodograph(MATRIX, APPROACH, **SURFACE)
+    np.testing.assert_array_equal(course.impulse[-1], one.impulse)
+    assert course._repr_html_().count("<svg") == 2 and "nan" not in course._repr_html_()
+
+
+def test_simulate():
+    m = model("planar_double_pendulum")
+    motion = m.simulate(0.2, 0.01, mu=0.3, e=0.5, law="stronge")
+    assert motion.time.shape == (21,) and motion.q.shape == (21, 2)
+    energy = m.kinetic_energy(motion.q, motion.u) + m.potential_energy(motion.q)
+    if not motion.events:
+        np.testing.assert_allclose(energy, energy[0], rtol=1e-8)
+    assert motion._repr_html_().count("<svg") == 2
+    with pytest.raises(hodograph.ArgumentError, match="step"):
+        m.simulate(1.0, 0.0)
+
+
+def test_tables_by_column_name():
+    pandas, pyarrow = pytest.importorskip("pandas"), pytest.importorskip("pyarrow")
+    columns = {"u1": np.linspace(0.5, 1, 5), "u6": np.linspace(0, 0.2, 5)}
+    expected = SLEDS.accelerations(**SLEDS.states(columns))
+    assert expected.shape == (5, 4)
+    for table in (pandas.DataFrame(columns), pyarrow.table(columns)):
+        np.testing.assert_array_equal(SLEDS.accelerations(**SLEDS.states(table)), expected)
+    with pytest.raises(hodograph.ArgumentError, match="no column 'u9'.*u1") as caught:
+        SLEDS.states({"u9": [1.0]})
+    assert caught.value.place == "u9" and caught.value.kind == "unknown_name"
+
+
+def test_parameters():
+    first = SLEDS.parameters[0]
+    other = SLEDS.with_parameters(**{first.name: first.value * 2})
+    assert other.parameters[0].value == first.value * 2 and SLEDS.parameters[0].value == first.value
+    assert not np.array_equal(other.mass_matrix(), SLEDS.mass_matrix())
+    with pytest.raises(hodograph.ArgumentError, match="expected one of"):
+        SLEDS.with_parameters(nonsense=1)
+    mass = next(p.name for p in SLEDS.parameters if p.unit == "kg")
+    with pytest.raises(hodograph.ParameterError):
+        SLEDS.with_parameters(**{mass: -1.0})
+
+
+@pytest.mark.parametrize(
+    "call, kind, words",
+    [
+        (lambda: SLEDS.accelerations(u=np.zeros(3)), "wrong_shape", "expected (4,) or (n, 4)"),
+        (lambda: SLEDS.accelerations(u=np.zeros((2, 2, 4))), "wrong_shape", "(2, 2, 4)"),
+        (lambda: SLEDS.accelerations(u=np.zeros(4, dtype=np.float32)), "wrong_dtype", "expected float64"),
+        (lambda: SLEDS.accelerations(u=[1, 2]), "wrong_shape", "(2,)"),
+        (lambda: SLEDS.accelerations(u="text"), "wrong_type", "float64 array"),
+        (lambda: SLEDS.accelerations(np.zeros((3, len(SLEDS.coordinates))), np.zeros((2, 4))), "wrong_shape", "3"),
+        (lambda: SLEDS.collide("wall", **SURFACE), "unknown_name", "BcAc"),
+        (lambda: SLEDS.collide("BcAc", mu=0.1, e=0.1, law="hooke"), "unknown_law", "'stronge'"),
+        (lambda: SLEDS.collide("BcAc", mu=np.zeros((2, 2)), e=0.1, law="newton"), "wrong_type", "(n,)"),
+        (lambda: SLEDS.accelerations(errors="ignore"), "unknown_option", "'nan'"),
+        (lambda: SLEDS.position("nowhere"), "unknown_name", "nowhere"),
+    ],
+)
+def test_wrong_arguments_say_what_was_expected(call, kind, words):
+    with pytest.raises(hodograph.ArgumentError) as caught:
+        call()
+    assert caught.value.kind == kind and words in str(caught.value), str(caught.value)
+    assert isinstance(caught.value, ValueError)
+
+
+def test_numbers_that_are_none():
+    u = np.tile([1.0, 0.1, 1.0, 0.1], (40, 1))
+    u[35, 2] = np.nan
+    with pytest.raises(hodograph.StateError, match="row 35.*NaN for u4.*1 of 40") as caught:
+        SLEDS.accelerations(u=u)
+    assert (caught.value.kind, caught.value.place) == ("not_finite", "row 35, u4") and np.isnan(caught.value.number)
+    found = SLEDS.accelerations(u=u, errors="nan")
+    assert np.isnan(found[35]).all() and np.isfinite(np.delete(found, 35, axis=0)).all()
+    hits = SLEDS.collide("BcAc", u=u, errors="nan", **SURFACE)
+    assert hits.kind[35] == "not_finite" and hits.path[35] is None and hits.kind[0] == ""
+    with pytest.raises(hodograph.ImpactError, match="lie between 0 and 1") as caught:
+        hodograph.solve(MATRIX, APPROACH, mu=0.3, e=1.5, law="newton")
+    assert caught.value.kind == "restitution_out_of_range" and caught.value.number == 1.5
+
+
+def test_zero_rows_and_other_layouts():
+    assert SLEDS.accelerations(u=np.zeros((0, 4))).shape == (0, 4)
+    u = np.random.default_rng(1).normal(size=(4, 10)).T
+    np.testing.assert_array_equal(SLEDS.accelerations(u=u), SLEDS.accelerations(u=np.ascontiguousarray(u)))
+    np.testing.assert_array_equal(SLEDS.accelerations(u=u[::2]), SLEDS.accelerations(u=u)[::2])
+
+
+def test_check_and_mistakes():
+    assert hodograph.check(ROOT / "models/two_sleds.mech") == [] or hodograph.check(ROOT / "models/two_sleds.mech")[0].severity == "warning"
+    wrong = "mechanism M;\nspeeds { u1: rad/s }\npoints { P = O + nowhere*N.x; }\n"
+    diagnostics = hodograph.check(wrong)
+    assert any(d.severity == "error" and d.line == 3 and d.code.startswith("E") for d in diagnostics)
+    with pytest.raises(hodograph.ModelError) as caught:
+        hodograph.load(wrong)
+    assert caught.value.diagnostics and "line" in caught.value.place and caught.value.kind.startswith("E")
+
+
+def test_a_model_without_derivation_is_evaluated_numerically(tmp_path):
+    path = tmp_path / "m.mech"
+    path.write_text((ROOT / "models/two_sleds.mech").read_text())
+    with pytest.warns(UserWarning, match="numerically"):
+        numeric = hodograph.load(path)
+    q, u = ([x.value for x in xs] for xs in (SLEDS.coordinates, SLEDS.speeds))
+    np.testing.assert_allclose(numeric.accelerations(q, u), SLEDS.accelerations(), atol=1e-12)
+    (tmp_path / "m.derivation").write_text("nonsense")
+    with pytest.raises(hodograph.DerivationError) as caught:
+        hodograph.load(path)
+    assert caught.value.kind == "damaged_derivation"
+
+
+def test_threads_share_a_mechanism():
+    u = np.random.default_rng(2).normal(size=(5000, 4))
+    expected, found = SLEDS.accelerations(u=u), [None] * 4
+    def work(i):
+        found[i] = SLEDS.accelerations(u=u)
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    [t.start() for t in threads], [t.join() for t in threads]
+    assert all(np.array_equal(expected, f) for f in found)
+
+
+def test_html_of_models():
+    page = SLEDS._repr_html_()
+    assert page.startswith("<iframe") and "math" in page and "\\" in SLEDS.equations("latex")
+
+
+def test_stubs_name_what_there_is():
+    import ast
+    import inspect
+
+    stub = ast.parse((Path(hodograph.__file__).parent / "mechanism.pyi").read_text())
+    of = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+    for cls in (hodograph.Mechanism, hodograph.NumericMechanism):
+        stubbed = {n.name: [a.arg for a in n.args.args + n.args.kwonlyargs] for n in of[cls.__name__].body if isinstance(n, ast.FunctionDef)}
+        for name, method in vars(cls).items():
+            if inspect.isfunction(method) and not name.startswith("_"):
+                found = [p.name for p in inspect.signature(method).parameters.values() if p.kind != p.VAR_KEYWORD]
+                assert stubbed.get(name) == found, name
+                assert method.__doc__, name
