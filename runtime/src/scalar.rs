@@ -6,6 +6,7 @@ use core::{
     ops::{AddAssign, DivAssign, MulAssign, Neg, SubAssign},
 };
 
+use hodograph_arithmetic::elementary::{double, single};
 use nalgebra::{
     ClosedAddAssign, ClosedDivAssign, ClosedMulAssign, ClosedSubAssign, RealField, Vector2, convert,
     convert_unchecked,
@@ -90,23 +91,36 @@ impl<T: RealField + Copy> Real for T {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        nalgebra::ComplexField::exp(self)
+        same_everywhere(self, double::exp, single::exp, nalgebra::ComplexField::exp)
     }
     #[inline(always)]
     fn exp_m1(self) -> Self {
-        nalgebra::ComplexField::exp_m1(self)
+        same_everywhere(self, double::exp_m1, single::exp_m1, nalgebra::ComplexField::exp_m1)
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        nalgebra::ComplexField::ln(self)
+        same_everywhere(self, double::ln, single::ln, nalgebra::ComplexField::ln)
     }
     #[inline(always)]
     fn ln_1p(self) -> Self {
-        nalgebra::ComplexField::ln_1p(self)
+        same_everywhere(self, double::ln_1p, single::ln_1p, nalgebra::ComplexField::ln_1p)
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
         nalgebra::ComplexField::mul_add(self, a, b)
+    }
+}
+
+/// A function of doubles or singles that does not depend on the system, or that of other numbers: which, is known while compiling.
+#[inline(always)]
+fn same_everywhere<T: Scalar>(a: T, double: fn(f64) -> f64, single: fn(f32) -> f32, other: fn(T) -> T) -> T {
+    let this = TypeId::of::<T>();
+    if this == TypeId::of::<f64>() {
+        convert(double(convert_unchecked::<T, f64>(a)))
+    } else if this == TypeId::of::<f32>() {
+        convert(single(convert_unchecked::<T, f32>(a)))
+    } else {
+        other(a)
     }
 }
 
@@ -116,10 +130,10 @@ pub(crate) fn constant<T: Real>(value: f64) -> T {
     T::constant(value)
 }
 
-/// `a * b + c`, fused only where the target has the instruction and the standard library reaches it.
+/// `a * b + c`, fused only with the feature of that name and where the target has the instruction: else every target computes the same bits.
 #[inline(always)]
 pub(crate) fn fma<T: Real>(a: T, b: T, c: T) -> T {
-    if cfg!(all(feature = "std", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
+    if cfg!(all(feature = "fused", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }
 }
 
 /// `a * b + c * d`, of which one product is rounded.

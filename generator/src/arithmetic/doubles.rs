@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use hodograph_arithmetic::elementary::double;
 use hodograph_arithmetic::{hyperbolic, mul_add, trigonometry};
 
 use super::function::Function;
@@ -42,7 +43,7 @@ impl Arithmetic for f64 {
 
 /// Sine and cosine.
 pub fn sin_cos(a: f64) -> (f64, f64) {
-    trigonometry::sin_cos(a, f64::sin_cos)
+    trigonometry::sin_cos(a, trigonometry::beyond)
 }
 
 /// A function of one value. A function of two values gives NaN.
@@ -50,13 +51,13 @@ pub fn call(function: Function, a: f64) -> f64 {
     match function {
         Function::Sin => sin_cos(a).0,
         Function::Cos => sin_cos(a).1,
-        Function::Tan => a.tan(),
-        Function::Asin => a.asin(),
-        Function::Acos => a.acos(),
-        Function::Atan => a.atan(),
+        Function::Tan => double::tan(a),
+        Function::Asin => double::asin(a),
+        Function::Acos => double::acos(a),
+        Function::Atan => double::atan(a),
         Function::Sqrt => a.sqrt(),
-        Function::Exp => a.exp(),
-        Function::Log => a.ln(),
+        Function::Exp => double::exp(a),
+        Function::Log => double::ln(a),
         Function::Sinh => hyperbolic::sinh(a),
         Function::Cosh => hyperbolic::cosh(a),
         Function::Tanh => hyperbolic::tanh(a),
@@ -75,7 +76,7 @@ pub fn call(function: Function, a: f64) -> f64 {
 /// A function of two values. A function of one value gives NaN.
 pub fn call2(function: Function, a: f64, b: f64) -> f64 {
     match function {
-        Function::Atan2 => a.atan2(b),
+        Function::Atan2 => double::atan2(a, b),
         Function::Min => {
             if a < b {
                 a

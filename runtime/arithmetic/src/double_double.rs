@@ -22,8 +22,8 @@ pub trait Component:
     fn is_finite(&self) -> bool;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// `self * a + b` with one rounding.
-    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// 2^k + 1 for numbers of 2k or 2k - 1 binary digits: it splits a number into two halves whose products are exact.
+    fn splitter() -> Self;
 }
 
 #[cfg(feature = "std")]
@@ -37,8 +37,8 @@ impl Component for f64 {
     fn sqrt(self) -> Self {
         f64::sqrt(self)
     }
-    fn mul_add(self, a: Self, b: Self) -> Self {
-        f64::mul_add(self, a, b)
+    fn splitter() -> Self {
+        134217729.0
     }
 }
 
@@ -54,6 +54,21 @@ fn lost<T: Component>(a: T, b: T, high: T) -> T {
     let of_b = high - a;
     let of_a = high - of_b;
     (a - of_a) + (b - of_b)
+}
+
+/// A number as the sum of two of half the digits (Veltkamp 1968).
+fn split<T: Component>(a: T) -> (T, T) {
+    let shifted = a * T::splitter();
+    let high = shifted - (shifted - a);
+    (high, a - high)
+}
+
+/// What rounding took from `product = a * b` (Dekker 1971), without fused operations, which some targets have in software only. Not finite
+/// where a factor is so large that it cannot be split.
+#[inline(never)]
+fn lost_of_product<T: Component>(a: T, b: T, product: T) -> T {
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
 impl<T: Component> DoubleDouble<T> {
@@ -89,7 +104,8 @@ impl<T: Component> DoubleDouble<T> {
     /// Its square root.
     pub fn sqrt(self) -> Self {
         let near = self.high.sqrt();
-        let rest = (-near).mul_add(near, self.high) + self.low;
+        let square = near * near;
+        let rest = (self.high - square - lost_of_product(near, near, square)) + self.low;
         // At zero the slope is infinite: the correction is not finite and is left out.
         DoubleDouble::of(near, rest / (near + near))
     }
@@ -124,8 +140,7 @@ impl<T: Component> Mul for DoubleDouble<T> {
     #[inline(never)]
     fn mul(self, other: Self) -> Self {
         let high = self.high * other.high;
-        // With one rounding on every target, even where that takes many operations: it is done once.
-        let lost = self.high.mul_add(other.high, -high);
+        let lost = lost_of_product(self.high, other.high, high);
         DoubleDouble::of(high, lost + (self.high * other.low + self.low * other.high))
     }
 }
@@ -135,7 +150,9 @@ impl<T: Component> Div for DoubleDouble<T> {
     #[inline(never)]
     fn div(self, other: Self) -> Self {
         let near = self.high / other.high;
-        let rest = (-near).mul_add(other.high, self.high) + (self.low - near * other.low);
+        let product = near * other.high;
+        let rest = (self.high - product - lost_of_product(near, other.high, product))
+            + (self.low - near * other.low);
         DoubleDouble::of(near, rest / other.high)
     }
 }

@@ -3,6 +3,8 @@
 //! The angle is reduced by a multiple of pi/2, which is stored in three parts. Sine and cosine of the remainder are polynomials (Chebyshev interpolation
 //! on [0, pi/4], error below 2^-55); the quadrant exchanges them and sets their signs. For angles beyond 2^19 the caller supplies a function.
 
+pub mod single;
+
 use crate::fused::{FUSED, mul_add};
 
 /// Angles up to here are reduced here, rad.
@@ -48,6 +50,11 @@ pub fn sin_cos(x: f64, beyond: impl FnOnce(f64) -> (f64, f64)) -> (f64, f64) {
     // In each product below one factor is 0, 1 or -1: no rounding.
     let (s, c) = (QUARTERS[quadrant], QUARTERS[quadrant + 1]);
     (mul_add(sine, c, cosine * s), mul_add(cosine, c, -(sine * s)))
+}
+
+/// Angles that are too large, infinite or not a number: with as many digits of pi as they need.
+pub fn beyond(x: f64) -> (f64, f64) {
+    libm::sincos(x)
 }
 
 /// Whether the angle is small enough to be reduced here.

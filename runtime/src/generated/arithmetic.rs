@@ -2,8 +2,9 @@
 
 use core::any::TypeId;
 
+use hodograph_arithmetic::elementary::{double, single};
 use hodograph_arithmetic::{FUSED, hyperbolic, trigonometry};
-use nalgebra::{ComplexField, convert};
+use nalgebra::{convert, convert_unchecked};
 
 use crate::Scalar;
 
@@ -13,7 +14,7 @@ pub fn number<T: Scalar>(number: f64) -> T {
     convert(number)
 }
 
-/// a * b + c, with one rounding where the target has the instruction (and never by a library call).
+/// a * b + c, with one rounding where the feature `fused` is on and the target has the instruction (and never by a library call).
 #[inline(always)]
 pub fn mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
@@ -37,12 +38,15 @@ pub fn recip<T: Scalar>(a: T) -> T {
     T::one() / a
 }
 
-/// Sine and cosine. Those of doubles are our own: faster than the system's, and the same everywhere.
+/// Sine and cosine. Those of doubles and singles are our own: faster than the system's, and the same everywhere.
 #[inline(always)]
 pub fn sin_cos<T: Scalar>(a: T) -> (T, T) {
-    // Known at compile time; the conversions of a double to a double vanish.
+    // Known at compile time; the conversions of a number to itself vanish.
     if TypeId::of::<T>() == TypeId::of::<f64>() {
         let (sine, cosine) = trigonometry::sin_cos(a.to_subset_unchecked(), beyond);
+        (convert(sine), convert(cosine))
+    } else if TypeId::of::<T>() == TypeId::of::<f32>() {
+        let (sine, cosine) = trigonometry::single::sin_cos(convert_unchecked::<T, f32>(a));
         (convert(sine), convert(cosine))
     } else {
         a.sin_cos()
@@ -52,7 +56,7 @@ pub fn sin_cos<T: Scalar>(a: T) -> (T, T) {
 #[cold]
 #[inline(never)]
 fn beyond(a: f64) -> (f64, f64) {
-    ComplexField::sin_cos(a)
+    trigonometry::beyond(a)
 }
 
 /// Sine.
@@ -78,52 +82,62 @@ macro_rules! functions {
 }
 
 functions! {
-    /// Tangent.
-    tan => tan,
-    /// Arc sine.
-    asin => asin,
-    /// Arc cosine.
-    acos => acos,
-    /// Arc tangent.
-    atan => atan,
-    /// Square root.
+    /// Square root: right to the last place everywhere.
     sqrt => sqrt,
-    /// Exponential.
-    exp => exp,
-    /// Natural logarithm.
-    log => ln,
     /// Magnitude.
     abs => abs,
 }
 
-macro_rules! hyperbolic_functions {
-    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {$(
+/// Functions of one number: those of doubles (first module) and singles (second) are the same on every machine, those of other numbers
+/// their own.
+macro_rules! same_everywhere {
+    ($($(#[$doc:meta])* $name:ident => $double:ident::$function:ident, $single:ident::$single_function:ident, $method:ident),* $(,)?) => {$(
         $(#[$doc])*
         #[inline]
         pub fn $name<T: Scalar>(a: T) -> T {
             // known at compile time, as for sine and cosine
             if TypeId::of::<T>() == TypeId::of::<f64>() {
-                convert(hyperbolic::$name(a.to_subset_unchecked()))
+                convert($double::$function(a.to_subset_unchecked()))
+            } else if TypeId::of::<T>() == TypeId::of::<f32>() {
+                convert($single::$single_function(convert_unchecked::<T, f32>(a)))
             } else {
-                a.$name()
+                a.$method()
             }
         }
     )*};
 }
 
-hyperbolic_functions! {
-    /// Hyperbolic sine; that of doubles is our own, the same everywhere.
-    sinh,
-    /// Hyperbolic cosine, likewise.
-    cosh,
-    /// Hyperbolic tangent, likewise.
-    tanh,
+same_everywhere! {
+    /// Tangent.
+    tan => double::tan, single::tan, tan,
+    /// Arc sine.
+    asin => double::asin, single::asin, asin,
+    /// Arc cosine.
+    acos => double::acos, single::acos, acos,
+    /// Arc tangent.
+    atan => double::atan, single::atan, atan,
+    /// Exponential.
+    exp => double::exp, single::exp, exp,
+    /// Natural logarithm.
+    log => double::ln, single::ln, ln,
+    /// Hyperbolic sine.
+    sinh => hyperbolic::sinh, single::sinh, sinh,
+    /// Hyperbolic cosine.
+    cosh => hyperbolic::cosh, single::cosh, cosh,
+    /// Hyperbolic tangent.
+    tanh => hyperbolic::tanh, single::tanh, tanh,
 }
 
 /// Angle of (b, a).
 #[inline(always)]
 pub fn atan2<T: Scalar>(a: T, b: T) -> T {
-    a.atan2(b)
+    if TypeId::of::<T>() == TypeId::of::<f64>() {
+        convert(double::atan2(a.to_subset_unchecked(), b.to_subset_unchecked()))
+    } else if TypeId::of::<T>() == TypeId::of::<f32>() {
+        convert(single::atan2(convert_unchecked::<T, f32>(a), convert_unchecked::<T, f32>(b)))
+    } else {
+        a.atan2(b)
+    }
 }
 
 /// 1 if a is not negative, else -1.
@@ -144,8 +158,16 @@ pub fn max<T: Scalar>(a: T, b: T) -> T {
     if a > b { a } else { b }
 }
 
-/// A power with an exponent that is not negative.
+/// A power with an exponent that is not negative, by squaring.
 #[inline]
 pub fn power<T: Scalar>(a: T, exponent: i32) -> T {
-    a.powi(exponent)
+    let (mut left, mut square, mut product) = (exponent.unsigned_abs(), a, T::one());
+    while left > 0 {
+        if left & 1 == 1 {
+            product *= square;
+        }
+        left >>= 1;
+        square *= square;
+    }
+    product
 }

@@ -37,7 +37,7 @@ version = \"0.1.0\"
 edition = \"2024\"
 
 [dependencies]
-hodograph = { path = \"{runtime}\" }
+hodograph = { path = \"{runtime}\", features = [\"fused\"] }
 ";
 
 /// Writes a workspace with a package per derivation and compiles what they have in common.
