@@ -11,7 +11,8 @@ fn main() {
         Path::new(&env::var("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("../data/impact_cases.jsonl");
     println!("cargo::rerun-if-changed={}", data.display());
     let text = fs::read_to_string(&data).expect("the reference collisions are in tests/data");
-    fs::write(out.join("cases.rs"), cases(&text)).expect("the folder can be written");
+    fs::write(out.join("cases.rs"), cases(&text, false)).expect("the folder can be written");
+    fs::write(out.join("families.rs"), cases(&text, true)).expect("the folder can be written");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
         let memory = "MEMORY { FLASH : ORIGIN = 0, LENGTH = 4M\nRAM : ORIGIN = 0x20000000, LENGTH = 4M }\n";
         fs::write(out.join("memory.x"), memory).expect("the folder can be written");
@@ -21,8 +22,8 @@ fn main() {
     }
 }
 
-/// Every line with a reduced matrix as (m, v, mu, e, law).
-fn cases(text: &str) -> String {
+/// Every line with a reduced matrix as (m, v, mu, e, law), or (family, (m, v, mu, e, law)).
+fn cases(text: &str, families: bool) -> String {
     let mut code = String::from("[\n");
     for line in text.lines().filter(|line| line.contains("\"m\": ")) {
         let after = |key: &str| line.split_once(&format!("\"{key}\": ")).map_or("", |(_, rest)| rest);
@@ -38,7 +39,9 @@ fn cases(text: &str) -> String {
             _ => "Stronge",
         };
         let (m, v, mu, e) = (list("m"), list("v"), decimal(&one("mu")), decimal(&one("e")));
-        writeln!(code, "([{m}], [{v}], {mu}, {e}, Law::{law}),").expect("a string can be written to");
+        let case = format!("([{m}], [{v}], {mu}, {e}, Law::{law})");
+        let line = if families { format!("({:?}, {case}),", one("family")) } else { format!("{case},") };
+        writeln!(code, "{line}").expect("a string can be written to");
     }
     code + "]"
 }

@@ -1,0 +1,139 @@
+//! What singles lose against doubles: accelerations and collisions of every shipped model at random states, and the reference collisions by
+//! family. The states are singles, so that both types begin with the same numbers; parameters are rounded. Runs on this machine only.
+
+use std::collections::BTreeMap;
+
+use firmware::random::Random;
+use hodograph::nalgebra::Vector3;
+use hodograph::{Contacts, Kind, Law, ReducedMatrix, State, Surface, solve};
+
+const STATES: usize = 100;
+
+/// Relative errors, and calls that are refused in one type only.
+#[derive(Default)]
+struct Errors {
+    found: Vec<f64>,
+    refused: usize,
+}
+
+impl Errors {
+    /// Over the largest entry.
+    fn compare(&mut self, single: Option<Vec<f32>>, double: Option<Vec<f64>>) {
+        match (single, double) {
+            (Some(single), Some(double)) => {
+                let size = double.iter().fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
+                let differences = single.iter().zip(&double).map(|(x, y)| (f64::from(*x) - y).abs());
+                self.found.push(differences.fold(0.0, f64::max) / size);
+            }
+            (None, None) => {}
+            _ => self.refused += 1,
+        }
+    }
+
+    fn row(&mut self, name: &str) -> String {
+        self.found.sort_by(f64::total_cmp);
+        let at = |share: f64| self.found.get((share * (self.found.len() as f64 - 1.0)) as usize).copied().unwrap_or(f64::NAN);
+        format!("| {name} | {} | {:.0e} | {:.0e} | {:.0e} | {} |", self.found.len(), at(0.5), at(0.95), at(1.0), self.refused)
+    }
+}
+
+fn heading(what: &str) {
+    println!("\n| {what} | compared | median | 95 % | largest | refused in one type |\n| --- | ---: | ---: | ---: | ---: | ---: |");
+}
+
+fn model(single: &dyn Contacts<f32>, double: &dyn Contacts<f64>) -> [String; 2] {
+    let [n, p, inputs] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| single.count(kind));
+    let (mut q0, mut u0, mut w0) = (vec![0f32; n], vec![0f32; p], vec![0f32; inputs]);
+    single.initial_state(&mut q0, &mut u0, &mut w0).expect("the slices have its lengths");
+    let mut random = Random::new(n as u64);
+    let (mut accelerations, mut collisions) = (Errors::default(), Errors::default());
+    for number in 0..STATES {
+        let mut near = |from: &[f32], size: f64| -> Vec<f32> {
+            from.iter().map(|x| x + (size * random.next()) as f32).collect()
+        };
+        let (mut q, mut u, w) = (near(&q0, 0.5), near(&u0, 2.0), near(&w0, 1.0));
+        let _ = single.normalize(&mut q);
+        let wide = |slice: &[f32]| slice.iter().copied().map(f64::from).collect::<Vec<_>>();
+        let time = random.next();
+        let at = State { time: time as f32, coordinates: &q, speeds: &u, inputs: &w };
+        if single.contact_velocity(0, &at).is_ok_and(|velocity| velocity.x > 0.0) {
+            u.iter_mut().for_each(|u| *u = -*u);
+        }
+        let at = State { time: time as f32, coordinates: &q, speeds: &u, inputs: &w };
+        let (q, u, w) = (wide(&q), wide(&u), wide(&w));
+        let exact = State { time, coordinates: &q, speeds: &u, inputs: &w };
+        let (mut out, mut expected) = (vec![0f32; p], vec![0f64; p]);
+        let found = single.accelerations(&at, &mut out).ok().map(|()| out.clone());
+        let known = double.accelerations(&exact, &mut expected).ok().map(|()| expected.clone());
+        accelerations.compare(found, known);
+        let (mu, e) = (0.75 + 0.75 * random.next(), 0.5 + 0.5 * random.next());
+        let law = [Law::Newton, Law::Poisson, Law::Stronge][number % 3];
+        let surface = Surface { mu: mu as f32, e: e as f32, law };
+        let found = single.collide(0, &at, &surface, &mut out).ok().map(|_| out.clone());
+        let surface = Surface { mu: f64::from(surface.mu), e: f64::from(surface.e), law };
+        let known = double.collide(0, &exact, &surface, &mut expected).ok().map(|_| expected.clone());
+        collisions.compare(found, known);
+    }
+    [accelerations.row(single.name()), collisions.row(single.name())]
+}
+
+fn main() {
+    type Case = ([f64; 6], [f64; 3], f64, f64, Law);
+    let cases: &[(&str, Case)] = &include!(concat!(env!("OUT_DIR"), "/families.rs"));
+    let mut families: BTreeMap<&str, Errors> = BTreeMap::new();
+    for (family, (m, v, mu, e, law)) in cases {
+        let [m32, v32] = [m.map(|x| x as f32).to_vec(), v.map(|x| x as f32).to_vec()];
+        let single = ReducedMatrix::new(m32[0], m32[1], m32[2], m32[3], m32[4], m32[5]);
+        let found = solve(&single, &Vector3::from_column_slice(&v32), &Surface { mu: *mu as f32, e: *e as f32, law: *law });
+        let known = solve(&ReducedMatrix::from(*m), &Vector3::from(*v), &Surface { mu: *mu, e: *e, law: *law });
+        families.entry(family).or_default().compare(
+            found.ok().map(|hit| hit.impulse.as_slice().to_vec()),
+            known.ok().map(|hit| hit.impulse.as_slice().to_vec()),
+        );
+    }
+    heading("reference collisions, impulse");
+    families.iter_mut().for_each(|(family, errors)| println!("{}", errors.row(family)));
+    let rows: Vec<[String; 2]> = models();
+    for (what, k) in [("accelerations", 0), ("collisions, speeds after", 1)] {
+        heading(what);
+        rows.iter().for_each(|row| println!("{}", row[k]));
+    }
+}
+
+macro_rules! models {
+    ($($module:ident $type:ident,)*) => {
+        fn models() -> Vec<[String; 2]> {
+            vec![$(model(
+                &hodograph_models::$module::$type::<f32>::default(),
+                &hodograph_models::$module::$type::<f64>::default(),
+            ),)*]
+        }
+    };
+}
+
+models! {
+    arm_7dof Arm7dof,
+    ball_joint_body BallJointBody,
+    ball_on_turntable BallOnTurntable,
+    cart_5_link Cart5Link,
+    chaplygin_sleigh ChaplyginSleigh,
+    driven_rotary_pendulum DrivenRotaryPendulum,
+    five_bar FiveBar,
+    four_bar FourBar,
+    free_box_corner FreeBoxCorner,
+    free_box_quaternion FreeBoxQuaternion,
+    planar_double_pendulum PlanarDoublePendulum,
+    planar_triple_pendulum PlanarTriplePendulum,
+    puma_560 Puma560,
+    rattleback Rattleback,
+    rolling_disc RollingDisc,
+    shaken_pendulum_moving_plate ShakenPendulumMovingPlate,
+    slender_rod_5dof SlenderRod5dof,
+    slider_crank SliderCrank,
+    spherical_pendulum SphericalPendulum,
+    spring_damper_cart_rod SpringDamperCartRod,
+    stanford_arm StanfordArm,
+    two_sleds TwoSleds,
+    two_sleds_planar TwoSledsPlanar,
+    whipple_bicycle WhippleBicycle,
+}
