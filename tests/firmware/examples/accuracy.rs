@@ -32,13 +32,24 @@ impl Errors {
 
     fn row(&mut self, name: &str) -> String {
         self.found.sort_by(f64::total_cmp);
-        let at = |share: f64| self.found.get((share * (self.found.len() as f64 - 1.0)) as usize).copied().unwrap_or(f64::NAN);
-        format!("| {name} | {} | {:.0e} | {:.0e} | {:.0e} | {} |", self.found.len(), at(0.5), at(0.95), at(1.0), self.refused)
+        let at = |share: f64| {
+            self.found.get((share * (self.found.len() as f64 - 1.0)) as usize).copied().unwrap_or(f64::NAN)
+        };
+        format!(
+            "| {name} | {} | {:.0e} | {:.0e} | {:.0e} | {} |",
+            self.found.len(),
+            at(0.5),
+            at(0.95),
+            at(1.0),
+            self.refused
+        )
     }
 }
 
 fn heading(what: &str) {
-    println!("\n| {what} | compared | median | 95 % | largest | refused in one type |\n| --- | ---: | ---: | ---: | ---: | ---: |");
+    println!(
+        "\n| {what} | compared | median | 95 % | largest | refused in one type |\n| --- | ---: | ---: | ---: | ---: | ---: |"
+    );
 }
 
 fn model(single: &dyn Contacts<f32>, double: &dyn Contacts<f64>) -> [String; 2] {
@@ -84,8 +95,13 @@ fn main() {
     for (family, (m, v, mu, e, law)) in cases {
         let [m32, v32] = [m.map(|x| x as f32).to_vec(), v.map(|x| x as f32).to_vec()];
         let single = ReducedMatrix::new(m32[0], m32[1], m32[2], m32[3], m32[4], m32[5]);
-        let found = solve(&single, &Vector3::from_column_slice(&v32), &Surface { mu: *mu as f32, e: *e as f32, law: *law });
-        let known = solve(&ReducedMatrix::from(*m), &Vector3::from(*v), &Surface { mu: *mu, e: *e, law: *law });
+        let found = solve(
+            &single,
+            &Vector3::from_column_slice(&v32),
+            &Surface { mu: *mu as f32, e: *e as f32, law: *law },
+        );
+        let known =
+            solve(&ReducedMatrix::from(*m), &Vector3::from(*v), &Surface { mu: *mu, e: *e, law: *law });
         families.entry(family).or_default().compare(
             found.ok().map(|hit| hit.impulse.as_slice().to_vec()),
             known.ok().map(|hit| hit.impulse.as_slice().to_vec()),
