@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{Columns, Constants};
 use crate::arithmetic::Function;
+use crate::interpret::prepared::Constants;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Program, Quantity};
@@ -65,6 +65,51 @@ pub struct Step {
     pub c: u32,
 }
 
+/// Some quantities of a program, ready to be evaluated at many states at the parameters it was prepared for.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    pub(super) steps: Vec<Step>,
+    /// how many slots the steps need
+    pub(super) slots: usize,
+    /// numbers that are the same for all states: which value of the program each is, and the number
+    pub(super) uniforms: Vec<(Value, f64)>,
+    /// results that are the same for all states: their place, and which of `uniforms`
+    pub(super) uniform_results: Vec<(usize, u32)>,
+    /// how many results a state has
+    pub(super) len: usize,
+    /// the guards of the program that are checked, in the order in which they are reported
+    pub(super) guards: Vec<usize>,
+}
+
+impl Columns {
+    /// Prepares those of the quantities that the program has, in this order.
+    pub fn new(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Self {
+        columns(program, constants, quantities)
+    }
+
+    /// Goes over to other parameters.
+    pub fn refresh(&mut self, constants: &Constants) {
+        for (value, number) in &mut self.uniforms {
+            *number = constants.get(*value);
+        }
+    }
+
+    /// How many results a state has: the quantities one after the other, each by rows.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Are there none, because the program has none of the quantities?
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// How many slots a block needs, of `8 LANES` bytes each.
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+}
+
 /// A number of every state: a value of the program, or the cosine of a pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Varying {
@@ -88,7 +133,7 @@ struct Draft {
 }
 
 /// Compiles those of the quantities that the program has.
-pub fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Columns {
+fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Columns {
     let slice = program.slice(quantities);
     let mut compiler = Compiler { program, constants, uniforms: Vec::new(), numbers: HashMap::new() };
     let mut results: HashMap<Varying, Vec<u32>> = HashMap::new();

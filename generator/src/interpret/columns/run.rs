@@ -1,10 +1,10 @@
 //! The steps on a block of states.
 
-use super::compile::{Code, Step};
+use super::compile::{Code, Columns, Step};
 use super::lanes::{InSlot, LANES, Numbers, Operand, Slot, Uniform, WIDTH};
-use super::{Columns, Table};
+use super::table::Table;
 use crate::arithmetic::{call, call2, mul_add};
-use crate::interpret::{Failed, holds};
+use crate::interpret::prepared::{Failed, holds};
 use crate::program::VANISHING;
 
 /// What a batch needs beside its results.

@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::artifact;
-use crate::interpret::{Arguments, Prepared};
-use crate::program::operation::{Bits, Operation as O};
-use crate::program::{Guard, Output, graph::Input};
+use crate::interpret::prepared::{Arguments, Constants, Failed, Prepared};
+use crate::program::operation::{Bits, Operation as O, Value};
+use crate::program::{Guard, Output, Program, Quantity, graph::Input};
 
 /// A program in which every form of every operation occurs, with guards whose scale varies and does not.
 fn program() -> Program {

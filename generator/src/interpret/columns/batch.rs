@@ -1,0 +1,96 @@
+//! From blocks to rows and columns of results.
+
+use std::ops::Range;
+
+use super::compile::Columns;
+use super::lanes::{LANES, Slot};
+use super::run::Scratch;
+use super::table::Table;
+use crate::interpret::prepared::Failed;
+
+/// Results of up to [`LANES`] consecutive states.
+#[derive(Clone, Copy, Debug)]
+pub struct Block<'a> {
+    /// the row of the first state
+    pub first: usize,
+    /// how many states
+    pub count: usize,
+    results: &'a [Slot],
+    failures: &'a [Option<Failed>; LANES],
+}
+
+impl<'a> Block<'a> {
+    /// A result of all states of the block; of one that fails it has no meaning.
+    pub fn column(&self, result: usize) -> &'a [f64] {
+        self.results.get(result).and_then(|slot| slot.as_flattened().get(..self.count)).unwrap_or(&[])
+    }
+
+    /// Why the states of the block have no results.
+    pub fn failures(&self) -> &'a [Option<Failed>] {
+        self.failures.get(..self.count).unwrap_or(self.failures)
+    }
+}
+
+impl Columns {
+    /// Evaluates the states of these rows; `with` receives them block by block. Rows that the table does not have are left out.
+    pub fn for_each_block(&self, table: &Table<'_>, rows: Range<usize>, mut with: impl FnMut(Block<'_>)) {
+        let mut scratch = Scratch::new(self);
+        let end = rows.end.min(table.rows);
+        for first in (rows.start..end).step_by(LANES) {
+            let count = (end - first).min(LANES);
+            self.run(table, first, count, &mut scratch);
+            with(Block { first, count, results: &scratch.results, failures: &scratch.failures });
+        }
+    }
+
+    /// Evaluates the states of these rows into `numbers` (rows x [`Columns::len`], by rows) and `failures` (rows). The numbers of a state that
+    /// fails are not numbers.
+    pub fn by_rows(
+        &self,
+        table: &Table<'_>,
+        rows: Range<usize>,
+        numbers: &mut [f64],
+        failures: &mut [Option<Failed>],
+    ) {
+        let start = rows.start;
+        self.for_each_block(table, rows, |block| {
+            let at = block.first - start;
+            let from = numbers.get_mut(at * self.len..(at + block.count) * self.len).unwrap_or(&mut []);
+            for result in 0..self.len {
+                let places = from.iter_mut().skip(result).step_by(self.len);
+                places.zip(block.column(result)).for_each(|(place, &number)| *place = number);
+            }
+            let reasons = failures.iter_mut().skip(at).zip(block.failures());
+            for (lane, (failure, reason)) in reasons.enumerate() {
+                *failure = *reason;
+                if reason.is_some() {
+                    let row = from.iter_mut().skip(lane * self.len).take(self.len);
+                    row.for_each(|place| *place = f64::NAN);
+                }
+            }
+        });
+    }
+
+    /// Evaluates the states of these rows into one column (rows) for each result, and `failures` (rows). The numbers of a state that fails are
+    /// not numbers.
+    pub fn by_columns(
+        &self,
+        table: &Table<'_>,
+        rows: Range<usize>,
+        columns: &mut [&mut [f64]],
+        failures: &mut [Option<Failed>],
+    ) {
+        let start = rows.start;
+        self.for_each_block(table, rows, |block| {
+            let at = block.first - start;
+            for (result, column) in columns.iter_mut().enumerate() {
+                let places = column.iter_mut().skip(at).zip(block.column(result)).zip(block.failures());
+                for ((place, &number), failure) in places {
+                    *place = if failure.is_some() { f64::NAN } else { number };
+                }
+            }
+            let reasons = failures.iter_mut().skip(at).zip(block.failures());
+            reasons.for_each(|(failure, reason)| *failure = *reason);
+        });
+    }
+}
