@@ -55,6 +55,17 @@ impl Simulation<'_> {
         {
             return bad(message);
         }
+        for &(contact, stiffness) in &options.stiffness {
+            if contact >= count {
+                return bad(format!(
+                    "there is a stiffness for contact {contact}, but the mechanism has {count} contacts"
+                ));
+            }
+            if !(stiffness.is_finite() && stiffness > 0.0) {
+                let message = format!("its stiffness is {stiffness}: it must be finite and positive");
+                return Err(self.error(Some(contact), Reason::Option(message)));
+            }
+        }
         let mut surfaces = vec![None; count];
         for (contact, slot) in surfaces.iter_mut().enumerate() {
             let gap =

@@ -37,6 +37,8 @@ pub enum Reason {
     EventsWithoutEnd(usize),
     /// Several contacts were struck together and the option says to stop.
     Together(Vec<String>),
+    /// Several contacts were struck together, and the impact is not one that can be solved as the option says: why, and what to do.
+    Lzb(String),
     /// The forces at several contacts could not be found.
     Forces(String),
 }
@@ -54,6 +56,7 @@ impl Reason {
             Self::Stalled => "stalled",
             Self::EventsWithoutEnd(_) => "events_without_end",
             Self::Together(_) => "struck_together",
+            Self::Lzb(_) => "lzb_not_covered",
             Self::Forces(_) => "no_forces",
         }
     }
@@ -73,9 +76,10 @@ impl fmt::Display for SimulationError {
             Reason::Overlap(gap) => {
                 write!(out, "the negative gap {gap}: start where the bodies are apart, or touch")
             }
-            Reason::Option(message) | Reason::Input(message) | Reason::Forces(message) => {
-                out.write_str(message)
-            }
+            Reason::Option(message)
+            | Reason::Input(message)
+            | Reason::Forces(message)
+            | Reason::Lzb(message) => out.write_str(message),
             Reason::Stalled => write!(
                 out,
                 "the steps of the integration became too small: the motion is singular or too stiff there"

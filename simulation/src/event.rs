@@ -1,6 +1,7 @@
 //! The events of a motion: collisions, beginning and end of contact, stick and slip.
 
 use hodograph::{CollisionOutcome, ContactMode, Selection};
+use nalgebra::Vector3;
 
 /// An event, with the state at its time.
 #[derive(Clone, Debug)]
@@ -23,6 +24,8 @@ pub struct Event {
 pub enum EventKind {
     /// Bodies collided.
     Collision(Box<Struck>),
+    /// Several contacts were struck together and answered all at once: see [`crate::Together::Lzb`].
+    StruckTogether(Box<StruckTogether>),
     /// A sliding contact that no finite force can hold suffered an impact with zero speed of approach.
     ImpactWithoutCollision(Box<Struck>),
     /// Lasting contact begins.
@@ -60,6 +63,7 @@ impl EventKind {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Collision(_) => "collision",
+            Self::StruckTogether(_) => "struck_together",
             Self::ImpactWithoutCollision(_) => "impact_without_collision",
             Self::Contact { .. } => "contact",
             Self::LiftOff { .. } => "lift_off",
@@ -83,4 +87,32 @@ pub struct Struck {
     /// for the first of several contacts struck together: the greatest difference of a speed after all collisions between the orders in which
     /// they may be solved; zero if the order does not matter
     pub spread: Option<f64>,
+}
+
+/// An impact of several contacts at once.
+#[derive(Clone, Debug)]
+pub struct StruckTogether {
+    /// what each contact that could take part did
+    pub shares: Vec<Share>,
+    /// change of kinetic energy, J: the sum of the works
+    pub energy_change: f64,
+    /// independent speeds before
+    pub speeds_before: Vec<f64>,
+}
+
+/// What one contact did in an impact of several.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Share {
+    /// number of the contact
+    pub contact: usize,
+    /// normal impulse, N s
+    pub impulse: f64,
+    /// the impulse on the striking point along N.x, N.y, N.z, N s
+    pub impulse_on_point: Vector3<f64>,
+    /// normal velocity before, m/s
+    pub approach: f64,
+    /// normal velocity after, m/s
+    pub separation: f64,
+    /// work of the normal impulse, J
+    pub work: f64,
 }

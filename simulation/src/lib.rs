@@ -39,6 +39,7 @@ mod forces;
 mod front;
 mod happen;
 mod locate;
+mod lzb;
 mod motion;
 mod options;
 mod phase;
@@ -51,6 +52,7 @@ mod slip_direction;
 mod slip_end;
 mod stepper;
 mod strike;
+mod strike_together;
 mod support;
 mod watch;
 
@@ -58,7 +60,7 @@ pub use crate::{
     drive::{Controller, Drive, InputFunction},
     energy::EnergyAccount,
     error::{Reason, SimulationError},
-    event::{Event, EventKind, Struck},
+    event::{Event, EventKind, Share, Struck, StruckTogether},
     options::{EventFunction, Options, Together},
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},

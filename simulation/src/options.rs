@@ -16,6 +16,8 @@ pub enum Together {
     /// One after the other, the fastest approach first, until nothing approaches.
     #[default]
     Sequential,
+    /// All at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction only.
+    Lzb,
     /// The simulation ends with an error.
     Stop,
 }
@@ -37,6 +39,8 @@ pub struct Options {
     pub drive: Drive,
     /// what happens where several contacts are struck together
     pub together: Together,
+    /// of [`Together::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts that are not named have 1
+    pub stiffness: Vec<(usize, f64)>,
     /// whether all orders of up to four contacts struck together are compared
     pub compare_orders: bool,
     /// functions whose zeros are events
@@ -53,6 +57,7 @@ impl Default for Options {
             surface: None,
             drive: Drive::Held,
             together: Together::Sequential,
+            stiffness: Vec::new(),
             compare_orders: true,
             events: Vec::new(),
         }
@@ -69,6 +74,7 @@ impl fmt::Debug for Options {
             .field("surface", &self.surface)
             .field("drive", &self.drive)
             .field("together", &self.together)
+            .field("stiffness", &self.stiffness)
             .field("events", &self.events.len())
             .finish_non_exhaustive()
     }

@@ -53,6 +53,11 @@ impl Simulation<'_> {
         if self.comes_to_lie(first)? {
             return Ok(());
         }
+        if self.options.together == Together::Lzb
+            && let Some(speeds) = self.strike_together(&touching, first)?
+        {
+            return self.part_or_stay(&touching, &speeds, &was);
+        }
         let hits = self.sequence(&touching, &speeds, None)?;
         let spread = self.spread(&touching, &speeds, &hits)?;
         let mut last = speeds;

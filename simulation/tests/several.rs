@@ -158,3 +158,77 @@ fn striking_together_can_end_the_simulation() {
     assert_eq!(error.reason.kind(), "struck_together");
     assert!(error.to_string().contains("c0, c1"), "{error}");
 }
+
+hodograph::mechanism!("models/cradle.mech");
+
+/// Three balls, of which the first comes with 1 m/s, with these stiffnesses.
+fn struck_cradle(stiffness: [f64; 2], surface: Options) -> Vec<hodograph_simulation::Event> {
+    let balls = cradle::Cradle::<f64>::default();
+    let options =
+        Options { together: Together::Lzb, stiffness: vec![(0, stiffness[0]), (1, stiffness[1])], ..surface };
+    let mut simulation = start(&balls, &[-0.2, 0.0, 0.1], &[1.0, 0.0, 0.0], options);
+    let events = run(&mut simulation, 1.0);
+    let energy = simulation.energy().unwrap();
+    assert!((energy.kinetic - energy.impacts - 0.5).abs() < 1e-12, "{energy:?}");
+    events
+}
+
+/// Springs between the balls share the impact: the answer depends on the ratio of stiffnesses, and tends to one order as that grows.
+#[test]
+fn a_cradle_answers_by_its_stiffnesses() {
+    let mut last = Vec::new();
+    for stiffness in [[1.0, 1.0], [3.0, 3.0], [1e6, 1.0]] {
+        let events = struck_cradle(stiffness, surface(0.0, 1.0, Law::Stronge));
+        let impact = first(&events, "struck_together");
+        assert!((impact.time - 0.1).abs() < 1e-12);
+        let EventKind::StruckTogether(struck) = &impact.kind else { panic!() };
+        assert_eq!(struck.speeds_before, [1.0, 0.0, 0.0]);
+        assert_eq!(struck.shares.len(), 2);
+        assert!(struck.energy_change.abs() < 1e-12, "{struck:?}");
+        last.push(impact.speeds.clone());
+    }
+    // What the closed form in the tests of `lzb` gives for equal balls, to two digits; only the ratio matters.
+    for (speed, known) in last[0].iter().zip([-0.13, 0.15, 0.98]) {
+        assert!((speed - known).abs() < 0.006, "{last:?}");
+    }
+    assert!(last[0].iter().zip(&last[1]).all(|(a, b)| (a - b).abs() < 1e-12), "{last:?}");
+    assert!(last[2].iter().zip([0.0, 0.0, 1.0]).all(|(a, b)| (a - b).abs() < 5e-3), "{last:?}");
+}
+
+/// A block that falls flat keeps level, and comes to rest.
+#[test]
+fn a_block_that_falls_flat_answers_at_once() {
+    let body = block(0.3, 0.2);
+    let options = Options { together: Together::Lzb, ..surface(0.0, 0.5, Law::Stronge) };
+    let mut simulation = start(&body, &[0.0, 0.6, 0.0], &[0.0; 3], options);
+    let events = run(&mut simulation, 3.0);
+    let impact = first(&events, "struck_together");
+    let fall = (1.0 / G).sqrt();
+    assert!((impact.time - fall).abs() < 1e-10);
+    assert!((impact.speeds[1] - 0.5 * G * fall).abs() < 1e-9 && impact.speeds[2].abs() < 1e-12);
+    first(&events, "rest");
+}
+
+/// What the theory does not cover is refused by name.
+#[test]
+fn striking_together_by_stiffness_is_refused_with_friction() {
+    let body = block(0.3, 0.2);
+    let refused = |options: Options| {
+        let options = Options { together: Together::Lzb, ..options };
+        let mut simulation = start(&body, &[0.0, 0.6, 0.0], &[0.0; 3], options);
+        let error = simulation.advance_to(1.0).unwrap_err();
+        assert_eq!(error.reason.kind(), "lzb_not_covered");
+        error.to_string()
+    };
+    assert!(refused(surface(0.3, 0.5, Law::Stronge)).contains("mu = 0.3"));
+    assert!(refused(surface(0.0, 0.5, Law::Newton)).contains("law stronge"));
+    let state =
+        hodograph::State { time: 0.0, coordinates: &[0.0, 0.6, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
+    for (stiffness, what) in
+        [((0, 0.0), "stiffness is 0"), ((1, f64::NAN), "stiffness is NaN"), ((7, 1.0), "2 contacts")]
+    {
+        let options = Options { stiffness: vec![stiffness], ..surface(0.0, 0.5, Law::Stronge) };
+        let error = hodograph_simulation::Simulation::new(&body, &state, options).unwrap_err();
+        assert!(error.to_string().contains(what), "{error}");
+    }
+}

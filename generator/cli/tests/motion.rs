@@ -203,3 +203,35 @@ fn pages_show_the_motion() {
     assert_eq!(simulate("incline", &[&call[..], &surface[..]].concat()).code, 1);
     assert!(data(&page)["times"].as_array().unwrap().iter().any(|time| (number(time) - 0.3).abs() < 1e-9));
 }
+
+/// Contacts that are struck together answer by their stiffnesses, and what is refused there.
+#[test]
+fn balls_answer_by_their_stiffnesses() {
+    let model = root().join("simulation/models/cradle.mech").display().to_string();
+    let call = |more: &[&str]| {
+        let call = [
+            "simulate", &model, "--until", "0.2", "--step", "0.2", "--mu", "0", "--e", "1", "--law",
+            "stronge",
+        ];
+        hodograph(&[&call[..], more].concat(), "")
+    };
+    let run = call(&["--together", "lzb", "--stiffness", "left=1e6", "--stiffness", "right=1"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let lines = run.lines();
+    let impact = events(&lines, "struck_together")[0];
+    assert!((number(&impact["u_after"]["u3"]) - 1.0).abs() < 5e-3, "{impact}");
+    assert_eq!(number(&impact["u"]["u1"]), 1.0);
+    assert_eq!(impact["shares"][1]["contact"], "right");
+    assert!((number(&impact["shares"][0]["impulse"]) - 1.0).abs() < 5e-3, "{impact}");
+    for (more, code, what) in [
+        (&["--together", "lzb", "--stiffness", "left"][..], 2, "--stiffness left: give CONTACT=NUMBER"),
+        (&["--together", "lzb", "--stiffness", "left=-1"][..], 2, "with a positive number"),
+        (&["--together", "lzb", "--stiffness", "lift=1"][..], 1, "there is no contact `lift`"),
+        (&["--stiffness", "left=1"][..], 2, "--together lzb alone"),
+        (&["--together", "lzb", "--surface", "right=0.1,1,stronge"][..], 1, "without friction only"),
+    ] {
+        let run = call(more);
+        assert_eq!(run.code, code, "{more:?} {}", run.stderr);
+        assert!((run.stderr.clone() + &run.stdout).contains(what), "{more:?} {} {}", run.stderr, run.stdout);
+    }
+}

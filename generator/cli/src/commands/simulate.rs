@@ -58,9 +58,12 @@ pub struct Arguments {
     /// a CSV file with a column `t` and a column for each input, between whose rows inputs are interpolated
     #[arg(long, value_name = "FILE")]
     inputs: Option<PathBuf>,
-    /// contacts that are struck together answer one after the other, or the simulation stops
+    /// contacts that are struck together answer one after the other, all at once by their stiffnesses, or the simulation stops
     #[arg(long, value_name = "WAY", default_value = "sequential")]
     together: TogetherArgument,
+    /// of --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and contacts not named have 1
+    #[arg(long, value_name = "CONTACT=NUMBER")]
+    stiffness: Vec<String>,
     /// how lines are written
     #[arg(long, value_name = "FORMAT", default_value = "json")]
     format: Format,
@@ -79,6 +82,8 @@ pub struct Arguments {
 enum TogetherArgument {
     /// one after the other, the fastest first
     Sequential,
+    /// all at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction only
+    Lzb,
     /// an error
     Stop,
 }
@@ -113,6 +118,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
     )
     .map_err(|error| Failure::new(Kind::InconsistentState, error.to_string()))?;
     let surfaces = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
+    let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
+    if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
+        return Err(Stop::Call(
+            "--stiffness is of --together lzb alone: give that, or leave it out".to_owned(),
+        ));
+    }
     let drive = inputs::drive(&machine.mechanism, &arguments.input, arguments.inputs.as_deref())?;
     let timed = drive.is_some()
         || machine
@@ -129,8 +140,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         drive: drive.unwrap_or_default(),
         together: match arguments.together {
             TogetherArgument::Sequential => Together::Sequential,
+            TogetherArgument::Lzb => Together::Lzb,
             TogetherArgument::Stop => Together::Stop,
         },
+        stiffness,
         ..Options::default()
     };
     let mut lines = Lines::new(&mechanism, arguments.format)?;

@@ -2,7 +2,7 @@
 
 use hodograph::{Kind as Of, Mechanism, Selection, State};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::{Event, EventKind, Struck};
+use hodograph_simulation::{Event, EventKind, Struck, StruckTogether};
 use serde::Serialize;
 
 use crate::evaluate::report::{Named, named};
@@ -36,6 +36,8 @@ struct Line<'a> {
     #[serde(flatten)]
     answer: Option<Answer>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    shares: Option<Vec<ShareOf<'a>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     u_after: Option<Named<'a, f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     kinetic_energy_change: Option<f64>,
@@ -53,6 +55,19 @@ struct Line<'a> {
     indeterminate: Option<bool>,
     q: Named<'a, f64>,
     u: Named<'a, f64>,
+}
+
+/// What one of several contacts did that were struck together.
+#[derive(Serialize)]
+struct ShareOf<'a> {
+    contact: &'a str,
+    /// normal impulse, N s
+    impulse: f64,
+    /// normal velocity before and after, m/s
+    v_before: f64,
+    v: f64,
+    /// work of the impulse, J
+    work: f64,
 }
 
 /// Writes lines.
@@ -119,6 +134,7 @@ impl<'m> Lines<'m> {
             event: event.kind.name(),
             contact,
             answer: None,
+            shares: None,
             u_after: None,
             kinetic_energy_change: None,
             last_bounce: None,
@@ -138,6 +154,7 @@ impl<'m> Lines<'m> {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
                 self.struck(event, struck, &mut line)?;
             }
+            EventKind::StruckTogether(struck) => self.together(event, struck, &mut line),
             EventKind::Contact { mode, selection } => {
                 certain(selection);
                 line.mode = Some(mode.name());
@@ -154,6 +171,35 @@ impl<'m> Lines<'m> {
 
     /// What belongs to an impact: the fields of `collide`, and the speeds before as `u`.
     fn struck<'a>(&'a self, event: &'a Event, struck: &'a Struck, line: &mut Line<'a>) -> Outcome {
+        line.answer = Some(Answer::try_from(&struck.outcome.impact)?);
+        line.u_after = Some(self.after(event));
+        line.kinetic_energy_change = Some(struck.outcome.energy_change + 0.0);
+        line.last_bounce = struck.last_bounce.then_some(true);
+        line.spread = struck.spread;
+        line.u = self.speeds(&struck.speeds_before);
+        Ok(())
+    }
+
+    /// What belongs to an impact of several contacts, and the speeds before as `u`.
+    fn together<'a>(&'a self, event: &'a Event, struck: &'a StruckTogether, line: &mut Line<'a>) {
+        let shares = struck.shares.iter().map(|share| ShareOf {
+            contact: self
+                .mechanism
+                .component(Of::Contact, share.contact)
+                .map_or("", |component| component.name),
+            impulse: share.impulse + 0.0,
+            v_before: share.approach + 0.0,
+            v: share.separation + 0.0,
+            work: share.work + 0.0,
+        });
+        line.shares = Some(shares.collect());
+        line.u_after = Some(self.after(event));
+        line.kinetic_energy_change = Some(struck.energy_change + 0.0);
+        line.u = self.speeds(&struck.speeds_before);
+    }
+
+    /// All speeds after an event.
+    fn after(&self, event: &Event) -> Named<'_, f64> {
         let mut after = event.speeds.clone();
         let mut dependent = vec![0.0; self.mechanism.count(Of::DependentSpeed)];
         let state = State {
@@ -165,13 +211,7 @@ impl<'m> Lines<'m> {
         if self.mechanism.dependent_speeds(&state, &mut dependent).is_ok() {
             after.extend(dependent);
         }
-        line.answer = Some(Answer::try_from(&struck.outcome.impact)?);
-        line.u_after = Some(named(&self.mechanism.model().speeds, after));
-        line.kinetic_energy_change = Some(struck.outcome.energy_change + 0.0);
-        line.last_bounce = struck.last_bounce.then_some(true);
-        line.spread = struck.spread;
-        line.u = self.speeds(&struck.speeds_before);
-        Ok(())
+        named(&self.mechanism.model().speeds, after)
     }
 
     fn coordinates(&self, q: &[f64]) -> Named<'_, f64> {

@@ -127,18 +127,28 @@ impl<'m> Recording<'m> {
             speeds: &event.speeds,
             inputs: &vec![0.0; mechanism.count(Of::Input)],
         };
-        let struck = match &event.kind {
-            EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => Some(struck),
-            _ => None,
+        let mut show = |contact: Option<usize>, impulse: Option<Vector3<f64>>| {
+            let contact = contact.and_then(|contact| mechanism.model().contacts.get(contact));
+            self.shown.events.push(animation::Event {
+                time: event.time,
+                contact: contact.map_or(String::new(), |contact| contact.name.clone()),
+                label: event.kind.name().replace('_', " "),
+                at: contact.map(|contact| place(mechanism, contact.point.0, &state)),
+                impulse: impulse.map(Into::into),
+            });
         };
-        let contact = event.contact.and_then(|contact| mechanism.model().contacts.get(contact));
-        self.shown.events.push(animation::Event {
-            time: event.time,
-            contact: contact.map_or(String::new(), |contact| contact.name.clone()),
-            label: event.kind.name().replace('_', " "),
-            at: contact.map(|contact| place(mechanism, contact.point.0, &state)),
-            impulse: struck.map(|struck| struck.outcome.impulse_on_point.into()),
-        });
+        match &event.kind {
+            EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
+                show(event.contact, Some(struck.outcome.impulse_on_point));
+            }
+            EventKind::StruckTogether(struck) => {
+                struck
+                    .shares
+                    .iter()
+                    .for_each(|share| show(Some(share.contact), Some(share.impulse_on_point)));
+            }
+            _ => show(event.contact, None),
+        }
     }
 
     /// Writes the page.

@@ -55,11 +55,7 @@ impl MotionSurfaces {
         let mut own = vec![None; count];
         for text in &self.surface {
             let (contact, surface) = one(text)?;
-            let place = mechanism.index(Of::Contact, contact).ok_or_else(|| {
-                let hint = spelling::hint(contact, (0..count).map(name).collect::<Vec<_>>());
-                Failure::new(Kind::UnknownName, format!("there is no contact `{contact}`: {hint}"))
-            })?;
-            own[place] = Some(surface);
+            own[place_of(contact, mechanism)?] = Some(surface);
         }
         let mut surfaces = Vec::new();
         for (contact, own) in own.into_iter().enumerate() {
@@ -80,6 +76,40 @@ impl MotionSurfaces {
         }
         Ok(surfaces)
     }
+}
+
+/// The number of a contact.
+fn place_of(contact: &str, mechanism: &dyn Contacts<f64>) -> Outcome<usize> {
+    let names = || {
+        let component = |place| mechanism.component(Of::Contact, place);
+        (0..mechanism.count(Of::Contact)).filter_map(component).map(|component| component.name)
+    };
+    mechanism.index(Of::Contact, contact).ok_or_else(|| {
+        let hint = spelling::hint(contact, names().collect::<Vec<_>>());
+        Failure::new(Kind::UnknownName, format!("there is no contact `{contact}`: {hint}")).into()
+    })
+}
+
+/// The stiffnesses of contacts, by number.
+///
+/// # Errors
+///
+/// [`Stop::Call`] where a text is no stiffness, and a name that is none.
+pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<Vec<(usize, f64)>> {
+    let mut stiffnesses = Vec::new();
+    for text in texts {
+        let read = text.split_once('=').and_then(|(contact, number)| {
+            let number = number.trim().parse::<f64>().ok()?;
+            (number.is_finite() && number > 0.0).then_some((contact.trim(), number))
+        });
+        let Some((contact, number)) = read else {
+            return Err(Stop::Call(format!(
+                "--stiffness {text}: give CONTACT=NUMBER with a positive number, as in left=2"
+            )));
+        };
+        stiffnesses.push((place_of(contact, mechanism)?, number));
+    }
+    Ok(stiffnesses)
 }
 
 /// A surface of one contact.

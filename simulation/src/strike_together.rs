@@ -1,0 +1,119 @@
+//! Lets contacts that are struck together answer all at once, by their stiffnesses.
+
+use hodograph::{Kind, Law, State};
+use nalgebra::{DMatrix, DVector};
+
+use crate::lzb::{self, Fault};
+use crate::motion::Failure;
+use crate::simulation::Simulation;
+use crate::support::Support;
+use crate::{EventKind, Reason, Share, SimulationError, StruckTogether};
+
+/// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not touch each other.
+const COUPLED: f64 = 1e-12;
+
+impl Simulation<'_> {
+    /// Solves the impact of the touching contacts that `first` is coupled with, and says so; the speeds after. `None` where it is coupled with none.
+    pub(crate) fn strike_together(
+        &mut self,
+        touching: &[usize],
+        first: usize,
+    ) -> Result<Option<Vec<f64>>, SimulationError> {
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let speeds = self.y[n..n + p].to_vec();
+        let state = State { time: self.t, coordinates: &self.y[..n], speeds: &speeds, inputs: &self.held };
+        let fault = |error| self.failure(Failure::State(error));
+        let support = Support::new(self.mechanism, &state, touching, false).map_err(fault)?;
+        let places = coupled_with(&support, touching.iter().position(|&contact| contact == first));
+        if places.len() < 2 {
+            return Ok(None);
+        }
+        let (mut stiffness, mut restitution) = (Vec::new(), Vec::new());
+        for &place in &places {
+            let contact = touching[place];
+            restitution.push(self.energetic(contact)?);
+            let own = self.options.stiffness.iter().rev().find(|(index, _)| *index == contact);
+            stiffness.push(own.map_or(1.0, |(_, stiffness)| *stiffness));
+        }
+        let m = places.len();
+        let coupled = DMatrix::from_fn(m, m, |a, b| support.coupled[(3 * places[a], 3 * places[b])]);
+        let velocity = DVector::from_fn(m, |a, _| {
+            let rate = support.velocity[3 * places[a]];
+            // A contact that lasts has no normal velocity but rounding.
+            let rounding = 1e-13 * support.velocity_size(places[a], &speeds);
+            if rate.abs() <= rounding { 0.0 } else { rate }
+        });
+        let outcome = lzb::solve(&coupled, &velocity, &stiffness, &restitution).map_err(|fault| {
+            let (contact, why) = match fault {
+                Fault::Immobile(a) => (touching[places[a]], "nothing can move along its normal"),
+                Fault::TooLong => (first, "the stiffnesses or the coefficients of restitution are too far apart"),
+            };
+            let message = format!(
+                "the contacts struck together have no outcome after Liu, Zhao and Brogliato: {why}; let them answer one after the other (sequential)"
+            );
+            self.error(Some(contact), Reason::Lzb(message))
+        })?;
+        let mut after = speeds.clone();
+        let mut shares = Vec::with_capacity(m);
+        for (a, &place) in places.iter().enumerate() {
+            let impulse = outcome.impulses[a];
+            for (speed, response) in after.iter_mut().zip(support.response.column(3 * place).iter()) {
+                *speed += response * impulse;
+            }
+            let normal = self.mechanism.contact_state(touching[place], &state).map_err(fault)?.normal;
+            shares.push(Share {
+                contact: touching[place],
+                impulse,
+                impulse_on_point: normal * impulse,
+                approach: velocity[a],
+                separation: outcome.velocities[a],
+                work: outcome.works[a],
+            });
+        }
+        let energy_change: f64 = outcome.works.iter().sum();
+        self.energy.impacts += energy_change;
+        self.y[n..n + p].copy_from_slice(&after);
+        let struck = StruckTogether { shares, energy_change, speeds_before: speeds };
+        self.push(None, EventKind::StruckTogether(Box::new(struck)));
+        Ok(Some(after))
+    }
+
+    /// The energetic coefficient of restitution of a contact without friction.
+    fn energetic(&self, contact: usize) -> Result<f64, SimulationError> {
+        let refused = |message: String| Err(self.error(Some(contact), Reason::Lzb(message)));
+        let Some(surface) = self.surfaces[contact] else {
+            return refused("the contact has no surface".to_owned());
+        };
+        if surface.mu != 0.0 {
+            return refused(format!(
+                "it is struck together with others and has mu = {}: impacts after Liu, Zhao and Brogliato are solved without friction only; give mu = 0, or let \
+                 contacts answer one after the other (sequential)",
+                surface.mu
+            ));
+        }
+        if surface.law != Law::Stronge {
+            return refused(
+                "it is struck together with others: impacts after Liu, Zhao and Brogliato take e as the energetic coefficient; give the law stronge".to_owned(),
+            );
+        }
+        Ok(surface.e)
+    }
+}
+
+/// The contacts, by place, whose normal velocities impulses at the first change, directly or through others.
+fn coupled_with(support: &Support, first: Option<usize>) -> Vec<usize> {
+    let Some(first) = first else { return Vec::new() };
+    let entry = |a: usize, b: usize| support.coupled[(3 * a, 3 * b)];
+    let mut found = vec![false; support.len()];
+    let mut next = vec![first];
+    while let Some(place) = next.pop() {
+        if std::mem::replace(&mut found[place], true) {
+            continue;
+        }
+        let coupled = |other: &usize| {
+            entry(place, *other).abs() > COUPLED * (entry(place, place) * entry(*other, *other)).sqrt()
+        };
+        next.extend((0..support.len()).filter(coupled).filter(|other| !found[*other]));
+    }
+    (0..support.len()).filter(|&place| found[place]).collect()
+}
