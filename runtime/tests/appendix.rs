@@ -137,7 +137,7 @@ proptest! {
 /// The run mu = mu_s of the example: phi = 0 throughout, then renewal in the direction phi_hat, since mu_s < mu_c.
 #[test]
 fn at_mu_s_the_sleds_slip_straight_and_then_in_another_direction() {
-    for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+    for &law in Law::ALL {
         let (m, v, surface) = two_sleds(1.0, law);
         let mu = Characteristics::of(&m, 1.0).mu_s.expect("m_ts is not zero");
         let c = Characteristics::of(&m, mu);

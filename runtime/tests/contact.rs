@@ -1,40 +1,26 @@
 //! Contact that lasts: modes, forces and accelerations of closed contacts.
 
+mod common;
+
+use common::random::Random;
 use hodograph::{
     ContactError, ContactForce, ContactMode, ReducedMatrix, Selection, contact_force, contact_mode,
     contact_mode_after,
 };
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Random numbers that are the same everywhere (Steele, Lea and Flood's splitmix).
-struct Random(u64);
+fn vector(random: &mut Random) -> Vector3<f64> {
+    Vector3::from_fn(|_, _| random.next())
+}
 
-impl Random {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+/// A positive semidefinite matrix of this rank with m_nn > 0.
+fn semidefinite(random: &mut Random, rank: usize) -> Matrix3<f64> {
+    let mut matrix = Matrix3::zeros();
+    for _ in 0..rank {
+        let row = vector(random);
+        matrix += row * row.transpose();
     }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn vector(&mut self) -> Vector3<f64> {
-        Vector3::from_fn(|_, _| self.between(-1.0, 1.0))
-    }
-
-    /// A positive semidefinite matrix of this rank with m_nn > 0.
-    fn matrix(&mut self, rank: usize) -> Matrix3<f64> {
-        let mut matrix = Matrix3::zeros();
-        for _ in 0..rank {
-            let row = self.vector();
-            matrix += row * row.transpose();
-        }
-        matrix
-    }
+    matrix
 }
 
 /// How far an answer is from mechanics: Newton's law, the cone, complementarity, friction against slip.
@@ -86,18 +72,18 @@ fn every_state_has_an_answer_or_a_reason() {
     let (mut reasons, mut modes) = ([0; 2], [0; 4]);
     for case in 0..100_000 {
         let rank = 1 + case % 3;
-        let m = random.matrix(rank) * 10f64.powf(random.between(-6.0, 6.0));
+        let m = semidefinite(&mut random, rank) * 10f64.powf(random.within(-6.0, 6.0));
         let slips = case % 2 == 0;
         // A contact of rank 1 or 2 has motions only that its matrix reaches.
         let reach = |v: Vector3<f64>| if rank < 3 { m * v / m.amax() } else { v };
         let slip = if slips {
-            let v = reach(random.vector());
+            let v = reach(vector(&mut random));
             Vector2::new(v.y, v.z)
         } else {
             Vector2::zeros()
         };
-        let beta = reach(random.vector()) * 10f64.powf(random.between(-3.0, 3.0));
-        let mu = if case % 7 == 0 { 0.0 } else { random.between(0.0, 2.5) };
+        let beta = reach(vector(&mut random)) * 10f64.powf(random.within(-3.0, 3.0));
+        let mu = if case % 7 == 0 { 0.0 } else { random.within(0.0, 2.5) };
         match contact_mode(&ReducedMatrix::from(m), &beta, &slip, mu) {
             Ok(answer) => {
                 modes[answer.mode as usize] += 1;
@@ -154,9 +140,9 @@ fn one_mode_fits_where_friction_is_moderate() {
     let mut random = Random(7);
     let (mut moderate, mut strong, mut several) = (0, 0, 0);
     for case in 0..4000 {
-        let m = random.matrix(3);
-        let beta = random.vector();
-        let mu = random.between(0.0, 2.5);
+        let m = semidefinite(&mut random, 3);
+        let beta = vector(&mut random);
+        let mu = random.within(0.0, 2.5);
         let answer = contact_mode(&ReducedMatrix::from(m), &beta, &Vector2::zeros(), mu).unwrap();
         if mu * Vector2::new(m.m21, m.m31).norm() < m.m11 {
             moderate += 1;
@@ -188,10 +174,10 @@ fn turned(m: &Matrix3<f64>, angle: f64) -> (Matrix3<f64>, Matrix3<f64>) {
 fn units_and_axes_do_not_matter() {
     let mut random = Random(3);
     for case in 0..1500 {
-        let m = random.matrix(3 - case % 2);
-        let beta = m * random.vector();
-        let slip = if case % 3 == 0 { (m * random.vector()).yz() } else { Vector2::zeros() };
-        let mu = random.between(0.05, 1.5);
+        let m = semidefinite(&mut random, 3 - case % 2);
+        let beta = m * vector(&mut random);
+        let slip = if case % 3 == 0 { (m * vector(&mut random)).yz() } else { Vector2::zeros() };
+        let mu = random.within(0.05, 1.5);
         let ask = |m: &Matrix3<f64>, beta: &Vector3<f64>, slip: &Vector2<f64>| {
             contact_mode(&ReducedMatrix::from(*m), beta, slip, mu)
         };
@@ -213,7 +199,7 @@ fn units_and_axes_do_not_matter() {
         let other = ask(&m, &(beta * 1e7), &(slip * 1e-5)).unwrap();
         same(&other, other.force * 1e-7, "time");
         // Axes turned.
-        let (there, turn) = turned(&m, random.between(-3.1, 3.1));
+        let (there, turn) = turned(&m, random.within(-3.1, 3.1));
         let other = ask(&there, &(turn * beta), &(turn * Vector3::new(0.0, slip.x, slip.y)).yz()).unwrap();
         same(&other, turn.transpose() * other.force, "axes");
     }
@@ -224,13 +210,13 @@ fn units_and_axes_do_not_matter() {
 fn planar_contacts_follow_the_textbook() {
     let mut random = Random(11);
     for case in 0..5000 {
-        let a = random.between(0.1, 2.0);
-        let t = random.between(0.1, 2.0);
-        let b = random.between(-1.0, 1.0) * (a * t).sqrt();
+        let a = random.within(0.1, 2.0);
+        let t = random.within(0.1, 2.0);
+        let b = random.within(-1.0, 1.0) * (a * t).sqrt();
         let m = ReducedMatrix::new(a, b, 0.0, t, 0.0, 0.0);
-        let (beta_n, beta_t) = (random.between(-1.0, 1.0), random.between(-1.0, 1.0));
-        let mu = random.between(0.0, 0.9) * a / b.abs();
-        let v = if case % 2 == 0 { random.between(-1.0, 1.0) } else { 0.0 };
+        let (beta_n, beta_t) = (random.within(-1.0, 1.0), random.within(-1.0, 1.0));
+        let mu = random.within(0.0, 0.9) * a / b.abs();
+        let v = if case % 2 == 0 { random.within(-1.0, 1.0) } else { 0.0 };
         let answer = contact_mode(&m, &Vector3::new(beta_n, beta_t, 0.0), &Vector2::new(v, 0.0), mu).unwrap();
         assert_eq!(answer.selection, Selection::Unique);
         let expected = if beta_n > 0.0 && (v != 0.0 || answer.mode == ContactMode::Separate) {
@@ -282,11 +268,11 @@ fn contacts_with_one_freedom_stick() {
     let mut random = Random(5);
     let mut wedged = 0;
     for case in 0..4000 {
-        let row = random.vector();
+        let row = vector(&mut random);
         let m = row * row.transpose();
-        let pull = random.between(-1.0, 1.0);
+        let pull = random.within(-1.0, 1.0);
         let beta = row * pull;
-        let mu = random.between(0.0, 2.0);
+        let mu = random.within(0.0, 2.0);
         let answer = contact_mode(&ReducedMatrix::from(m), &beta, &Vector2::zeros(), mu).unwrap();
         let separates = beta.x > 0.0;
         // Friction may hold what would open.
@@ -327,8 +313,8 @@ fn kept_modes_tell_their_margins() {
     let mut random = Random(13);
     let (mut ends, mut stays) = (0, 0);
     for case in 0..5000 {
-        let m = random.matrix(3);
-        let (beta, mu) = (random.vector(), random.between(0.1, 1.0));
+        let m = semidefinite(&mut random, 3);
+        let (beta, mu) = (vector(&mut random), random.within(0.1, 1.0));
         if mu * Vector2::new(m.m21, m.m31).norm() >= m.m11 {
             continue;
         }
@@ -356,9 +342,9 @@ fn forces_carry_derivatives() {
     let mut random = Random(17);
     let mut begun = 0;
     for case in 0..600 {
-        let m = random.matrix(3);
-        let (beta, change) = (random.vector(), random.vector());
-        let mu = random.between(0.1, 0.8);
+        let m = semidefinite(&mut random, 3);
+        let (beta, change) = (vector(&mut random), vector(&mut random));
+        let mu = random.within(0.1, 0.8);
         let ask = |h: f64| {
             contact_mode(&ReducedMatrix::from(m), &(beta + change * h), &Vector2::zeros(), mu).unwrap()
         };

@@ -1,19 +1,10 @@
 //! The derivative of the outcome against central differences, and where it does not exist.
 
+mod common;
+
+use common::random::Random;
 use hodograph::{Law, NonSmoothness, ReducedMatrix, Surface, derivative, saltation, solve, speed_derivative};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
-
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
-/// A small deterministic source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 type Inputs = [f64; 11];
 
@@ -79,7 +70,7 @@ fn agrees_with_central_differences() {
             mu,
             e,
         ];
-        let law = LAWS[n % 3];
+        let law = Law::ALL[n % Law::ALL.len()];
         let (d, all) = exact(&x, law);
         if d.non_smoothness.is_some() {
             continue;
@@ -100,7 +91,7 @@ fn agrees_with_central_differences() {
 /// Slip that keeps its direction: the derivative across it is what it turns into.
 #[test]
 fn straight_hodographs_bend() {
-    for law in LAWS {
+    for &law in Law::ALL {
         for (mu, e, vt) in [(0.3, 0.6, 2.0), (0.9, 0.5, 0.3), (0.2, 0.7, 0.1)] {
             let x = [-1.0, vt, 0.0, 1.0, 0.3, 0.0, 1.7, 0.0, 0.8, mu, e];
             let (d, all) = exact(&x, law);
@@ -120,7 +111,7 @@ fn straight_hodographs_bend() {
 
 #[test]
 fn no_restitution_has_a_right_hand_derivative() {
-    for law in LAWS {
+    for &law in Law::ALL {
         for mu in [0.2, 0.6, 1.5] {
             let x = [-1.0, 0.4, 0.1, 1.0, 0.3, -0.2, 1.7, 0.1, 1.2, mu, 0.0];
             let (_, all) = exact(&x, law);
@@ -144,7 +135,7 @@ fn says_where_there_is_none() {
         ReducedMatrix::new(0.22510385, -0.10936656, -0.12575887, 0.23598633, -0.11584858, 0.27021211);
     let det = m.tt * m.ss - m.ts * m.ts;
     let critical = ((m.ss * m.nt - m.ts * m.ns) / det).hypot((m.tt * m.ns - m.ts * m.nt) / det);
-    for law in LAWS {
+    for &law in Law::ALL {
         let at = |mu: f64| {
             let surface = Surface { mu, e: 0.8, law };
             derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.0), &surface)
@@ -170,7 +161,7 @@ fn straight_hodographs_are_not_smooth() {
     let m: ReducedMatrix<f64> =
         ReducedMatrix::new(0.22510385, -0.10936656, -0.12575887, 0.23598633, -0.11584858, 0.27021211);
     let surface = |law| Surface { mu: m.ns / m.ts, e: 0.8, law };
-    for law in LAWS {
+    for &law in Law::ALL {
         let d = derivative(&m, &Vector3::new(-0.946108022, 1.06306701, 0.0), &surface(law)).expect("solved");
         assert_eq!(d.non_smoothness, Some(NonSmoothness::Straight), "{law:?}");
         // A little to the side there is one again.

@@ -9,8 +9,6 @@ use hodograph::{
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
 
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
 /// What must agree in two moments, over the size of the collision.
 fn apart(a: &Snapshot<f64>, b: &Snapshot<f64>, whole: &Hodograph<f64>, v: &Vector3<f64>) -> f64 {
     let (impulse, velocity) = (whole.impact().impulse.amax(), whole.impact().velocity.amax() + v.amax());
@@ -72,6 +70,7 @@ fn phases_obey_the_equations_and_the_laws() {
                 let work = (1.0 - e * e) * least;
                 assert!((hit.normal_work - work).abs() <= tiny * size * hit.impulse.amax());
             }
+            other => panic!("no equation for {other:?}"),
         }
         if complete.compressions == 1 {
             assert_eq!(first, last);
@@ -111,7 +110,7 @@ fn phases_obey_the_equations_and_the_laws() {
 #[test]
 fn the_course_obeys_the_differential_equations() {
     for mu in [0.6, 1.1, 1.6] {
-        for law in LAWS {
+        for &law in Law::ALL {
             let (m, v, surface) = two_sleds(mu, law);
             let whole = Hodograph::new(&m, &v, &surface).unwrap();
             let points: Vec<_> = whole.points(41).collect();
@@ -193,7 +192,7 @@ fn integration_meets_the_course_on_its_way() {
 #[test]
 fn quantities_of_the_paper_at_the_start_of_each_phase() {
     let near = |a: f64, b: f64, digits: f64| assert!((a - b).abs() <= digits, "{a} {b}");
-    for law in LAWS {
+    for &law in Law::ALL {
         let (m, v, surface) = two_sleds(1.1, law);
         let phases = Hodograph::new(&m, &v, &surface).unwrap().impact().phases;
         near(phases.compression_end.unwrap().normal_work, -1.295, 6e-4);
@@ -237,7 +236,7 @@ fn flags_fire_where_an_outcome_is_sensitive() {
         solve(m, v, &Surface { mu, e, law }).unwrap().sensitivity
     };
     let (m, v, _) = two_sleds(1.1, Law::Newton);
-    for law in LAWS {
+    for &law in Law::ALL {
         for mu in [0.6, 1.1, 1.6] {
             assert!(!flags(&m, &v, mu, 0.8, law).any(), "{mu} {law:?}");
         }
@@ -274,7 +273,7 @@ fn flags_fire_where_an_outcome_is_sensitive() {
 fn grazing_is_flagged_where_the_outcome_jumps() {
     let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);
     let v = Vector3::new(-0.22, -0.2, 1.0);
-    for law in LAWS {
+    for &law in Law::ALL {
         let at = |e: f64| solve(&m, &v, &Surface { mu: 1.95, e, law }).unwrap();
         // Finds the jump by bisection between one compression and two.
         let (mut low, mut high) = (1e-3, 1.0);
@@ -303,7 +302,7 @@ proptest! {
         v in prop::array::uniform2(-1.5..1.5_f64),
         mu in 0.0..3.0_f64,
         e in 0.0..=0.999_f64,
-        law in prop::sample::select(&LAWS[..]),
+        law in prop::sample::select(Law::ALL),
     ) {
         let b = Matrix3::from(std::array::from_fn::<_, 3, _>(|i| std::array::from_fn::<_, 3, _>(|j| entries[3 * i + j])));
         let m = ReducedMatrix::from(b * b.transpose());
@@ -327,7 +326,7 @@ proptest! {
         speeds in prop::array::uniform3(-1.5..1.5_f64),
         mu in 0.0..3.0_f64,
         e in 0.0..=1.0_f64,
-        law in prop::sample::select(&LAWS[..]),
+        law in prop::sample::select(Law::ALL),
         part in 0.0..=1.0_f64,
     ) {
         let mut b = Matrix3::from(std::array::from_fn::<_, 3, _>(|i| std::array::from_fn::<_, 3, _>(|j| entries[3 * i + j])));

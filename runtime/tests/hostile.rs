@@ -6,6 +6,7 @@
 mod common;
 
 use common::double_double::Double;
+use common::random::Random;
 use common::second_road::{self, condition};
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar, solve_structured};
 use hodograph::{
@@ -13,27 +14,6 @@ use hodograph::{
 };
 use nalgebra::{Matrix3, Vector3, convert};
 use std::collections::BTreeMap;
-
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
-/// A small deterministic source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn pick(&mut self, count: usize) -> usize {
-        (((self.next() + 1.0) * 0.5 * count as f64) as usize).min(count - 1)
-    }
-
-    /// A power of ten with an exponent up to this size.
-    fn power(&mut self, most: f64) -> f64 {
-        10.0_f64.powf(most * self.next())
-    }
-}
 
 /// Numbers as the solver sees them, as doubles.
 #[derive(Clone, Copy, Debug)]
@@ -214,7 +194,7 @@ fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
         _ => random.power(1.5),
     };
     let e = [0.0, 1.0, 0.5 + 0.5 * random.next()][random.pick(3)];
-    let law = LAWS[random.pick(3)];
+    let law = Law::ALL[random.pick(Law::ALL.len())];
     let tame = !wild
         && rank == 3
         && m.determinant() > 1e-4 * m.trace().powi(3)
@@ -413,7 +393,7 @@ fn friction_to_the_end_of_the_range() {
         if n > -1e-3 * v.norm() || m.nn < 1e-2 * m.tt.max(m.ss) || (rank == 3 && condition(&m) > 1e6) {
             continue;
         }
-        let law = LAWS[random.pick(3)];
+        let law = Law::ALL[random.pick(Law::ALL.len())];
         let variants = [
             (m, v),
             (ReducedMatrix { ns: 0.0, ts: 0.0, ..m }, Vector3::new(n, t, 0.0)),
@@ -472,7 +452,7 @@ fn friction_to_the_end_of_the_range() {
     assert!(compared > 5_000, "{compared}");
     assert!(small > 20 && 20 * small < compared, "{small}");
     for mu in [1e10_f32, 1e20, 1e30, 1e37, 3e38, f32::MAX] {
-        for law in LAWS {
+        for &law in Law::ALL {
             let m = ReducedMatrix::new(0.2251_f32, -0.1094, 0.1258, 22.360, 0.1158, 20.2702);
             let at = |mu| {
                 solve(&m, &Vector3::new(-0.946, 1.063, 0.3), &Surface { mu, e: 0.5, law })
@@ -503,7 +483,7 @@ fn wrong_once() {
     // Great friction: the limit is that of friction that stops slip at once.
     let m = ReducedMatrix::new(0.2251, -0.1094, 0.1258, 0.2360, 0.1158, 0.2702);
     let v = Vector3::new(-0.946, 1.063, 0.3);
-    for law in LAWS {
+    for &law in Law::ALL {
         let at = |mu: f64| {
             solve(&m, &v, &Surface { mu, e: 0.5, law }).unwrap_or_else(|e| panic!("{mu:e} {law:?} {e}"))
         };
@@ -534,11 +514,13 @@ fn wrong_once() {
     }
     // Noise beside a zero diagonal entry.
     let m = ReducedMatrix::new(0.25, 0.1, 1e-18, 0.04, 0.0, 0.0);
-    for (law, mu) in LAWS.into_iter().zip([0.0, 0.2, 0.9]) {
-        let exact = ReducedMatrix { ns: 0.0, ..m };
-        let surface = Surface { mu, e: 0.5, law };
-        let v = Vector3::new(-1.0, 0.4, 0.0);
-        assert_eq!(solve(&m, &v, &surface), solve(&exact, &v, &surface));
+    for &law in Law::ALL {
+        for mu in [0.0, 0.2, 0.9] {
+            let exact = ReducedMatrix { ns: 0.0, ..m };
+            let surface = Surface { mu, e: 0.5, law };
+            let v = Vector3::new(-1.0, 0.4, 0.0);
+            assert_eq!(solve(&m, &v, &surface), solve(&exact, &v, &surface));
+        }
     }
     let coupled = ReducedMatrix { ns: 1e-9, ..m };
     let refused = solve(&coupled, &Vector3::new(-1.0, 0.4, 0.0), &surface).map_err(|e| e.kind());

@@ -10,8 +10,6 @@ use hodograph::methods::{
 use hodograph::{Impact, ImpactError, Law, Path, ReducedMatrix, Surface, solve};
 use nalgebra::Vector3;
 
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
 /// The two sleds of section 5, rounded to eight digits.
 fn sleds() -> (ReducedMatrix<f64>, Vector3<f64>) {
     (
@@ -21,7 +19,10 @@ fn sleds() -> (ReducedMatrix<f64>, Vector3<f64>) {
 }
 
 fn nine() -> Vec<Surface<f64>> {
-    [0.6, 1.1, 1.6].into_iter().flat_map(|mu| LAWS.map(|law| Surface { mu, e: 0.8, law })).collect()
+    [0.6, 1.1, 1.6]
+        .into_iter()
+        .flat_map(|mu| Law::ALL.iter().map(move |&law| Surface { mu, e: 0.8, law }))
+        .collect()
 }
 
 /// The scaled difference of two outcomes.

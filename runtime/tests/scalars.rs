@@ -22,7 +22,7 @@ fn single_precision() {
 #[test]
 fn dual_numbers_give_the_derivative_by_friction() {
     for mu in [0.6, 1.1, 1.6] {
-        for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+        for &law in Law::ALL {
             let (m, v, s) = two_sleds(mu, law);
             let entries: [f64; 6] = m.into();
             let matrix = ReducedMatrix::from(entries.map(Dual64::from_re));

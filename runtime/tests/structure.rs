@@ -9,17 +9,8 @@ use num_dual::Dual64;
 
 mod common;
 
+use common::random::Random;
 use common::second_road;
-
-/// A small deterministic source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 fn compare(
     one: &Result<Impact<f64>, ImpactError<f64>>,
@@ -53,7 +44,7 @@ fn agree<S: Structure>(shape: impl Fn(&mut ReducedMatrix<f64>, &mut Vector3<f64>
         let slip = if n % 10 == 0 { 0.0 } else { random.next() };
         let mut v = Vector3::new(-0.1 - random.next().abs(), slip, slip * random.next());
         let e = [0.0, 1.0, 0.5 + 0.5 * random.next()][(n / 3) % 3];
-        let law = [Law::Newton, Law::Poisson, Law::Stronge][(n / 9) % 3];
+        let law = Law::ALL[(n / 9) % Law::ALL.len()];
         let mut surface = Surface { mu: 3.0 * random.next().abs().powi(2), e, law };
         // Slip that is fast, hardly there, or nearly along an axis; a contact plane that resists nearly alike in all directions, or half as
         // much in one (where the series of the balanced form would resonate).
@@ -122,7 +113,7 @@ fn closed_forms_are_right() {
         let a = Matrix3::from_fn(|_, _| random.next());
         let mut m = ReducedMatrix::from(a * a.transpose());
         let v = Vector3::new(-0.1 - random.next().abs(), 2.0 * random.next(), 2.0 * random.next());
-        let law = [Law::Newton, Law::Poisson, Law::Stronge][n % 3];
+        let law = Law::ALL[n % Law::ALL.len()];
         // Little restitution is what Stronge's hypothesis loses first.
         let e = 0.1 + 0.9 * random.next().abs();
         let e = if n % 2 == 0 { e } else { e * 10.0_f64.powf(-15.0 * random.next().abs()) };
@@ -163,7 +154,7 @@ fn closed_forms_are_right() {
 fn closed_forms_can_be_differentiated() {
     let dual = |m: &ReducedMatrix<f64>| ReducedMatrix::from(<[f64; 6]>::from(*m).map(Dual64::from_re));
     let v = Vector3::new(-1.0, 0.7, 0.4);
-    for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+    for &law in Law::ALL {
         for mu in [0.1, 0.4, 1.1] {
             let balanced = ReducedMatrix::new(1.0, 0.0, 0.0, 1.7, 0.3, 0.8);
             let diagonal = ReducedMatrix { ts: 0.0, ..balanced };

@@ -2,24 +2,13 @@
 
 mod common;
 
+use common::random::Random;
 use common::second_road::{self, condition};
 use hodograph::{
     Impact, ImpactError, Law, ReducedMatrix, Surface, derivative_without_collision, impact_without_collision,
     rates, solve,
 };
 use nalgebra::{Matrix3, Vector2, Vector3};
-
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
-/// A small deterministic source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 /// Contacts of a rank that slide with f < 0.
 fn painleve(seed: u64, rank: usize, count: usize) -> Vec<(ReducedMatrix<f64>, Vector2<f64>, Surface<f64>)> {
@@ -39,7 +28,7 @@ fn painleve(seed: u64, rank: usize, count: usize) -> Vec<(ReducedMatrix<f64>, Ve
         let surface = Surface {
             mu: 0.2 + 3.0 * random.next().abs(),
             e: [0.0, 1.0, 0.5 + 0.5 * random.next()][found.len() % 3],
-            law: LAWS[(found.len() / 3) % 3],
+            law: Law::ALL[(found.len() / 3) % Law::ALL.len()],
         };
         let f = rates(&m, surface.mu, slip.y.atan2(slip.x)).x;
         if m.nn > 1e-2 && f < -1e-3 * m.nn && slip.norm() > 1e-3 && b[(0, 0)].abs() > 0.05 {
@@ -142,7 +131,7 @@ fn rod_on_a_rough_plane() {
         let at = |mu: f64, law| {
             impact_without_collision(&m, &Vector2::new(0.7, 0.0), &Surface { mu, e: 0.5, law })
         };
-        for law in LAWS {
+        for &law in Law::ALL {
             let none = at(least * (1.0 - 1e-9), law);
             assert!(matches!(none, Err(ImpactError::NoImpact { rate }) if rate > 0.0), "{none:?}");
             let hit = at(least * (1.0 + 1e-6), law).expect("an impact");
@@ -160,6 +149,7 @@ fn rod_on_a_rough_plane() {
                 Law::Newton => 0.0,
                 Law::Poisson => 0.5 * compressed * rate,
                 Law::Stronge => (-2.0 * 0.25 * lost * rate).sqrt(),
+                other => panic!("no closed form for {other:?}"),
             };
             assert!((hit.velocity - Vector3::new(rise, 0.0, 0.0)).amax() < 1e-14, "{hit:?} {rise}");
             assert!((hit.impulse.x - compressed - rise / rate).abs() < 1e-13);

@@ -43,7 +43,7 @@ fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<
 fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> bool {
     let mut random = Random(seed);
     let (q, u) = open_start(model, &mut random);
-    let law = [Law::Newton, Law::Poisson, Law::Stronge][random.place(3)];
+    let law = Law::ALL[random.place(Law::ALL.len())];
     let surface = Surface { mu: random.between(0.0, 1.2), e: random.between(0.0, 0.9), law };
     let options = Options { surface: Some(surface), ..Options::default() };
     let inputs = vec![0.0; model.count(Kind::Input)];

@@ -118,7 +118,7 @@ fn collide(module: &dyn Emitted, model: &Model, contact: usize, at: &Inputs) -> 
         return 0;
     }
     let mut solved = 0;
-    for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+    for &law in Law::ALL {
         for (mu, e) in [(0.0, 0.5), (0.3, 0.0), (0.6, 0.7), (1.4, 0.9)] {
             let surface = Surface { mu, e, law };
             match module.collide(contact, &at, &surface) {

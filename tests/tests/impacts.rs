@@ -34,7 +34,8 @@ fn outcomes(module: &dyn Emitted, reference: &Reference, impact: &Value) -> usiz
     // Where the reference itself is known to fewer digits only.
     let bound = if impact["degenerate"].is_null() { 1e-10 } else { 1e-7 };
     let mut compared = 0;
-    for (law, key) in [(Law::Newton, "newton"), (Law::Poisson, "poisson"), (Law::Stronge, "stronge")] {
+    for &law in Law::ALL {
+        let key = law.name();
         let expected = &impact[key];
         let place = format!("{} mu {mu} e {e} {key}", reference.name);
         let hit = module.collide(contact, &at, &Surface { mu, e, law });

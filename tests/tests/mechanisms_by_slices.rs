@@ -113,7 +113,7 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
             for ((name, a), (_, b)) in a.iter().zip(&b) {
                 assert_eq!(a, b, "{} {name}", module.name());
             }
-            for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+            for &law in Law::ALL {
                 for contact in 0..generated.count(Kind::Contact) {
                     let surface = Surface { mu: 0.4, e: 0.6, law };
                     let collide = |m: &dyn Contacts| {

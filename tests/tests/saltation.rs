@@ -3,8 +3,6 @@
 use hodograph::{Law, NonSmoothness, Surface};
 use nalgebra::{SMatrix, SVector};
 
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
 /// A central difference of fourth order.
 fn difference<const N: usize>(h: f64, at: impl Fn(f64) -> SVector<f64, N>) -> SVector<f64, N> {
     ((at(h) - at(-h)) * 8.0 - (at(2.0 * h) - at(-2.0 * h))) / (12.0 * h)
@@ -13,7 +11,7 @@ fn difference<const N: usize>(h: f64, at: impl Fn(f64) -> SVector<f64, N>) -> SV
 /// A few independent speeds, and what a collision makes of them.
 macro_rules! derivative {
     ($module:ident, $machine:ident, $collide:ident, $derivative:ident, $q:expr, $u:expr, $p:literal) => {
-        for law in LAWS {
+        for &law in Law::ALL {
             for mu in [0.15, 0.7] {
                 use hodograph_models::$module::{Speeds, $machine};
                 let machine = $machine::<f64>::default();
@@ -129,7 +127,7 @@ macro_rules! saltation {
         let (q, u) = (Coordinates::default(), Speeds::default());
         let start = joined(&q, &u);
         let surface_gap = machine.$gap(&q).expect("regular");
-        for law in LAWS {
+        for &law in Law::ALL {
             for mu in [0.15, 0.7] {
                 let surface = Surface { mu, e: 0.6, law };
                 let exact = machine.$saltation(&q, &u, &surface).expect("an outcome");

@@ -4,17 +4,13 @@ use hodograph::{Law, Surface};
 
 use crate::json::{Failure, Kind};
 
-/// The names of the laws, as the JSON interface spells them.
-pub const LAWS: [(&str, Law); 3] =
-    [("newton", Law::Newton), ("poisson", Law::Poisson), ("stronge", Law::Stronge)];
-
 /// The law of that name.
 ///
 /// # Errors
 ///
 /// `unknown_name`.
 pub fn law(name: &str) -> Result<Law, Failure> {
-    LAWS.iter().find(|(spelling, _)| *spelling == name).map(|&(_, law)| law).ok_or_else(|| {
+    Law::named(name).ok_or_else(|| {
         Failure::new(Kind::UnknownName, format!("there is no law `{name}`: give newton, poisson or stronge"))
     })
 }

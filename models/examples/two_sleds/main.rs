@@ -68,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("  mu   law              I_n        I_t        I_s         v_n        v_t        v_s   path");
     let mut outcomes = Vec::new();
     for mu in [0.6, 1.1, 1.6] {
-        for law in [Law::Newton, Law::Poisson, Law::Stronge] {
+        for &law in Law::ALL {
             let hit = sleds.collide_bc_ac(&q, &u, &Surface { mu, e, law })?;
             let (i, v) = (flipped(&hit.impulse), flipped(&hit.separation));
             let (law_name, path) = (format!("{law:?}"), hit.path.phases().join(", "));

@@ -3,6 +3,8 @@
 #[allow(dead_code)]
 pub mod double_double;
 #[allow(dead_code)]
+pub mod random;
+#[allow(dead_code)]
 pub mod second_road;
 
 use hodograph::{Impact, Law, ReducedMatrix, Surface};
@@ -44,12 +46,7 @@ impl Case {
     fn read(line: &str) -> Self {
         let case: Value = serde_json::from_str(line).expect("JSON");
         let expect = &case["expect"];
-        let law = match case["law"].as_str() {
-            Some("newton") => Law::Newton,
-            Some("poisson") => Law::Poisson,
-            Some("stronge") => Law::Stronge,
-            other => panic!("unknown law {other:?}"),
-        };
+        let law = case["law"].as_str().and_then(Law::named).expect("the name of a law");
         Self {
             line: line.to_owned(),
             family: case["family"].as_str().expect("family").to_owned(),

@@ -97,6 +97,7 @@ impl Problem {
             Law::Newton => y[VN],
             Law::Poisson => y[IN],
             Law::Stronge => y[W],
+            other => panic!("no second road for {other:?}"),
         }
     }
 
@@ -111,6 +112,7 @@ impl Problem {
             Law::Newton => self.e * self.speed,
             Law::Poisson => (one + self.e) * y[IN],
             Law::Stronge => (one - self.e * self.e) * watch.least,
+            other => panic!("no second road for {other:?}"),
         });
     }
 
@@ -284,6 +286,7 @@ impl Problem {
                 let sum = y[VN] + square.sqrt();
                 (square >= Double::ZERO && sum > Double::ZERO).then(|| missing * 2.0 / sum)
             }
+            other => panic!("no second road for {other:?}"),
         };
         match end {
             Some(i)

@@ -4,6 +4,9 @@
 #[path = "@COMMON@/double_double.rs"]
 #[allow(dead_code)]
 mod double_double;
+#[path = "@COMMON@/random.rs"]
+#[allow(dead_code)]
+mod random;
 #[path = "@COMMON@/second_road.rs"]
 #[allow(dead_code)]
 mod second_road;
@@ -13,30 +16,10 @@ use hodograph::{
     structure::{Balanced, Isotropic, solve_structured},
 };
 use nalgebra::{Matrix3, Vector3};
+use random::Random;
 use second_road::{Outcome, condition};
 
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
 const FACTORS: [f64; 8] = [1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 2.0, 4.0, 16.0, 64.0];
-
-/// A small deterministic source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(0.5 * (self.next() + 1.0))
-    }
-    fn short(&mut self) -> f64 {
-        (self.next() * 1024.0).round() / 1024.0
-    }
-    fn surface(&mut self) -> Surface<f64> {
-        let e = [0.0, 1.0, 0.55 + 0.45 * self.next()][(self.0 >> 40) as usize % 3];
-        Surface { mu: self.between(0.02, 6.0), e, law: LAWS[(self.0 >> 43) as usize % 3] }
-    }
-}
 
 #[derive(Clone, Copy, PartialEq)]
 enum Shape {

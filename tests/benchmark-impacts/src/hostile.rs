@@ -4,25 +4,7 @@ use hodograph::{Characteristics, Law, ReducedMatrix, Surface, rates};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::Case;
-
-/// A small deterministic source of numbers in [-1, 1].
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn pick(&mut self, count: usize) -> usize {
-        (0.5 * (self.next() + 1.0) * count as f64) as usize % count
-    }
-
-    /// Evenly in the logarithm.
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf(0.5 * (self.next() + 1.0))
-    }
-}
+use crate::random::Random;
 
 /// Random contacts of rank 1 to 3 and conditions to 1e16; slip that hardly is or is fast, along a root of h or nearly, stopping nearly at mu_c; steep
 /// friction.
@@ -50,7 +32,7 @@ pub fn hostile() -> Vec<Case> {
             v = -v;
         }
         let e = [0.0, 1.0, 0.5 + 0.5 * random.next()][random.pick(3)];
-        let law = [Law::Newton, Law::Poisson, Law::Stronge][random.pick(3)];
+        let law = Law::ALL[random.pick(Law::ALL.len())];
         let mut mu = random.between(0.01, 5.0);
         let slip = match kind {
             4 => random.between(1e-12, 1e-2),

@@ -1,6 +1,9 @@
 //! The objects of the measurements: collisions, methods, errors of outcomes, and modes of closed contacts.
 
 mod hostile;
+#[path = "../../../runtime/tests/common/random.rs"]
+#[allow(dead_code)]
+mod random;
 pub mod modes;
 mod ode;
 
@@ -43,16 +46,13 @@ pub struct Case {
     answer: [f64; 8],
 }
 
-const LAWS: [(&str, Law); 3] =
-    [("newton", Law::Newton), ("poisson", Law::Poisson), ("stronge", Law::Stronge)];
-
 /// The two sleds of the paper, mu = 0.6, 1.1, 1.6 under the three laws, e = 0.8. The exact solver answers them to better than 1e-12.
 pub fn nine() -> Vec<Case> {
     let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
     let approach = Vector3::new(-0.946108022, 1.06306701, 0.0);
     let mut cases = Vec::new();
     for mu in [0.6, 1.1, 1.6] {
-        for (_, law) in LAWS {
+        for &law in Law::ALL {
             let surface = Surface { mu, e: 0.8, law };
             let expect = solve(&matrix, &approach, &surface).ok().map(Outcome::from);
             cases.push(Case { matrix, approach, surface, expect, answer: [0.0; 8] });
@@ -73,8 +73,7 @@ pub fn reference(family: Option<&str>) -> Vec<Case> {
         if family.is_some_and(|family| case["family"].as_str() != Some(family)) {
             continue;
         }
-        let law =
-            LAWS.iter().find(|(name, _)| case["law"].as_str() == Some(name)).map_or(Law::Stronge, |x| x.1);
+        let law = case["law"].as_str().and_then(Law::named).unwrap_or(Law::Stronge);
         let expect = &case["expect"];
         let three = |value: &Value| [0, 1, 2].map(|i| number(&value[i]));
         let ([a, b, c], [d, e, f]) = (three(&expect["impulse"]), three(&expect["v"]));

@@ -95,6 +95,7 @@ pub fn solve(
         Law::Newton => V_N,
         Law::Poisson => I_N,
         Law::Stronge => WORK,
+        _ => return None,
     };
     let mut y = State::from_column_slice(&[v.y, v.z, v.x, 0.0, 0.0, 0.0, 0.0]);
     let slip = v.y.hypot(v.z);
@@ -107,6 +108,7 @@ pub fn solve(
             Law::Newton => -e * v.x,
             Law::Poisson => (1.0 + e) * y[I_N],
             Law::Stronge => (1.0 - e * e) * least,
+            _ => f64::NAN,
         };
         target
     };
@@ -189,6 +191,7 @@ pub fn solve(
             let missing = target - y[WORK];
             2.0 * missing / (y[V_N] + (y[V_N] * y[V_N] + 2.0 * rate * missing).max(0.0).sqrt())
         }
+        _ => return None,
     };
     if i > 0.0 {
         advance(&mut y, i);

@@ -1,12 +1,14 @@
 //! The figure of a collision's course, as Fig. 3 of the paper: v_s over v_t, and v_n and the speed of slip over I_n.
 
+use hodograph::Law;
+
 use super::figure::{Axis, Figure, Legend, Mark, Panel, Series, Sign};
 use super::label::Label;
 use super::trace::{Sample, Trace};
-use crate::surface::LAWS;
 
-/// The marks of where the laws end a collision, in the order of [`LAWS`].
+/// The marks of where the laws end a collision, in the order of [`Law::ALL`].
 const SIGNS: [Sign; 3] = [Sign::Circle, Sign::Cross, Sign::Square];
+const _: () = assert!(SIGNS.len() == Law::ALL.len(), "every law needs a sign");
 
 /// What a panel shows of a sample.
 type Pick = fn(&Sample) -> [f64; 2];
@@ -43,8 +45,8 @@ fn fill(panel: &mut Panel, traces: &[Trace], pick: Pick) {
         panel.series.push(Series { directed: true, ..Series::new(label, index, points) });
         let start = Label::words("approach");
         panel.marks.push(Mark { label: start, sign: Sign::Dot, style: None, at: pick(first) });
-        for ((sign, end), (law, _)) in SIGNS.into_iter().zip(&trace.ends).zip(LAWS) {
-            let (initial, rest) = law.split_at(1);
+        for ((sign, end), law) in SIGNS.into_iter().zip(&trace.ends).zip(Law::ALL) {
+            let (initial, rest) = law.name().split_at(1);
             let label = Label::words(&format!("end by {}{rest}'s law", initial.to_uppercase()));
             let mark = |end| Mark { label: label.clone(), sign, style: Some(index), at: pick(end) };
             panel.marks.extend(end.as_ref().map(mark));

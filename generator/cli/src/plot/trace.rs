@@ -1,8 +1,6 @@
 //! Samples the course of a collision over the normal impulse, densely enough to be drawn.
 
-use hodograph::{Hodograph, ReducedMatrix, Surface};
-
-use crate::surface::LAWS;
+use hodograph::{Hodograph, Law, ReducedMatrix, Surface};
 
 /// A sample of a collision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,8 +31,8 @@ pub struct Trace {
     pub mu: f64,
     /// from approach to the latest end
     pub samples: Vec<Sample>,
-    /// where each law ends, in the order of [`LAWS`]; `None`: it has no outcome
-    pub ends: [Option<Sample>; 3],
+    /// where each law ends, in the order of [`Law::ALL`]; `None`: it has no outcome
+    pub ends: Vec<Option<Sample>>,
     /// why a law has no outcome
     pub failures: Vec<String>,
 }
@@ -45,9 +43,9 @@ const SAMPLES: usize = 400;
 /// Follows a collision to the latest of its ends.
 pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Trace {
     let mut failures = Vec::new();
-    let mut ends = [None; 3];
+    let mut ends = vec![None; Law::ALL.len()];
     let mut longest: Option<Hodograph<f64>> = None;
-    for ((name, law), end) in LAWS.into_iter().zip(&mut ends) {
+    for (&law, end) in Law::ALL.iter().zip(&mut ends) {
         match Hodograph::new(m, &approach.into(), &Surface { mu, e, law }) {
             Ok(hodograph) => {
                 *end = Some(hodograph.at(hodograph.normal_impulse()).into());
@@ -55,7 +53,7 @@ pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Tra
                     longest = Some(hodograph);
                 }
             }
-            Err(error) => failures.push(format!("mu = {mu}, {name}: {error}")),
+            Err(error) => failures.push(format!("mu = {mu}, {}: {error}", law.name())),
         }
     }
     let samples = longest.as_ref().map_or(Vec::new(), course);
