@@ -12,8 +12,6 @@ use hodograph_generator::program::{Inputs, Quantity};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::{Column, Impacts, Table, evaluate_rows, over_rows};
 
-const LAWS: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
-
 /// States of a model at the parameters of the first, one of them without numbers.
 fn states(model: &Model) -> Vec<Inputs> {
     let mut states: Vec<Inputs> = samples(model, 5).into_iter().map(|sample| sample.inputs).collect();
@@ -163,7 +161,7 @@ fn collisions_of_many_states_are_those_of_one() {
         let surface = |row: usize| Surface {
             mu: (row % 5) as f64 * 0.3,
             e: (row % 7) as f64 / 6.0,
-            law: LAWS[row % 3],
+            law: Law::ALL[row % Law::ALL.len()],
         };
         for contact in 0..mechanism.count(Kind::Contact) {
             let collisions = mechanism.collisions(contact).expect("collisions");
@@ -220,7 +218,8 @@ fn impacts_by_rows_are_those_one_by_one() {
         .collect();
     let [matrix, velocity] = [(&matrices, 6), (&velocities, 3)].map(|(all, n)| Column::of_rows(all, n));
     let impacts = Impacts { matrix: matrix.try_into().unwrap(), velocity: velocity.try_into().unwrap() };
-    let surface = |row: usize| Surface { mu: 0.1 * (row % 9) as f64, e: 0.5, law: LAWS[row % 3] };
+    let surface =
+        |row: usize| Surface { mu: 0.1 * (row % 9) as f64, e: 0.5, law: Law::ALL[row % Law::ALL.len()] };
     let parts = over_rows(rows, |range| {
         let mut found = Vec::new();
         impacts.solve(surface, range, |row, impact| found.push((row, format!("{impact:?}"))));
