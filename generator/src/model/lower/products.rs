@@ -94,7 +94,7 @@ impl Product {
     }
 
     /// Takes the value of a factor or a divisor; a mistake where it has no place in a product.
-    fn take_value(&mut self, factor: Typed, divides: bool) -> Result<(), Diagnostic> {
+    fn take_value(&mut self, factor: Typed, divides: bool) -> Result<(), Box<Diagnostic>> {
         let place = factor.span;
         match factor.value {
             TypedValue::Poison => self.wrong = true,
@@ -104,15 +104,16 @@ impl Product {
             }
             TypedValue::Scalar(scalar) => self.numerator.push(scalar),
             TypedValue::Vector(_) if divides => {
-                return Err(Diagnostic::new(codes::SCALAR_VECTOR, place, "a vector cannot be a divisor")
-                    .help("divide by its magnitude `norm(v)`"));
+                let error = Diagnostic::new(codes::SCALAR_VECTOR, place, "a vector cannot be a divisor");
+                return Err(Box::new(error.help("divide by its magnitude `norm(v)`")));
             }
             TypedValue::Vector(vector) => match &self.vector {
                 None => self.vector = Some((vector, place)),
                 Some((_, first)) => {
-                    return Err(Diagnostic::new(codes::SCALAR_VECTOR, place, "a vector times a vector")
+                    let error = Diagnostic::new(codes::SCALAR_VECTOR, place, "a vector times a vector")
                         .related(*first, "the other vector")
-                        .help("write `dot(v, w)` or `cross(v, w)`"));
+                        .help("write `dot(v, w)` or `cross(v, w)`");
+                    return Err(Box::new(error));
                 }
             },
         }
@@ -179,7 +180,7 @@ impl Lowering<'_> {
                 product.wrong = true;
             }
             if let Err(error) = product.take_value(typed, divides) {
-                self.report(error);
+                self.report(*error);
                 product.wrong = true;
             }
         }
