@@ -26,6 +26,8 @@ enum End {
     Pole,
     /// at an impact that nothing ends
     Wedged,
+    /// by an error that the model does not explain: which
+    Failed(String),
 }
 
 /// A start at which all contacts that have a gap are open.
@@ -88,7 +90,7 @@ fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> End {
                     *events += seen.len();
                     return End::Wedged;
                 }
-                Err(error) => panic!("{}", what(&error, &seen)),
+                Err(error) => return End::Failed(what(&error, &seen)),
             }
         }
         let numbers = simulation.coordinates().iter().chain(simulation.speeds());
@@ -125,6 +127,7 @@ fn shipped_models_run_from_random_starts() {
         Box::new(hodograph_models::stanford_arm::StanfordArm::<f64>::default()),
     ];
     let count = starts(1);
+    let mut failed = Vec::new();
     for model in models {
         let mut result = Count::default();
         for seed in count.clone() {
@@ -132,10 +135,14 @@ fn shipped_models_run_from_random_starts() {
                 End::Whole => result.whole += 1,
                 End::Pole => result.poles += 1,
                 End::Wedged => result.wedged += 1,
+                End::Failed(why) => failed.push(why),
             }
         }
         println!("{}: {result:?} of {count:?}", model.name());
-        let ended_early = result.poles + result.wedged;
-        assert!(10 * ended_early <= result.whole + ended_early, "{}: {result:?}", model.name());
+        let started = result.whole + result.poles + result.wedged;
+        assert!(10 * result.poles <= started, "{}: {result:?}", model.name());
+        // one surface in six has mu >= 1
+        assert!(4 * result.wedged <= started, "{}: {result:?}", model.name());
     }
+    assert!(failed.is_empty(), "{} starts:\n{}", failed.len(), failed.join("\n"));
 }
