@@ -5,6 +5,9 @@ use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
 use crate::support::{Support, solve};
 
+/// A sliding contact with f / m_nn below this jams: its force grows without bound as f falls to zero.
+pub(crate) const JAM: f64 = 1e-6;
+
 /// What a closed contact does while the motion goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Hold {

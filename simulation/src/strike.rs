@@ -1,8 +1,11 @@
 //! Solves impacts of one contact, or of several that are struck at the same time.
 
-use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface, impact_without_collision};
+use hodograph::{
+    CollisionError, CollisionOutcome, Kind, ReducedMatrix, State, Surface, impact_without_collision,
+};
 use nalgebra::{Vector2, Vector3};
 
+use crate::forces::JAM;
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
 use crate::simulation::Simulation;
@@ -308,6 +311,7 @@ impl Simulation<'_> {
         let speed = here.velocity.y.hypot(here.velocity.z);
         let (cos, sin) = (here.velocity.y / speed, here.velocity.z / speed);
         let reduced = here.reduced.turned(cos, sin);
+        let surface = jammed(&reduced, surface);
         let impact = impact_without_collision(&reduced, &Vector2::new(speed, 0.0), &surface)
             .map_err(|error| self.error(Some(contact), Reason::Collision(error.into())))?;
         let (i, j) = (impact.impulse.y, impact.impulse.z);
@@ -392,4 +396,17 @@ fn permutations(list: &[usize]) -> Vec<Vec<usize>> {
         }
     }
     all
+}
+
+/// The surface of an impact without collision, t along the slip: where f = m_nn - mu m_nt is not yet zero, but so small that the contact jams, with the
+/// friction that makes it as small and negative. It is larger by less than `2 JAM` times m_nn / m_nt.
+fn jammed(reduced: &ReducedMatrix<f64>, surface: Surface<f64>) -> Surface<f64> {
+    let f = reduced.nn - surface.mu * reduced.nt;
+    let least = JAM * reduced.nn;
+    // the event is found where f = least, up to the rounding of its search
+    if f >= 0.0 && f <= 1.5 * least {
+        Surface { mu: (reduced.nn + least) / reduced.nt, ..surface }
+    } else {
+        surface
+    }
 }

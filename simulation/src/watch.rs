@@ -3,7 +3,7 @@
 use hodograph::{Kind, State};
 
 use crate::SimulationError;
-use crate::forces::margins;
+use crate::forces::{JAM, margins};
 use crate::motion::Failure;
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::simulation::Simulation;
@@ -12,8 +12,6 @@ use crate::support::Support;
 
 /// A contact that lifts off is apart where its gap is above this, m; it has come back where its gap has fallen by this.
 const LIFTED: f64 = 1e-11;
-/// A sliding contact with f / m_nn below this jams.
-const JAM: f64 = 1e-6;
 
 /// Places and weights of Gauss's rule on [0, 1].
 const GAUSS: [(f64, f64); 5] = [
