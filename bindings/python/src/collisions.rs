@@ -2,6 +2,7 @@
 
 use hodograph::nalgebra::Vector3;
 use hodograph::{CollisionError, CollisionOutcome, Kind, Mechanism as _, Path};
+use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::over_rows;
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -9,7 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::arguments::{Surfaces, array, common};
 use crate::errors;
-use crate::mechanism::{Mechanism, States};
+use crate::states::States;
 
 /// Why a row has no answer, by number; the first is none.
 pub const KINDS: [&str; 12] = [
@@ -132,7 +133,7 @@ fn write(numbers: &mut Vec<f64>, outcome: &CollisionOutcome<f64>, speeds: &[f64]
 /// Solves the collisions of all rows.
 pub fn collide<'py>(
     py: Python<'py>,
-    mechanism: &Mechanism,
+    mechanism: &InterpretedMechanism,
     contact: usize,
     states: States<'py>,
     (mu, e, law): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, &str),
@@ -140,7 +141,6 @@ pub fn collide<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let surfaces = Surfaces::new(py, mu, e, law)?;
     let collisions = mechanism
-        .inner
         .collisions(contact)
         .map_err(|error| errors::error(py, "StateError", &error.to_string(), error.kind(), None, None))?;
     // `q` stands for the rows of the state
@@ -156,7 +156,7 @@ pub fn collide<'py>(
     };
     state_rows.rows = rows;
     let table = state_rows.table();
-    let freedom = mechanism.inner.count(Kind::Speed);
+    let freedom = mechanism.count(Kind::Speed);
     let mut fields = vec![("speeds", freedom)];
     fields.extend(FIELDS);
     let width = fields.iter().map(|(_, size)| size).sum();
@@ -183,7 +183,7 @@ pub fn collide<'py>(
     if raises && let Some((row, error)) = failed.into_iter().flatten().next() {
         let count = answers.kinds.iter().filter(|&&kind| kind != 0).count();
         return Err(match error {
-            CollisionError::State(error) => mechanism.state_error(py, &state_rows, &error, row, count),
+            CollisionError::State(error) => state_rows.error(py, mechanism, &error, row, count),
             CollisionError::Impact(error) => impact_error(py, &error, rows.map(|rows| (row, rows, count))),
             error => errors::error(py, "ImpactError", &error.to_string(), error.kind(), None, None),
         });

@@ -9,6 +9,7 @@ mod impacts;
 mod mechanism;
 mod model;
 mod motion;
+mod states;
 
 use pyo3::prelude::*;
 

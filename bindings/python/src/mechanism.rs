@@ -3,19 +3,20 @@
 use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use hodograph::{Kind, Mechanism as _, StateError};
+use hodograph::{Kind, Mechanism as _};
 use hodograph_generator::explain::{self, Format};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
 use hodograph_generator::{artifact, check, reading};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_interpreter::columns::{Column, Columns, Table, evaluate_rows};
+use hodograph_interpreter::columns::{Columns, evaluate_rows};
 use numpy::PyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::arguments::{Rows, array, column, common, raises, rows};
-use crate::{errors, model};
+use crate::states::States;
+use crate::{collisions, errors, model, motion};
 
 /// A quantity, ready for one state and for many.
 struct Routine {
@@ -27,38 +28,10 @@ struct Routine {
 /// A model with its derivation and parameters.
 #[pyclass(frozen, subclass)]
 pub struct Mechanism {
-    pub inner: InterpretedMechanism,
+    inner: InterpretedMechanism,
     routines: RwLock<HashMap<String, Arc<Routine>>>,
     /// coordinates, speeds, inputs that the model states
     initial: [Vec<f64>; 3],
-}
-
-/// The state arguments of a call.
-pub struct States<'py> {
-    pub q: Rows<'py>,
-    pub u: Rows<'py>,
-    pub inputs: Rows<'py>,
-    pub time: Option<Rows<'py>>,
-    pub accelerations: Option<Rows<'py>>,
-    pub tangent: Option<Rows<'py>>,
-    pub rows: Option<usize>,
-}
-
-impl States<'_> {
-    pub fn table(&self) -> Table<'_> {
-        fn columns<'a>(rows: &'a Option<Rows<'_>>) -> Vec<Column<'a>> {
-            rows.as_ref().map(Rows::columns).unwrap_or_default()
-        }
-        Table {
-            rows: self.rows.unwrap_or(1),
-            time: columns(&self.time).into_iter().next(),
-            coordinates: self.q.columns(),
-            speeds: self.u.columns(),
-            inputs: self.inputs.columns(),
-            accelerations: columns(&self.accelerations),
-            tangent: columns(&self.tangent),
-        }
-    }
 }
 
 fn is_matrix(quantity: Quantity) -> bool {
@@ -189,42 +162,6 @@ impl Mechanism {
         let rows = common(py, &tables)?;
         Ok(States { q, u, inputs, time, accelerations, tangent, rows })
     }
-
-    /// The exception of a row; `count` rows have none.
-    pub fn state_error(
-        &self,
-        py: Python<'_>,
-        states: &States<'_>,
-        failure: &StateError,
-        row: usize,
-        count: usize,
-    ) -> PyErr {
-        let table = states.table();
-        let at_fault = [
-            (&table.coordinates, Kind::Coordinate, "q"),
-            (&table.speeds, Kind::Speed, "u"),
-            (&table.inputs, Kind::Input, "inputs"),
-        ]
-        .into_iter()
-        .flat_map(|(columns, kind, name)| {
-            columns.iter().enumerate().map(move |(index, column)| (kind, name, index, column.get(row)))
-        })
-        .find(|(.., number)| !number.is_finite());
-        let (mut message, mut number) = (failure.to_string(), None);
-        let mut place = states.rows.map(|_| format!("row {row}"));
-        if let Some((kind, argument, index, value)) = at_fault {
-            let name = self.inner.component(kind, index).map_or(String::new(), |c| c.name.to_owned());
-            message = format!("`{argument}` holds {value} for {name}: expected a finite number");
-            number = Some(value);
-            place = Some(place.map_or(name.clone(), |row| format!("{row}, {name}")));
-        }
-        if let Some(rows) = states.rows {
-            message = format!(
-                "row {row}: {message} ({count} of {rows} rows have no answer; errors='nan' answers them with NaN)"
-            );
-        }
-        errors::error(py, "StateError", &message, failure.kind(), place, number)
-    }
 }
 
 #[pymethods]
@@ -331,7 +268,7 @@ impl Mechanism {
             let outcome = routine.one.evaluate(&arguments, |index, number| numbers[index] = number);
             return match outcome {
                 Err(failed) if raises => {
-                    Err(self.state_error(py, &states, &self.inner.state_error(failed), 0, 1))
+                    Err(states.error(py, &self.inner, &self.inner.state_error(failed), 0, 1))
                 }
                 _ => array(py, None, &routine.shape, numbers),
             };
@@ -342,7 +279,7 @@ impl Mechanism {
         py.detach(|| evaluate_rows(&routine.many, &table, &mut numbers, &mut failures));
         if raises && let Some((row, Some(failed))) = failures.iter().enumerate().find(|(_, f)| f.is_some()) {
             let count = failures.iter().filter(|failure| failure.is_some()).count();
-            return Err(self.state_error(py, &states, &self.inner.state_error(*failed), row, count));
+            return Err(states.error(py, &self.inner, &self.inner.state_error(*failed), row, count));
         }
         array(py, Some(rows), &routine.shape, numbers)
     }
@@ -361,7 +298,7 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyDict>> {
         let [q, u, inputs, time] = &states;
         let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
-        crate::collisions::collide(py, self, contact, states, (mu, e, law), raises(py, errors)?)
+        collisions::collide(py, &self.inner, contact, states, (mu, e, law), raises(py, errors)?)
     }
 
     /// A motion from a state to a time.
@@ -377,6 +314,6 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyDict>> {
         let [q, u, inputs, time] = &states;
         let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
-        crate::motion::simulate(py, self, &states, (until, step), surface, tolerance)
+        motion::simulate(py, &self.inner, &states, (until, step), surface, tolerance)
     }
 }

@@ -1,13 +1,14 @@
 //! Motion with impacts and contact that lasts.
 
 use hodograph::{Kind, Law, Mechanism as _, State, Surface};
+use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Options, Progress, Simulation, SimulationError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::arguments::array;
 use crate::errors;
-use crate::mechanism::{Mechanism, States};
+use crate::states::States;
 
 /// A motion has at most this many states.
 const MOST: f64 = 1e7;
@@ -20,23 +21,18 @@ struct Found {
 }
 
 fn follow(
-    mechanism: &Mechanism,
+    mechanism: &InterpretedMechanism,
     state: &State<'_>,
     (until, step): (f64, f64),
     options: Options,
 ) -> Result<Found, SimulationError> {
-    let mut simulation = Simulation::new(&mechanism.inner, state, options)?;
+    let mut simulation = Simulation::new(mechanism, state, options)?;
     let mut found = Found { times: vec![], coordinates: vec![], speeds: vec![], events: vec![] };
     let count = ((until - state.time) / step).ceil() as usize;
     for index in 0..=count {
         let time = (state.time + step * index as f64).min(until);
-        loop {
-            match simulation.advance(time)? {
-                Progress::Event(event) => {
-                    found.events.push((event.time, event.contact, event.kind.name()));
-                }
-                Progress::Reached => break,
-            }
+        while let Progress::Event(event) = simulation.advance(time)? {
+            found.events.push((event.time, event.contact, event.kind.name()));
         }
         found.times.push(time);
         found.coordinates.extend_from_slice(simulation.coordinates());
@@ -48,7 +44,7 @@ fn follow(
 /// Follows a motion.
 pub fn simulate<'py>(
     py: Python<'py>,
-    mechanism: &Mechanism,
+    mechanism: &InterpretedMechanism,
     states: &States<'py>,
     (until, step): (f64, f64),
     (mu, e, law): (f64, f64, String),
@@ -79,9 +75,9 @@ pub fn simulate<'py>(
     };
     let state = State {
         time: start,
-        coordinates: &states.q.slice().to_vec(),
-        speeds: &states.u.slice().to_vec(),
-        inputs: &states.inputs.slice().to_vec(),
+        coordinates: states.q.slice(),
+        speeds: states.u.slice(),
+        inputs: states.inputs.slice(),
     };
     let found = py.detach(|| follow(mechanism, &state, (until, step), options)).map_err(|error| {
         let place = match &error.contact {
@@ -93,13 +89,13 @@ pub fn simulate<'py>(
     })?;
     let all = PyDict::new(py);
     let rows = Some(found.times.len());
-    let [n, p] = [Kind::Coordinate, Kind::Speed].map(|kind| mechanism.inner.count(kind));
+    let [n, p] = [Kind::Coordinate, Kind::Speed].map(|kind| mechanism.count(kind));
     all.set_item("time", array(py, rows, &[], found.times)?)?;
     all.set_item("q", array(py, rows, &[n], found.coordinates)?)?;
     all.set_item("u", array(py, rows, &[p], found.speeds)?)?;
     let events = PyList::empty(py);
     for (time, contact, kind) in found.events {
-        let name = contact.and_then(|contact| mechanism.inner.component(Kind::Contact, contact));
+        let name = contact.and_then(|contact| mechanism.component(Kind::Contact, contact));
         events.append((time, kind, name.map(|component| component.name)))?;
     }
     all.set_item("events", events)?;

@@ -1,0 +1,74 @@
+//! The states that a call is given: one, or rows of them.
+
+use hodograph::{Kind, Mechanism as _, StateError};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::columns::{Column, Table};
+use pyo3::prelude::*;
+
+use crate::arguments::Rows;
+use crate::errors;
+
+/// The state arguments of a call.
+pub struct States<'py> {
+    pub q: Rows<'py>,
+    pub u: Rows<'py>,
+    pub inputs: Rows<'py>,
+    pub time: Option<Rows<'py>>,
+    pub accelerations: Option<Rows<'py>>,
+    pub tangent: Option<Rows<'py>>,
+    pub rows: Option<usize>,
+}
+
+impl States<'_> {
+    /// The columns of the rows.
+    pub fn table(&self) -> Table<'_> {
+        fn columns<'a>(rows: &'a Option<Rows<'_>>) -> Vec<Column<'a>> {
+            rows.as_ref().map(Rows::columns).unwrap_or_default()
+        }
+        Table {
+            rows: self.rows.unwrap_or(1),
+            time: columns(&self.time).into_iter().next(),
+            coordinates: self.q.columns(),
+            speeds: self.u.columns(),
+            inputs: self.inputs.columns(),
+            accelerations: columns(&self.accelerations),
+            tangent: columns(&self.tangent),
+        }
+    }
+
+    /// The exception of a row; `count` rows have none.
+    pub fn error(
+        &self,
+        py: Python<'_>,
+        mechanism: &InterpretedMechanism,
+        failure: &StateError,
+        row: usize,
+        count: usize,
+    ) -> PyErr {
+        let table = self.table();
+        let at_fault = [
+            (&table.coordinates, Kind::Coordinate, "q"),
+            (&table.speeds, Kind::Speed, "u"),
+            (&table.inputs, Kind::Input, "inputs"),
+        ]
+        .into_iter()
+        .flat_map(|(columns, kind, name)| {
+            columns.iter().enumerate().map(move |(index, column)| (kind, name, index, column.get(row)))
+        })
+        .find(|(.., number)| !number.is_finite());
+        let (mut message, mut number) = (failure.to_string(), None);
+        let mut place = self.rows.map(|_| format!("row {row}"));
+        if let Some((kind, argument, index, value)) = at_fault {
+            let name = mechanism.component(kind, index).map_or(String::new(), |c| c.name.to_owned());
+            message = format!("`{argument}` holds {value} for {name}: expected a finite number");
+            number = Some(value);
+            place = Some(place.map_or(name.clone(), |row| format!("{row}, {name}")));
+        }
+        if let Some(rows) = self.rows {
+            message = format!(
+                "row {row}: {message} ({count} of {rows} rows have no answer; errors='nan' answers them with NaN)"
+            );
+        }
+        errors::error(py, "StateError", &message, failure.kind(), place, number)
+    }
+}
