@@ -3,7 +3,7 @@
 use hodograph::{Contacts, Kind, State, StateError};
 use nalgebra::{DMatrix, DVector};
 
-use crate::support::{Support, least_squares};
+use crate::closed_contacts::{ClosedContacts, least_squares};
 
 /// Steps of Newton's method at most.
 const STEPS: usize = 4;
@@ -61,7 +61,7 @@ pub(crate) fn close_gaps(
         if gaps.iter().all(|gap| gap.abs() <= 1e-16) {
             return Ok(());
         }
-        let support = Support::new(mechanism, &state, &open, false)?;
+        let support = ClosedContacts::new(mechanism, &state, &open, false)?;
         let rows: Vec<usize> = (0..open.len()).map(|i| 3 * i).collect();
         let mut wanted = DVector::zeros(3 * open.len());
         for (i, gap) in gaps.iter().enumerate() {
@@ -105,7 +105,7 @@ pub(crate) fn hold_velocities(
         .collect();
     for _ in 0..2 {
         let state = State { time, coordinates, speeds: &*speeds, inputs };
-        let support = Support::new(mechanism, &state, &contacts, false)?;
+        let support = ClosedContacts::new(mechanism, &state, &contacts, false)?;
         let change = support.without(&rows, &support.velocity);
         speeds.iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
     }

@@ -3,7 +3,7 @@
 use hodograph::{ContactError, ContactMode, contact_force};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
-use crate::support::{Support, solve};
+use crate::closed_contacts::{ClosedContacts, solve};
 
 /// A sliding contact with f / m_nn below this jams: its force grows without bound as f falls to zero.
 pub(crate) const JAM: f64 = 1e-6;
@@ -32,13 +32,13 @@ pub(crate) struct Forces {
 
 impl Forces {
     /// The rates that they give to the speeds (p).
-    pub fn rates(&self, support: &Support) -> DVector<f64> {
+    pub fn rates(&self, support: &ClosedContacts) -> DVector<f64> {
         &support.response * &self.lambda
     }
 
     /// The force of one.
     pub fn of(&self, i: usize) -> Vector3<f64> {
-        Support::three(&self.lambda, i)
+        ClosedContacts::three(&self.lambda, i)
     }
 }
 
@@ -54,7 +54,7 @@ pub(crate) enum Lacking {
 /// Forces under which sticking contacts do not accelerate and sliding ones do not part. Where the support is overdetermined they are shared so
 /// that the sum of lambda^2 over the `weights` of the contacts is least: weights are normal forces, so that all contacts use their friction alike.
 pub(crate) fn forces(
-    support: &Support,
+    support: &ClosedContacts,
     holds: &[Hold],
     mu: &[f64],
     weights: Option<&[f64]>,
@@ -98,7 +98,7 @@ pub(crate) fn forces(
 /// The forces of an overdetermined support with nearly their own normal forces as weights, so that all contacts use their friction alike, and the weights
 /// with which they were found; `weights` are a first guess.
 pub(crate) fn shared(
-    support: &Support,
+    support: &ClosedContacts,
     holds: &[Hold],
     mu: &[f64],
     mut weights: Vec<f64>,
@@ -133,13 +133,13 @@ fn columns(holds: &[Hold]) -> Vec<(usize, usize)> {
 }
 
 /// One contact: the runtime's own answer.
-fn single(support: &Support, hold: Hold, mu: f64) -> Result<Forces, Lacking> {
+fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacking> {
     let (mode, slip) = match hold {
         Hold::Stick => (ContactMode::Stick, Vector2::zeros()),
         Hold::Slide(d) => (ContactMode::Slide, d),
     };
     let matrix = support.reduced(0);
-    let beta = Support::three(&support.beta, 0);
+    let beta = ClosedContacts::three(&support.beta, 0);
     let answer =
         contact_force(mode, &matrix, &beta, &slip, mu).map_err(|error| Lacking::Contact(0, error))?;
     Ok(Forces {

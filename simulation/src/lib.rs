@@ -28,33 +28,33 @@
 //! ```
 
 mod check;
-mod choose;
+mod closed_contacts;
 mod drift;
 mod drive;
-mod due;
 mod energy;
 mod error;
 mod event;
+mod event_functions;
+mod event_handling;
+mod event_location;
 mod forces;
 mod front;
-mod happen;
-mod locate;
+mod impacts;
 mod lzb;
+mod mode_changes;
+mod mode_selection;
 mod motion;
 mod options;
 mod phase;
-mod proceed;
-mod rattle;
-mod settle;
-mod settled;
+mod rattling;
+mod scheduled_events;
+mod settled_slip;
 mod simulation;
+mod simultaneous_impacts;
 mod slip_direction;
 mod slip_end;
 mod stepper;
-mod strike;
-mod strike_together;
-mod support;
-mod watch;
+mod time_step;
 
 pub use crate::{
     drive::{Controller, Drive, InputFunction},

@@ -4,10 +4,10 @@ use hodograph::{ContactError, Contacts, Kind, State, StateError};
 use nalgebra::Vector2;
 
 use crate::Drive;
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking, forces, shared};
 use crate::phase::Closed;
 use crate::slip_direction::settle_directions;
-use crate::support::Support;
 
 /// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
 const DIRECTION: f64 = 1e-10;
@@ -40,7 +40,7 @@ pub(crate) struct Motion<'a> {
 /// All that is known of a state.
 pub(crate) struct Evaluation {
     pub rates: Vec<f64>,
-    pub support: Support,
+    pub support: ClosedContacts,
     pub holds: Vec<Hold>,
     pub forces: Option<Forces>,
 }
@@ -75,7 +75,7 @@ impl Motion<'_> {
     }
 
     /// Modes as they are at these velocities.
-    pub fn holds(&self, support: &Support, speeds: &[f64]) -> Vec<Hold> {
+    pub fn holds(&self, support: &ClosedContacts, speeds: &[f64]) -> Vec<Hold> {
         self.closed
             .iter()
             .enumerate()
@@ -101,7 +101,7 @@ impl Motion<'_> {
         self.mechanism.coordinate_rates(&state, &mut rates[..n])?;
         self.mechanism.accelerations(&state, &mut rates[n..n + p])?;
         let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
-        let support = Support::new(self.mechanism, &state, &contacts, true)?;
+        let support = ClosedContacts::new(self.mechanism, &state, &contacts, true)?;
         let mut holds = self.holds(&support, u);
         let mut found = None;
         if !contacts.is_empty() {

@@ -6,14 +6,14 @@
 
 use nalgebra::Vector2;
 
-use crate::choose::begin_along;
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking};
+use crate::mode_selection::begin_along;
 use crate::phase::Closed;
-use crate::support::Support;
 
 /// The modes of contacts with the directions that follow from the state: `omega` of those that have settled.
 pub(crate) fn settle_directions(
-    support: &Support,
+    support: &ClosedContacts,
     closed: &[Closed],
     holds: &mut [Hold],
     solve: &dyn Fn(&[Hold]) -> Result<Forces, Lacking>,

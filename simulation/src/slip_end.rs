@@ -6,9 +6,9 @@
 
 use nalgebra::Vector2;
 
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Hold, forces};
 use crate::motion::Evaluation;
-use crate::support::Support;
 
 /// What becomes of slip.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ pub(crate) const ENDING: f64 = 1e-9;
 const STEPS: usize = 4000;
 
 /// Follows slip of the contact with this place to its end, all else unchanged.
-pub(crate) fn fate(support: &Support, holds: &[Hold], mu: &[f64], place: usize) -> Fate {
+pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: usize) -> Fate {
     let slip = support.slip(place);
     let start = slip.norm();
     let mut holds = holds.to_vec();

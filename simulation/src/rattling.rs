@@ -10,11 +10,11 @@ use hodograph::{Kind, State};
 use nalgebra::DVector;
 
 use crate::SimulationError;
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Hold, forces};
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
 use crate::simulation::Simulation;
-use crate::support::Support;
 
 /// Contacts nearer than so many times the tolerance take part.
 const NEAR: f64 = 8.0;
@@ -114,8 +114,8 @@ impl Simulation<'_> {
         Ok(true)
     }
 
-    fn support(&self, contacts: &[usize], accelerate: bool) -> Result<Support, SimulationError> {
-        Support::new(self.mechanism, &self.here(), contacts, accelerate)
+    fn support(&self, contacts: &[usize], accelerate: bool) -> Result<ClosedContacts, SimulationError> {
+        ClosedContacts::new(self.mechanism, &self.here(), contacts, accelerate)
             .map_err(|error| self.failure(Failure::State(error)))
     }
 

@@ -5,11 +5,11 @@ use hodograph::{
 };
 use nalgebra::{Vector2, Vector3};
 
+use crate::closed_contacts::{ClosedContacts, free_acceleration};
 use crate::forces::JAM;
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
 use crate::simulation::Simulation;
-use crate::support::{Support, free_acceleration};
 use crate::{EventKind, Reason, SimulationError, Struck, Together};
 
 /// Touching contacts approach where their normal velocity, relative to the first approach, is below minus this.
@@ -93,7 +93,7 @@ impl Simulation<'_> {
         let n = self.mechanism.count(Kind::Coordinate);
         let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
         let fault = |error| self.failure(Failure::State(error));
-        let support = Support::new(self.mechanism, &state, touching, false).map_err(fault)?;
+        let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
         let mut stay = Vec::new();
         let mut phases = self.phases.clone();
         for (place, &contact) in touching.iter().enumerate() {
@@ -152,7 +152,7 @@ impl Simulation<'_> {
         let n = self.mechanism.count(Kind::Coordinate);
         let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
         let fault = |error| self.failure(Failure::State(error));
-        let support = Support::new(self.mechanism, &state, touching, false).map_err(fault)?;
+        let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
         let mut list = Vec::new();
         for (place, &contact) in touching.iter().enumerate() {
             let rate = support.velocity[3 * place];
@@ -241,7 +241,7 @@ impl Simulation<'_> {
         }
         let Ok(evaluation) = self.motion(&others).evaluate(self.t, &y) else { return Ok(beta) };
         let Some(forces) = evaluation.forces else { return Ok(beta) };
-        let own = Support::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
+        let own = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
         let rates = forces.rates(&evaluation.support);
         Ok(beta + (own.partials.row(0) * rates)[0])
     }
@@ -355,7 +355,7 @@ impl Simulation<'_> {
             if gap > OVERLAP {
                 continue;
             }
-            let support = Support::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
+            let support = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
             let rate = support.velocity[0];
             let rounding = 1e-9 * support.velocity_size(0, &u);
             if rate < -rounding {

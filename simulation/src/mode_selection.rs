@@ -7,8 +7,8 @@
 use hodograph::{ContactError, ContactMode, Selection, contact_mode, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2};
 
+use crate::closed_contacts::{ClosedContacts, least_squares};
 use crate::forces::{Forces, Hold, Lacking, hold_good, shared};
-use crate::support::{Support, least_squares};
 
 /// Rounds at most.
 const ROUNDS: usize = 3000;
@@ -37,7 +37,7 @@ pub(crate) struct Choice {
 
 /// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not slip.
 pub(crate) fn choose(
-    support: &Support,
+    support: &ClosedContacts,
     slips: &[Option<Vector2<f64>>],
     mu: &[f64],
     before: &DVector<f64>,
@@ -56,7 +56,7 @@ pub(crate) fn choose(
             match local(support, i, slips[i], mu[i], &lambda) {
                 Ok((decision, force)) => {
                     decisions[i] = decision;
-                    let old = Support::three(&lambda, i);
+                    let old = ClosedContacts::three(&lambda, i);
                     change = change.max((force - old).amax());
                     lambda.rows_mut(3 * i, 3).copy_from(&force);
                 }
@@ -91,17 +91,17 @@ pub(crate) fn choose(
 }
 
 fn one(
-    support: &Support,
+    support: &ClosedContacts,
     slip: Option<Vector2<f64>>,
     mu: f64,
     before: &DVector<f64>,
 ) -> Result<Choice, Lacking> {
     let answer = contact_mode_after(
         &support.reduced(0),
-        &Support::three(&support.beta, 0),
+        &ClosedContacts::three(&support.beta, 0),
         &slip.unwrap_or_else(Vector2::zeros),
         mu,
-        &Support::three(before, 0),
+        &ClosedContacts::three(before, 0),
     )
     .map_err(|error| Lacking::Contact(0, error))?;
     Ok(Choice {
@@ -124,14 +124,14 @@ fn decision(mode: ContactMode, direction: Option<Vector2<f64>>) -> Decision {
 
 /// One contact for given forces at the others.
 fn local(
-    support: &Support,
+    support: &ClosedContacts,
     i: usize,
     slip: Option<Vector2<f64>>,
     mu: f64,
     lambda: &DVector<f64>,
 ) -> Result<(Decision, nalgebra::Vector3<f64>), ContactError<f64>> {
     let matrix = support.reduced(i);
-    let own = Support::three(lambda, i);
+    let own = ClosedContacts::three(lambda, i);
     let total = support.coupled.fixed_rows::<3>(3 * i) * lambda + support.beta.fixed_rows::<3>(3 * i);
     let beta = total - matrix.apply(&own);
     let slip = slip.unwrap_or_else(Vector2::zeros);
@@ -141,7 +141,7 @@ fn local(
 
 /// The same decisions, but for contacts that begin to slip without an acceleration: they stick.
 fn held(
-    support: &Support,
+    support: &ClosedContacts,
     decisions: &[Decision],
     slips: &[Option<Vector2<f64>>],
     lambda: &DVector<f64>,
@@ -161,7 +161,7 @@ fn held(
 
 /// The forces of these modes by one linear system; `None` where they do not fit.
 fn polished(
-    support: &Support,
+    support: &ClosedContacts,
     decisions: &[Decision],
     slips: &[Option<Vector2<f64>>],
     mu: &[f64],
@@ -234,7 +234,7 @@ fn polished(
     }
     Some(Choice {
         decisions: result,
-        forces: (0..k).map(|i| Support::three(&lambda, i)).collect(),
+        forces: (0..k).map(|i| ClosedContacts::three(&lambda, i)).collect(),
         selection: vec![Selection::Unique; k],
         weights: all_weights,
         unique: found.unique,
@@ -317,9 +317,9 @@ const TURNS: usize = 30;
 const TURN: f64 = 1e-6;
 
 /// The support by some of the contacts.
-pub(crate) fn part(support: &Support, places: &[usize]) -> Support {
+pub(crate) fn part(support: &ClosedContacts, places: &[usize]) -> ClosedContacts {
     let rows: Vec<usize> = places.iter().flat_map(|&i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Support {
+    ClosedContacts {
         contacts: places.iter().map(|&i| support.contacts[i]).collect(),
         coupled: support.coupled.select_rows(&rows).select_columns(&rows),
         partials: support.partials.select_rows(&rows),
@@ -330,7 +330,7 @@ pub(crate) fn part(support: &Support, places: &[usize]) -> Support {
 }
 
 /// Tries all combinations of modes.
-fn tried(support: &Support, slips: &[Option<Vector2<f64>>], mu: &[f64]) -> Option<Choice> {
+fn tried(support: &ClosedContacts, slips: &[Option<Vector2<f64>>], mu: &[f64]) -> Option<Choice> {
     let k = support.len();
     for combination in 0..3_usize.pow(k as u32) {
         let mut rest = combination;

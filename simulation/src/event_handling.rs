@@ -1,12 +1,12 @@
 //! Handles an event within a step: refines its time to rounding, goes to the state there, and changes the modes.
 
-use crate::locate::Crossing;
+use crate::event_functions::Watched;
+use crate::event_location::Crossing;
 use crate::motion::Evaluation;
 use crate::phase::{Closed, Leaving, Phase};
 use crate::simulation::Simulation;
 use crate::slip_end::{ENDING, time_of_slip};
 use crate::stepper::Step;
-use crate::watch::Watched;
 use crate::{EventKind, Reason, SimulationError};
 
 /// The greatest number of events without progress in time.

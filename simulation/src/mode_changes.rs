@@ -3,12 +3,12 @@
 use hodograph::{ContactError, ContactMode, Kind, Selection, State};
 use nalgebra::{DVector, Vector2, Vector3};
 
-use crate::choose::{Choice, Decision, choose};
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, hold_good};
+use crate::mode_selection::{Choice, Decision, choose};
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase, mus};
 use crate::simulation::Simulation;
-use crate::support::Support;
 use crate::{EventKind, Reason, SimulationError};
 
 /// Slip below this, relative to the speeds that make it up, is none.
@@ -149,7 +149,7 @@ impl Simulation<'_> {
         let inputs = self.motion(&[]).inputs(self.t, &self.y).map_err(|failure| self.failure(failure))?;
         let state =
             State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &inputs };
-        let support = Support::new(self.mechanism, &state, candidates, true)
+        let support = ClosedContacts::new(self.mechanism, &state, candidates, true)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let mu: Vec<f64> = candidates.iter().map(|&contact| self.mu(contact)).collect();
         let before = DVector::from_iterator(
@@ -191,7 +191,7 @@ impl Simulation<'_> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
         let speeds = &self.y[n..n + p];
         let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
-        let support = Support::new(self.mechanism, &state, candidates, false)
+        let support = ClosedContacts::new(self.mechanism, &state, candidates, false)
             .map_err(|error| self.failure(Failure::State(error)))?;
         Ok(candidates
             .iter()

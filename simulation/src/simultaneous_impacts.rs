@@ -3,10 +3,10 @@
 use hodograph::{Kind, Law, State};
 use nalgebra::{DMatrix, DVector};
 
+use crate::closed_contacts::ClosedContacts;
 use crate::lzb::{self, Fault};
 use crate::motion::Failure;
 use crate::simulation::Simulation;
-use crate::support::Support;
 use crate::{EventKind, Reason, Share, SimulationError, StruckTogether};
 
 /// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not touch each other.
@@ -23,7 +23,7 @@ impl Simulation<'_> {
         let speeds = self.y[n..n + p].to_vec();
         let state = State { time: self.t, coordinates: &self.y[..n], speeds: &speeds, inputs: &self.held };
         let fault = |error| self.failure(Failure::State(error));
-        let support = Support::new(self.mechanism, &state, touching, false).map_err(fault)?;
+        let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
         let places = coupled_with(&support, touching.iter().position(|&contact| contact == first));
         if places.len() < 2 {
             return Ok(None);
@@ -101,7 +101,7 @@ impl Simulation<'_> {
 }
 
 /// The contacts, by place, whose normal velocities impulses at the first change, directly or through others.
-fn coupled_with(support: &Support, first: Option<usize>) -> Vec<usize> {
+fn coupled_with(support: &ClosedContacts, first: Option<usize>) -> Vec<usize> {
     let Some(first) = first else { return Vec::new() };
     let entry = |a: usize, b: usize| support.coupled[(3 * a, 3 * b)];
     let mut found = vec![false; support.len()];

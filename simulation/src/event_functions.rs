@@ -3,12 +3,12 @@
 use hodograph::{Kind, State};
 
 use crate::SimulationError;
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{JAM, margins};
 use crate::motion::Failure;
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::simulation::Simulation;
 use crate::stepper::Step;
-use crate::support::Support;
 
 /// A contact that lifts off is apart where its gap is above this, m; it has come back where its gap has fallen by this.
 const LIFTED: f64 = 1e-11;
@@ -80,7 +80,7 @@ impl Simulation<'_> {
         let n = self.mechanism.count(Kind::Coordinate);
         let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
         let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
-        Support::new(self.mechanism, &state, &[contact], false)
+        ClosedContacts::new(self.mechanism, &state, &[contact], false)
             .map_or(0.0, |support| support.velocity_size(0, speeds).max(support.velocity.amax()))
     }
 

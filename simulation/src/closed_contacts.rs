@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
 /// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact basis.
 #[derive(Clone, Debug)]
-pub(crate) struct Support {
+pub(crate) struct ClosedContacts {
     /// Numbers of the contacts in the mechanism.
     pub contacts: Vec<usize>,
     /// W = V M^-1 V^T (3k x 3k).
@@ -20,7 +20,7 @@ pub(crate) struct Support {
     pub beta: DVector<f64>,
 }
 
-impl Support {
+impl ClosedContacts {
     /// Evaluates the contacts; without `accelerate` the free accelerations stay zero.
     pub fn new(
         mechanism: &dyn Contacts<f64>,

@@ -5,15 +5,15 @@ use std::cell::RefCell;
 use hodograph::{ContactError, State};
 use nalgebra::Vector2;
 
+use crate::event_functions::Watched;
+use crate::event_location::{Crossing, first_crossing};
 use crate::forces::Hold;
-use crate::locate::{Crossing, first_crossing};
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, mus};
-use crate::settled::settled;
+use crate::settled_slip::settled;
 use crate::simulation::Simulation;
 use crate::slip_end::{ENDING, Fate, fate, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
-use crate::watch::Watched;
 use crate::{Reason, SimulationError};
 
 /// A share of the time to the end of slip that a step may take.

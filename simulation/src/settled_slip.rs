@@ -3,10 +3,10 @@
 use hodograph::State;
 use nalgebra::Vector2;
 
+use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::motion::{Evaluation, Motion};
 use crate::slip_direction::settle_directions;
-use crate::support::Support;
 
 /// The direction counts as known from the state where it settles within this time, s.
 const SETTLES: f64 = 5e-6;
@@ -26,7 +26,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
     }
     let mu: Vec<f64> = closed.iter().map(|closed| closed.mu).collect();
     let weights: Vec<f64> = closed.iter().map(|closed| closed.weight).collect();
-    let solve = |support: &Support, holds: &[Hold]| forces(support, holds, &mu, Some(&weights));
+    let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, Some(&weights));
     let candidates: Vec<usize> = (0..closed.len())
         .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES))
         .collect();
@@ -34,7 +34,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
         return omegas;
     }
     // The settled directions here and a little ahead.
-    let at = |support: &Support, holds: &[Hold], rates: Option<&[f64]>| -> Option<Vec<Hold>> {
+    let at = |support: &ClosedContacts, holds: &[Hold], rates: Option<&[f64]>| -> Option<Vec<Hold>> {
         let mut trial = closed.to_vec();
         for (place, &i) in candidates.iter().enumerate() {
             trial[i].omega = Some(rates.map_or(0.0, |rates| rates[place]));
@@ -49,7 +49,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
     let Ok(inputs) = motion.inputs(t + AHEAD, &ahead) else { return omegas };
     let state = State { time: t + AHEAD, coordinates: q, speeds: u, inputs: &inputs };
     let contacts: Vec<usize> = closed.iter().map(|closed| closed.contact).collect();
-    let Ok(support) = Support::new(motion.mechanism, &state, &contacts, true) else { return omegas };
+    let Ok(support) = ClosedContacts::new(motion.mechanism, &state, &contacts, true) else { return omegas };
     let Some(second) = at(&support, &first, None) else { return omegas };
     let turn = |a: &Hold, b: &Hold| match (a, b) {
         (Hold::Slide(a), Hold::Slide(b)) => (a.x * b.y - a.y * b.x).atan2(a.dot(b)),
@@ -67,7 +67,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
 }
 
 /// Forces for modes.
-type Solve<'a> = dyn Fn(&Support, &[Hold]) -> Result<Forces, Lacking> + 'a;
+type Solve<'a> = dyn Fn(&ClosedContacts, &[Hold]) -> Result<Forces, Lacking> + 'a;
 
 /// The time in which the direction of slip of a contact settles; `None` where it does not.
 fn relaxation(here: &Evaluation, i: usize, solve: &Solve<'_>) -> Option<f64> {
