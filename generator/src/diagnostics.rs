@@ -54,7 +54,7 @@ impl Diagnostic {
         }
     }
 
-    /// Does it leave the meaning of the model open?
+    /// Whether it leaves the meaning of the model open.
     pub fn hides_meaning(&self) -> bool {
         self.severity == Severity::Error && !self.code.is_of_form()
     }

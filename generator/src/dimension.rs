@@ -24,7 +24,7 @@ impl Dimension {
         Dimension { exponents: [m, kg, s].map(Exponent::from_integer) }
     }
 
-    /// Is it a plain number?
+    /// Whether it is a plain number.
     pub fn is_none(&self) -> bool {
         self.exponents.iter().all(Zero::is_zero)
     }

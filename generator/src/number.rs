@@ -19,17 +19,17 @@ impl Number {
         Number(BigRational::new(BigInt::from(n), BigInt::from(d)))
     }
 
-    /// Is it 0?
+    /// Whether it is 0.
     pub fn is_zero(&self) -> bool {
         self.0.is_zero()
     }
 
-    /// Is it 1?
+    /// Whether it is 1.
     pub fn is_one(&self) -> bool {
         self.0.is_one()
     }
 
-    /// Is it below 0?
+    /// Whether it is below 0.
     pub fn is_negative(&self) -> bool {
         self.0.is_negative()
     }

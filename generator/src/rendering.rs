@@ -145,7 +145,7 @@ impl Diagnostic {
         }
     }
 
-    /// Can the line of a place be shown?
+    /// Whether the line of a place can be shown.
     fn has_line(&self, source: &Source, place: &Range<usize>) -> bool {
         let Some(text) = source.text().filter(|text| !text.is_empty() && self.code != codes::TOO_LARGE)
         else {

@@ -29,7 +29,7 @@ pub const RECORDS: &[&str] = &[
 /// What else has a meaning in generated code.
 const TAKEN: &[&str] = &["T", "Result", "Ok", "Err"];
 
-/// Is it a Rust keyword?
+/// Whether it is a Rust keyword.
 pub fn is_keyword(name: &str) -> bool {
     KEYWORDS.contains(&name)
 }

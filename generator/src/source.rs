@@ -34,7 +34,7 @@ enum Content {
     },
 }
 
-/// Is there a carriage return at the end of a line, and no line feed after it?
+/// Whether a carriage return ends a line, without a line feed after it.
 fn ends_lines_with_returns(text: &str) -> bool {
     let mut parts = text.split('\r');
     // what is before the first belongs to none
@@ -115,7 +115,7 @@ impl Source {
         &self.name
     }
 
-    /// Is it the input of a macro?
+    /// Whether it is the input of a macro.
     pub fn is_inline(&self) -> bool {
         matches!(self.content, Content::Inline { .. })
     }

@@ -205,7 +205,7 @@ pub fn function(word: &str) -> Option<&'static str> {
     look(&table, word)
 }
 
-/// Is it how others call the derivative?
+/// Whether it is how others call the derivative.
 pub fn differentiates(function: &str) -> bool {
     matches!(function, "diff" | "der" | "ddt" | "derivative" | "Derivative" | "deriv" | "dot_" | "dt" | "D")
 }

@@ -35,7 +35,7 @@ fn difference(model: &Model, at: &Inputs, accelerations: &[f64], quantity: Q) ->
     narrow.iter().zip(wide).map(|(narrow, wide)| (4.0 * narrow - wide) / 3.0).collect()
 }
 
-/// Are they equal up to a bound, relative to the scale?
+/// Whether they are equal up to a bound, relative to the scale.
 fn close(what: &str, ours: &[f64], theirs: &[f64], scale: f64, bound: f64) -> Option<String> {
     let error = ours.iter().zip(theirs).fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs())) / scale;
     (error.is_nan() || error > bound || ours.len() != theirs.len())

@@ -16,7 +16,7 @@ pub struct Entry {
     pub path: PathBuf,
     /// the text
     pub source: Source,
-    /// is it inline in a Rust file?
+    /// whether it is inline in a Rust file.
     pub inline: bool,
 }
 

@@ -48,7 +48,7 @@ fn agree(found: &str, shown: &str) -> bool {
         })
 }
 
-/// Does the output look as shown? `..` ends a line early, or stands for any lines.
+/// Whether the output looks as shown. `..` ends a line early, or stands for any lines.
 fn matches(output: &str, shown: &[String]) -> bool {
     let mut lines = output.lines();
     let mut skipping = false;
@@ -75,7 +75,7 @@ fn matches(output: &str, shown: &[String]) -> bool {
     skipping || lines.next().is_none() || shown.is_empty()
 }
 
-/// Do the first lines begin, character for character, as shown? From a line `..` on nothing is compared.
+/// Whether the first lines begin, character for character, as shown. From a line `..` on nothing is compared.
 fn begins(output: &str, shown: &[String]) -> bool {
     let exact = shown.iter().take_while(|line| *line != "..");
     output.lines().zip(exact).all(|(line, wanted)| match wanted.strip_suffix("..") {

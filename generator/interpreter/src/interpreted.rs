@@ -144,7 +144,7 @@ impl InterpretedMechanism {
         Ok(())
     }
 
-    /// Have the slices of a state their lengths?
+    /// Whether the slices of a state have their lengths.
     pub(crate) fn check(&self, state: &State<'_>) -> Result<(), StateError> {
         check_length(state.coordinates, self.model.coordinates.len(), "coordinates")?;
         check_length(state.speeds, self.freedom(), "speeds")?;
@@ -171,7 +171,7 @@ impl InterpretedMechanism {
         prepared.evaluate(&arguments, with).map_err(|failed| self.state_error(failed))
     }
 
-    /// Does the program have what is requested?
+    /// Whether the program has what is requested.
     pub(crate) fn has(&self, request: Request) -> bool {
         !self.routines.get(request, &self.program, &self.constants).is_empty()
     }

@@ -36,7 +36,7 @@ impl InterpretedMechanism {
         }
     }
 
-    /// Is there one of this number?
+    /// Whether there is one of this number.
     pub(crate) fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
         if index < Mechanism::count(self, kind) { Ok(()) } else { Err(StateError::Missing { kind, index }) }
     }

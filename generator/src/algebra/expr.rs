@@ -92,12 +92,12 @@ impl Expr {
         Expr(Atom::var(symbol(id)))
     }
 
-    /// Is it the number 0?
+    /// Whether it is the number 0.
     pub fn is_zero(&self) -> bool {
         self.0.is_zero()
     }
 
-    /// Is it the number 1?
+    /// Whether it is the number 1.
     pub fn is_one(&self) -> bool {
         self.0.is_one()
     }
@@ -159,7 +159,7 @@ impl Expr {
         symbols
     }
 
-    /// Is it free of symbols?
+    /// Whether it is free of symbols.
     pub fn is_number(&self) -> bool {
         matches!(self.0.as_view(), AtomView::Num(_))
     }

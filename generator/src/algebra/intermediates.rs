@@ -342,7 +342,7 @@ impl Intermediates {
         bound
     }
 
-    /// Is anything in the expression, through any names, divided by this?
+    /// Whether anything in the expression, through any names, is divided by this.
     pub fn is_divided_by(&self, expr: &Expr, divisor: &Expr) -> bool {
         let mut seen = vec![false; self.meanings.len()];
         let mut open = vec![expr.clone()];
@@ -367,7 +367,7 @@ impl Intermediates {
         false
     }
 
-    /// Does the expression depend, through any names, on a symbol that `matters`?
+    /// Whether the expression depends, through any names, on a symbol that `matters`.
     pub fn depends(&self, expr: &Expr, matters: &mut impl FnMut(SymbolId) -> bool) -> bool {
         let mut seen = vec![false; self.meanings.len()];
         let mut open = expr.symbols();

@@ -65,7 +65,7 @@ impl Sample {
         Some(self.sized(z, expr).value).filter(|value| value.is_finite())
     }
 
-    /// Is the expression 0 here, but for rounding? `None` if it has no value.
+    /// Whether the expression is 0 here, but for rounding. `None` if it has no value.
     pub fn vanishes(&mut self, z: &Intermediates, expr: &Expr) -> Option<bool> {
         let Sized { value, terms, .. } = self.sized(z, expr);
         (value.is_finite() && terms.is_finite()).then(|| value.abs() <= ROUNDING * terms)

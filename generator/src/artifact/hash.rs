@@ -45,7 +45,7 @@ fn is_documentation(token: &Token) -> bool {
     matches!(token.kind, TokenKind::OuterDoc | TokenKind::InnerDoc)
 }
 
-/// For each token: is it part of `= value` of a quantity that is not `fixed`?
+/// For each token: whether it is part of `= value` of a quantity that is not `fixed`.
 fn defaults(tokens: &[&Token]) -> Vec<bool> {
     let mut is_default = vec![false; tokens.len()];
     // brackets that are open; the section of quantities that is; where in an entry of it this is

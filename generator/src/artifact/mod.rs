@@ -72,7 +72,7 @@ const FUNCTIONS: [(Function, &str); 17] = [
     (Function::Max, "max"),
 ];
 
-/// Does the function take two values?
+/// Whether the function takes two values.
 fn is_binary(function: Function) -> bool {
     matches!(function, Function::Atan2 | Function::Min | Function::Max)
 }

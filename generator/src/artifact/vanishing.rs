@@ -35,7 +35,7 @@ fn numbers(seed: u64) -> Vec<f64> {
     (0..400).map(|_| next()).collect()
 }
 
-/// What rounding takes from a sum is nothing but for rounding: is the value a part of that, `a - (t - (t - a))` with `t = a + ..`?
+/// What rounding takes from a sum is nothing but for rounding: this says whether the value is a part of that, `a - (t - (t - a))` with `t = a + ..`.
 fn is_rounding(program: &Program, value: Value) -> bool {
     let (term, part) = match program.operation(value) {
         Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),

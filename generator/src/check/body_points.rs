@@ -41,7 +41,7 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     out
 }
 
-/// Does the point move as a point of something that has this frame does? `None` where nothing tells.
+/// Whether the point moves as a point of something that has this frame does. `None` where nothing tells.
 fn stays_on(m: &Mechanism, at: &Evaluation, frame: FrameId, point: PointId) -> Option<bool> {
     let turning = at.angular_velocities[frame.0];
     let mut references = m.bodies.iter().filter(|body| body.frame == Some(frame)).map(|body| body.centre);

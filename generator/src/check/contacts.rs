@@ -92,12 +92,12 @@ pub struct Places<'m> {
 }
 
 impl Places<'_> {
-    /// Does something hold at every state, and is there any? Where there are no numbers it does not.
+    /// Whether something holds at every state, and there is a state. Where there are no numbers it does not.
     fn always(&self, holds: impl Fn(&Views<'_>) -> Option<bool>) -> bool {
         !self.views.is_empty() && self.views.iter().all(|views| holds(views) == Some(true))
     }
 
-    /// Is the place a fixed one in the body?
+    /// Whether the place is fixed in the body.
     pub fn is_fixed_in(&self, point: PointId, body: BodyId) -> bool {
         self.always(|views| {
             let place = views.vector_parts(|values| values.rate_of_position(point)).ok()?;
@@ -106,7 +106,7 @@ impl Places<'_> {
         })
     }
 
-    /// Has the point, by its velocity, the motion of the matter of the body that is there?
+    /// Whether the point, by its velocity, moves with the matter of the body that is there.
     pub fn moves_with(&self, point: PointId, body: BodyId) -> bool {
         self.always(|views| {
             let velocity = views.vector_parts(|values| values.velocity(point)).ok()?;

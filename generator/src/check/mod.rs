@@ -33,7 +33,7 @@ pub struct Checked {
 }
 
 impl Checked {
-    /// Was an error found?
+    /// Whether an error was found.
     pub fn has_errors(&self) -> bool {
         self.mechanism.is_none()
     }

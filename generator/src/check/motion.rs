@@ -25,7 +25,7 @@ pub fn changing_inertias(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     out
 }
 
-/// For each body: is its inertia given in a frame in which it changes? It does not if turning about the relative angular
+/// For each body: whether its inertia is given in a frame in which it changes. It does not if turning about the relative angular
 /// velocity W leaves it as it is: W I = I W.
 fn turning_inertias(m: &Mechanism, state: &State, at: &Evaluation) -> Vec<bool> {
     let values = at_rest(m, state);

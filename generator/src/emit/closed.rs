@@ -13,7 +13,7 @@ use crate::rust_names::{docs, ident};
 const NEEDED: [ContactQuantity; 2] = [ContactQuantity::FreeAcceleration, ContactQuantity::PartialVelocities];
 
 impl Emitter<'_> {
-    /// Can the mode of this contact be computed?
+    /// Whether the mode of this contact can be computed.
     pub fn closes(&self, contact: usize) -> bool {
         self.collides(contact)
             && NEEDED.iter().all(|&quantity| self.contact_output(contact, quantity).is_some())

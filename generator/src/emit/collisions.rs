@@ -20,7 +20,7 @@ const NEEDED: [ContactQuantity; 6] = [
 ];
 
 impl Emitter<'_> {
-    /// Can the collision of this contact be computed?
+    /// Whether the collision of this contact can be computed.
     pub fn collides(&self, contact: usize) -> bool {
         NEEDED.iter().all(|&quantity| self.contact_output(contact, quantity).is_some())
     }

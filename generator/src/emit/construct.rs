@@ -100,7 +100,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Do all run-time parameters have a value in the model?
+    /// Whether all run-time parameters have a value in the model.
     fn has_defaults(&self) -> bool {
         self.mechanism.parameters.iter().all(|parameter| parameter.fixed || parameter.value.is_some())
     }

@@ -119,7 +119,7 @@ struct Emitter<'a> {
     /// values computed at construction and kept
     hoisted: Vec<Value>,
     uses_time: bool,
-    /// do velocities, or what follows from them, depend on named inputs?
+    /// whether velocities, or what follows from them, depend on named inputs.
     kinematic_inputs: bool,
     /// the greatest number of operations in one function
     longest: usize,
@@ -243,7 +243,7 @@ impl<'a> Emitter<'a> {
     }
 }
 
-/// Do loads (and so named inputs) enter this quantity by definition?
+/// Whether loads (and so named inputs) enter this quantity by definition.
 fn takes_loads(quantity: Quantity) -> bool {
     matches!(
         quantity,

@@ -59,7 +59,7 @@ impl Record {
         self.fields.len()
     }
 
-    /// Has it no fields?
+    /// Whether it has no fields.
     pub fn is_empty(&self) -> bool {
         self.fields.is_empty()
     }

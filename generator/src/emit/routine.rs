@@ -116,7 +116,7 @@ impl Emitter<'_> {
         }
     }
 
-    /// Does the quantity depend on speeds, by definition or in fact?
+    /// Whether the quantity depends on speeds, by definition or in fact.
     fn takes_speeds(&self, quantity: Quantity) -> bool {
         use crate::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
         let by_definition = match quantity {

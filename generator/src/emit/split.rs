@@ -38,7 +38,7 @@ impl Emitter<'_> {
         quote! { #(#angles)* #of_angles #(#given)* #(#calls)* }
     }
 
-    /// Is it computed in a method? Numbers, inputs and what is known at construction are only fetched.
+    /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only fetched.
     fn is_work(&self, value: Value) -> bool {
         self.stage(value) > Stage::Parameter && !matches!(self.program.operation(value), Operation::Input(_))
     }

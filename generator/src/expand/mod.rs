@@ -53,7 +53,7 @@ fn module(input: TokenStream, package: &Path) -> TokenStream {
 const TAKES: &str = "`mechanism!` takes the path of a model file in quotes, as in `mechanism!(\"models/hopper.mech\")`, or a model, as in \
                      `mechanism! { mechanism Hopper; .. }`";
 
-/// Does it look like a model, perhaps without its beginning?
+/// Whether it looks like a model, perhaps without its beginning.
 fn is_model(trees: &[TokenTree]) -> bool {
     trees.windows(2).any(|pair| match pair {
         [TokenTree::Ident(word), next] => {

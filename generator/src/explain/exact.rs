@@ -73,7 +73,7 @@ fn is_nothing(program: &Program, value: Value, nothing: &HashSet<Value>) -> bool
     }
 }
 
-/// Is `a - b` nothing: `a - (t - (t - a))`, or `a - ((a + c) - c)`?
+/// Whether `a - b` is nothing: `a - (t - (t - a))`, or `a - ((a + c) - c)`.
 fn returns(program: &Program, a: Value, b: Value) -> bool {
     use Operation::*;
     let Sub(total, part) = program.operation(b) else { return false };
@@ -84,7 +84,7 @@ fn returns(program: &Program, a: Value, b: Value) -> bool {
     sum || program.operation(part) == Sub(total, a)
 }
 
-/// Is `a + b` nothing: `a + ((c - a) - c)`?
+/// Whether `a + b` is nothing: `a + ((c - a) - c)`.
 fn cancels(program: &Program, a: Value, b: Value) -> bool {
     use Operation::*;
     let Sub(total, c) = program.operation(b) else { return false };

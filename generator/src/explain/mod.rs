@@ -204,7 +204,7 @@ impl Section {
     }
 }
 
-/// Has no part that is higher than a line?
+/// Whether no part is higher than a line.
 fn is_flat(term: &Term) -> bool {
     match term {
         Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => true,

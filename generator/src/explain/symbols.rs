@@ -99,7 +99,7 @@ impl Symbols {
         Symbols { of, letter }
     }
 
-    /// Does a name look like this?
+    /// Whether a name looks like this.
     pub fn has(&self, symbol: &Symbol) -> bool {
         self.of.values().any(|known| known == symbol)
     }

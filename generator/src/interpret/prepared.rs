@@ -74,7 +74,7 @@ impl Constants {
         self.rounded.get(value.index()).map_or(f64::NAN, |numbers| numbers.0)
     }
 
-    /// Is all that later values need of them finite?
+    /// Whether all that later values need of them is finite.
     pub fn finite(&self, program: &Program) -> bool {
         program.kept(&self.stages).into_iter().all(|value| self.get(value).is_finite())
     }
@@ -93,7 +93,7 @@ impl Constants {
     }
 }
 
-/// Is a value no vanishing one? A divisor that overflows is large, and what it divides is 0.
+/// Whether a value does not vanish. A divisor that overflows is large, and what it divides is 0.
 pub(super) fn holds(value: f64, bound: f64) -> bool {
     value.abs() > bound || value.is_infinite()
 }
@@ -191,7 +191,7 @@ impl Prepared {
         self.results.len()
     }
 
-    /// Are there none, because the program has none of the quantities?
+    /// Whether there are none, because the program has none of the quantities.
     pub fn is_empty(&self) -> bool {
         self.results.is_empty()
     }

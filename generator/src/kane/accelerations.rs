@@ -17,7 +17,7 @@ pub struct Accelerations {
     speeds: Vec<Expr>,
     /// acceleration of the ground: minus gravity, which then acts on every mass
     ground: Mixed,
-    /// are the accelerations of points and frames left out, which are added elsewhere?
+    /// whether the accelerations of points and frames are left out, which are added elsewhere.
     apart: bool,
     angular: BTreeMap<FrameId, Triple>,
     linear: BTreeMap<PointId, Triple>,

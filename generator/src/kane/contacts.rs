@@ -20,7 +20,7 @@ pub struct ContactForms {
     pub remainder: Triple,
     /// distance
     pub gap: Option<Expr>,
-    /// is there no velocity along the second tangential axis, whatever the speeds?
+    /// whether there is no velocity along the second tangential axis, whatever the speeds.
     pub planar: bool,
     /// unit forces along the axes of the basis, if they act on nothing but the mechanism
     pub forces: Option<[Wrenches; 3]>,

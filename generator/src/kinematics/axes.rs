@@ -73,7 +73,7 @@ impl AxesTree {
         self.axes[axes].parent.as_ref().map(|(parent, _)| *parent)
     }
 
-    /// Are `below`'s axes turned, in any number of steps, against those of `above`?
+    /// Whether the axes of `below` are turned, in any number of steps, against those of `above`.
     pub fn descends(&self, mut below: AxesId, above: AxesId) -> bool {
         while self.axes[below].depth > self.axes[above].depth {
             below = self.parent(below).unwrap_or(Self::N);
@@ -171,7 +171,7 @@ pub enum Smaller {
     Neither,
 }
 
-/// Is the dyadic a multiple of the unit dyadic, the same along any axes?
+/// Whether the dyadic is a multiple of the unit dyadic, the same along any axes.
 pub fn is_isotropic(m: &Symmetric) -> bool {
     m[0] == m[1] && m[1] == m[2] && m[3..].iter().all(Expr::is_zero)
 }

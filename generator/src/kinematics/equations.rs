@@ -70,7 +70,7 @@ impl Kinematics<'_> {
         })
     }
 
-    /// Is the expression identically 0, as far as arbitrary states show?
+    /// Whether the expression is identically 0, as far as arbitrary states show.
     pub fn vanishes(&mut self, expr: &Expr) -> bool {
         expr.is_zero() || vanishes(&self.z, &mut self.samples, expr)
     }
@@ -165,7 +165,7 @@ impl LinearVector {
     }
 }
 
-/// Is the expression 0 at all samples at which it has a value?
+/// Whether the expression is 0 at all samples at which it has a value.
 pub(super) fn vanishes(z: &Intermediates, samples: &mut [Sample], expr: &Expr) -> bool {
     let seen: Vec<bool> =
         samples.iter_mut().filter_map(|sample| sample.vanishes(z, expr)).take(ENOUGH).collect();

@@ -202,7 +202,7 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// Is a frame one of three or more in a row that turn about the same axis? Two have nothing to save by absolute angles, and a mass
+    /// Whether a frame is one of three or more in a row that turn about the same axis. Two have nothing to save by absolute angles, and a mass
     /// matrix that needs the angle between them alone.
     fn goes_on(&self, id: FrameId, axis: Axis) -> bool {
         let frames = &self.mechanism.frames;

@@ -12,7 +12,7 @@ pub fn zero() -> Triple {
     [Expr::zero(), Expr::zero(), Expr::zero()]
 }
 
-/// Are all components the number 0?
+/// Whether all components are the number 0.
 pub fn is_zero(v: &Triple) -> bool {
     v.iter().all(Expr::is_zero)
 }
@@ -65,7 +65,7 @@ impl LinearScalar {
         LinearScalar { terms: [(slot, Expr::one())].into(), rest: Expr::zero() }
     }
 
-    /// Is it identically 0?
+    /// Whether it is identically 0.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty() && self.rest.is_zero()
     }
@@ -134,7 +134,7 @@ impl LinearVector {
         LinearVector { terms: BTreeMap::new(), rest }
     }
 
-    /// Is it identically 0?
+    /// Whether it is identically 0.
     pub fn is_zero(&self) -> bool {
         self.terms.is_empty() && is_zero(&self.rest)
     }

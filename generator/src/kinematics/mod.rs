@@ -126,7 +126,7 @@ pub struct Kinematics<'m> {
     /// rates of the coordinates as forms: while kinematical equations are set up each rate is an unknown of its own
     /// (slots after those of the speeds), afterwards they are forms in the speeds
     pub rates: Vec<LinearScalar>,
-    /// have the rates been found?
+    /// whether the rates have been found.
     pub solved: bool,
     /// how everything changes with time, speeds held; valid once the rates have been found
     pub time: Direction,

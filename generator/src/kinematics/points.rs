@@ -20,7 +20,7 @@ impl Kinematics<'_> {
         way
     }
 
-    /// Is the difference of the positions of two points known?
+    /// Whether the difference of the positions of two points is known.
     pub fn connected(&self, a: PointId, b: PointId) -> bool {
         self.way(a).last() == self.way(b).last()
     }

@@ -147,13 +147,13 @@ impl Names {
         self.ambiguous.iter().map(String::as_str)
     }
 
-    /// Is no name nearer to `name` than this?
+    /// Whether no name is nearer to `name` than this.
     pub fn is_near(&self, name: &str, this: &str) -> bool {
         let candidates = std::iter::once(this).chain(self.order.iter().map(|(text, _)| text.as_str()));
         suggest::nearest(name, candidates) == Some(this)
     }
 
-    /// Is it declared twice?
+    /// Whether it is declared twice.
     pub fn is_ambiguous(&self, name: &str) -> bool {
         self.ambiguous.contains(name)
     }

@@ -63,7 +63,7 @@ impl Provenance {
         Provenance(moderate.then_some(sum))
     }
 
-    /// Is no name in it?
+    /// Whether it holds no name.
     pub fn is_empty(&self) -> bool {
         self.0.as_ref().is_some_and(Vec::is_empty)
     }

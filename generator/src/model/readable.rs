@@ -18,7 +18,7 @@ pub struct Readable {
 }
 
 impl Readable {
-    /// Can the motion and all that has mass be read?
+    /// Whether the motion and all that has mass can be read.
     pub fn is_whole(&self) -> bool {
         self.motion && self.bodies.iter().all(|body| *body)
     }

@@ -146,12 +146,12 @@ impl Typed {
         Typed { provenance, ..self }
     }
 
-    /// Is it a mistake that is reported already?
+    /// Whether it is a mistake that is reported already.
     pub fn is_poison(&self) -> bool {
         matches!(self.value, TypedValue::Poison)
     }
 
-    /// Is it the constant 0?
+    /// Whether it is the constant 0.
     pub fn is_zero(&self) -> bool {
         self.constant == Some(0.0)
     }

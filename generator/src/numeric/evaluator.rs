@@ -367,7 +367,7 @@ impl<'m> Evaluator<'m> {
         }
     }
 
-    /// Is the position of both known from the same point?
+    /// Whether the positions of both are known from the same point.
     pub fn same_root(&self, a: PointId, b: PointId) -> bool {
         self.root(a) == self.root(b)
     }

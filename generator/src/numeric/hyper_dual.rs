@@ -43,7 +43,7 @@ impl HyperDual {
         HyperDual { re: self.e1, e1: 0.0, e2: self.e12, e12: 0.0 }
     }
 
-    /// Are all parts finite?
+    /// Whether all parts are finite.
     pub fn is_finite(self) -> bool {
         self.re.is_finite() && self.e1.is_finite() && self.e2.is_finite() && self.e12.is_finite()
     }

@@ -28,7 +28,7 @@ pub fn held_together(m: &Mechanism, state: &State) -> Vec<[PointId; 2]> {
     pairs.into_iter().filter(|pair| same_root(pair) && pair.iter().all(|point| is_place(*point))).collect()
 }
 
-/// Is the velocity of a point the rate of its position?
+/// Whether the velocity of a point is the rate of its position.
 pub fn moves_as_place(views: &Views<'_>, point: PointId) -> Option<bool> {
     let velocity: Vec<Vector3> = views.vector_parts(|values| values.velocity(point)).ok()?;
     let rate: Vec<Vector3> = views.vector_parts(|values| values.rate_of_position(point)).ok()?;

@@ -39,7 +39,7 @@ pub fn norm3(a: Vector3) -> f64 {
     dot3(a, a).sqrt()
 }
 
-/// Are two lists of vectors the same, but for rounding?
+/// Whether two lists of vectors are the same, but for rounding.
 pub fn alike(a: &[Vector3], b: &[Vector3]) -> bool {
     let size = |list: &[Vector3]| list.iter().fold(0.0_f64, |size, v| size.max(norm3(*v)));
     let apart = a.iter().zip(b).fold(0.0_f64, |apart, (a, b)| apart.max(norm3(sub3(*a, *b))));

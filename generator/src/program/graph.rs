@@ -167,7 +167,7 @@ impl Graph {
         }
     }
 
-    /// Is the node the number 0?
+    /// Whether the node is the number 0.
     pub fn is_zero(&self, node: Node) -> bool {
         self.as_number(node).is_some_and(Number::is_zero)
     }

@@ -190,7 +190,7 @@ impl Stages {
     }
 }
 
-/// Is it 1 or -1?
+/// Whether it is 1 or -1.
 fn is_unit(graph: &Graph, node: Node) -> bool {
     graph.as_number(node).is_some_and(|number| number.is_one() || Number(-number.0.clone()).is_one())
 }

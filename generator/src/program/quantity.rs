@@ -187,7 +187,7 @@ impl fmt::Display for Quantity {
 }
 
 impl Quantity {
-    /// Is it a matrix whose columns solve systems of equations? Few values are alive while its entries are computed column by column.
+    /// Whether it is a matrix whose columns solve systems of equations. Few values are alive while its entries are computed column by column.
     pub fn is_solved_by_columns(self) -> bool {
         matches!(self, Quantity::AccelerationsDerivatives)
     }

@@ -15,7 +15,7 @@ pub fn tokens(text: &str, most: usize) -> Vec<Token> {
     lexer.tokens
 }
 
-/// May a name begin with this?
+/// Whether a name may begin with this.
 pub fn begins_name(c: char) -> bool {
     c == '_' || unicode_ident::is_xid_start(c)
 }

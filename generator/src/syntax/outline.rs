@@ -117,7 +117,7 @@ impl Parser<'_> {
         self.nesting.remove(open);
     }
 
-    /// Does a second mechanism begin here, perhaps after its documentation? It is said once, and all of it is left alone.
+    /// Whether a second mechanism begins here, perhaps after its documentation. It is said once, and all of it is left alone.
     fn another_mechanism(&mut self) -> bool {
         let docs = |kind| matches!(kind, TokenKind::InnerDoc | TokenKind::OuterDoc);
         let ahead = self.tokens[self.at..].iter().take_while(|token| docs(token.kind)).count();

@@ -55,7 +55,7 @@ fn in_latin<'t>(tokens: &'t [Token], diagnostics: &mut Vec<Diagnostic>) -> Cow<'
     Cow::Owned(tokens)
 }
 
-/// Reports a bad token; is this one to be read?
+/// Reports a bad token; the value says whether this one is to be read.
 fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
     let TokenKind::Bad(bad) = token.kind else { return true };
     if diagnostics.len() >= MAX_ERRORS {
@@ -245,7 +245,7 @@ impl<'a> Parser<'a> {
         self.peek().is_some_and(|token| token.kind == TokenKind::Open(open))
     }
 
-    /// Could what stands here be multiplied?
+    /// Whether what stands here could be multiplied.
     pub(super) fn at_operand(&self) -> bool {
         self.peek().is_some_and(|token| {
             matches!(token.kind, TokenKind::Name | TokenKind::Number | TokenKind::Open('('))

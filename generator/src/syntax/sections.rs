@@ -47,7 +47,7 @@ impl Parser<'_> {
         }
     }
 
-    /// What could not be read still declares its names: the first, and whatever stands before a `:`, `=` or `{`. Does it begin with one?
+    /// Declares the names of an entry that could not be read: the first, and whatever stands before a `:`, `=` or `{`. Returns whether it begins with one.
     fn broken(&mut self, start: usize, nesting: u32) -> bool {
         let passed = start..self.at.min(self.tokens.len());
         let (mut first, mut named) = (true, false);

@@ -52,12 +52,12 @@ pub struct Token {
 }
 
 impl Token {
-    /// Is it this sign?
+    /// Whether it is this sign.
     pub fn is_sign(&self, sign: char) -> bool {
         self.kind == TokenKind::Sign(sign)
     }
 
-    /// Is it this word?
+    /// Whether it is this word.
     pub fn is_word(&self, word: &str) -> bool {
         self.kind == TokenKind::Name && self.text == word
     }
@@ -72,7 +72,7 @@ impl Token {
     }
 }
 
-/// Is the text a plain decimal: digits, optionally a point and digits, optionally an exponent?
+/// Whether the text is a plain decimal: digits, optionally a point and digits, optionally an exponent.
 pub fn is_decimal(text: &str) -> bool {
     let digits = |s: &str| !s.is_empty() && s.bytes().all(|b| b.is_ascii_digit());
     let (mantissa, exponent) = match text.split_once(['e', 'E']) {

@@ -21,7 +21,7 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Is it an SI unit?
+    /// Whether it is an SI unit.
     pub fn is_si(&self) -> bool {
         self.number.is_one() && self.pi_power == 0
     }
@@ -46,7 +46,7 @@ impl Unit {
     }
 }
 
-/// Symbol, powers of m, kg, s, size as a fraction, powers of pi, may it have a prefix?
+/// Symbol, powers of m, kg, s, size as a fraction, powers of pi, whether it may have a prefix.
 type Symbol = (&'static str, [i32; 3], [i64; 2], i32, bool);
 
 const SYMBOLS: &[Symbol] = &[
@@ -98,7 +98,7 @@ fn symbol(name: &str) -> Option<Unit> {
     })
 }
 
-/// Is it the symbol of a unit, perhaps with a prefix?
+/// Whether it is the symbol of a unit, perhaps with a prefix.
 pub fn is_symbol(name: &str) -> bool {
     symbol(name).is_some()
 }

@@ -93,7 +93,7 @@ pub fn compare(numbers: &Numbers<'_>) -> Result<(), String> {
     if wrong.is_empty() { Ok(()) } else { Err(format!("not reproduced: {}", wrong.join(", "))) }
 }
 
-/// Does the number, rounded or cut to the digits printed, agree?
+/// Whether the number, rounded or cut to the digits printed, agrees.
 fn agrees(printed: &str, ours: f64) -> bool {
     let digits = printed.split_once('.').map_or(0, |(_, decimals)| decimals.len() as i32);
     let Ok(number) = printed.parse::<f64>() else { return false };

@@ -10,12 +10,12 @@ pub struct Case {
     pub origin: Origin,
     /// the contact whose matrices are measured
     pub contact: &'static str,
-    /// has it named inputs?
+    /// whether it has named inputs.
     pub inputs: bool,
 }
 
 impl Case {
-    /// Have others computed it too, from the same URDF?
+    /// Whether others computed it too, from the same URDF.
     pub fn has_peers(&self) -> bool {
         matches!(self.origin, Origin::Peer | Origin::Chain(20))
     }

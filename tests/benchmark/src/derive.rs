@@ -16,7 +16,7 @@ use crate::tools::{Failure, Folders, output};
 pub struct Derivation<'a> {
     /// the mechanism
     pub case: &'a Case,
-    /// are all parameters folded in?
+    /// whether all parameters are folded in.
     pub fixed: bool,
     /// its model file
     pub path: PathBuf,

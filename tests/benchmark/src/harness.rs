@@ -215,7 +215,7 @@ fn main() {{
     text
 }
 
-/// Has the module all routines that differentiate?
+/// Whether the module has all routines that differentiate.
 pub fn differentiated(derivation: &Derivation<'_>) -> bool {
     derivation.module.contains("fn accelerations_derivatives(")
 }

@@ -26,7 +26,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Is nothing above the table?
+/// Whether nothing is above the table.
 fn run() -> Result<bool, String> {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("counts.txt");
     let counted = count()?;

@@ -30,7 +30,7 @@ pub struct Arguments {
     /// make a contact of the origin of this link with the plane through O across N.z (may be repeated)
     #[arg(long, value_name = "LINK")]
     contact: Vec<String>,
-    /// is the root link fixed to the ground, or free? [default: free if it has an inertia]
+    /// whether the root link is fixed to the ground or free [default: free if it has an inertia]
     #[arg(long, value_enum)]
     base: Option<Base>,
     /// declare all parameters `fixed`: folded in at build time

@@ -85,7 +85,7 @@ struct Here {
     step: DVector<f64>,
     /// the same relative to the size of the coordinates above 1, at most; with what no step removes at a dead centre
     size: f64,
-    /// is the residual no more than rounding?
+    /// whether the residual is no more than rounding.
     closed: bool,
     /// least singular value of the Jacobian over the largest
     pivot: f64,

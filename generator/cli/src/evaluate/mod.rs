@@ -185,7 +185,7 @@ impl Machine {
     }
 }
 
-/// Has the symmetric matrix positive pivots?
+/// Whether the symmetric matrix has positive pivots.
 fn positive_definite(matrix: &interpret::Array) -> bool {
     let mut rows: Vec<Vec<f64>> = matrix.rows().map(<[f64]>::to_vec).collect();
     for step in 0..rows.len() {

@@ -156,7 +156,7 @@ fn titled(node: Node) -> String {
     }
 }
 
-/// Is it an element of this kind?
+/// Whether it is an element of this kind.
 pub fn is(node: &Node, kind: &str) -> bool {
     node.is_element() && node.tag_name().name() == kind
 }

@@ -33,7 +33,7 @@ impl Robot {
         self.places.get(&("joint", index)).map_or(&self.file, |place| &place.at)
     }
 
-    /// Does the link have an `<inertial>`?
+    /// Whether the link has an `<inertial>`.
     pub fn has_inertial(&self, index: usize) -> bool {
         self.places.get(&("link", index)).is_some_and(|place| place.has_inertial)
     }

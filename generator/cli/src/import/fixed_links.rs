@@ -54,7 +54,7 @@ pub struct Group {
     pub fixed: Vec<usize>,
     /// its inertia; `None`: it has none, or is the ground
     pub properties: Option<MassProperties>,
-    /// is it the ground?
+    /// whether it is the ground.
     pub ground: bool,
 }
 

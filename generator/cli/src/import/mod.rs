@@ -24,9 +24,9 @@ mod tests;
 pub struct Options {
     /// links at whose origins there is to be a contact
     pub contacts: Vec<String>,
-    /// is the root link free to move? `None`: if it has an inertia
+    /// whether the root link is free to move. `None`: if it has an inertia
     pub floating: Option<bool>,
-    /// should parameters be folded in at build time?
+    /// whether parameters are folded in at build time.
     pub fixed_parameters: bool,
 }
 

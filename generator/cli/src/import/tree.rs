@@ -57,7 +57,7 @@ pub struct Link {
 pub struct Tree {
     /// the links
     pub links: Vec<Link>,
-    /// does the root have an inertia?
+    /// whether the root has an inertia.
     root_has_inertial: bool,
 }
 

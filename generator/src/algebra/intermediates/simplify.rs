@@ -81,7 +81,7 @@ fn reduce_square(expr: &Expr, symbol: SymbolId, square: &Expr) -> Expr {
     expr.clone()
 }
 
-/// Does a negative power of anything occur?
+/// Whether a negative power of anything occurs.
 fn has_divisor(expr: &Expr) -> bool {
     match expr.view() {
         View::Number(_) | View::Symbol(_) => false,

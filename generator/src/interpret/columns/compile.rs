@@ -99,7 +99,7 @@ impl Columns {
         self.len
     }
 
-    /// Are there none, because the program has none of the quantities?
+    /// Whether there are none, because the program has none of the quantities.
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }

@@ -36,7 +36,7 @@ const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
 const OTHER_FUNCTIONS: &[&str] =
     &["pow", "dot", "cross", "norm", "unit", "position", "velocity", "angular_velocity", "d"];
 
-/// Is this the name of a function?
+/// Whether this is the name of a function.
 pub(super) fn is_function(name: &str) -> bool {
     SCALAR_FUNCTIONS.iter().any(|(function, _)| *function == name) || OTHER_FUNCTIONS.contains(&name)
 }
@@ -348,7 +348,7 @@ fn both(a: Option<Dimension>, b: Option<Dimension>) -> Option<Dimension> {
 }
 
 impl Typed {
-    /// Is its value a vector?
+    /// Whether its value is a vector.
     pub fn is_vector(&self) -> bool {
         matches!(self.value, TypedValue::Vector(_))
     }

@@ -172,7 +172,7 @@ pub(super) struct Declared<'t> {
     pub name: &'t Name,
     /// its unit, or the value of a definition without
     pub place: Span,
-    /// is it stated?
+    /// whether it is stated.
     pub stated: bool,
     /// as written, of a quantity
     pub unit: Option<&'t str>,

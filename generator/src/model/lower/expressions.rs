@@ -172,7 +172,7 @@ impl Lowering<'_> {
         Typed::scalar(value, dimension, typed.traits.derivative(span), span).from(typed.provenance)
     }
 
-    /// Is the expression a bare coordinate?
+    /// Whether the expression is a bare coordinate.
     pub(super) fn as_coordinate(&mut self, expr: &Expr) -> Option<CoordinateId> {
         let ExprKind::Name(text) = &expr.kind else { return None };
         let symbol = self.names.get(text)?;

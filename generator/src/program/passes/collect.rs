@@ -24,7 +24,7 @@ pub fn collect(derived: &Derived) -> Derived {
     })
 }
 
-/// May the sum in a term be opened: is it used by this term alone?
+/// Whether the sum in a term may be opened, that is, whether this term alone uses it.
 fn opens(graph: &Graph, survey: &Survey, term: Node) -> bool {
     match graph.kind(term) {
         NodeKind::Sum(_) => true,

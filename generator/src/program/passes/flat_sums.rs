@@ -30,7 +30,7 @@ impl Term {
         Term { negative, what: What::Product(a, b) }
     }
 
-    /// Is it a product, which a fused operation adds without rounding it?
+    /// Whether it is a product, which a fused operation adds without rounding it.
     pub fn is_product(&self) -> bool {
         matches!(self.what, What::Product(..))
     }

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
 pub struct Item {
     /// what it is
     pub id: u32,
-    /// does it count negative?
+    /// whether it counts negative.
     pub negative: bool,
 }
 
@@ -19,7 +19,7 @@ pub struct Pair {
     pub first: u32,
     /// the other
     pub second: u32,
-    /// have they opposite signs?
+    /// whether they have opposite signs.
     pub opposite: bool,
 }
 

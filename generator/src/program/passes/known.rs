@@ -62,7 +62,7 @@ impl Known {
         Known::with(number, self.error * number.rounded().powi(2))
     }
 
-    /// Is it this number, as far as can be told, and for no other reason than that its terms cancel?
+    /// Whether it is this number, as far as can be told, and for no other reason than that its terms cancel.
     pub fn is(self, number: f64) -> bool {
         let difference = (self.number - Reproducible::exactly(number)).rounded().abs();
         difference <= SLACK * self.error && self.error <= CANCELLED * self.size

@@ -47,7 +47,7 @@ pub fn reassociate(program: &Program, states: &[Inputs]) -> Program {
 }
 
 impl Sum {
-    /// Does it vanish beside its terms wherever it is a number?
+    /// Whether it vanishes beside its terms wherever it is a number.
     fn is_rounding(&self, index: usize, states: &[Weighed]) -> bool {
         states.iter().all(|state| {
             let largest =
@@ -57,7 +57,7 @@ impl Sum {
         })
     }
 
-    /// May the sum begin with this term? A product would take an operation of its own, unless all are products.
+    /// Whether the sum may begin with this term. A product would take an operation of its own, unless all are products.
     fn begins(&self, term: usize) -> bool {
         !self.terms[term].is_product() || self.terms.iter().all(Term::is_product)
     }

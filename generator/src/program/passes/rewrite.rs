@@ -9,7 +9,7 @@ use crate::program::output::{Guard, Output};
 
 /// What passes look up about the nodes of a graph.
 pub struct Survey {
-    /// is the node needed?
+    /// whether the node is needed.
     pub reachable: Vec<bool>,
     /// how many nodes and outputs refer to it
     pub uses: Vec<u32>,
@@ -43,7 +43,7 @@ impl Survey {
         self.stages[node.0 as usize]
     }
 
-    /// Is there exactly one that refers to the node?
+    /// Whether exactly one node refers to this node.
     pub fn is_used_once(&self, node: Node) -> bool {
         self.uses[node.0 as usize] == 1
     }
