@@ -7,6 +7,9 @@ mod biped_landing;
 #[path = "../examples/hopper_control.rs"]
 #[allow(dead_code)]
 mod hopper_control;
+#[path = "../examples/juggling/main.rs"]
+#[allow(dead_code)]
+mod juggling;
 #[path = "../examples/painleve_rod.rs"]
 #[allow(dead_code)]
 mod painleve_rod;
@@ -91,5 +94,56 @@ fn the_hopper_reaches_the_heights() {
     };
     for (from, to, height) in [(5.0, 6.0, 1.0), (12.0, 13.0, 1.3), (19.0, 20.0, 0.9)] {
         assert!((top(from, to) - height).abs() < 0.02, "{} {height}\n{}", top(from, to), story.text);
+    }
+}
+
+/// The tops of the ball's flight: time, height, distance from the middle.
+fn tops(events: &[hodograph_simulation::Event]) -> Vec<[f64; 3]> {
+    let zero =
+        |event: &&hodograph_simulation::Event| matches!(event.kind, hodograph_simulation::EventKind::Zero(_));
+    let top = |event: &hodograph_simulation::Event| {
+        let q = &event.coordinates;
+        [event.time, q[5], q[3].hypot(q[4])]
+    };
+    events.iter().filter(zero).map(top).collect()
+}
+
+#[test]
+fn the_juggler_reaches_the_heights_that_are_asked_for() {
+    let story = juggling::tell().unwrap();
+    let tops = tops(&story.events);
+    assert!(tops.len() > 16, "{}", story.text);
+    for [time, height, beside] in tops {
+        // From the third bounce on it knows the restitution; the first top after another height is asked for belongs to the one before.
+        if time > 2.0 && (time % 4.0) > 0.85 {
+            let asked = juggling::trial::command(time);
+            assert!((height - asked).abs() < 0.05 * asked && beside < 1e-3, "{time} {height} {beside}");
+        }
+    }
+}
+
+#[test]
+fn the_juggler_in_firmware_moves_as_the_simulated_one() {
+    let story = juggling::tell().unwrap();
+    let simulated: Vec<[f64; 3]> = tops(&story.events).into_iter().filter(|top| top[0] > 0.1).collect();
+    let (parameters, surface) = juggling::trial::truth();
+    let (coordinates, speeds) = juggling::trial::start();
+    let juggler = juggling::juggler::Juggler::new(parameters).unwrap();
+    let mut plant = juggling::plant::Plant { juggler, surface, coordinates, speeds };
+    let mut control = juggling::trial::control::<f64>();
+    let mut highest: Vec<f64> = Vec::new();
+    for sample in 0..(1e3 * juggling::trial::UNTIL) as usize {
+        let time = 1e-3 * sample as f64;
+        let inputs = control.act(&plant.coordinates, &plant.speeds, juggling::trial::command(time));
+        let before = plant.speeds.uz;
+        plant.advance(&inputs, 1e-3).unwrap();
+        if sample > 100 && before > 0.0 && plant.speeds.uz <= 0.0 {
+            // Half a millisecond from the top it lacks g t^2 / 2 = 5e-6 m at most.
+            highest.push(plant.coordinates.z + plant.speeds.uz.powi(2) / (2.0 * 9.81));
+        }
+    }
+    assert_eq!(highest.len(), simulated.len());
+    for (plant, [time, height, _]) in highest.iter().zip(&simulated) {
+        assert!((plant - height).abs() < 1e-6, "{time}: {plant} {height}");
     }
 }

@@ -60,12 +60,12 @@ fn model(single: &dyn Contacts<f32>, double: &dyn Contacts<f64>) -> [String; 2] 
     let (mut accelerations, mut collisions) = (Errors::default(), Errors::default());
     for number in 0..STATES {
         let mut near = |from: &[f32], size: f64| -> Vec<f32> {
-            from.iter().map(|x| x + (size * random.next()) as f32).collect()
+            from.iter().map(|x| x + (size * random.number()) as f32).collect()
         };
         let (mut q, mut u, w) = (near(&q0, 0.5), near(&u0, 2.0), near(&w0, 1.0));
         let _ = single.normalize(&mut q);
         let wide = |slice: &[f32]| slice.iter().copied().map(f64::from).collect::<Vec<_>>();
-        let time = random.next();
+        let time = random.number();
         let at = State { time: time as f32, coordinates: &q, speeds: &u, inputs: &w };
         if single.contact_velocity(0, &at).is_ok_and(|velocity| velocity.x > 0.0) {
             u.iter_mut().for_each(|u| *u = -*u);
@@ -77,7 +77,7 @@ fn model(single: &dyn Contacts<f32>, double: &dyn Contacts<f64>) -> [String; 2] 
         let found = single.accelerations(&at, &mut out).ok().map(|()| out.clone());
         let known = double.accelerations(&exact, &mut expected).ok().map(|()| expected.clone());
         accelerations.compare(found, known, f64::MIN_POSITIVE);
-        let (mu, e) = (0.75 + 0.75 * random.next(), 0.5 + 0.5 * random.next());
+        let (mu, e) = (0.75 + 0.75 * random.number(), 0.5 + 0.5 * random.number());
         let law = [Law::Newton, Law::Poisson, Law::Stronge][number % 3];
         let surface = Surface { mu: mu as f32, e: e as f32, law };
         let found = single.collide(0, &at, &surface, &mut out).ok().map(|_| out.clone());

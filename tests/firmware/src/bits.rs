@@ -58,7 +58,7 @@ impl Digest {
     pub fn take<T: Number>(&mut self, numbers: &[T]) {
         for &number in numbers {
             self.numbers += 1;
-            self.put(if number == number { number.bits() } else { u64::MAX });
+            self.put(if number.partial_cmp(&number).is_some() { number.bits() } else { u64::MAX });
         }
     }
 

@@ -4,4 +4,5 @@
 
 pub mod bits;
 pub mod board;
+pub mod juggling;
 pub mod random;

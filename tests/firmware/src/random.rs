@@ -10,8 +10,8 @@ impl Random {
         Random(seed)
     }
 
-    /// The next number, from -1 to 1: a multiple of 2^-23, which a single holds too.
-    pub fn next(&mut self) -> f64 {
+    /// A number from -1 to 1: a multiple of 2^-23, which a single holds too.
+    pub fn number(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
