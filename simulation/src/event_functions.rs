@@ -5,13 +5,15 @@ use hodograph::{Kind, State};
 use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{JAM, margins};
-use crate::motion::Failure;
+use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::simulation::Simulation;
 use crate::stepper::Step;
 
-/// A contact that lifts off is apart where its gap is above this, m; it has come back where its gap has fallen by this.
+/// A contact that lifts off is apart where its gap is above this, m.
 const LIFTED: f64 = 1e-11;
+/// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other body: it is zero but for rounding.
+const STILL: f64 = 2e-11;
 
 /// Places and weights of Gauss's rule on [0, 1].
 const GAUSS: [(f64, f64); 5] = [
@@ -38,8 +40,8 @@ pub(crate) enum Watched {
 }
 
 impl Simulation<'_> {
-    /// What must be watched from here on, and what rounding may do to it.
-    pub(crate) fn watched(&self, closed: &[Closed]) -> (Vec<Watched>, Vec<f64>) {
+    /// What must be watched over the next time `h`, and what rounding may do to it.
+    pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(Kind::Coordinate);
         let size = self.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
@@ -49,9 +51,12 @@ impl Simulation<'_> {
                 && self.surfaces[contact].is_some()
             {
                 watched.push(Watched::Gap(contact));
-                noise.push(match leaving {
-                    Leaving::Bounced => 4.0 * f64::EPSILON * self.velocity_size(contact),
-                    _ => rounding,
+                let rate = || 4.0 * f64::EPSILON * self.velocity_size(contact);
+                noise.push(match *leaving {
+                    Leaving::Bounced => rate(),
+                    Leaving::Lifted { risen, .. } if risen > 0.0 => h * rate(),
+                    Leaving::Lifted { .. } => rate(),
+                    Leaving::Apart => rounding,
                 });
             }
         }
@@ -111,11 +116,14 @@ impl Simulation<'_> {
             .iter()
             .map(|what| match *what {
                 Watched::Gap(contact) => {
-                    let gap = || Ok(self.mechanism.gap(contact, &state)?.unwrap_or(1.0));
                     match self.phases[contact] {
                         Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
-                        Phase::Open(Leaving::Lifted(start)) => Ok(gap()? - start + LIFTED),
-                        _ => gap(),
+                        // Its gap by integration of its rate, over the time where it was zero at the front; less what its acceleration is rounded to.
+                        Phase::Open(Leaving::Lifted { risen, rounding }) => {
+                            let mean = self.mean_rate(contact, after, at)? + 0.5 * rounding * after;
+                            Ok(if risen > 0.0 { risen + after * mean } else { mean })
+                        }
+                        _ => Ok(self.mechanism.gap(contact, &state)?.unwrap_or(1.0)),
                     }
                 }
                 Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
@@ -134,14 +142,24 @@ impl Simulation<'_> {
         after: f64,
         at: &mut dyn FnMut(f64) -> Vec<f64>,
     ) -> Result<f64, Failure> {
+        self.mean_rate_from(self.t, contact, after, at)
+    }
+
+    fn mean_rate_from(
+        &self,
+        start: f64,
+        contact: usize,
+        after: f64,
+        at: &mut dyn FnMut(f64) -> Vec<f64>,
+    ) -> Result<f64, Failure> {
         let motion = self.motion(&[]);
         let mut mean = 0.0;
         for (place, weight) in GAUSS {
             let after = place * after;
             let y = at(after);
             let (q, u) = motion.split(&y);
-            let inputs = motion.inputs(self.t + after, &y)?;
-            let state = State { time: self.t + after, coordinates: q, speeds: u, inputs: &inputs };
+            let inputs = motion.inputs(start + after, &y)?;
+            let state = State { time: start + after, coordinates: q, speeds: u, inputs: &inputs };
             mean += weight * self.mechanism.contact_velocity(contact, &state)?.x;
         }
         Ok(mean)
@@ -149,47 +167,60 @@ impl Simulation<'_> {
 
     /// Gap and normal velocity of a contact at the end of a step.
     pub(crate) fn gap_at(&self, step: &Step, contact: usize) -> Result<(f64, f64), SimulationError> {
-        self.gap_in(step.t + step.h, &step.end, contact)
-    }
-
-    /// Gap and normal velocity of a contact at the front.
-    pub(crate) fn gap_here(&self, contact: usize) -> Result<(f64, f64), SimulationError> {
-        self.gap_in(self.t, &self.y, contact)
-    }
-
-    fn gap_in(&self, time: f64, y: &[f64], contact: usize) -> Result<(f64, f64), SimulationError> {
+        let time = step.t + step.h;
         let motion = self.motion(&[]);
-        let (q, u) = motion.split(y);
+        let (q, u) = motion.split(&step.end);
         let state = State { time, coordinates: q, speeds: u, inputs: &self.held };
         let fault = |error| self.failure(Failure::State(error));
         let gap = self.mechanism.gap(contact, &state).map_err(fault)?.unwrap_or(1.0);
         Ok((gap, self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x))
     }
 
-    /// Contacts that were about to leave are apart once their gaps are open.
-    pub(crate) fn arm(&mut self) -> Result<(), SimulationError> {
-        self.arm_others(usize::MAX)
+    /// Contacts that were about to leave are apart once their gaps are open; the step has just been taken.
+    pub(crate) fn arm(&mut self, step: &mut Step) -> Result<(), SimulationError> {
+        for contact in 0..self.phases.len() {
+            let before = match self.phases[contact] {
+                Phase::Open(Leaving::Bounced) if step.h > 0.0 => 0.0,
+                Phase::Open(Leaving::Lifted { risen, .. }) => risen,
+                _ => continue,
+            };
+            let (gap, _) = self.gap_at(step, contact)?;
+            self.phases[contact] =
+                Phase::Open(if gap > LIFTED { Leaving::Apart } else { self.risen(contact, before, step)? });
+        }
+        Ok(())
     }
 
-    pub(crate) fn arm_others(&mut self, but: usize) -> Result<(), SimulationError> {
-        let Some(step) = self.step.clone() else { return Ok(()) };
-        for contact in 0..self.phases.len() {
-            if contact == but {
-                continue;
-            }
-            match self.phases[contact] {
-                Phase::Open(Leaving::Bounced) if step.h > 0.0 => {
-                    let (gap, _) = self.gap_at(&step, contact)?;
-                    self.phases[contact] =
-                        Phase::Open(if gap > 0.0 { Leaving::Apart } else { Leaving::Lifted(gap) });
-                }
-                Phase::Open(Leaving::Lifted(_)) => {
-                    let (gap, _) = self.gap_at(&step, contact)?;
-                    if gap > LIFTED {
-                        self.phases[contact] = Phase::Open(Leaving::Apart);
-                    }
-                }
-                _ => {}
+    /// A contact that leaves, after a step.
+    fn risen(&self, contact: usize, before: f64, step: &mut Step) -> Result<Leaving, SimulationError> {
+        let (step_start, h) = (step.t, step.h);
+        let mut at = |after: f64| if h > 0.0 { step.at(after / h) } else { step.end.clone() };
+        let mean = self.mean_rate_from(step_start, contact, h, &mut at);
+        let risen = before + h * mean.map_err(|failure| self.failure(failure))?;
+        Ok(Leaving::Lifted { risen: risen.max(0.0), rounding: 0.0 })
+    }
+
+    /// Contacts that lift off here: what the rounding of their accelerations is.
+    pub(crate) fn weigh_lifted(&mut self, here: &Evaluation) -> Result<(), SimulationError> {
+        let lifted: Vec<usize> = (0..self.phases.len())
+            .filter(|&contact| matches!(self.phases[contact], Phase::Open(Leaving::Lifted { .. })))
+            .collect();
+        if lifted.is_empty() {
+            return Ok(());
+        }
+        let n = self.mechanism.count(Kind::Coordinate);
+        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
+        let inputs = self.motion(&[]).inputs(self.t, &self.y).map_err(|failure| self.failure(failure))?;
+        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &inputs };
+        let support = ClosedContacts::new(self.mechanism, &state, &lifted, true)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let pressed = here.forces.as_ref().map_or(0.0, |forces| {
+            here.support.beta.amax() + (here.support.coupled.abs() * forces.lambda.abs()).amax()
+        });
+        for (place, &contact) in lifted.iter().enumerate() {
+            let size = support.beta.fixed_rows::<3>(3 * place).amax() + pressed;
+            if let Phase::Open(Leaving::Lifted { rounding, .. }) = &mut self.phases[contact] {
+                *rounding = STILL * size;
             }
         }
         Ok(())

@@ -29,6 +29,17 @@ impl Simulation<'_> {
             let change = match watched {
                 Watched::Gap(contact) => {
                     let (gap, rate) = self.gap_at(&step, contact)?;
+                    let gap = match self.phases[contact] {
+                        Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
+                            let h = step.h;
+                            let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
+                            let value = self.values(closed, &[watched], h, &mut at);
+                            value.map_err(|failure| self.failure(failure))?[0]
+                        }
+                        // It has hardly left: its time is that of the interpolation.
+                        Phase::Open(Leaving::Lifted { .. }) => 0.0,
+                        _ => gap,
+                    };
                     if rate < 0.0 { -gap / rate } else { 0.0 }
                 }
                 _ => {
@@ -58,13 +69,12 @@ impl Simulation<'_> {
         self.crowded(start)?;
         match watched {
             Watched::Gap(contact) => {
-                let (gap, rate) = self.gap_at(&step, contact)?;
+                let (_, rate) = self.gap_at(&step, contact)?;
                 if rate >= 0.0 {
                     // It only touches.
-                    self.phases[contact] = Phase::Open(Leaving::Lifted(gap.min(0.0)));
+                    self.phases[contact] = Phase::Open(Leaving::NOW);
                     return Ok(());
                 }
-                self.arm_others(contact)?;
                 self.strike(contact)
             }
             Watched::Normal(place) => {
@@ -80,7 +90,7 @@ impl Simulation<'_> {
                 if let Some(mut past) = self.part(closed, small) {
                     self.commit(&mut past)?;
                 }
-                self.arm()
+                Ok(())
             }
         }
     }
@@ -109,8 +119,7 @@ impl Simulation<'_> {
         }
         self.commit(&mut step)?;
         self.crowded(start)?;
-        self.slip_ended(&stopped)?;
-        self.arm()
+        self.slip_ended(&stopped)
     }
 
     /// Counts events that follow each other without progress.

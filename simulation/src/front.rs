@@ -16,6 +16,7 @@ impl Simulation<'_> {
         self.y.copy_from_slice(&step.end);
         self.correct()?;
         step.corrected(&self.y);
+        self.arm(step)?;
         self.step = Some(step.clone());
         let n = self.mechanism.count(Kind::Coordinate);
         for (scale, speed) in self.scale.iter_mut().zip(&self.y[n..]) {
@@ -46,6 +47,10 @@ impl Simulation<'_> {
 
     /// Corrects the drift of a state that was integrated in these modes.
     fn put_right(&self, modes: &Modes, t: f64, y: &mut [f64]) -> Result<(), SimulationError> {
+        if modes.resting {
+            // Not even the last bit of a quaternion's length changes.
+            return Ok(());
+        }
         let n = self.mechanism.count(Kind::Coordinate);
         let p = self.mechanism.count(Kind::Speed);
         let closed: Vec<(usize, bool)> =
@@ -55,17 +60,12 @@ impl Simulation<'_> {
         let moved = (|| {
             drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
             drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
-            if !modes.resting {
-                let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-                drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)?;
-            }
-            Ok(())
+            let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
+            drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)
         })();
         moved.map_err(|error| self.failure(Failure::State(error)))?;
         y[..n].copy_from_slice(&q);
-        if !modes.resting {
-            y[n..n + p].copy_from_slice(&u);
-        }
+        y[n..n + p].copy_from_slice(&u);
         Ok(())
     }
 

@@ -103,7 +103,7 @@ impl Simulation<'_> {
                 phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
                 // Slip may have changed in the impact.
-                phases[contact] = Phase::Open(Leaving::Lifted(0.0));
+                phases[contact] = Phase::Open(Leaving::NOW);
                 stay.push(contact);
             }
         }
@@ -366,7 +366,7 @@ impl Simulation<'_> {
             } else if rate > rounding {
                 self.phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
-                self.phases[contact] = Phase::Open(Leaving::Lifted(0.0));
+                self.phases[contact] = Phase::Open(Leaving::NOW);
                 stay.push(contact);
             }
         }

@@ -100,7 +100,7 @@ impl Simulation<'_> {
             }
         }
         if self.phases[contact].is_closed() {
-            self.phases[contact] = Phase::Open(Leaving::Lifted(0.0));
+            self.phases[contact] = Phase::Open(Leaving::NOW);
             self.forces[contact] = Vector3::zeros();
             self.resting = false;
             self.push(Some(contact), EventKind::LiftOff { selection: Selection::Unique });
@@ -144,7 +144,6 @@ impl Simulation<'_> {
             self.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
         }
         self.correct()?;
-        self.lower_lifted()?;
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
         let inputs = self.motion(&[]).inputs(self.t, &self.y).map_err(|failure| self.failure(failure))?;
         let state =
@@ -170,17 +169,6 @@ impl Simulation<'_> {
             }
             Err(Lacking::Together) => Err(self.failure(Failure::Together)),
         }
-    }
-
-    /// Gaps that are corrected move those of contacts that leave: they have not fallen by that.
-    fn lower_lifted(&mut self) -> Result<(), SimulationError> {
-        for contact in 0..self.phases.len() {
-            if let Phase::Open(Leaving::Lifted(start)) = self.phases[contact] {
-                let (gap, _) = self.gap_here(contact)?;
-                self.phases[contact] = Phase::Open(Leaving::Lifted(start.min(gap)));
-            }
-        }
-        Ok(())
     }
 
     /// The directions of slip; none where there is none.
@@ -216,7 +204,7 @@ impl Simulation<'_> {
             self.weights[contact] = choice.weights[place];
             match choice.decisions[place] {
                 Decision::Separate => {
-                    self.phases[contact] = Phase::Open(Leaving::Lifted(0.0));
+                    self.phases[contact] = Phase::Open(Leaving::NOW);
                     if was[contact].is_closed() {
                         self.push(Some(contact), EventKind::LiftOff { selection });
                     }

@@ -9,8 +9,14 @@ pub(crate) enum Leaving {
     Apart,
     /// It separated with a speed now; its gap is zero but for rounding.
     Bounced,
-    /// It lifted off: its rate begins at zero, and its gap at this, which is zero but for rounding.
-    Lifted(f64),
+    /// It lifted off: rate and gap begin at zero. `risen` is its gap at the front by integration of its rate, which has no rounding of a gap; `rounding` that of
+    /// its acceleration.
+    Lifted { risen: f64, rounding: f64 },
+}
+
+impl Leaving {
+    /// It lifts off here and now.
+    pub const NOW: Self = Self::Lifted { risen: 0.0, rounding: 0.0 };
 }
 
 /// What a contact does.

@@ -96,7 +96,7 @@ impl Simulation<'_> {
         }
         for &contact in near {
             if !self.phases[contact].is_closed() {
-                self.phases[contact] = Phase::Open(Leaving::Lifted(0.0));
+                self.phases[contact] = Phase::Open(Leaving::NOW);
             }
         }
         self.energy.impacts += self.kinetic()? - kinetic;

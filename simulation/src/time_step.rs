@@ -26,6 +26,7 @@ impl Simulation<'_> {
         self.omegas.fill(None);
         let mut closed = self.closed();
         let here = self.motion(&closed).evaluate(self.t, &self.y).map_err(|failure| self.failure(failure))?;
+        self.weigh_lifted(&here)?;
         let mut most = self.next.min(self.options.max_step);
         if let Some(limit) = self.limit() {
             most = most.min(limit - self.t);
@@ -52,7 +53,6 @@ impl Simulation<'_> {
             None => {
                 self.next = step.next;
                 self.commit(&mut step)?;
-                self.arm()?;
                 self.on_time()
             }
             Some((watched, crossing)) => self.happen(&closed, step, watched, crossing),
@@ -91,7 +91,7 @@ impl Simulation<'_> {
                 most = 0.5 * step.h;
                 continue;
             }
-            let (watched, noise) = self.watched(closed);
+            let (watched, noise) = self.watched(closed, step.h);
             let found = first_crossing(watched.len(), &noise, &mut |fraction| {
                 let h = step.h;
                 self.values(closed, &watched, h * fraction, &mut |after| step.at(after / h)).ok()
