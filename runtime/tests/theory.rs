@@ -1,6 +1,6 @@
 //! Numbers and formulas that docs/theory.md states.
 
-use hodograph::{ContactMode, ReducedMatrix, Selection, contact_force, contact_mode, rates};
+use hodograph::{Characteristics, ContactMode, ReducedMatrix, Selection, contact_force, contact_mode, rates};
 use nalgebra::{Complex, Vector2, Vector3};
 
 const SLEDS: ReducedMatrix<f64> =
@@ -61,4 +61,54 @@ fn the_complex_form_is_that_of_the_paper() {
             assert!((slope + g + mu * quadratic).abs() < 1e-14);
         }
     }
+}
+
+/// 3.3: h has no constant term and no harmonic above the second, so at most 240 degrees lie between neighbouring zeros.
+#[test]
+fn neighbouring_zeros_are_at_most_240_degrees_apart() {
+    let third = core::f64::consts::TAU / 3.0;
+    let mut widest = 0.0_f64;
+    let step = 2.0 * third / 960.0;
+    for stretch in [1.02, 1.1, 0.3, 0.0] {
+        for turn in 0..60 {
+            // The second harmonic alone has zeros 90 degrees apart, the first alone 180; together they come near the bound.
+            let (sin, cos) = (0.11 * f64::from(turn)).sin_cos();
+            let m = ReducedMatrix::new(4.0, 0.25 * stretch * cos, 0.25 * stretch * sin, 1.0, 0.0, 0.5);
+            let h = |phi: f64| rates(&m, 1.0, phi).z;
+            let mut last = None;
+            for k in 0..2880 {
+                let phi = f64::from(k) * step;
+                assert!((h(phi) + h(phi + third) + h(phi + 2.0 * third)).abs() < 1e-14);
+                if h(phi) * h(phi + step) <= 0.0 {
+                    widest = last.map_or(widest, |last| widest.max(phi - last));
+                    last = Some(phi);
+                }
+            }
+        }
+    }
+    assert!(widest > 4.0 && widest < 2.0 * third + step, "{widest}");
+}
+
+/// 12: renewed slip keeps its direction, also where the tangential block has lost its determinant.
+#[test]
+fn renewed_slip_does_not_turn() {
+    let mut count = 0;
+    for k in 1..2000 {
+        let [p, q, r] =
+            [0.754_877_666, 0.569_840_291, 0.324_717_957].map(|step: f64| (f64::from(k) * step).fract());
+        let small = 10.0_f64.powf(-14.0 * p);
+        let (sin, cos) = (core::f64::consts::TAU * q).sin_cos();
+        let (tt, ts, ss) =
+            (cos * cos + small * sin * sin, cos * sin * (1.0 - small), sin * sin + small * cos * cos);
+        // b lies in the range of T, so that the matrix is positive definite with m_nn = 1.
+        let (along, across) = (0.6 * (2.0 * r - 1.0), 0.6 * small.sqrt() * (2.0 * q - 1.0));
+        let (nt, ns) = (along * cos - across * sin, along * sin + across * cos);
+        let m = ReducedMatrix::new(1.0, nt, ns, tt, ts, ss);
+        let mu = 0.7 * Characteristics::of(&m, 1.0).mu_c * r;
+        let Some(renewal) = Characteristics::of(&m, mu).renewal else { continue };
+        let [_, g, h] = <[f64; 3]>::from(rates(&m, mu, renewal.phi_hat));
+        assert!(g > 0.0 && h.abs() <= 4.0 * f64::EPSILON * (nt.hypot(ns) + mu), "{k}: {g} {h}");
+        count += 1;
+    }
+    assert!(count > 1500, "{count}");
 }

@@ -194,7 +194,8 @@ impl<T: Real> Zero<T> {
     }
 }
 
-/// The unit vector at half the angle of `v`, counted from the axis in the sense of `side` (1 anticlockwise, -1 clockwise).
+/// The unit vector at half the angle of `v`, counted from the axis in the sense of `side` (1 anticlockwise, -1 clockwise); this angle is at most 240 degrees
+/// (theory, 3.3).
 #[inline(always)]
 fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
     let (one, half) = (T::one(), constant::<T>(0.5));
@@ -203,8 +204,7 @@ fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
         return Vector2::new(v.y * half / sin, sin);
     }
     let cos = ((one + v.x) * half).sqrt();
-    let sin = v.y * half / cos;
-    if sin * side < T::zero() { Vector2::new(-cos, -sin) } else { Vector2::new(cos, sin) }
+    Vector2::new(cos, v.y * half / cos)
 }
 
 /// h as a function of x = tan(angle / 2), the angle being counted from the direction in which the arc begins.
@@ -233,18 +233,11 @@ impl<T: Real> Near<T> {
     pub fn beside(&self, v: &Vector2<T>, side: T, sign: T) -> (Vector2<T>, Vector2<T>) {
         let one = T::one();
         let x = self.close(v.y / (one + v.x), sign);
-        // An angle on the other side goes nearly all the way round if it is large, and is rounding if it is small.
-        let least = T::default_epsilon() * T::default_epsilon();
-        let (x, turn) = if x * side >= least {
-            (x, one)
-        } else if x.abs() > constant(0.01) {
-            (x, -one)
-        } else {
-            (least * side, one)
-        };
+        // An angle on the other side is rounding: a zero there lies at more than 240 degrees.
+        let x = larger(x * side, T::default_epsilon() * T::default_epsilon()) * side;
         let square = x * x;
         let inverse = one / (one + square);
-        let cos = inverse.sqrt() * turn;
+        let cos = inverse.sqrt();
         (Vector2::new(cos, x * cos), Vector2::new((one - square) * inverse, (x + x) * inverse))
     }
 
@@ -272,5 +265,47 @@ fn to_zero<T: Real>(value: T, slope: T, bend: T) -> T {
         -two * value / (slope + square.sqrt())
     } else {
         (square.sqrt() - slope) / bend
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Half angles to both zeros next to the axis: their doubles are zeros of h, on the side on which they are sought, with the right sign of h'.
+    #[test]
+    fn half_angles_lead_to_the_zeros_on_either_side() {
+        let (mut far, mut near) = (0, 0);
+        for k in 1..4000 {
+            let [p, q, r] =
+                [0.754_877_666, 0.569_840_291, 0.324_717_957].map(|step: f64| (f64::from(k) * step).fract());
+            let (b, nu) = (Vector2::new(2.0 * p - 1.0, 2.0 * q - 1.0), Vector2::new(2.0 * r - 1.0, q - p));
+            let h = |d: &Vector2<f64>| over(&b, d).y - over(&over(&nu, d), d).y;
+            let axis = Vector2::new(1.0, 0.0);
+            let start = h(&axis);
+            // Every fourth of them begins close to a zero.
+            let (b, start) =
+                if k % 4 == 0 { (Vector2::new(b.x, b.y - start + 1e-6), 1e-6) } else { (b, start) };
+            let h = |d: &Vector2<f64>| over(&b, d).y - over(&over(&nu, d), d).y;
+            let forward = start.signum();
+            let near_axis =
+                Near { h: [start, 4.0 * nu.x - 2.0 * b.x, 6.0 * nu.y, -4.0 * nu.x - 2.0 * b.x, -b.y - nu.y] };
+            let [behind, ahead] = neighbours(&b, &nu, &axis, start);
+            for (rough, side, sign) in [(behind, -forward, 1.0), (ahead, forward, -1.0)] {
+                let (half, zero) = near_axis.exact([&b, &nu, &rough], side, sign);
+                let angle = 2.0 * (half.y * side).atan2(half.x);
+                assert!(angle > 0.0 && angle < 240.1_f64.to_radians(), "{k}: {angle}");
+                assert!((times(&half, &half) - zero.direction).norm() < 1e-14);
+                assert!(h(&zero.direction).abs() < 1e-14, "{k}: {}", h(&zero.direction));
+                // h keeps its sign on the way.
+                for part in 1..24 {
+                    let (sin, cos) = (side * angle * f64::from(part) / 24.0).sin_cos();
+                    assert!(h(&Vector2::new(cos, sin)) * start > -1e-14, "{k}: {angle} {part}");
+                }
+                far += u32::from(angle > 2.1);
+                near += u32::from(angle < 1e-4);
+            }
+        }
+        assert!(far > 100 && near > 500, "{far} {near}");
     }
 }
