@@ -137,6 +137,42 @@ fn bad_input_is_named() {
     assert!((normal_velocity + 0.3226).abs() < 1e-4);
 }
 
+/// Minors and diagonal entries may be negative by what rounding explains, in any units, and by no more (theory, 18.1).
+#[test]
+fn matrices_of_no_mechanism_are_refused_from_half_the_digits_on() {
+    let (v, s) = (Vector3::new(-1.0, 0.5, 0.25), Surface { mu: 0.5, e: 0.5, law: Law::Poisson });
+    let base = ReducedMatrix::<f64>::new(1.0, 0.0, 0.0, 1.0, 0.0, 1.0);
+    let beyond = [
+        |base: ReducedMatrix<f64>, x: f64| ReducedMatrix { nt: 1.0 + x, ..base },
+        |base: ReducedMatrix<f64>, x: f64| ReducedMatrix { ns: -1.0 - x, ..base },
+        |base: ReducedMatrix<f64>, x: f64| ReducedMatrix { ts: 1.0 + x, ..base },
+        // All minors of two rows are positive; the determinant is -4.5 x.
+        |base: ReducedMatrix<f64>, x: f64| ReducedMatrix { nt: 0.5 + x, ns: 0.5 + x, ts: -0.5 - x, ..base },
+    ];
+    let kind = |m: ReducedMatrix<f64>| solve(&m, &v, &s).map_err(|error| error.kind()).err();
+    for unit in [1e-5, 1.0, 1e5] {
+        let scaled = |m: ReducedMatrix<f64>| {
+            ReducedMatrix::new(unit * m.nn, unit * m.nt, unit * m.ns, unit * m.tt, unit * m.ts, unit * m.ss)
+        };
+        for beyond in beyond {
+            assert_eq!(kind(scaled(beyond(base, 1e-10))), None);
+            for x in [1e-9, 1e-6, 1e-2] {
+                assert_eq!(kind(scaled(beyond(base, x))), Some("not_positive_semidefinite"), "{x}");
+            }
+        }
+        let impulse = |tt: f64| solve(&scaled(ReducedMatrix { tt, ..base }), &v, &s).map(|hit| hit.impulse);
+        assert_eq!(impulse(-1e-14), impulse(0.0));
+        assert!(impulse(0.0).is_ok());
+        for place in 0..3 {
+            let mut diagonal = [1.0; 3];
+            diagonal[place] = -1e-12;
+            let [nn, tt, ss] = diagonal;
+            let wrong = kind(scaled(ReducedMatrix { nn, tt, ss, ..base }));
+            assert_eq!(wrong, Some("not_positive_semidefinite"), "{place}");
+        }
+    }
+}
+
 #[test]
 fn bodies_may_approach_twice() {
     let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);
