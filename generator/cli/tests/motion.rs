@@ -235,3 +235,59 @@ fn balls_answer_by_their_stiffnesses() {
         assert!((run.stderr.clone() + &run.stdout).contains(what), "{more:?} {} {}", run.stderr, run.stdout);
     }
 }
+
+/// A word that is not understood, or stands there twice, is refused with its place; what a table says is what an expression says.
+#[test]
+fn inputs_and_surfaces_are_read_with_care() {
+    let folder = tempfile::tempdir().unwrap();
+    let table = |text: &str| {
+        let path = folder.path().join("inputs.csv");
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let surface = ["--mu", "0.5", "--e", "0", "--law", "poisson"];
+    let call = |more: &[&str]| {
+        simulate("incline", &[&["--until", "0.5", "--step", "0.25"], &surface[..], more].concat())
+    };
+    for (more, what) in [
+        (&["--input", "F=2*sin(t"][..], "`)` is missing"),
+        (&["--input", "F=sin)t("][..], "`(` is missing"),
+        (&["--input", "F=foo(t)"][..], "there is no function `foo`: there are sin cos"),
+        (&["--input", "F=x"][..], "`x` is unknown"),
+        (&["--input", "F=1", "--input", "F=2"][..], "F is given twice"),
+        (&["--surface", "plane=1,0,newton", "--surface", "plane=0,0,newton"][..], "plane has two surfaces"),
+    ] {
+        let run = call(more);
+        assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{more:?} {}", run.stderr);
+        assert!(run.stderr.contains(what), "{more:?} {}", run.stderr);
+    }
+    for (text, what) in [
+        ("", ":1: the file is empty"),
+        ("t;F\n0;1\n", ":1: the first line names the columns, separated by commas"),
+        ("t,F\n", ":1: there is no row"),
+        ("t,F,F\n0,1,2\n", ":1: the column `F` stands there twice"),
+        ("t,F\n0,1\n1,2\n\n1,3\n", ":5: t = 1 after t = 1"),
+        ("t,F\n0,1\n1\n", ":3: 1 values for 2 columns"),
+        ("t,F\n0,nan\n", ":2: `nan` is no finite number"),
+    ] {
+        let run = call(&["--inputs", &table(text)]);
+        assert_eq!((run.code, run.stdout.as_str()), (2, ""), "{text} {}", run.stderr);
+        assert!(run.stderr.contains(what), "{text} {}", run.stderr);
+    }
+    let unknown = call(&["--inputs", &table("t,G\n0,1\n")]);
+    assert_eq!(unknown.error_kind(), "unknown_name");
+    let both = call(&["--inputs", &table("t,F\n0,1\n"), "--input", "F=1"]);
+    assert!(both.code == 2 && both.stderr.contains("F is given twice"), "{}", both.stderr);
+    // The same force: as other programs write tables, as an expression of `t`, and of `time`, as models call it.
+    let rows = call(&["--inputs", &table("\u{feff}t, F\r\n0, 0\r\n10, -300\r\n")]);
+    assert_eq!(rows.code, 0, "{}", rows.stderr);
+    assert!(number(&rows.lines().last().unwrap()["q"]["x"]) < -0.1, "{}", rows.stdout);
+    for expression in ["F=-30*t", "F=-30*time", "F=min(-30*t, pow(t, 2))*sign(t)"] {
+        let run = call(&["--input", expression]);
+        let [a, b] = [&rows, &run].map(|run| number(&run.lines().last().unwrap()["q"]["x"]));
+        assert!((a - b).abs() < 1e-12, "{expression}: {a} {b}");
+    }
+    // What is no number is not hidden by min and max.
+    let hidden = call(&["--input", "F=max(0, sqrt(0.2-t))"]);
+    assert!(hidden.code == 1 && hidden.stderr.contains("the input F is NaN"), "{}", hidden.stderr);
+}

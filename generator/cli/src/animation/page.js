@@ -17,6 +17,8 @@
   const show = (node, shown) => { node.style.display = shown ? "" : "none"; };
   const minus = (text) => text.replace("-", "\u2212");
   const dashes = ["", "7 3", "8 3 1.5 3", "2 2.5", "13 3", "5 2 1.5 2 1.5 2"];
+  // After the last colour they begin anew, with other dashes.
+  const look = (i) => ({ style: `stroke:var(--c${i % 6})`, "stroke-dasharray": dashes[(i + Math.floor(i / 6)) % 6] });
 
   // Where the time lies between two moments: at an impact, after it.
   const moment = (t) => {
@@ -258,7 +260,7 @@
       const item = document.createElement("li"), sample = document.createElementNS(SVG, "svg");
       sample.setAttribute("viewBox", "0 0 36 10");
       sample.setAttribute("aria-hidden", "true");
-      make(sample, "path", "curve", { d: "M0 5L36 5", style: `stroke:var(--c${i % 6})`, "stroke-dasharray": dashes[i % 6] });
+      make(sample, "path", "curve", { d: "M0 5L36 5", ...look(i) });
       item.append(sample, s.name + (units.length > 1 && s.unit ? ` [${s.unit}]` : ""));
       key.append(item);
     });
@@ -297,7 +299,7 @@
           path += `${pen ? "L" : "M"}${px.toFixed(2)} ${py.toFixed(2)}`;
           pen = true; before = px; beforeY = py;
         });
-        make(svg, "path", "curve", { d: path, style: `stroke:var(--c${i % 6})`, "stroke-dasharray": dashes[i % 6] });
+        make(svg, "path", "curve", { d: path, ...look(i) });
       });
       svg.append(cursor);
       set(cursor, { y1: 8, y2: height - 28 });

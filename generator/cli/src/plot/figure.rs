@@ -65,7 +65,7 @@ pub struct Axis {
 pub struct Series {
     /// in the legend; empty: not there
     pub label: Label,
-    /// which of the [`STYLES`](super::series::STYLES), counted on from the first again after the last
+    /// number of its [`style`](super::series::style)
     pub style: usize,
     /// in units of the axes; a number that is not finite interrupts the curve
     pub points: Vec<[f64; 2]>,

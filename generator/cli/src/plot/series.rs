@@ -21,9 +21,10 @@ pub struct Style {
     pub dashes: &'static [f64],
 }
 
-/// The style of a number.
+/// The style of a number: after the last colour they begin anew, with other dashes; 36 are told apart.
 pub fn style(index: usize) -> Style {
-    STYLES[index % STYLES.len()]
+    let count = STYLES.len();
+    Style { dashes: STYLES[(index + index / count) % count].dashes, ..STYLES[index % count] }
 }
 
 pub const BLACK: Colour = Colour([30, 30, 30], 1.0);

@@ -180,3 +180,12 @@ fn pictures_show_what_the_sheet_has() {
     let middle = picture.width() / 2;
     assert!((middle - 60..middle + 60).any(|x| (30..64).any(|y| dark(x, y))));
 }
+
+/// Eight coordinates are common: no two curves of a panel look alike.
+#[test]
+fn curves_are_told_apart() {
+    let looks: Vec<_> = (0..36).map(series::style).map(|style| (style.colour, style.dashes)).collect();
+    for (index, look) in looks.iter().enumerate() {
+        assert!(!looks[..index].contains(look), "{index}: {look:?}");
+    }
+}

@@ -33,6 +33,16 @@ pub fn read(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String>
     if let Some(strange) = text.chars().find(|&c| matches!(c, ';' | '{' | '}' | '=')) {
         return Err(format!("`{strange}` cannot stand in an expression of the time t"));
     }
+    let depth = |depth: i32, c| match c {
+        '(' if depth >= 0 => depth + 1,
+        ')' if depth >= 0 => depth - 1,
+        _ => depth,
+    };
+    match text.chars().fold(0, depth) {
+        0 => {}
+        1.. => return Err("a bracket is not closed: `)` is missing".to_owned()),
+        _ => return Err("a bracket is closed that was not opened: `(` is missing".to_owned()),
+    }
     let model = format!("mechanism Input;\ndefinitions {{ x = {text}; }}\n");
     let (tree, mistakes) = parse(&lexer::tokens(&model, usize::MAX));
     if let Some(mistake) = mistakes.first() {
@@ -51,7 +61,8 @@ fn node(expression: &Expr) -> Result<Node, String> {
     };
     Ok(match &expression.kind {
         ExprKind::Number(text) => Node::Number(text.parse().map_err(|_| format!("`{text}` is no number"))?),
-        ExprKind::Name(name) if name == "t" => Node::Time,
+        // Models call it `time`.
+        ExprKind::Name(name) if name == "t" || name == "time" => Node::Time,
         ExprKind::Name(name) if name == "pi" => Node::Number(std::f64::consts::PI),
         ExprKind::Name(name) => {
             return Err(format!("`{name}` is unknown: an input is an expression of the time t alone"));
@@ -80,18 +91,28 @@ fn call(name: &str, arguments: &[Expr]) -> Result<Node, String> {
         "log" | "ln" => Some(f64::ln),
         "sqrt" => Some(f64::sqrt),
         "abs" => Some(f64::abs),
+        // As in models: 1 at zero.
+        "sign" => Some(|x| match x {
+            x if x.is_nan() => x,
+            x if x < 0.0 => -1.0,
+            _ => 1.0,
+        }),
         _ => None,
     };
     let two: Option<fn(f64, f64) -> f64> = match name {
-        "min" => Some(f64::min),
-        "max" => Some(f64::max),
+        // What is no number stays so: the simulation refuses it.
+        "min" => Some(|a, b| if a.is_nan() || a < b { a } else { b }),
+        "max" => Some(|a, b| if a.is_nan() || a > b { a } else { b }),
         "atan2" => Some(f64::atan2),
+        "pow" => Some(f64::powf),
         _ => None,
     };
     match (one, two, arguments) {
         (Some(function), _, [argument]) => Ok(Node::Call(function, Box::new(node(argument)?))),
         (_, Some(function), [a, b]) => Ok(Node::Call2(function, Box::new(node(a)?), Box::new(node(b)?))),
-        (None, None, _) => Err(format!("there is no function `{name}`")),
+        (None, None, _) => Err(format!(
+            "there is no function `{name}`: there are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign min max pow"
+        )),
         _ => Err(format!("`{name}` does not take {} arguments", arguments.len())),
     }
 }

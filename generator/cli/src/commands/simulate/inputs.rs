@@ -28,6 +28,9 @@ pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>)
             .split_once('=')
             .ok_or_else(|| Stop::Call(format!("--input {text}: give NAME=EXPRESSION, as in F=2*sin(3*t)")))?;
         let index = index(mechanism, name.trim())?;
+        if functions.iter().any(|(other, _)| *other == index) {
+            return Err(Stop::Call(format!("--input {text}: {} is given twice: leave one out", name.trim())));
+        }
         functions.push((
             index,
             super::expression::read(value).map_err(|error| Stop::Call(format!("--input {text}: {error}")))?,
@@ -57,11 +60,24 @@ fn index(mechanism: &Mechanism, name: &str) -> Result<usize, Failure> {
 fn table(mechanism: &Mechanism, path: &Path) -> Outcome<Vec<(usize, OfTime)>> {
     let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
     let wrong = |line: usize, message: &str| Stop::Call(format!("{}:{line}: {message}", path.display()));
+    // Some programs put a mark of the encoding first.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let mut rows = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let head: Vec<&str> =
         rows.next().ok_or_else(|| wrong(1, "the file is empty"))?.1.split(',').map(str::trim).collect();
     if head.first() != Some(&"t") {
-        return Err(wrong(1, "the first column must be `t`"));
+        return Err(wrong(
+            1,
+            "the first line names the columns, separated by commas, and the first of them is `t`: as in t,F",
+        ));
+    }
+    let mut indices = Vec::new();
+    for name in &head[1..] {
+        let index = index(mechanism, name)?;
+        if indices.contains(&index) {
+            return Err(wrong(1, &format!("the column `{name}` stands there twice: leave one out")));
+        }
+        indices.push(index);
     }
     let mut columns = vec![Vec::new(); head.len()];
     for (number, line) in rows {
@@ -69,24 +85,30 @@ fn table(mechanism: &Mechanism, path: &Path) -> Outcome<Vec<(usize, OfTime)>> {
         if cells.len() != head.len() {
             return Err(wrong(number + 1, &format!("{} values for {} columns", cells.len(), head.len())));
         }
+        let before = columns[0].last().copied();
         for (column, cell) in columns.iter_mut().zip(cells) {
             match cell.parse::<f64>() {
                 Ok(value) if value.is_finite() => column.push(value),
                 _ => return Err(wrong(number + 1, &format!("`{cell}` is no finite number"))),
             }
         }
+        if let (Some(before), Some(&time)) = (before, columns[0].last())
+            && time <= before
+        {
+            let message = format!("t = {time} after t = {before}: times must rise from row to row");
+            return Err(wrong(number + 1, &message));
+        }
     }
-    let times = columns.remove(0);
-    if times.is_empty() || times.windows(2).any(|pair| pair[1] <= pair[0]) {
-        return Err(wrong(2, "the times must rise from row to row, and there must be one"));
+    let times = Arc::new(columns.remove(0));
+    if times.is_empty() {
+        return Err(wrong(1, "there is no row below the names of the columns"));
     }
-    let times = Arc::new(times);
-    let mut functions: Vec<(usize, OfTime)> = Vec::new();
-    for (name, column) in head[1..].iter().zip(columns) {
+    let function = |(index, column): (usize, Vec<f64>)| {
         let times = Arc::clone(&times);
-        functions.push((index(mechanism, name)?, Arc::new(move |t| between(&times, &column, t))));
-    }
-    Ok(functions)
+        let value: OfTime = Arc::new(move |t| between(&times, &column, t));
+        (index, value)
+    };
+    Ok(indices.into_iter().zip(columns).map(function).collect())
 }
 
 /// The value at a time.

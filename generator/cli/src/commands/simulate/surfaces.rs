@@ -55,7 +55,11 @@ impl MotionSurfaces {
         let mut own = vec![None; count];
         for text in &self.surface {
             let (contact, surface) = one(text)?;
-            own[place_of(contact, mechanism)?] = Some(surface);
+            if own[place_of(contact, mechanism)?].replace(surface).is_some() {
+                return Err(Stop::Call(format!(
+                    "--surface {text}: {contact} has two surfaces: leave one out"
+                )));
+            }
         }
         let mut surfaces = Vec::new();
         for (contact, own) in own.into_iter().enumerate() {
@@ -107,7 +111,13 @@ pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<V
                 "--stiffness {text}: give CONTACT=NUMBER with a positive number, as in left=2"
             )));
         };
-        stiffnesses.push((place_of(contact, mechanism)?, number));
+        let place = place_of(contact, mechanism)?;
+        if stiffnesses.iter().any(|(other, _)| *other == place) {
+            return Err(Stop::Call(format!(
+                "--stiffness {text}: {contact} has two stiffnesses: leave one out"
+            )));
+        }
+        stiffnesses.push((place, number));
     }
     Ok(stiffnesses)
 }
