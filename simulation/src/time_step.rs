@@ -9,7 +9,7 @@ use crate::event_functions::Watched;
 use crate::event_location::{Crossing, first_crossing};
 use crate::forces::Hold;
 use crate::motion::{Evaluation, Failure};
-use crate::phase::{Closed, mus};
+use crate::phase::{Closed, Phase, mus};
 use crate::settled_slip::settled;
 use crate::simulation::Simulation;
 use crate::slip_end::{ENDING, Fate, fate, time_of_slip};
@@ -27,6 +27,12 @@ impl Simulation<'_> {
         let mut closed = self.closed();
         let here = self.motion(&closed).evaluate(self.t, &self.y).map_err(|failure| self.failure(failure))?;
         self.weigh_lifted(&here)?;
+        for (contact, hold) in closed.iter().zip(&here.holds) {
+            // Should slip become too small to have a direction, it has the last one.
+            if let Hold::Slide(direction) = hold {
+                self.phases[contact.contact] = Phase::Slide(*direction);
+            }
+        }
         let mut most = self.next.min(self.options.max_step);
         if let Some(limit) = self.limit() {
             most = most.min(limit - self.t);
