@@ -217,12 +217,19 @@ impl<T: Real> Restitution<T> {
     /// Whether the law ends the collision at this state, up to an error of `share` relative to the scale of its quantity.
     #[inline]
     pub fn is_ended(&self, end: &State<T>, share: T) -> bool {
+        let (residual, scale) = self.missed(end);
+        residual <= share * scale
+    }
+
+    /// How far the law's quantity is from its target at this state, and the scale of this quantity.
+    #[inline]
+    pub fn missed(&self, end: &State<T>) -> (T, T) {
         let scale = match self.law {
             Law::Newton => T::one(),
             Law::Poisson => end.normal,
             Law::Stronge => -self.least_work,
         };
-        (self.watched(end) - self.target).abs() <= share * scale
+        ((self.watched(end) - self.target).abs(), scale)
     }
 
     /// The quantity whose target ends the collision: v_n (Newton), I_n (Poisson) or the normal work (Stronge).

@@ -144,6 +144,83 @@ impl<T: Real> Restitution<T> {
         if !within(work, energy) {
             return broken(Violation::Energy, work / energy);
         }
-        if self.is_ended(end, share) { Ok(()) } else { broken(Violation::Restitution, share) }
+        let (missed, scale) = self.missed(end);
+        if within(missed, scale) { Ok(()) } else { broken(Violation::Restitution, missed / scale) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::straight::{Slide, straight};
+    use super::*;
+    use crate::{Law, ReducedMatrix};
+
+    /// Slip that keeps its direction to the end of the collision, changed in every way that violates one law and no other.
+    #[test]
+    fn every_violation_has_its_name() {
+        let (mu, from) = (0.3, Vector2::new(0.0, 2.0));
+        let c = Contact::new(&ReducedMatrix::new(2.0, 0.0, 0.2, 3.0, 0.0, 1.0), mu);
+        for &law in Law::ALL {
+            let mut restitution = Restitution::new(law, 0.5);
+            let slide = straight(&c, from / 2.0, 2.0, restitution.start(), &mut restitution);
+            let Slide::Ended(end, velocity) = slide else { panic!("slip stops") };
+            let by = |law: &Restitution<f64>, end: State<f64>, velocity: Vector2<f64>| {
+                law.verify(&c, &from, 2.0, &end, &velocity)
+            };
+            let verify = |end: State<f64>, velocity: Vector2<f64>| by(&restitution, end, velocity);
+            // An outcome of other impulses that keeps the balance of momentum and the work of friction.
+            let other = |normal: f64, along: f64| {
+                let state_velocity = -1.0 + normal + c.b.y * along;
+                let velocity = Vector2::new(velocity.x, from.y + c.b.y * normal + c.ss * along);
+                let total = 0.5 * (normal * (state_velocity - 1.0) + along * (from.y + velocity.y));
+                let friction = 0.5 * along * (from.y + velocity.y);
+                let tangential = Vector2::new(0.0, along);
+                (State { normal, tangential, velocity: state_velocity, work: total - friction }, velocity)
+            };
+            let name = |(end, velocity): (State<f64>, Vector2<f64>)| match verify(end, velocity) {
+                Ok(()) => None,
+                Err(ImpactError::Inaccurate { violated, residual }) => {
+                    assert!(residual > share::<f64>(), "{law:?} {violated:?} {residual}");
+                    Some(violated)
+                }
+                Err(error) => panic!("{error:?}"),
+            };
+            let (normal, along) = (end.normal, end.tangential.y);
+            assert_eq!(name((end, velocity)), None);
+            for (size, seen) in [(1e-10, false), (1e-5, true)] {
+                let seen = |violation| seen.then_some(violation);
+                for sign in [-1.0, 1.0] {
+                    let x = sign * size;
+                    let moved = State { velocity: end.velocity + x, ..end };
+                    assert_eq!(name((moved, velocity)), seen(Violation::Momentum));
+                    for across in [Vector2::new(x, 0.0), Vector2::new(0.0, x)] {
+                        assert_eq!(name((end, velocity + across)), seen(Violation::Momentum));
+                    }
+                }
+                assert_eq!(name(other(normal, along * (1.0 + size))), seen(Violation::Friction));
+                let gains =
+                    State { work: end.work - mu * normal * (from.y + velocity.y) * 0.5 - size, ..end };
+                // Stronge's law sees the normal work that this takes.
+                let unseen = (law == Law::Stronge).then_some(Violation::Restitution);
+                assert_eq!(name((gains, velocity)), seen(Violation::Energy).or(unseen));
+                let (early, late) = (normal * (1.0 - size), normal * (1.0 + size));
+                assert_eq!(name(other(early, along * (1.0 - size))), seen(Violation::Restitution), "{law:?}");
+                assert_eq!(name(other(late, along)), seen(Violation::Restitution), "{law:?}");
+            }
+            // Also where the law's target is met.
+            for (normal, along) in [(0.9, -0.27), (-0.1, 0.0)] {
+                let (end, velocity) = other(normal, along);
+                assert_eq!(name((end, velocity)), Some(Violation::Separation));
+                let mut met = restitution;
+                met.target = restitution.watched(&end);
+                let answer = by(&met, end, velocity);
+                assert!(matches!(
+                    answer,
+                    Err(ImpactError::Inaccurate { violated: Violation::Separation, .. })
+                ));
+            }
+            let lost = State { work: f64::NAN, ..end };
+            assert!(matches!(verify(lost, velocity), Err(ImpactError::NotFinite { .. })));
+        }
     }
 }
