@@ -20,6 +20,10 @@ impl Simulation<'_> {
                 return bad(format!("{what} is {value}: it must be positive"));
             }
         }
+        let rising = |pair: &[f64]| pair[0] < pair[1];
+        if !options.breaks.iter().all(|time| time.is_finite()) || !options.breaks.windows(2).all(rising) {
+            return bad("the times at which inputs jump must be finite and rise".to_owned());
+        }
         if let Drive::Sampled { period, .. } = &options.drive
             && !(period.is_finite() && *period > 0.0)
         {

@@ -31,6 +31,8 @@ pub struct Options {
     pub absolute_tolerance: f64,
     /// greatest step of the integration, s
     pub max_step: f64,
+    /// times at which inputs or their rates jump, rising, s: no step of the integration goes beyond the next of them, so that none is stepped over
+    pub breaks: Vec<f64>,
     /// the surfaces of the contacts that have one of their own, by number
     pub surfaces: Vec<(usize, Surface<f64>)>,
     /// the surfaces of all other contacts
@@ -53,6 +55,7 @@ impl Default for Options {
             relative_tolerance: 1e-12,
             absolute_tolerance: 1e-12,
             max_step: f64::INFINITY,
+            breaks: Vec::new(),
             surfaces: Vec::new(),
             surface: None,
             drive: Drive::Held,
@@ -70,6 +73,7 @@ impl fmt::Debug for Options {
             .field("relative_tolerance", &self.relative_tolerance)
             .field("absolute_tolerance", &self.absolute_tolerance)
             .field("max_step", &self.max_step)
+            .field("breaks", &self.breaks.len())
             .field("surfaces", &self.surfaces)
             .field("surface", &self.surface)
             .field("drive", &self.drive)

@@ -1,4 +1,4 @@
-//! Events at known times: samples of a controller, and the ends of sequences of bounces.
+//! Events at known times: samples of a controller, jumps of inputs, and the ends of sequences of bounces.
 
 use hodograph::Kind;
 
@@ -9,7 +9,9 @@ impl Simulation<'_> {
     /// The time of the next of these events.
     pub(crate) fn limit(&self) -> Option<f64> {
         let chatter = self.chatter.iter().map(|(time, _)| *time);
-        chatter.chain(self.next_sample).filter(|&time| time > self.t).reduce(f64::min)
+        let breaks = &self.options.breaks;
+        let next_break = breaks.get(breaks.partition_point(|&time| time <= self.t)).copied();
+        chatter.chain(self.next_sample).chain(next_break).filter(|&time| time > self.t).reduce(f64::min)
     }
 
     /// Handles the ends of bounces at this time.

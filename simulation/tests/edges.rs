@@ -210,3 +210,29 @@ fn surfaces_at_their_limits() {
         assert_eq!(Simulation::new(body, &state, options).unwrap_err().reason.kind(), "bad_option");
     }
 }
+
+/// A push of a millisecond acts in full although no step is bounded: its times are told. Times that do not rise are refused.
+#[test]
+fn pushes_whose_times_are_told_are_not_stepped_over() {
+    let mut body = particle();
+    body.gravity = [0.0, 0.0];
+    let push = |t, _: &[f64], _: &[f64], inputs: &mut [f64]| {
+        inputs[0] = 2000.0 * (1.0 - f64::abs(t - 3.0001) / 0.0005).max(0.0);
+    };
+    let options = |breaks: &[f64]| Options {
+        drive: Drive::Continuous(std::sync::Arc::new(push)),
+        breaks: breaks.to_vec(),
+        ..surface(0.0, 0.0, Law::Newton)
+    };
+    let mut simulation =
+        start(&body, &[0.0, 1.0, 0.0], &[0.0; 3], options(&[-1.0, 2.9996, 3.0001, 3.0006, 9.0]));
+    run(&mut simulation, 8.0);
+    let speed = simulation.speeds()[0];
+    assert!((speed - 1.0).abs() < 1e-10, "{speed}");
+    let state = State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
+    for bad in [&[1.0, 1.0][..], &[2.0, 1.0], &[f64::NAN], &[0.0, f64::INFINITY]] {
+        let error = Simulation::new(&body, &state, options(bad)).unwrap_err();
+        assert_eq!(error.reason.kind(), "bad_option", "{bad:?}");
+        assert!(error.to_string().contains("finite and rise"), "{error}");
+    }
+}
