@@ -13,6 +13,7 @@ mod import;
 mod inline;
 mod interrupt;
 mod json;
+mod mcap_file;
 mod model;
 mod output;
 mod plot;

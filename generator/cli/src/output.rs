@@ -103,13 +103,38 @@ pub fn file(path: &Path, bytes: &[u8]) -> Outcome {
     written(path, bytes).map_err(|error| Stop::unwritable(path, &error))
 }
 
+/// Refuses a file that [`file`] cannot write, before the work whose result it is to hold.
+///
+/// # Errors
+///
+/// The path is a folder, or its folder is missing.
+pub fn check(path: &Path) -> Outcome {
+    let refused = |kind| Err(Stop::unwritable(path, &io::Error::from(kind)));
+    if path.is_dir() {
+        return refused(io::ErrorKind::IsADirectory);
+    }
+    match folder(path).metadata() {
+        Ok(data) if data.is_dir() => Ok(()),
+        Ok(_) => refused(io::ErrorKind::NotADirectory),
+        Err(error) => {
+            let message = format!("its folder {}: {error}", folder(path).display());
+            Err(Stop::unwritable(path, &io::Error::new(error.kind(), message)))
+        }
+    }
+}
+
+/// Where a file is, or is to be.
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // What a link points to is written, not the link; a device or pipe has no place beside it.
     let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     if std::fs::metadata(&place).is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return std::fs::OpenOptions::new().write(true).open(&place)?.write_all(bytes);
     }
-    let folder = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder(&place);
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hodograph");
     #[cfg(unix)]

@@ -291,3 +291,32 @@ fn inputs_and_surfaces_are_read_with_care() {
     let hidden = call(&["--input", "F=max(0, sqrt(0.2-t))"]);
     assert!(hidden.code == 1 && hidden.stderr.contains("the input F is NaN"), "{}", hidden.stderr);
 }
+
+/// A push between steps that would be long gives its whole impulse, 2 N s on 2 kg: of a millisecond in flight, and of 50 ms against friction that
+/// held the block before.
+#[test]
+fn short_pushes_of_a_table_are_not_stepped_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let surface = ["--mu", "0.5", "--e", "0", "--law", "newton"];
+    let end = |half: f64, state: &str, more: &[&str]| {
+        let path = folder.path().join("push.csv").display().to_string();
+        let (top, last, force) = (0.5 + half, 0.5 + 2.0 * half, 2.0 / half);
+        std::fs::write(&path, format!("t,F\n0,0\n0.5,0\n{top},{force}\n{last},0\n2,0\n")).unwrap();
+        let call = ["--until", "0.6", "--step", "0.6", "--inputs", &path, "--state", state];
+        let run = simulate("incline", &[&call[..], &surface[..], more].concat());
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        number(&run.lines().last().unwrap()["u"]["u"])
+    };
+    for more in [&[][..], &["--max-step", "1"][..]] {
+        let flight = end(0.0005, r#"{"parameters":{"alpha":0},"q":{"z":10}}"#, more);
+        assert!((flight - 1.0).abs() < 1e-10, "{flight}");
+        // It slips from the time at which F = mu m g.
+        let slid = end(0.025, r#"{"parameters":{"alpha":0}}"#, more);
+        let (friction, rate): (f64, f64) = (0.5 * 2.0 * 9.81, 80.0 / 0.025);
+        let wait = friction / rate;
+        let expected = (2.0 - 0.5 * friction * wait - friction * (0.1 - wait)) / 2.0;
+        assert!((slid - expected).abs() < 1e-9, "{slid} {expected}");
+    }
+    let bad = simulate("incline", &[&["--until", "1", "--max-step", "0"], &surface[..]].concat());
+    assert!(bad.code == 2 && bad.stderr.contains("--max-step"), "{}", bad.stderr);
+}

@@ -5,6 +5,7 @@ mod expression;
 mod gap;
 mod inputs;
 mod lines;
+mod pictures;
 mod recording;
 mod surfaces;
 
@@ -17,13 +18,11 @@ use hodograph_generator::program::operation::Operation;
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Options, Progress, Simulation, SimulationError, Together};
 
-use self::curves::Curves;
 use self::lines::{Format, Lines};
-use self::recording::Recording;
+use self::pictures::{PictureFiles, Pictures};
 use self::surfaces::MotionSurfaces;
 use crate::derivation::{self, Limits};
 use crate::json::state::State;
-use crate::json::{Failure, Kind};
 use crate::model;
 use crate::stop::{Outcome, Stop};
 
@@ -50,6 +49,9 @@ pub struct Arguments {
     /// relative and absolute tolerance of the integration; bounces lower than it, in metres, end in contact
     #[arg(long, value_name = "NUMBER", default_value_t = 1e-12, allow_hyphen_values = true)]
     tolerance: f64,
+    /// greatest step of the integration, s: without it 0.05 where something depends on time by itself, else unbounded; inputs must not pass faster
+    #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
+    max_step: Option<f64>,
     #[command(flatten)]
     surfaces: MotionSurfaces,
     /// an input as a function of the time `t`, as `F = 2*sin(3*t)`; may be given several times
@@ -67,12 +69,8 @@ pub struct Arguments {
     /// how lines are written
     #[arg(long, value_name = "FORMAT", default_value = "json")]
     format: Format,
-    /// a figure of coordinates, speeds, gaps and contact forces over time, as SVG or PNG
-    #[arg(long, value_name = "FILE")]
-    plot: Option<PathBuf>,
-    /// a page for browsers in which the mechanism moves: needs neither scripts from elsewhere nor a network
-    #[arg(long, value_name = "FILE")]
-    html: Option<PathBuf>,
+    #[command(flatten)]
+    pictures: PictureFiles,
     #[command(flatten)]
     limits: Limits,
 }
@@ -96,9 +94,13 @@ enum TogetherArgument {
 pub fn run(arguments: &Arguments) -> Outcome {
     let (until, step) = (arguments.until, arguments.step);
     let positive = |number: f64| number.is_finite() && number > 0.0;
-    if !(until.is_finite() && positive(step) && positive(arguments.tolerance)) {
-        return Err(Stop::Call("--step and --tolerance must be positive and --until finite".to_owned()));
+    let max_step = arguments.max_step.is_none_or(positive);
+    if !(until.is_finite() && positive(step) && positive(arguments.tolerance) && max_step) {
+        return Err(Stop::Call(
+            "--step, --max-step and --tolerance must be positive and --until finite".to_owned(),
+        ));
     }
+    arguments.pictures.check()?;
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
     let state = machine.state(text.as_deref())?;
@@ -108,15 +110,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             state.time
         )));
     }
-    let free = machine.mechanism.parameters.iter().zip(&state.parameters);
-    let parameters: Vec<f64> =
-        free.filter(|(parameter, _)| !parameter.fixed).map(|(_, value)| *value).collect();
-    let mechanism = InterpretedMechanism::with_parameters(
-        machine.mechanism.clone(),
-        machine.program.clone(),
-        &parameters,
-    )
-    .map_err(|error| Failure::new(Kind::InconsistentState, error.to_string()))?;
+    let mechanism = machine.interpreted(&state)?;
+    arguments.pictures.check_times(state.time, until)?;
     let surfaces = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
     if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
@@ -124,20 +119,22 @@ pub fn run(arguments: &Arguments) -> Outcome {
             "--stiffness is of --together lzb alone: give that, or leave it out".to_owned(),
         ));
     }
-    let drive = inputs::drive(&machine.mechanism, &arguments.input, arguments.inputs.as_deref())?;
-    let timed = drive.is_some()
+    let driven = inputs::drive(&machine.mechanism, &arguments.input, arguments.inputs.as_deref())?;
+    let timed = driven.is_some()
         || machine
             .program
             .operations
             .iter()
             .any(|operation| matches!(operation, Operation::Input(Input::Time)));
+    let (drive, breaks) = driven.map_or_else(Default::default, |driven| (driven.drive, driven.breaks));
     let options = Options {
         relative_tolerance: arguments.tolerance,
         absolute_tolerance: arguments.tolerance,
         // Where something depends on time by itself it must not be stepped over.
-        max_step: if timed { 0.05 } else { f64::INFINITY },
+        max_step: arguments.max_step.unwrap_or(if timed { 0.05 } else { f64::INFINITY }),
         surfaces,
-        drive: drive.unwrap_or_default(),
+        drive,
+        breaks,
         together: match arguments.together {
             TogetherArgument::Sequential => Together::Sequential,
             TogetherArgument::Lzb => Together::Lzb,
@@ -147,36 +144,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         ..Options::default()
     };
     let mut lines = Lines::new(&mechanism, arguments.format)?;
-    let mut shown = Shown {
-        curves: arguments.plot.as_ref().map(|_| Curves::new(&mechanism)),
-        recording: arguments.html.as_ref().map(|_| Recording::new(&mechanism, &state)),
-    };
-    let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut shown);
+    let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state);
+    let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut pictures);
     // What was seen before the motion ended is worth seeing, above all where it ended with an error.
-    if let (Some(curves), Some(path)) = (shown.curves, &arguments.plot) {
-        curves.save(path)?;
-    }
-    if let (Some(recording), Some(path)) = (shown.recording, &arguments.html) {
-        recording.save(path)?;
-    }
-    done
-}
-
-/// What is kept of a motion for figures and pages.
-struct Shown<'m> {
-    curves: Option<Curves<'m>>,
-    recording: Option<Recording<'m>>,
-}
-
-impl Shown<'_> {
-    fn add(&mut self, simulation: &Simulation<'_>) {
-        if let Some(curves) = &mut self.curves {
-            curves.add(simulation);
-        }
-        if let Some(recording) = &mut self.recording {
-            recording.add(simulation);
-        }
-    }
+    pictures.save(&arguments.pictures, done)
 }
 
 /// Follows the motion and writes it.
@@ -186,25 +157,23 @@ fn follow(
     options: Options,
     (until, step): (f64, f64),
     lines: &mut Lines<'_>,
-    shown: &mut Shown<'_>,
+    pictures: &mut Pictures<'_>,
 ) -> Outcome {
     let mut simulation = Simulation::new(mechanism, &borrowed(state), options).map_err(fault)?;
     lines.sample(state.time, &state.coordinates, &state.speeds)?;
-    shown.add(&simulation);
+    pictures.add(&simulation);
     let progress = bar(until - state.time);
     for count in 1_u64.. {
         let end = (state.time + count as f64 * step).min(until);
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
             lines.event(&event)?;
-            shown.add(&simulation);
-            if let Some(recording) = &mut shown.recording {
-                recording.event(&event);
-            }
+            pictures.add(&simulation);
+            pictures.event(&event);
         }
         if end > state.time {
             lines.sample(end, simulation.coordinates(), simulation.speeds())?;
         }
-        shown.add(&simulation);
+        pictures.add(&simulation);
         progress.set_position(((end - state.time) * 1e3) as u64);
         if end >= until {
             break;

@@ -12,11 +12,13 @@ use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::{ContactQuantity, Quantity};
+use hodograph_interpreter::InterpretedMechanism;
 
 use crate::json::state::State;
 use crate::json::{Failure, Kind};
 
-/// A model and its program.
+/// A model and its program, before parameters are known: each state brings its own. Any quantity can be evaluated; [`Machine::interpreted`]
+/// fixes the parameters, and has the traits that a simulation needs.
 #[derive(Clone, Debug)]
 pub struct Machine {
     /// the model
@@ -105,6 +107,18 @@ impl Machine {
             }
         }
         Ok(Numbers { arrays: arrays.into_iter().map(positive_zeros).collect() })
+    }
+
+    /// The mechanism with the parameters of a state.
+    ///
+    /// # Errors
+    ///
+    /// `inconsistent_state` where these parameters are impossible.
+    pub fn interpreted(&self, state: &State) -> Result<InterpretedMechanism, Failure> {
+        let all = self.mechanism.parameters.iter().zip(&state.parameters);
+        let free: Vec<f64> = all.filter(|(parameter, _)| !parameter.fixed).map(|(_, value)| *value).collect();
+        InterpretedMechanism::with_parameters(self.mechanism.clone(), self.program.clone(), &free)
+            .map_err(|error| Failure::new(Kind::InconsistentState, error.to_string()))
     }
 
     /// Index of the contact of that name; without a name, of the only one.

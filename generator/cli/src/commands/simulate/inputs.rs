@@ -13,15 +13,29 @@ use crate::stop::{Outcome, Stop};
 /// A function of time.
 type OfTime = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
+/// Functions of inputs by their numbers.
+type Functions = Vec<(usize, OfTime)>;
+
+/// What drives the inputs.
+pub struct Driven {
+    /// the functions
+    pub drive: Drive,
+    /// the times of the rows of a table, at which the rates of inputs jump
+    pub breaks: Vec<f64>,
+}
+
 /// What drives the inputs; none where nothing was asked for.
 ///
 /// # Errors
 ///
 /// `unknown_name`, and [`Stop::Call`] for expressions and files that cannot be read.
-pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>) -> Outcome<Option<Drive>> {
-    let mut functions: Vec<(usize, OfTime)> = Vec::new();
+pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>) -> Outcome<Option<Driven>> {
+    let mut functions = Functions::new();
+    let mut breaks = Vec::new();
     if let Some(path) = file {
-        functions.extend(table(mechanism, path)?);
+        let (times, columns) = table(mechanism, path)?;
+        breaks.clone_from(&times);
+        functions.extend(columns);
     }
     for text in expressions {
         let (name, value) = text
@@ -39,13 +53,14 @@ pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>)
     if functions.is_empty() {
         return Ok(None);
     }
-    Ok(Some(Drive::Continuous(Arc::new(move |t, _: &[f64], _: &[f64], inputs: &mut [f64]| {
+    let drive = Drive::Continuous(Arc::new(move |t, _: &[f64], _: &[f64], inputs: &mut [f64]| {
         for (index, function) in &functions {
             if let Some(input) = inputs.get_mut(*index) {
                 *input = function(t);
             }
         }
-    }))))
+    }));
+    Ok(Some(Driven { drive, breaks }))
 }
 
 fn index(mechanism: &Mechanism, name: &str) -> Result<usize, Failure> {
@@ -56,8 +71,8 @@ fn index(mechanism: &Mechanism, name: &str) -> Result<usize, Failure> {
     })
 }
 
-/// The columns of a CSV file, linear between its rows and constant outside.
-fn table(mechanism: &Mechanism, path: &Path) -> Outcome<Vec<(usize, OfTime)>> {
+/// The times and the columns of a CSV file, linear between its rows and constant outside.
+fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Functions)> {
     let text = std::fs::read_to_string(path).map_err(|error| Stop::unreadable(path, &error))?;
     let wrong = |line: usize, message: &str| Stop::Call(format!("{}:{line}: {message}", path.display()));
     // Some programs put a mark of the encoding first.
@@ -108,7 +123,8 @@ fn table(mechanism: &Mechanism, path: &Path) -> Outcome<Vec<(usize, OfTime)>> {
         let value: OfTime = Arc::new(move |t| between(&times, &column, t));
         (index, value)
     };
-    Ok(indices.into_iter().zip(columns).map(function).collect())
+    let functions = indices.into_iter().zip(columns).map(function).collect();
+    Ok((times, functions))
 }
 
 /// The value at a time.

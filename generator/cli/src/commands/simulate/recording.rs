@@ -1,9 +1,7 @@
-//! Records the states and events of a motion for its animated page.
-
-use std::path::Path;
+//! Records the states and events of a motion for its animated page and for viewers of robots.
 
 use hodograph::{Contacts, Kind as Of, Mechanism, State as Borrowed};
-use hodograph_generator::model::mechanism::{LoadKind, Place, Vector};
+use hodograph_generator::model::mechanism::{LoadKind, Place, Variable, Vector};
 use hodograph_generator::numeric::views::values;
 use hodograph_generator::numeric::{Level, Views};
 use hodograph_interpreter::InterpretedMechanism;
@@ -13,8 +11,6 @@ use nalgebra::Vector3;
 use super::gap::gap;
 use crate::animation::{self, Animation, Force, Frame, Point, Series, segments};
 use crate::json::state::State;
-use crate::output;
-use crate::stop::Outcome;
 
 /// A motion as it will be shown.
 pub struct Recording<'m> {
@@ -25,6 +21,16 @@ pub struct Recording<'m> {
     /// per contact, m and N; empty without a gap
     gaps: Vec<Vec<f64>>,
     pressures: Vec<Vec<f64>>,
+    coordinates: Vec<Vec<f64>>,
+    speeds: Vec<Vec<f64>>,
+}
+
+/// A recorded motion.
+pub struct Recorded {
+    /// what is to be seen
+    pub shown: Animation,
+    /// coordinates and speeds at the same moments
+    pub states: Vec<Series>,
 }
 
 impl<'m> Recording<'m> {
@@ -72,8 +78,16 @@ impl<'m> Recording<'m> {
             up: up(mechanism, state),
             ..Animation::default()
         };
-        let none = || vec![Vec::new(); mechanism.count(Of::Contact)];
-        Recording { mechanism, shown, energies: [const { Vec::new() }; 3], gaps: none(), pressures: none() }
+        let none = |kind| vec![Vec::new(); mechanism.count(kind)];
+        Recording {
+            mechanism,
+            shown,
+            energies: [const { Vec::new() }; 3],
+            gaps: none(Of::Contact),
+            pressures: none(Of::Contact),
+            coordinates: none(Of::Coordinate),
+            speeds: none(Of::Speed),
+        }
     }
 
     /// The state of a simulation.
@@ -86,6 +100,8 @@ impl<'m> Recording<'m> {
             inputs: simulation.inputs(),
         };
         self.shown.times.push(state.time);
+        self.coordinates.iter_mut().zip(state.coordinates).for_each(|(curve, &value)| curve.push(value));
+        self.speeds.iter_mut().zip(state.speeds).for_each(|(curve, &value)| curve.push(value));
         for (index, point) in self.shown.points.iter_mut().enumerate() {
             point.places.push(place(mechanism, index, &state));
         }
@@ -151,12 +167,8 @@ impl<'m> Recording<'m> {
         }
     }
 
-    /// Writes the page.
-    ///
-    /// # Errors
-    ///
-    /// Where the file cannot be written.
-    pub fn save(mut self, path: &Path) -> Outcome {
+    /// The whole motion.
+    pub fn finish(mut self) -> Recorded {
         let series = |panel: &str, name: &str, unit: &str, values| Series {
             panel: panel.to_owned(),
             name: name.to_owned(),
@@ -167,14 +179,22 @@ impl<'m> Recording<'m> {
         for (name, values) in names.into_iter().zip(self.energies) {
             self.shown.series.push(series("energy", name, "J", values));
         }
+        let model = self.mechanism.model();
         for (panel, unit, curves) in [("gap", "m", self.gaps), ("normal force", "N", self.pressures)] {
-            for (contact, values) in self.mechanism.model().contacts.iter().zip(curves) {
+            for (contact, values) in model.contacts.iter().zip(curves) {
                 if !values.is_empty() {
                     self.shown.series.push(series(panel, &contact.name, unit, values));
                 }
             }
         }
-        output::file(path, animation::page(&self.shown).as_bytes())
+        let states =
+            [("coordinates", &model.coordinates, self.coordinates), ("speeds", &model.speeds, self.speeds)];
+        let states = states.into_iter().flat_map(|(panel, variables, curves)| {
+            let of =
+                |(variable, values): (&Variable, _)| series(panel, &variable.name, &variable.unit, values);
+            variables.iter().zip(curves).map(of).collect::<Vec<_>>()
+        });
+        Recorded { states: states.collect(), shown: self.shown }
     }
 }
 

@@ -1,0 +1,181 @@
+//! What is to be seen at a moment: points and lines, their names, arrows of forces and impulses.
+
+use nalgebra::Vector3;
+
+use super::messages::{Arrow, Color, Entity, Line, Pose, Sphere, Text, Time, Update, turning, xyz};
+use super::transforms::INERTIAL;
+use crate::animation::{Animation, Event};
+
+const fn color(r: f64, g: f64, b: f64) -> Color {
+    Color { r, g, b, a: 1.0 }
+}
+/// Colours that are told apart on light and dark ground.
+const POINT: Color = color(0.35, 0.71, 0.91);
+const LINE: Color = color(0.55, 0.58, 0.62);
+const FORCE: Color = color(0.0, 0.62, 0.45);
+const IMPULSE: Color = color(0.84, 0.37, 0.0);
+/// Size of letters, pixels.
+const LETTERS: f64 = 14.0;
+/// Every pair of points is a line.
+const LINE_LIST: u8 = 2;
+/// Lengths as parts of the extent of the motion.
+const LONGEST_ARROW: f64 = 0.25;
+const POINT_SIZE: f64 = 1.0 / 60.0;
+const LINE_SIZE: f64 = 1.0 / 200.0;
+/// An impulse is shown for this part of the motion.
+const HOLD: f64 = 0.04;
+
+/// A motion and its sizes.
+pub struct Scene<'a> {
+    shown: &'a Animation,
+    /// greatest width of what points pass, m
+    extent: f64,
+    /// largest force, N, and impulse, N s
+    largest: [f64; 2],
+    hold: f64,
+}
+
+impl<'a> Scene<'a> {
+    /// Measures the motion.
+    pub fn new(shown: &'a Animation) -> Self {
+        let mut box_ = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
+        for place in shown.points.iter().flat_map(|point| &point.places).filter(|place| finite(place)) {
+            for ([low, high], &x) in box_.iter_mut().zip(place) {
+                (*low, *high) = (low.min(x), high.max(x));
+            }
+        }
+        let extent = box_.iter().map(|[low, high]| high - low).fold(0.0, f64::max);
+        let most = |sizes: &mut dyn Iterator<Item = &[f64; 3]>| {
+            sizes.map(|v| Vector3::from(*v).norm()).filter(|size| size.is_finite()).fold(0.0, f64::max)
+        };
+        let span = shown.times.last().zip(shown.times.first()).map_or(0.0, |(last, first)| last - first);
+        Scene {
+            shown,
+            extent: if extent > 0.0 && extent.is_finite() { extent } else { 1.0 },
+            largest: [
+                most(&mut shown.forces.iter().flat_map(|force| &force.force).flatten()),
+                most(&mut shown.events.iter().filter_map(|event| event.impulse.as_ref())),
+            ],
+            hold: HOLD * span,
+        }
+    }
+
+    /// The points and the lines between them.
+    pub fn mechanism(&self, moment: usize) -> Update {
+        let places = self.places(moment);
+        let size = POINT_SIZE * self.extent;
+        let spheres = places
+            .iter()
+            .flatten()
+            .map(|&place| Sphere { pose: Pose::at(place), size: xyz([size; 3]), color: POINT })
+            .collect();
+        let ends = |&[a, b]: &[usize; 2]| Some([places[a]?, places[b]?]);
+        let points: Vec<_> = self.shown.segments.iter().filter_map(ends).flatten().map(xyz).collect();
+        let lines = match points.is_empty() {
+            true => Vec::new(),
+            false => vec![Line {
+                r#type: LINE_LIST,
+                pose: Pose::at([0.0; 3]),
+                thickness: LINE_SIZE * self.extent,
+                scale_invariant: false,
+                points,
+                color: LINE,
+                colors: [],
+                indices: [],
+            }],
+        };
+        update(Entity { spheres, lines, ..self.entity(self.shown.times[moment], "mechanism") })
+    }
+
+    /// The names of the points, above them.
+    pub fn names(&self, moment: usize) -> Update {
+        let up = Vector3::from(self.shown.up) * (2.0 * POINT_SIZE * self.extent);
+        let text = |(index, place): (usize, Option<[f64; 3]>)| {
+            Some(Text {
+                pose: Pose::at((Vector3::from(place?) + up).into()),
+                billboard: true,
+                font_size: LETTERS,
+                scale_invariant: true,
+                color: LINE,
+                text: self.shown.points[index].name.clone(),
+            })
+        };
+        let texts = self.places(moment).into_iter().enumerate().filter_map(text).collect();
+        update(Entity { texts, ..self.entity(self.shown.times[moment], "names") })
+    }
+
+    /// The contact forces; where none acts, no arrow replaces the ones before.
+    pub fn forces(&self, moment: usize) -> Update {
+        let arrow = |force: &crate::animation::Force| {
+            self.arrow(force.at[moment], force.force[moment]?, self.largest[0], FORCE)
+        };
+        let arrows = self.shown.forces.iter().filter_map(arrow).collect();
+        update(Entity { arrows, ..self.entity(self.shown.times[moment], "contact forces") })
+    }
+
+    /// The impulse of an event, for a while.
+    pub fn impulse(&self, event: &Event) -> Update {
+        let arrow = event.at.zip(event.impulse);
+        let arrow = arrow.and_then(|(at, impulse)| self.arrow(at, impulse, self.largest[1], IMPULSE));
+        update(Entity {
+            arrows: arrow.into_iter().collect(),
+            lifetime: Time::of(self.hold),
+            ..self.entity(event.time, &format!("{} {}", event.contact, event.time))
+        })
+    }
+
+    /// The points that are somewhere.
+    fn places(&self, moment: usize) -> Vec<Option<[f64; 3]>> {
+        self.shown.points.iter().map(|point| Some(point.places[moment]).filter(finite)).collect()
+    }
+
+    /// An arrow as long as the vector is beside the largest; none of nothing.
+    fn arrow(&self, at: [f64; 3], vector: [f64; 3], largest: f64, color: Color) -> Option<Arrow> {
+        let direction = Vector3::from(vector);
+        let length = LONGEST_ARROW * self.extent * direction.norm() / largest;
+        if !(finite(&at) && length.is_finite() && length > 0.0) {
+            return None;
+        }
+        let width = LINE_SIZE * self.extent;
+        let head_length = (3.0 * width).min(0.4 * length);
+        Some(Arrow {
+            pose: Pose {
+                position: xyz(at),
+                orientation: turning(Vector3::x(), direction / direction.norm()).into(),
+            },
+            shaft_length: length - head_length,
+            shaft_diameter: width,
+            head_length,
+            head_diameter: 2.0 * width,
+            color,
+        })
+    }
+
+    /// Nothing yet.
+    fn entity(&self, time: f64, id: &str) -> Entity {
+        Entity {
+            timestamp: Time::of(time),
+            frame_id: INERTIAL,
+            id: id.to_owned(),
+            lifetime: Time::of(0.0),
+            frame_locked: true,
+            metadata: [],
+            arrows: Vec::new(),
+            cubes: [],
+            spheres: Vec::new(),
+            cylinders: [],
+            lines: Vec::new(),
+            triangles: [],
+            texts: Vec::new(),
+            models: [],
+        }
+    }
+}
+
+fn update(entity: Entity) -> Update {
+    Update { deletions: [], entities: vec![entity] }
+}
+
+fn finite(place: &[f64; 3]) -> bool {
+    place.iter().all(|number| number.is_finite())
+}
