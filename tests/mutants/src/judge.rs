@@ -17,17 +17,18 @@ struct Test {
     takes: Duration,
 }
 
-/// Judges mutants: names those that no test finds, then how many each test program found, the quickest programs first.
+/// Judges mutants by the tests whose names contain `only`: names those that no test finds, then how many each test program found, the quickest first.
 pub fn all(
     folder: &Path,
     programs: &[(String, PathBuf)],
+    only: Option<&str>,
     mutants: &[Mutant],
     chosen: &[usize],
 ) -> Outcome<()> {
     let mut tests = Vec::new();
     for (name, program) in programs {
         let begin = Instant::now();
-        if run(folder, program, None, Duration::from_secs(600))? {
+        if run(folder, program, only, None, Duration::from_secs(600))? {
             tests.push(Test { name: name.clone(), program: program.clone(), takes: begin.elapsed() });
         } else {
             println!("left out, because it fails without a mutant in this build: {name}");
@@ -40,7 +41,7 @@ pub fn all(
     let mut found: BTreeMap<&str, usize> = BTreeMap::new();
     let mut survivors = 0;
     for (judged, &id) in chosen.iter().enumerate() {
-        match finder(folder, &tests, id)? {
+        match finder(folder, &tests, only, id)? {
             Some(name) => *found.entry(name).or_default() += 1,
             None => {
                 survivors += 1;
@@ -53,9 +54,9 @@ pub fn all(
 }
 
 /// The first test program that fails with a mutant, or does not end in ten times its time.
-fn finder<'a>(folder: &Path, tests: &'a [Test], id: usize) -> Outcome<Option<&'a str>> {
+fn finder<'a>(folder: &Path, tests: &'a [Test], only: Option<&str>, id: usize) -> Outcome<Option<&'a str>> {
     for test in tests {
-        if !run(folder, &test.program, Some(id), test.takes * 10 + Duration::from_secs(10))? {
+        if !run(folder, &test.program, only, Some(id), test.takes * 10 + Duration::from_secs(10))? {
             return Ok(Some(&test.name));
         }
     }
@@ -63,9 +64,15 @@ fn finder<'a>(folder: &Path, tests: &'a [Test], id: usize) -> Outcome<Option<&'a
 }
 
 /// Whether a test program passes in time.
-fn run(folder: &Path, program: &Path, id: Option<usize>, limit: Duration) -> Outcome<bool> {
+fn run(
+    folder: &Path,
+    program: &Path,
+    only: Option<&str>,
+    id: Option<usize>,
+    limit: Duration,
+) -> Outcome<bool> {
     let mut command = Command::new(program);
-    command.current_dir(folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    command.args(only).current_dir(folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
     command.env_remove("MUTANT").env("CARGO_MANIFEST_DIR", folder).env("PROPTEST_FAILURE_PERSISTENCE", "off");
     if let Some(id) = id {
         command.env("MUTANT", id.to_string());

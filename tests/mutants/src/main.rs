@@ -4,11 +4,11 @@
 //! while the tests run. A mutant costs the tests alone, which stop at the first failure.
 //!
 //! ```text
-//! hodograph-mutants PACKAGE FILES [COUNT [ONLY]]
+//! hodograph-mutants PACKAGE FILES [COUNT [ONLY [TESTS]]]
 //! ```
 //!
 //! PACKAGE is the package that holds the sources and whose tests judge; FILES is the pattern of the sources; COUNT limits the mutants to a random sample;
-//! ONLY takes the mutants whose names contain it. The standard output is one line for each mutant that survives.
+//! ONLY takes the mutants whose names contain it, TESTS the tests. The standard output is one line for each mutant that survives.
 
 mod build;
 mod copy;
@@ -41,5 +41,11 @@ fn main() -> Outcome<()> {
         built.ids.len(),
         mutants.len()
     );
-    judge::all(&copy.join(list::folder(package)), &built.tests, &mutants, &built.ids)
+    judge::all(
+        &copy.join(list::folder(package)),
+        &built.tests,
+        rest.get(2).map(String::as_str),
+        &mutants,
+        &built.ids,
+    )
 }
