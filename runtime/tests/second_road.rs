@@ -6,7 +6,7 @@ mod common;
 use common::random::Random;
 use common::second_road::{self, Failure, condition};
 use hodograph::methods::{Integration, integrate};
-use hodograph::{Characteristics, Hodograph, Law, Motion, ReducedMatrix, Surface, rates, solve};
+use hodograph::{Characteristics, Hodograph, Law, Motion, Path, ReducedMatrix, Surface, rates, solve};
 use nalgebra::{Matrix3, Vector3};
 
 /// What an error may be.
@@ -455,4 +455,38 @@ fn collisions_that_lost_digits_once() {
         tally.compare(&m, &v, &Surface { mu: 0.1798125789704914, e: 0.651515459701502, law });
     }
     tally.report("once lost", 8);
+}
+
+/// Stronge's law with so little restitution that its work, e^2 of that of compression, is a difference of nearly equal works; slip stops on the way.
+#[test]
+fn little_restitution_in_which_slip_stops() {
+    let mut random = Random(12);
+    let (mut count, mut worst) = (0, 0.0_f64);
+    for _ in 0..60 {
+        let (m, v) = exact(&mut random, 3);
+        let surface =
+            Surface { mu: random.within(0.1, 0.9), e: random.between(1e-4, 1e-2), law: Law::Stronge };
+        let faster = |k: f64| Vector3::new(v.x, k * v.y, k * v.z);
+        let slides = |k: f64| solve(&m, &faster(k), &surface).is_ok_and(|hit| hit.path == Path::Sliding);
+        if condition(&m) > 100.0 || slides(1e-3) || !slides(1e3) {
+            continue;
+        }
+        // The least speed of slip with which it lasts to the end of the collision.
+        let (mut lo, mut hi) = (1e-3_f64, 1e3_f64);
+        for _ in 0..45 {
+            let middle = (lo * hi).sqrt();
+            if slides(middle) { hi = middle } else { lo = middle }
+        }
+        let v = faster(lo * (1.0 - 0.2 * surface.e));
+        let (Ok(hit), Ok(road)) = (solve(&m, &v, &surface), second_road::solve(&m, &v, &surface)) else {
+            continue;
+        };
+        let Some((stop, least)) = hit.phases.slip_end.zip(hit.phases.compression_end) else { continue };
+        if stop.impulse.x > least.impulse.x && road.stopped && road.compressions == 1 {
+            count += 1;
+            worst = worst.max((hit.velocity.x / road.velocity.x - 1.0).abs() * surface.e);
+        }
+    }
+    // v_n2 itself is known to a multiple of eps / e.
+    assert!(count > 10 && worst < 3e-13, "{count} {worst:e}");
 }
