@@ -381,7 +381,7 @@ fn great_impulses_are_no_error() {
 #[test]
 fn friction_to_the_end_of_the_range() {
     let mut random = Random(24);
-    let (mut compared, mut small) = (0, 0);
+    let (mut compared, mut small, mut stopped) = (0, 0, 0);
     for _ in 0..400 {
         let rank = 1 + random.pick(3);
         let scale = random.power(3.0);
@@ -434,6 +434,16 @@ fn friction_to_the_end_of_the_range() {
                     .max((hit.normal_work - limit.normal_work).abs() / (impulse * velocity));
                 assert!(error < 1e-9, "{kind} {mu:e} {law:?} {error:e} {m:?} {v:?}\n{hit:?}\n{limit:?}");
                 assert_eq!(hit.path, limit.path, "{kind} {mu:e} {law:?} {m:?} {v:?}");
+                // So does slip that friction stops.
+                if let Some((end, limit)) = hit.phases.slip_end.zip(limit.phases.slip_end) {
+                    let early = limit.impulse.x < 1e-10 * limit.impulse.amax();
+                    let normal = if early { limit.impulse.x * 1e20 / mu } else { limit.impulse.x };
+                    assert!(
+                        (end.impulse.x - normal).abs() <= 1e-9 * normal + 1e-320,
+                        "{kind} {mu:e} {end:?}"
+                    );
+                    stopped += 1;
+                }
                 compared += 1;
                 if kind == 0 {
                     let surface = Surface { mu, e: 0.5, law };
@@ -450,7 +460,7 @@ fn friction_to_the_end_of_the_range() {
     }
     println!("{compared} compared, {small} normal impulses out of range");
     assert!(compared > 5_000, "{compared}");
-    assert!(small > 20 && 20 * small < compared, "{small}");
+    assert!(small > 20 && 20 * small < compared && stopped > 1000, "{small} {stopped}");
     for mu in [1e10_f32, 1e20, 1e30, 1e37, 3e38, f32::MAX] {
         for &law in Law::ALL {
             let m = ReducedMatrix::new(0.2251_f32, -0.1094, 0.1258, 22.360, 0.1158, 20.2702);
