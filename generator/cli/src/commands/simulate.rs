@@ -162,19 +162,24 @@ fn follow(
     let mut simulation = Simulation::new(mechanism, &borrowed(state), options).map_err(fault)?;
     lines.sample(state.time, &state.coordinates, &state.speeds)?;
     pictures.add(&simulation);
-    let progress = bar(until - state.time);
+    let progress = bar(state.time, until);
+    let shown = |t: f64| {
+        progress.set_position(((t - state.time) * 1e3) as u64);
+        progress.set_message(format!("t = {t:.3} s"));
+    };
     for count in 1_u64.. {
         let end = (state.time + count as f64 * step).min(until);
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
             lines.event(&event)?;
             pictures.add(&simulation);
             pictures.event(&event);
+            shown(event.time);
         }
         if end > state.time {
             lines.sample(end, simulation.coordinates(), simulation.speeds())?;
         }
         pictures.add(&simulation);
-        progress.set_position(((end - state.time) * 1e3) as u64);
+        shown(end);
         if end >= until {
             break;
         }
@@ -184,11 +189,16 @@ fn follow(
 }
 
 /// Shown where someone looks at standard error and not at the lines.
-fn bar(length: f64) -> indicatif::ProgressBar {
+fn bar(start: f64, until: f64) -> indicatif::ProgressBar {
     if std::io::stdout().is_terminal() || !std::io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
-    indicatif::ProgressBar::new((length * 1e3) as u64)
+    let style = indicatif::ProgressStyle::with_template("{wide_bar} {msg} of {prefix} s");
+    let bar = indicatif::ProgressBar::new(((until - start) * 1e3) as u64).with_prefix(until.to_string());
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
 }
 
 /// The state as the traits of a mechanism see it.
