@@ -18,7 +18,7 @@ use crate::intern::intern;
 use crate::routines::{OfContact, Request};
 
 /// So many rows are one task for a core.
-const TASK: usize = 32 * LANES;
+const TASK: usize = 16 * LANES;
 
 /// Calls `f` with ranges that make up `0..rows`, on all cores where the feature `parallel` is on; the answers come in the order of the rows. The
 /// ranges, and so the bits of what is computed in each, do not depend on the number of cores.

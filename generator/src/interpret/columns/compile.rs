@@ -1,6 +1,7 @@
 //! From a program to steps on slots: what depends on parameters alone is a number already, and a slot is used again when nobody reads it any more.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::mem::discriminant;
 
 use crate::arithmetic::Function;
 use crate::interpret::prepared::Constants;
@@ -188,7 +189,7 @@ fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) ->
             !ready
         });
     }
-    let (steps, slots) = with_slots(&drafts);
+    let (steps, slots) = with_slots(&grouped(drafts));
     Columns { steps, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
 }
 
@@ -298,6 +299,31 @@ fn pick(codes: [Code; 3], uniform: [bool; 3]) -> Code {
 /// Of the codes for the operands SSS, SUS, SSU, SUU, UUS.
 fn pick_of_five(codes: [Code; 5], uniform: [bool; 3]) -> Code {
     codes[if uniform[0] { 4 } else { usize::from(uniform[1]) + 2 * usize::from(uniform[2]) }]
+}
+
+/// So many of the steps that wait are looked at for one that does the same as the last.
+const WINDOW: usize = 128;
+
+/// The steps in an order in which those that do the same follow each other where their operands allow it: the processor then foresees what the next
+/// one does. They stay near their place, so that few more numbers must be held at a time.
+fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
+    let mut waiting = VecDeque::from(drafts);
+    let mut defined = HashSet::<Varying>::new();
+    let mut ordered: Vec<Draft> = Vec::with_capacity(waiting.len());
+    loop {
+        let last = ordered.last().map(|draft| discriminant(&draft.code));
+        let alike = waiting.iter().take(WINDOW).position(|draft| {
+            let known = |place: &Place| match place {
+                Place::Varying(varying) => defined.contains(varying),
+                Place::Uniform(_) => true,
+            };
+            Some(discriminant(&draft.code)) == last && draft.operands.iter().flatten().all(known)
+        });
+        // the operands of the first one come from steps before it
+        let Some(draft) = waiting.remove(alike.unwrap_or(0)) else { return ordered };
+        defined.extend(draft.defines.iter().flatten());
+        ordered.push(draft);
+    }
 }
 
 /// Gives out slots: the latest that became free is the next to be used.

@@ -4,8 +4,9 @@ use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced, turned};
 
 use crate::arithmetic::sin_cos;
 
-/// How many states a block has.
-pub const LANES: usize = 32;
+/// How many states a block has: so many that finding out what a step does costs little beside doing it, and so few that the slots of large mechanisms
+/// stay in a core's own cache. (Quadruped, 421 slots, 215 kB: 64 states take 0.80 of the time of 32 per state, 128 take 0.74.)
+pub const LANES: usize = 64;
 /// How many of them are computed before any result is stored: a result may then take the place of an operand.
 pub const WIDTH: usize = 8;
 
@@ -46,13 +47,15 @@ pub struct Numbers<'a> {
     pub slots: &'a mut [Slot],
     /// one number for all states
     pub uniforms: &'a [f64],
+    /// how many parts of a block hold states; the others are not computed
+    pub parts: usize,
 }
 
 impl Numbers<'_> {
     /// A function of one operand.
     #[inline(always)]
     pub fn one<A: Operand>(&mut self, to: u32, a: A, f: impl Fn(f64) -> f64) {
-        for part in 0..LANES / WIDTH {
+        for part in 0..self.parts.min(LANES / WIDTH) {
             let a = a.part(self.slots, self.uniforms, part);
             let result = std::array::from_fn(|lane| f(a[lane]));
             self.slots[to as usize][part] = result;
@@ -62,7 +65,7 @@ impl Numbers<'_> {
     /// A function of two operands.
     #[inline(always)]
     pub fn two<A: Operand, B: Operand>(&mut self, to: u32, a: A, b: B, f: impl Fn(f64, f64) -> f64) {
-        for part in 0..LANES / WIDTH {
+        for part in 0..self.parts.min(LANES / WIDTH) {
             let a = a.part(self.slots, self.uniforms, part);
             let b = b.part(self.slots, self.uniforms, part);
             let result = std::array::from_fn(|lane| f(a[lane], b[lane]));
@@ -78,7 +81,7 @@ impl Numbers<'_> {
         (a, b, c): (A, B, C),
         f: impl Fn(f64, f64, f64) -> f64,
     ) {
-        for part in 0..LANES / WIDTH {
+        for part in 0..self.parts.min(LANES / WIDTH) {
             let a = a.part(self.slots, self.uniforms, part);
             let b = b.part(self.slots, self.uniforms, part);
             let c = c.part(self.slots, self.uniforms, part);
@@ -89,20 +92,21 @@ impl Numbers<'_> {
 
     /// Sine and cosine.
     pub fn sine_cosine(&mut self, sine: u32, cosine: u32, a: u32) {
-        let (sines, cosines) = sines_cosines(&self.slots[a as usize]);
+        let mut sines = self.slots[a as usize];
+        let mut cosines = sines;
+        let lanes = self.parts.min(LANES / WIDTH) * WIDTH;
+        sines_cosines(&mut sines.as_flattened_mut()[..lanes], &mut cosines.as_flattened_mut()[..lanes]);
         self.slots[sine as usize] = sines;
         self.slots[cosine as usize] = cosines;
     }
 }
 
-/// Sines and cosines of a block: for each state what [`sin_cos`] gives, to the last bit.
+/// Sines and cosines of angles, which both slices hold: for each what [`sin_cos`] gives, to the last bit.
 #[inline(never)]
-fn sines_cosines(angles: &Slot) -> (Slot, Slot) {
-    let (mut sines, mut cosines) = (*angles, *angles);
-    let (s, c) = (sines.as_flattened_mut(), cosines.as_flattened_mut());
-    let angles = angles.as_flattened();
-    let within = angles.iter().fold(true, |within, &angle| within & is_within(angle));
-    for ((s, c), &angle) in s.iter_mut().zip(c).zip(angles) {
+fn sines_cosines(sines: &mut [f64], cosines: &mut [f64]) {
+    let within = sines.iter().fold(true, |within, &angle| within & is_within(angle));
+    for (s, c) in sines.iter_mut().zip(cosines) {
+        let angle = *c;
         (*s, *c) = if within {
             let (r, low, turns) = reduced(angle);
             turned(near_zero(r, low), turns)
@@ -110,7 +114,6 @@ fn sines_cosines(angles: &Slot) -> (Slot, Slot) {
             sin_cos(angle)
         };
     }
-    (sines, cosines)
 }
 
 #[cfg(test)]
@@ -124,13 +127,14 @@ mod tests {
         let edges = [0.0, -0.0, 5e-324, -1e-300, 524_288.0, -524_287.5, 0.3, 1.0];
         let beyond = [1e9, f64::NAN, f64::INFINITY, 0.5, -1e300, 2.0, -0.0, 524_289.0];
         let all: Vec<f64> = spread.chain(right).chain(edges).chain(beyond).collect();
-        for angles in all.chunks_exact(LANES) {
-            let mut block = [[0.0; WIDTH]; LANES / WIDTH];
-            block.as_flattened_mut().copy_from_slice(angles);
-            let (sines, cosines) = sines_cosines(&block);
+        // none of the angles is left out
+        assert!(all.len().is_multiple_of(WIDTH));
+        for angles in all.chunks(LANES) {
+            let (mut sines, mut cosines) = (angles.to_vec(), angles.to_vec());
+            sines_cosines(&mut sines, &mut cosines);
             for (lane, &angle) in angles.iter().enumerate() {
                 let (sine, cosine) = sin_cos(angle);
-                let found = (sines.as_flattened()[lane], cosines.as_flattened()[lane]);
+                let found = (sines[lane], cosines[lane]);
                 assert!(found.0.to_bits() == sine.to_bits() || sine.is_nan() && found.0.is_nan(), "{angle}");
                 assert!(
                     found.1.to_bits() == cosine.to_bits() || cosine.is_nan() && found.1.is_nan(),

@@ -48,6 +48,7 @@ impl Columns {
     pub(super) fn run(&self, table: &Table<'_>, first: usize, count: usize, scratch: &mut Scratch) {
         scratch.failed = [NONE; LANES];
         scratch.finite = ZERO;
+        let parts = count.div_ceil(WIDTH);
         for step in &self.steps {
             let Step { code, to, a, b, .. } = *step;
             match code {
@@ -65,7 +66,7 @@ impl Columns {
                 Code::NotSmallSS => scratch.check(to, InSlot(a), Some(InSlot(b))),
                 Code::NotSmallSU => scratch.check(to, InSlot(a), Some(Uniform(b))),
                 Code::NotSmallUS => scratch.check(to, Uniform(a), Some(InSlot(b))),
-                _ => compute(step, Numbers { slots: &mut scratch.slots, uniforms: &scratch.uniforms }),
+                _ => compute(step, Numbers { slots: &mut scratch.slots, uniforms: &scratch.uniforms, parts }),
             }
         }
         for (lane, failure) in scratch.failures.iter_mut().enumerate() {

@@ -31,14 +31,15 @@ impl<'a> Column<'a> {
         self.numbers.get(row * self.stride).copied().unwrap_or(f64::NAN)
     }
 
-    /// The numbers of a block; the last one fills what is left over.
+    /// The numbers of a block; the last one fills what is left over of its part.
     #[inline]
     pub(super) fn gather(&self, first: usize, count: usize, slot: &mut Slot) {
         let slot = slot.as_flattened_mut();
         match self.numbers.get(first..first + LANES) {
             Some(numbers) if self.stride == 1 && count == LANES => slot.copy_from_slice(numbers),
             _ => {
-                for (lane, place) in slot.iter_mut().enumerate() {
+                let parts = count.next_multiple_of(WIDTH);
+                for (lane, place) in slot.iter_mut().enumerate().take(parts) {
                     *place = self.get(first + lane.min(count - 1));
                 }
             }
