@@ -147,6 +147,35 @@ mod tests {
     }
 
     #[test]
+    fn fused_operations_lose_what_vanishes() {
+        let derived = small(|graph| {
+            let [x, y, z, w] = speeds(graph);
+            let (minus, sum, other) = (graph.integer(-1), graph.sum([x, y]), graph.product([w, z]));
+            let parts =
+                [vec![sum, z], vec![minus, x, z], vec![minus, y, z]].map(|factors| graph.product(factors));
+            let nothing = graph.sum(parts);
+            let mut outputs = Vec::new();
+            for signs in [[1, 1], [1, -1], [-1, 1], [-1, -1]] {
+                let [first, second] = signs.map(|sign| graph.integer(sign));
+                let (scaled, added) = (graph.product([first, nothing, w]), graph.product([second, x]));
+                outputs.push(graph.sum([scaled, added]));
+                let (plain, product) = (graph.product([first, nothing]), graph.product([second, other]));
+                outputs.push(graph.sum([plain, product]));
+            }
+            outputs
+        });
+        let fused = super::super::contract::contract(&lower(&derived));
+        let kinds = operations(&fused);
+        for kind in ["MulAdd", "MulSub", "NegMulAdd"] {
+            assert!(kinds.iter().any(|found| found == kind), "{kind}: {kinds:?}");
+        }
+        let dropped = super::super::dead_code::remove(&drop(&fused));
+        agree(&fused, &dropped, "fused");
+        let left = operations(&dropped);
+        assert!(left.iter().all(|kind| kind == "Neg" || kind == "Mul"), "{left:?}");
+    }
+
+    #[test]
     fn what_rounding_takes_from_angles_stays() {
         let derived = small(|graph| {
             let [x, y, ..] = speeds(graph);
