@@ -150,6 +150,18 @@ mod tests {
     }
 
     #[test]
+    fn functions_with_branches_of_different_angles_differ() {
+        let kind = replaced(|graph| {
+            let [x, y, ..] = speeds(graph);
+            let minus = graph.integer(-1);
+            let [first, second] = [x, y].map(|angle| graph.call(Function::Abs, vec![angle]));
+            let second = graph.product([minus, second]);
+            graph.sum([first, second])
+        });
+        assert!(matches!(kind, NodeKind::Sum(_)), "{kind:?}");
+    }
+
+    #[test]
     fn what_is_identically_a_number_becomes_it() {
         let number = |n, d| NodeKind::Number(Number::ratio(n, d));
         let one = |graph: &mut Graph| {

@@ -113,3 +113,30 @@ pub fn arbitrary(seed: u64, place: usize) -> Known {
     let size = 0.3 + 1.7 * unit;
     Known::exact(Reproducible::exactly(if bits & 1 == 0 { size } else { -size }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn functions_carry_at_least_the_error_of_their_argument() {
+        use Function::*;
+        let delta = 1e-6;
+        for function in [Sin, Cos, Tan, Exp, Sinh, Cosh, Tanh] {
+            for x in [-1.4, -0.5, 0.1, 0.9, 1.3] {
+                let of = |x: f64| Reproducible::exactly(x).call(function).rounded();
+                let uncertain = Known { number: Reproducible::exactly(x), error: delta, size: x.abs() };
+                let Some(known) = analytic(function, uncertain) else { panic!("{function:?}") };
+                for moved in [x - delta, x + delta] {
+                    let change = (of(moved) - of(x)).abs();
+                    assert!(
+                        change <= known.error * (1.0 + 1e-4),
+                        "{function:?} {x}: {change} {}",
+                        known.error
+                    );
+                }
+            }
+        }
+        assert!(analytic(Abs, Known::exact(Reproducible::exactly(1.0))).is_none());
+    }
+}

@@ -176,6 +176,19 @@ mod tests {
     }
 
     #[test]
+    fn functions_with_branches_of_different_angles_differ() {
+        let derived = small(|graph| {
+            let [x, y, ..] = speeds(graph);
+            let minus = graph.integer(-1);
+            let [first, second] = [x, y].map(|angle| graph.call(Function::Abs, vec![angle]));
+            let second = graph.product([minus, second]);
+            vec![graph.sum([first, second])]
+        });
+        let program = lower(&derived);
+        assert_eq!(drop(&program), program);
+    }
+
+    #[test]
     fn what_rounding_takes_from_angles_stays() {
         let derived = small(|graph| {
             let [x, y, ..] = speeds(graph);
