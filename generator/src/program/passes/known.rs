@@ -139,4 +139,12 @@ mod tests {
         }
         assert!(analytic(Abs, Known::exact(Reproducible::exactly(1.0))).is_none());
     }
+
+    #[test]
+    fn what_is_not_known_well_is_no_number() {
+        let of = |number: f64, error: f64| Known { number: Reproducible::exactly(number), error, size: 1.0 };
+        assert!(of(0.0, 1e-30).is(0.0) && of(1e-30, 1e-30).is(0.0) && of(2.0, 1e-30).is(2.0));
+        assert!(!of(1e-27, 1e-30).is(0.0), "beyond its error");
+        assert!(!of(0.0, 1e-10).is(0.0) && !of(1e-10, 1e-10).is(0.0), "too uncertain");
+    }
 }
