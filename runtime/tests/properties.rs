@@ -173,6 +173,32 @@ fn matrices_of_no_mechanism_are_refused_from_half_the_digits_on() {
     }
 }
 
+/// Entries are uncertain by rounding of the largest diagonal entry, however small they are: a singular matrix with such noise is one of a mechanism.
+#[test]
+fn noise_of_small_entries_is_no_reason_to_refuse() {
+    let (v, s) = (Vector3::new(-1.0, 0.5, 0.25), Surface { mu: 0.5, e: 0.5, law: Law::Poisson });
+    let mut indefinite = 0;
+    for k in 1..400 {
+        let [p, q, r] =
+            [0.754_877_666, 0.569_840_291, 0.324_717_957].map(|step: f64| (f64::from(k) * step).fract());
+        // Rank two, with the tangential rows small.
+        let (size, (sin, cos)) = (1e-6 + 1e-5 * p, (core::f64::consts::TAU * q).sin_cos());
+        let rows = [[1.0, 0.5 - r], [size * cos, size * sin], [size * r, size * (1.0 - r)]];
+        let dot = |i: usize, j: usize| rows[i][0] * rows[j][0] + rows[i][1] * rows[j][1];
+        let noise = 60.0 * f64::EPSILON * (2.0 * p - 1.0);
+        let m = ReducedMatrix::new(dot(0, 0), dot(0, 1), dot(0, 2), dot(1, 1), dot(1, 2) + noise, dot(2, 2));
+        let det = 1.0
+            - (m.ts * m.ts) / (m.tt * m.ss)
+            - (m.nt * m.nt) / (m.nn * m.tt)
+            - (m.ns * m.ns) / (m.nn * m.ss)
+            + 2.0 * m.nt * m.ns * m.ts / (m.nn * m.tt * m.ss);
+        indefinite += u32::from(det < -1e-8);
+        let answer = solve(&m, &v, &s).map_err(|error| error.kind()).err();
+        assert_ne!(answer, Some("not_positive_semidefinite"), "{k}: {det:e} {m:?}");
+    }
+    assert!(indefinite > 50, "{indefinite}");
+}
+
 #[test]
 fn bodies_may_approach_twice() {
     let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);
