@@ -272,6 +272,27 @@ fn to_zero<T: Real>(value: T, slope: T, bend: T) -> T {
 mod tests {
     use super::*;
 
+    #[test]
+    fn parabolas_rise_at_their_zero() {
+        for value in [-0.4, -1e-9, 0.0, 1e-12, 0.1] {
+            for slope in [1.0, 1e-3, 1e-8, 0.0, -1e-8, -1e-3] {
+                for bend in [-2.0, -1e-3, 1e-3, 3.0] {
+                    let x: f64 = to_zero(value, slope, bend);
+                    let rises = slope + bend * x;
+                    if slope * slope > 2.0 * value * bend {
+                        let rest = value + x * (slope + 0.5 * bend * x);
+                        assert!(
+                            rest.abs() < 1e-14 && rises > 0.0,
+                            "{value} {slope} {bend}: {x} {rest} {rises}"
+                        );
+                    } else {
+                        assert!(rises.abs() < 1e-14, "{value} {slope} {bend}: {x} {rises}");
+                    }
+                }
+            }
+        }
+    }
+
     /// Half angles to both zeros next to the axis: their doubles are zeros of h, on the side on which they are sought, with the right sign of h'.
     #[test]
     fn half_angles_lead_to_the_zeros_on_either_side() {
