@@ -1,20 +1,20 @@
-//! Handles signals: a file that is being written is removed before the process ends.
+//! Handles signals: a file or folder that is being written is removed before the process ends.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// Files that are not complete.
+/// Files and folders that are not complete.
 static BEGUN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn begun() -> MutexGuard<'static, Vec<PathBuf>> {
     BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// As long as it lives, a signal that ends the process removes the file.
+/// As long as it lives, a signal that ends the process removes the file or folder.
 pub struct Unfinished(PathBuf);
 
 impl Unfinished {
-    /// The file at this path is being written.
+    /// The file or folder at this path is being written.
     pub fn file(path: &Path) -> Self {
         begun().push(path.to_path_buf());
         Unfinished(path.to_path_buf())
@@ -38,7 +38,9 @@ pub fn clean_up() {
         if let Some(signal) = signals.forever().next() {
             // Kept until the end: nothing begins after this.
             let begun = begun();
-            begun.iter().for_each(|path| drop(std::fs::remove_file(path)));
+            begun
+                .iter()
+                .for_each(|path| drop(std::fs::remove_file(path).or_else(|_| std::fs::remove_dir_all(path))));
             let _ = emulate_default_handler(signal);
             std::process::exit(128 + signal);
         }

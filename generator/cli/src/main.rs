@@ -8,6 +8,7 @@ mod animation;
 mod commands;
 mod derivation;
 mod evaluate;
+mod export;
 mod files;
 mod import;
 mod inline;
@@ -22,8 +23,8 @@ mod stop;
 mod surface;
 
 use commands::{
-    check, collide, derive, derive_worker, eval, expand, explain, import as import_urdf, plot as draw,
-    simulate, solve,
+    check, collide, derive, derive_worker, eval, expand, explain, export as export_library,
+    import as import_urdf, plot as draw, simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -46,6 +47,7 @@ enum Command {
     Derive(derive::Arguments),
     Expand(expand::Arguments),
     Explain(explain::Arguments),
+    Export(export_library::Arguments),
     Plot(draw::Arguments),
     Simulate(simulate::Arguments),
     Import(import_urdf::Arguments),
@@ -67,6 +69,7 @@ fn main() -> ExitCode {
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Export(arguments) => export_library::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),

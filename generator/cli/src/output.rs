@@ -153,6 +153,33 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.persist(&place).map(drop).map_err(|error| error.error)
 }
 
+/// Writes a folder with these files (paths in it and texts), whole or not at all: beside its place first, and moved there when it is complete.
+///
+/// # Errors
+///
+/// The folder exists or cannot be written: then nothing of it is there.
+pub fn folder(path: &Path, files: &[(String, String)]) -> Outcome {
+    let make = || -> io::Result<()> {
+        let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let folder = tempfile::Builder::new().prefix(".hodograph").tempdir_in(parent)?;
+        let _unfinished = Unfinished::file(folder.path());
+        for (name, text) in files {
+            let place = folder.path().join(name);
+            if let Some(parent) = place.parent() {
+                std::fs::create_dir_all(parent)?;
+            }
+            std::fs::write(place, text)?;
+        }
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            std::fs::set_permissions(folder.path(), std::fs::Permissions::from_mode(0o755))?;
+        }
+        std::fs::rename(folder.path(), path)
+    };
+    make().map_err(|error| Stop::unwritable(path, &error))
+}
+
 /// Says why a command stopped, and gives the exit code.
 pub fn report(stop: Stop) -> ExitCode {
     match stop {

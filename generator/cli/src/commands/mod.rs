@@ -7,6 +7,7 @@ pub mod derive_worker;
 pub mod eval;
 pub mod expand;
 pub mod explain;
+pub mod export;
 pub mod import;
 pub mod plot;
 pub mod simulate;

@@ -1,0 +1,221 @@
+//! The Rust side of an exported mechanism: functions with C's calling convention.
+
+use std::fmt::Write;
+
+use super::module::{Form, Module, Routine};
+use super::{LAWS, MODES, PATHS, STATUSES, names};
+
+/// The text of `src/lib.rs`.
+pub fn library(module: &Module, scalar: &str) -> String {
+    let name = &module.name;
+    let mut out = format!(
+        "//! The mechanism `{}` for C: see `include/{name}.h`.\n\n#![cfg_attr(not(feature = \"std\"), no_std)]\n#![allow(clippy::missing_safety_doc, clippy::useless_conversion)]\n\n\
+         mod mechanism;\n\nuse hodograph::nalgebra::Matrix3;\nuse hodograph::{{\n    ClosedContactError, CollisionError, ContactError, ContactMode, ImpactError, Law, ParameterError, Path, StateError, Surface,\n}};\n\
+         use mechanism::{} as model;\n\n",
+        module.mechanism, module.path
+    );
+    out += "#[cfg(not(feature = \"std\"))]\n#[panic_handler]\nfn panic(_: &core::panic::PanicInfo<'_>) -> ! {\n    loop {}\n}\n\n";
+    let _ = write!(
+        out,
+        "/// The mechanism as C keeps it.\n#[repr(C)]\n#[derive(Clone, Copy)]\npub struct CMechanism([{scalar}; {0}]);\n\ntype Mechanism = model::{1}<{scalar}>;\n\
+         const _: () = assert!(size_of::<Mechanism>() <= size_of::<CMechanism>() && align_of::<Mechanism>() <= align_of::<CMechanism>());\n\n\
+         /// Friction and restitution as C gives them.\n#[repr(C)]\n#[derive(Clone, Copy)]\npub struct CSurface {{\n    mu: {scalar},\n    e: {scalar},\n    law: i32,\n}}\n\n",
+        module.numbers.max(1),
+        module.mechanism,
+    );
+    out += &statuses();
+    out += &choices();
+    for record in module.records.iter().filter(|record| !record.is_plain()) {
+        let _ = write!(
+            out,
+            "/// {} as C has it.\n#[repr(C)]\n#[derive(Clone, Copy)]\npub struct C{} {{\n",
+            record.name, record.name
+        );
+        for field in &record.fields {
+            let _ = writeln!(out, "    {}: {},", field.name, names::memory(module, scalar, &field.form));
+        }
+        let _ = write!(
+            out,
+            "}}\n\nimpl From<model::{0}<{scalar}>> for C{0} {{\n    fn from(value: model::{0}<{scalar}>) -> Self {{\n        C{0} {{\n",
+            record.name
+        );
+        for field in &record.fields {
+            let value = names::stored(module, &field.form, &format!("value.{}", field.name));
+            let _ = writeln!(out, "            {}: {value},", field.name);
+        }
+        out += "        }\n    }\n}\n\n";
+    }
+    out += &construction(module, scalar);
+    for record in module.records.iter().filter(|record| record.stated && !record.fields.is_empty()) {
+        let of = names::record(module, &record.name);
+        let what = of.trim_start_matches(name.as_str()).trim_start_matches('_').to_owned();
+        let _ = write!(
+            out,
+            "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {name}_default_{what}(answer: *mut [{scalar}; {}]) -> i32 {{\n    if answer.is_null() {{\n        return NULL;\n    }}\n    \
+             // SAFETY: not null, and the caller's to write to.\n    unsafe {{ answer.write(model::{}::<{scalar}>::default().into()) }};\n    OK\n}}\n\n",
+            record.fields.len(),
+            record.name,
+        );
+    }
+    for routine in &module.routines {
+        out += &function(module, scalar, routine);
+    }
+    out
+}
+
+/// The constants of the status, and the status of each error.
+fn statuses() -> String {
+    let mut out = String::new();
+    for (value, (name, docs)) in STATUSES.iter().enumerate() {
+        let _ = write!(out, "/// {docs}\npub const {name}: i32 = {value};\n");
+    }
+    out + "
+fn state(error: &StateError) -> i32 {
+    match error {
+        StateError::Singular { .. } => SINGULAR,
+        StateError::NotFinite => NOT_FINITE,
+        StateError::Undefined { .. } => UNDEFINED,
+        _ => OTHER,
+    }
+}
+
+fn impact<T>(error: &ImpactError<T>) -> i32 {
+    match error {
+        ImpactError::NotFinite { .. } => NOT_FINITE,
+        ImpactError::NegativeFriction { .. } => NEGATIVE_FRICTION,
+        ImpactError::RestitutionOutOfRange { .. } => RESTITUTION_OUT_OF_RANGE,
+        ImpactError::NotApproaching { .. } => NOT_APPROACHING,
+        ImpactError::NotPositiveSemidefinite { .. } => NOT_POSITIVE_SEMIDEFINITE,
+        ImpactError::NoNormalMobility { .. } => NO_NORMAL_MOBILITY,
+        ImpactError::NoImpact { .. } => NO_IMPACT,
+        ImpactError::Inaccurate { .. } => INACCURATE,
+        _ => OTHER,
+    }
+}
+
+trait Status {
+    fn status(&self) -> i32;
+}
+
+impl Status for StateError {
+    fn status(&self) -> i32 {
+        state(self)
+    }
+}
+
+impl Status for ParameterError {
+    fn status(&self) -> i32 {
+        PARAMETER
+    }
+}
+
+impl<T> Status for CollisionError<T> {
+    fn status(&self) -> i32 {
+        match self {
+            CollisionError::State(error) => state(error),
+            CollisionError::Impact(error) => impact(error),
+            _ => OTHER,
+        }
+    }
+}
+
+impl<T> Status for ClosedContactError<T> {
+    fn status(&self) -> i32 {
+        match self {
+            ClosedContactError::State(error) => state(error),
+            ClosedContactError::Contact(ContactError::ImpactWithoutCollision { .. }) => IMPACT_WITHOUT_COLLISION,
+            ClosedContactError::Contact(ContactError::Jam { .. }) => JAM,
+            ClosedContactError::Contact(ContactError::NoMode { .. }) => NO_MODE,
+            ClosedContactError::Contact(ContactError::Input(error)) => impact(error),
+            _ => OTHER,
+        }
+    }
+}
+
+"
+}
+
+/// The numbers of hypotheses, phases and modes.
+fn choices() -> String {
+    let mut out =
+        "fn surface_of<T: Copy>(mu: T, e: T, law: i32) -> Option<Surface<T>> {\n    let law = match law {\n"
+            .to_owned();
+    for (value, (_, law)) in
+        LAWS.iter().map(|(name, _)| name).zip(["Newton", "Poisson", "Stronge"]).enumerate()
+    {
+        let _ = writeln!(out, "        {value} => Law::{law},");
+    }
+    out += "        _ => return None,\n    };\n    Some(Surface { mu, e, law })\n}\n\n#[allow(unreachable_patterns)]\nfn path(path: Path) -> i32 {\n    match path {\n";
+    for (value, (_, variant, _)) in PATHS.iter().enumerate() {
+        let _ = writeln!(out, "        Path::{variant} => {value},");
+    }
+    out += "        _ => -1,\n    }\n}\n\n#[allow(unreachable_patterns)]\nfn mode(mode: ContactMode) -> i32 {\n    match mode {\n";
+    for (value, (_, variant, _)) in MODES.iter().enumerate() {
+        let _ = writeln!(out, "        ContactMode::{variant} => {value},");
+    }
+    out + "        _ => -1,\n    }\n}\n\n"
+}
+
+fn construction(module: &Module, scalar: &str) -> String {
+    let parameters =
+        module.records.iter().find(|record| record.name == "Parameters" && !record.fields.is_empty());
+    let (argument, check, value) = match parameters {
+        Some(record) => (
+            format!("parameters: *const [{scalar}; {}], ", record.fields.len()),
+            "parameters.is_null() || ",
+            "Mechanism::new(unsafe { parameters.read() }.into())",
+        ),
+        None => (String::new(), "", "Mechanism::new()"),
+    };
+    let name = &module.name;
+    format!(
+        "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {name}_new({argument}answer: *mut CMechanism) -> i32 {{\n    if {check}answer.is_null() {{\n        return NULL;\n    }}\n    \
+         // SAFETY: the pointers are not null, and point to what the header says.\n    match {value} {{\n        Ok(mechanism) => {{\n            \
+         // SAFETY: as above; the memory is large enough and aligned, which was asserted.\n            unsafe {{ answer.cast::<Mechanism>().write(mechanism) }};\n            OK\n        }}\n        \
+         Err(error) => error.status(),\n    }}\n}}\n\n"
+    )
+}
+
+fn function(module: &Module, scalar: &str, routine: &Routine) -> String {
+    let mut declared = vec!["mechanism: *const CMechanism".to_owned()];
+    let mut nulls = vec!["mechanism.is_null()".to_owned()];
+    let (mut read, mut passed) = (String::new(), Vec::new());
+    for (name, form) in &routine.arguments {
+        let memory = names::memory(module, scalar, form);
+        match form {
+            Form::Number => {
+                declared.push(format!("{name}: {memory}"));
+                passed.push(name.clone());
+                continue;
+            }
+            Form::Surface => {
+                let _ = write!(
+                    read,
+                    "    let CSurface {{ mu, e, law }} = unsafe {{ {name}.read() }};\n    let Some({name}) = surface_of(mu, e, law) else {{ return UNKNOWN_LAW }};\n"
+                );
+            }
+            Form::Record(record) => {
+                let _ = writeln!(read, "    let {name} = model::{record}::from(unsafe {{ {name}.read() }});");
+            }
+            _ => {}
+        }
+        declared.push(format!("{name}: *const {memory}"));
+        nulls.push(format!("{name}.is_null()"));
+        passed.push(format!("&{name}"));
+    }
+    declared.push(format!("answer: *mut {}", names::memory(module, scalar, &routine.answer)));
+    nulls.push("answer.is_null()".to_owned());
+    let of = &module.name;
+    format!(
+        "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {of}_{}(\n    {},\n) -> i32 {{\n    if {} {{\n        return NULL;\n    }}\n    \
+         // SAFETY: the pointers are not null, and point to what the header says; values are copied before anything is written.\n    \
+         let mechanism = unsafe {{ &*mechanism.cast::<Mechanism>() }};\n{read}    match mechanism.{}({}) {{\n        Ok(value) => {{\n            \
+         // SAFETY: as above.\n            unsafe {{ answer.write({}) }};\n            OK\n        }}\n        Err(error) => error.status(),\n    }}\n}}\n\n",
+        routine.name,
+        declared.join(",\n    "),
+        nulls.join(" || "),
+        routine.name,
+        passed.join(", "),
+        names::stored(module, &routine.answer, "value"),
+    )
+}

@@ -1,0 +1,118 @@
+//! A generated module as a library for C: a crate with functions of C's calling convention, and their header.
+//!
+//! * `module` reads from the generated module which records and routines have a form in C;
+//! * `names` gives names, declarations and conversions of values;
+//! * `header` and `library` write the two sides;
+//! * this file puts the crate together.
+
+mod header;
+mod library;
+mod module;
+mod names;
+
+/// What calls say: name and documentation, numbered from zero.
+const STATUSES: &[(&str, &str)] = &[
+    ("OK", "the answer is there"),
+    ("NULL", "a pointer is null"),
+    (
+        "PARAMETER",
+        "a parameter is not finite, a mass is not positive, no body can have an inertia, or a divisor is zero",
+    ),
+    ("SINGULAR", "the state is singular"),
+    ("NOT_FINITE", "a number that went in, or the answer, is not finite"),
+    ("UNDEFINED", "the quantity has no value in this state"),
+    ("UNKNOWN_LAW", "the surface names no hypothesis of restitution"),
+    ("NEGATIVE_FRICTION", "the coefficient of friction is negative"),
+    ("RESTITUTION_OUT_OF_RANGE", "the coefficient of restitution is not between 0 and 1"),
+    ("NOT_APPROACHING", "the bodies do not approach each other: there is no collision"),
+    ("NOT_POSITIVE_SEMIDEFINITE", "no mechanism has such a reduced matrix"),
+    ("NO_NORMAL_MOBILITY", "no impulse changes the normal velocity"),
+    ("NO_IMPACT", "finite forces exist: there is no impact without collision"),
+    ("INACCURATE", "the outcome would break a law of mechanics by rounding"),
+    (
+        "IMPACT_WITHOUT_COLLISION",
+        "no finite force satisfies Coulomb's law: an impact without collision follows",
+    ),
+    ("JAM", "the contact jams: the force grows without bound"),
+    ("NO_MODE", "no mode of the contact fits"),
+    ("OTHER", "another error"),
+];
+
+/// Hypotheses of restitution: name and documentation, numbered from zero.
+const LAWS: &[(&str, &str)] = &[
+    ("NEWTON", "ratio of normal velocities"),
+    ("POISSON", "ratio of normal impulses"),
+    ("STRONGE", "ratio of works of the normal force"),
+];
+
+/// Phases of a collision: name, variant of `Path` and documentation, numbered from zero.
+const PATHS: &[(&str, &str, &str)] = &[
+    ("SLIDING", "Sliding", "the point slides throughout"),
+    ("SLIDING_THEN_STICKING", "SlidingThenSticking", "it slides, then sticks"),
+    ("SLIDING_THEN_RENEWAL", "SlidingThenRenewal", "it slides, stops, and slides again"),
+    ("STICKING", "Sticking", "it sticks throughout"),
+    ("RENEWAL", "Renewal", "it starts without slip, and slides"),
+];
+
+/// Modes of a closed contact: name, variant of `ContactMode` and documentation, numbered from zero.
+const MODES: &[(&str, &str, &str)] = &[
+    ("SEPARATE", "Separate", "the contact opens"),
+    ("SLIDE", "Slide", "the point slides"),
+    ("STICK", "Stick", "the point sticks"),
+    ("BEGIN_SLIP", "BeginSlip", "the point begins to slip"),
+];
+
+/// The type of all numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scalar {
+    /// `double` and `f64`
+    Double,
+    /// `float` and `f32`
+    Single,
+}
+
+/// A file of the crate: its path in the crate's folder, and its text.
+pub type File = (String, String);
+
+/// The files of the crate. `expanded` is the Rust text of the generated module, `dependency` what stands after `hodograph =` in the manifest, in braces.
+/// `None`: the text is no generated module.
+pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<File>> {
+    let module = module::read(&syn::parse_file(expanded).ok()?)?;
+    let (c, rust) = match scalar {
+        Scalar::Double => ("double", "f64"),
+        Scalar::Single => ("float", "f32"),
+    };
+    let name = &module.name;
+    Some(vec![
+        ("Cargo.toml".to_owned(), manifest(&module, dependency)),
+        ("README.md".to_owned(), readme(&module)),
+        (format!("include/{name}.h"), header::header(&module, c)),
+        ("src/lib.rs".to_owned(), library::library(&module, rust)),
+        ("src/mechanism.rs".to_owned(), expanded.to_owned()),
+    ])
+}
+
+fn manifest(module: &module::Module, dependency: &str) -> String {
+    format!(
+        "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\npublish = false\n\n[lib]\ncrate-type = [\"staticlib\"]\n\n\
+         [features]\ndefault = [\"std\"]\n# Off for microcontrollers: `--no-default-features`.\nstd = [\"hodograph/std\"]\n\n\
+         [dependencies]\nhodograph = {dependency}\n\n[profile.release]\npanic = \"abort\"\nlto = \"fat\"\ncodegen-units = 1\n\n[workspace]\n",
+        module.name
+    )
+}
+
+fn readme(module: &module::Module) -> String {
+    let name = &module.name;
+    format!(
+        "# {0} for C\n\n{1}\n\n```sh\ncargo build --release                                    # target/release/lib{name}.a\n\
+         cargo build --release --no-default-features --target thumbv7em-none-eabihf    # for a Cortex-M4F or M7\n\
+         cc -I include main.c target/release/lib{name}.a -lm -o main\n```\n\n\
+         The library and `include/{name}.h` are all that a team without cargo needs: whoever has cargo builds the library once per target, and both files are\n\
+         handed on. They need nothing at run time but, on a desktop, the C library.\n\n\
+         ```c\n#include \"{name}.h\"\n\n{name} mechanism;\n{name}_coordinates q;\n{name}_speeds u, rates;\n```\n\n\
+         Every call answers a status; the answer is written only where the status is `{2}_OK`. Nothing is allocated, and there is no hidden state.\n",
+        module.mechanism,
+        module.docs,
+        name.to_uppercase(),
+    )
+}

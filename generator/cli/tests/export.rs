@@ -1,0 +1,167 @@
+//! `hodograph export --c`: the crate builds, a C program that calls it gets the answers of the tool, and every header is C and C++.
+
+mod common;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use common::{hodograph, root};
+
+/// Exports a model to a folder of its own, and gives the folder.
+fn export(model: &Path, into: &Path, options: &[&str]) -> PathBuf {
+    let folder = into.join(model.file_stem().unwrap());
+    let runtime = root().join("runtime");
+    let mut call = vec!["export", "--c", model.to_str().unwrap(), "-o", folder.to_str().unwrap()];
+    call.extend(["--hodograph", runtime.to_str().unwrap()]);
+    call.extend(options);
+    let run = hodograph(&call, "");
+    assert_eq!((run.code, run.stdout.as_str()), (0, ""), "{}", run.stderr);
+    folder
+}
+
+fn output(command: &mut Command, folder: &Path) -> Output {
+    for (key, _) in std::env::vars_os() {
+        let key = key.to_string_lossy().into_owned();
+        if key.starts_with("CARGO_") && key != "CARGO_HOME" || key == "RUSTFLAGS" {
+            command.env_remove(key);
+        }
+    }
+    let output = command.current_dir(folder).output().unwrap();
+    assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+    output
+}
+
+/// Builds the crate in the folder with the workspace's versions of its dependencies, where the other crates of tests are built.
+fn build(folder: &Path) -> PathBuf {
+    std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    let target = root().join("target/tmp/downstream");
+    let mut cargo = Command::new(env!("CARGO"));
+    output(cargo.args(["build", "--offline", "--target-dir", target.to_str().unwrap()]), folder);
+    target
+}
+
+/// Every number of a field of a line of JSON, one after the other.
+fn numbers(value: &serde_json::Value) -> Vec<f64> {
+    match value {
+        serde_json::Value::Number(number) => vec![number.as_f64().unwrap()],
+        serde_json::Value::Array(values) => values.iter().flat_map(numbers).collect(),
+        serde_json::Value::Object(values) => values.values().flat_map(numbers).collect(),
+        other => panic!("no number: {other}"),
+    }
+}
+
+#[test]
+fn a_program_in_c_gets_the_answers_of_the_tool() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = root().join("models/two_sleds.mech");
+    let exported = export(&model, folder.path(), &[]);
+    let library = build(&exported).join("debug/libtwo_sleds.a");
+    let main = root().join("generator/cli/tests/export/main.c");
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-I", "include", "-o", "main"])
+        .args([&main, &library]);
+    output(cc.args(["-lm", "-lpthread", "-ldl"]), &exported);
+    let answer = output(&mut Command::new(exported.join("main")), &exported);
+    let answer = String::from_utf8(answer.stdout).unwrap();
+    let line = |name: &str| -> Vec<f64> {
+        let line = answer.lines().find_map(|line| line.strip_prefix(&format!("{name} "))).unwrap();
+        line.split(' ').map(|number| number.parse().unwrap()).collect()
+    };
+    let model = model.to_str().unwrap();
+    let eval = hodograph(&["eval", model], "").line();
+    let hit = hodograph(&["collide", model, "--mu", "0.5", "--e", "0.5", "--law", "stronge"], "").line();
+    assert_eq!(line("mass_matrix"), numbers(&eval["mass_matrix"]));
+    let independent = |of: &serde_json::Value| -> Vec<f64> {
+        let speeds = eval["speeds"].as_array().unwrap();
+        speeds.iter().flat_map(|speed| numbers(&of[speed.as_str().unwrap()])).collect()
+    };
+    assert_eq!(line("accelerations"), independent(&eval["udot"]));
+    assert_eq!(line("kinetic_energy"), numbers(&eval["kinetic_energy"]));
+    // The module knows the structure of its reduced matrix and takes a shorter way than the tool: equal but for rounding.
+    for (name, expected) in [
+        ("impulse", numbers(&hit["impulse"])),
+        ("separation", numbers(&hit["v"])),
+        ("speeds", independent(&hit["u_after"])),
+        ("energy_change", numbers(&hit["kinetic_energy_change"])),
+    ] {
+        let found = line(name);
+        let near =
+            |(found, expected): (&f64, &f64)| (found - expected).abs() <= 1e-13 * expected.abs().max(1.0);
+        assert!(
+            found.len() == expected.len() && found.iter().zip(&expected).all(near),
+            "{name} {found:?} {expected:?}"
+        );
+    }
+    assert_eq!(line("position_bc").len(), 3);
+    // The last line of this name is the call whose answer stands where its argument stood.
+    let again = answer.lines().filter(|line| line.starts_with("accelerations ")).collect::<Vec<_>>();
+    assert_eq!(again.len(), 2);
+    assert_eq!(again[0], again[1]);
+}
+
+#[test]
+fn every_header_is_c_and_cpp() {
+    let folder = tempfile::tempdir().unwrap();
+    // Names that C reserves, no parameters at run time, no inputs.
+    let reserved = folder.path().join("int.mech");
+    let text = "mechanism Int; parameters { fixed m: kg = 2, fixed l: m = 0.5, fixed g: m/s^2 = 9.81 }
+        coordinates { int: rad = 0.3, /** */ int_: m = 0 } speeds { double: rad/s = 0, u: m/s = 0 }
+        frames { A = N.rotate(z, int); } points { P = O + (l + int_)*A.x; } particles { Bob { point: P, mass: m } }
+        loads { gravity: -g*N.y; } kinematics { d(int)/dt = double; d(int_)/dt = u; }
+        contacts { auto { point: P, normal: N.x, gap: dot(position(P), N.x) } }";
+    std::fs::write(&reserved, text.replace("/** */ ", "")).unwrap();
+    assert_eq!(hodograph(&["derive", reserved.to_str().unwrap()], "").code, 0);
+    let shipped = std::fs::read_dir(root().join("models")).unwrap().map(|entry| entry.unwrap().path());
+    let models = shipped.filter(|path| path.extension().is_some_and(|end| end == "mech"));
+    let models: Vec<PathBuf> = models.chain([reserved]).collect();
+    assert!(models.len() > 20);
+    let headers = models.iter().map(|model| {
+        let exported = export(model, folder.path(), &[]);
+        std::fs::read_dir(exported.join("include")).unwrap().next().unwrap().unwrap().path()
+    });
+    let includes: String = headers.map(|header| format!("#include \"{}\"\n", header.display())).collect();
+    // All together, so that their names do not clash either.
+    let all = folder.path().join("all.h");
+    std::fs::write(&all, includes).unwrap();
+    for (language, standard) in [("c", "c99"), ("c++", "c++11")] {
+        let mut cc = Command::new("cc");
+        cc.args([
+            "-x",
+            language,
+            &format!("-std={standard}"),
+            "-Wall",
+            "-Wextra",
+            "-pedantic",
+            "-Werror",
+            "-fsyntax-only",
+        ]);
+        output(cc.arg(&all), folder.path());
+    }
+}
+
+#[test]
+fn mistakes_of_the_call_are_said_and_nothing_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let there = folder.path().join("there");
+    std::fs::create_dir(&there).unwrap();
+    let model = root().join("models/two_sleds.mech");
+    let model = model.to_str().unwrap();
+    let none = folder.path().join("none/at/all");
+    let (there, none) = (there.to_str().unwrap(), none.to_str().unwrap());
+    let nowhere = folder.path().join("new");
+    let nowhere = nowhere.to_str().unwrap();
+    for (call, code, says) in [
+        (vec!["export", "--c", model, "-o", there], 2, "exists"),
+        (vec!["export", "--c", model, "-o", none], 1, "cannot write"),
+        (vec!["export", "--c", model, "-o", nowhere, "--hodograph", there], 2, "has no Cargo.toml"),
+        (vec!["export", model, "-o", nowhere], 2, "--c"),
+        (vec!["export", "--c", "no.mech", "-o", nowhere], 2, "no.mech"),
+    ] {
+        let run = hodograph(&call, "");
+        assert_eq!(run.code, code, "{call:?} {}", run.stderr);
+        assert!(run.stderr.contains(says), "{call:?} {}", run.stderr);
+    }
+    let left: Vec<_> =
+        std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    assert_eq!(left, ["there"]);
+}
