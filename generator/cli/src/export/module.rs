@@ -257,20 +257,22 @@ fn parameters(of: &Type) -> impl Iterator<Item = &GenericArgument> {
 
 /// The types among the parameters of a type.
 fn types(of: &Type) -> Vec<&Type> {
-    let one = |argument| match argument {
-        &GenericArgument::Type(ref of) => Some(of),
-        _ => None,
-    };
-    parameters(of).filter_map(one).collect()
+    let mut types = Vec::new();
+    for parameter in parameters(of) {
+        if let GenericArgument::Type(of) = parameter {
+            types.push(of);
+        }
+    }
+    types
 }
 
 /// The numbers among the parameters of a type.
 fn numbers(of: &Type) -> Vec<usize> {
-    let one = |argument| match argument {
-        &GenericArgument::Const(ref number) => literal(number),
+    let number = |parameter: &GenericArgument| match parameter {
+        GenericArgument::Const(number) => literal(number),
         _ => None,
     };
-    parameters(of).filter_map(one).collect()
+    parameters(of).filter_map(number).collect()
 }
 
 fn literal(expression: &Expr) -> Option<usize> {
