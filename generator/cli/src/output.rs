@@ -158,10 +158,9 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// # Errors
 ///
 /// The folder exists or cannot be written: then nothing of it is there.
-pub fn folder(path: &Path, files: &[(String, String)]) -> Outcome {
+pub fn files(path: &Path, files: &[(String, String)]) -> Outcome {
     let make = || -> io::Result<()> {
-        let parent = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let folder = tempfile::Builder::new().prefix(".hodograph").tempdir_in(parent)?;
+        let folder = tempfile::Builder::new().prefix(".hodograph").tempdir_in(folder(path))?;
         let _unfinished = Unfinished::file(folder.path());
         for (name, text) in files {
             let place = folder.path().join(name);

@@ -63,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let expanded = expand::text(&arguments.model, &arguments.limits)?;
     let files = files(&expanded, scalar, &dependency)
         .ok_or_else(|| Stop::Fault("the generated module cannot be read".to_owned()))?;
-    output::folder(folder, &files)?;
+    output::files(folder, &files)?;
     output::say(format_args!(
         "{} written: README.md there says how to build it",
         Path::new(folder).display()
