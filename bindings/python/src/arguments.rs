@@ -135,6 +135,14 @@ pub fn common(py: Python<'_>, tables: &[(&str, &Rows<'_>)]) -> PyResult<Option<u
     Ok(found.map(|(_, rows)| rows))
 }
 
+/// The law of this name.
+pub fn law_named(py: Python<'_>, name: &str) -> PyResult<Law> {
+    Law::named(name).ok_or_else(|| {
+        let message = format!("the law is '{name}': expected 'newton', 'poisson' or 'stronge'");
+        errors::argument(py, "law", "unknown_law", &message)
+    })
+}
+
 /// Friction, restitution and law of every row.
 pub struct Surfaces<'py> {
     pub mu: Rows<'py>,
@@ -144,15 +152,7 @@ pub struct Surfaces<'py> {
 
 impl<'py> Surfaces<'py> {
     pub fn new(py: Python<'py>, mu: &Bound<'py, PyAny>, e: &Bound<'py, PyAny>, law: &str) -> PyResult<Self> {
-        let law = match law {
-            "newton" => Law::Newton,
-            "poisson" => Law::Poisson,
-            "stronge" => Law::Stronge,
-            other => {
-                let message = format!("the law is '{other}': expected 'newton', 'poisson' or 'stronge'");
-                return Err(errors::argument(py, "law", "unknown_law", &message));
-            }
-        };
+        let law = law_named(py, law)?;
         Ok(Surfaces { mu: column(py, mu, "mu")?, e: column(py, e, "e")?, law })
     }
 

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::arguments::{Surfaces, array, common};
 use crate::errors;
+use crate::machines::{Machines, Struck, parameter_error};
 use crate::states::States;
 
 /// Why a row has no answer, by number; the first is none.
@@ -133,8 +134,7 @@ fn write(numbers: &mut Vec<f64>, outcome: &CollisionOutcome<f64>, speeds: &[f64]
 /// Solves the collisions of all rows.
 pub fn collide<'py>(
     py: Python<'py>,
-    mechanism: &InterpretedMechanism,
-    contact: usize,
+    (mechanism, machines, contact): (&InterpretedMechanism, Option<&Machines>, usize),
     states: States<'py>,
     (mu, e, law): (&Bound<'py, PyAny>, &Bound<'py, PyAny>, &str),
     raises: bool,
@@ -163,18 +163,28 @@ pub fn collide<'py>(
     let surface = surfaces.of_rows();
     let solved = |range: std::ops::Range<usize>| {
         let mut answers = Answers::default();
-        let mut first: Option<(usize, CollisionError<f64>)> = None;
-        collisions.solve(&table, &surface, range, |row, struck| match struck {
+        let mut first: Option<(usize, Struck)> = None;
+        let mut answer = |row: usize, struck: Result<(CollisionOutcome<f64>, &[f64]), Struck>| match struck {
             Ok((outcome, speeds)) => {
                 write(&mut answers.numbers, &outcome, speeds);
                 answers.paths.push(number_of_path(outcome.impact.path));
                 answers.kinds.push(0);
             }
             Err(error) => {
-                answers.none(width, error.kind());
+                let kind = match &error {
+                    Struck::Parameters(_) => "other",
+                    Struck::Collision(error) => error.kind(),
+                };
+                answers.none(width, kind);
                 first.get_or_insert((row, error));
             }
-        });
+        };
+        match machines {
+            Some(machines) => machines.collide(mechanism, contact, (&table, range), &surface, answer),
+            None => collisions.solve(&table, &surface, range, |row, struck| {
+                answer(row, struck.map_err(Struck::Collision));
+            }),
+        }
         (answers, first)
     };
     let parts = py.detach(|| over_rows(rows.unwrap_or(1), solved));
@@ -182,6 +192,12 @@ pub fn collide<'py>(
     let answers = Answers::joined(answers);
     if raises && let Some((row, error)) = failed.into_iter().flatten().next() {
         let count = answers.kinds.iter().filter(|&&kind| kind != 0).count();
+        let error = match error {
+            Struck::Collision(error) => error,
+            Struck::Parameters(error) => {
+                return Err(parameter_error(py, &error, (row, rows.unwrap_or(1), count)));
+            }
+        };
         return Err(match error {
             CollisionError::State(error) => state_rows.error(py, mechanism, &error, row, count),
             CollisionError::Impact(error) => impact_error(py, &error, rows.map(|rows| (row, rows, count))),

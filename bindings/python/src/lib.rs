@@ -6,6 +6,7 @@ mod arguments;
 mod collisions;
 mod errors;
 mod impacts;
+mod machines;
 mod mechanism;
 mod model;
 mod motion;

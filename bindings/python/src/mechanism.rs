@@ -15,6 +15,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::arguments::{Rows, array, column, common, raises, rows};
+use crate::machines::{Machines, Refused, parameter_error};
+use crate::motion::Choices;
 use crate::states::States;
 use crate::{collisions, errors, model, motion};
 
@@ -32,6 +34,8 @@ pub struct Mechanism {
     routines: RwLock<HashMap<String, Arc<Routine>>>,
     /// coordinates, speeds, inputs that the model states
     initial: [Vec<f64>; 3],
+    /// parameters of every row, where these are not those of `inner` for all
+    machines: Option<Machines>,
 }
 
 fn is_matrix(quantity: Quantity) -> bool {
@@ -61,7 +65,7 @@ impl Mechanism {
         let (mut q, mut u, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
         // the slices have the lengths asked for
         let _ = inner.initial_state(&mut q, &mut u, &mut inputs);
-        Mechanism { inner, routines: RwLock::default(), initial: [q, u, inputs] }
+        Mechanism { inner, routines: RwLock::default(), initial: [q, u, inputs], machines: None }
     }
 
     /// Reads a model and its derivation.
@@ -159,7 +163,16 @@ impl Mechanism {
         tables.extend(time.as_ref().map(|table| ("time", table)));
         tables.extend(accelerations.as_ref().map(|table| ("accelerations", table)));
         tables.extend(tangent.as_ref().map(|table| ("tangent", table)));
-        let rows = common(py, &tables)?;
+        let rows = match (common(py, &tables)?, &self.machines) {
+            (Some(rows), Some(machines)) if rows != machines.rows => {
+                let message = format!(
+                    "the parameters have {} rows, the state has {rows}: expected as many",
+                    machines.rows
+                );
+                return Err(errors::argument(py, "parameters", "wrong_shape", &message));
+            }
+            (rows, machines) => rows.or(machines.as_ref().map(|machines| machines.rows)),
+        };
         Ok(States { q, u, inputs, time, accelerations, tangent, rows })
     }
 }
@@ -167,24 +180,30 @@ impl Mechanism {
 #[pymethods]
 impl Mechanism {
     /// Reads a model (a path, or a text) and its derivation (a path; by default the file beside the model), or takes those of another mechanism.
-    /// With `parameters`: all that can be changed, in the order of the model.
+    /// With `parameters`: all that can be changed, in the order of the model; with many rows of them, one mechanism for every row of a state.
     #[new]
     #[pyo3(signature = (model, derivation = None, parameters = None))]
     fn new(
         py: Python<'_>,
         model: &Bound<'_, PyAny>,
         derivation: Option<&str>,
-        parameters: Option<Vec<f64>>,
+        parameters: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let mut inner = match model.cast::<Mechanism>() {
             Ok(other) => other.get().inner.clone(),
             Err(_) => Mechanism::read(py, &model.extract::<String>()?, derivation)?,
         };
-        if let Some(parameters) = parameters {
-            inner.set_parameters(&parameters).map_err(|error| {
-                errors::error(py, "ParameterError", &error.to_string(), error.kind(), None, None)
-            })?;
+        let Some(parameters) = parameters else { return Ok(Mechanism::of(inner)) };
+        let width = inner.count(Kind::Parameter);
+        let parameters = rows(py, Some(parameters), "parameters", width, &[])?;
+        let numbers = parameters.slice();
+        if let Some(rows) = parameters.rows {
+            let machines = Some(Machines { numbers: numbers.to_vec(), rows, width });
+            return Ok(Mechanism { machines, ..Mechanism::of(inner) });
         }
+        inner.set_parameters(numbers).map_err(|error| {
+            errors::error(py, "ParameterError", &error.to_string(), error.kind(), None, None)
+        })?;
         Ok(Mechanism::of(inner))
     }
 
@@ -206,7 +225,14 @@ impl Mechanism {
         let all = PyList::empty(py);
         for index in 0..self.inner.count(kind) {
             if let Some(component) = self.inner.component(kind, index) {
-                all.append((component.name, component.unit, values.get(index).copied()))?;
+                let (name, unit) = (component.name, component.unit);
+                if let (Kind::Parameter, Some(machines)) = (kind, &self.machines) {
+                    let column = (0..machines.rows)
+                        .map(|row| machines.row(row).get(index).copied().unwrap_or(f64::NAN));
+                    all.append((name, unit, array(py, Some(machines.rows), &[], column.collect())?))?;
+                } else {
+                    all.append((name, unit, values.get(index).copied()))?;
+                }
             }
         }
         Ok(all)
@@ -273,9 +299,21 @@ impl Mechanism {
                 _ => array(py, None, &routine.shape, numbers),
             };
         };
+        let table = states.table();
+        if let Some(machines) = &self.machines {
+            let (numbers, refused) = py.detach(|| machines.evaluate(&self.inner, &routine.one, &table));
+            return match refused.first() {
+                Some((row, Refused::Parameters(error))) if raises => {
+                    Err(parameter_error(py, error, (*row, rows, refused.len())))
+                }
+                Some((row, Refused::State(error))) if raises => {
+                    Err(states.error(py, &self.inner, error, *row, refused.len()))
+                }
+                _ => array(py, Some(rows), &routine.shape, numbers),
+            };
+        }
         let mut numbers = vec![0.0; rows * routine.many.len()];
         let mut failures = vec![None; rows];
-        let table = states.table();
         py.detach(|| evaluate_rows(&routine.many, &table, &mut numbers, &mut failures));
         if raises && let Some((row, Some(failed))) = failures.iter().enumerate().find(|(_, f)| f.is_some()) {
             let count = failures.iter().filter(|failure| failure.is_some()).count();
@@ -298,22 +336,21 @@ impl Mechanism {
     ) -> PyResult<Bound<'py, PyDict>> {
         let [q, u, inputs, time] = &states;
         let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
-        collisions::collide(py, &self.inner, contact, states, (mu, e, law), raises(py, errors)?)
+        let of = (&self.inner, self.machines.as_ref(), contact);
+        collisions::collide(py, of, states, (mu, e, law), raises(py, errors)?)
     }
 
     /// A motion from a state to a time.
-    #[allow(clippy::too_many_arguments)]
     fn _simulate<'py>(
         &self,
         py: Python<'py>,
         states: [Option<Bound<'py, PyAny>>; 4],
         until: f64,
         step: f64,
-        surface: (f64, f64, String),
-        tolerance: f64,
+        choices: Choices,
     ) -> PyResult<Bound<'py, PyDict>> {
         let [q, u, inputs, time] = &states;
         let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
-        motion::simulate(py, &self.inner, &states, (until, step), surface, tolerance)
+        motion::simulate(py, &self.inner, &states, (until, step), choices)
     }
 }

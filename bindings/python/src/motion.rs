@@ -1,23 +1,83 @@
 //! Motion with impacts and contact that lasts.
 
-use hodograph::{Kind, Law, Mechanism as _, State, Surface};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use hodograph::{Kind, Mechanism as _, State, Surface};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::{Options, Progress, Simulation, SimulationError};
+use hodograph_simulation::{
+    Drive, Event, EventKind, InputFunction, Options, Progress, Simulation, SimulationError,
+};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
-use crate::arguments::array;
+use crate::arguments::{array, law_named};
 use crate::errors;
 use crate::states::States;
 
 /// A motion has at most this many states.
 const MOST: f64 = 1e7;
 
+/// What a motion is to be like, from Python.
+#[derive(FromPyObject)]
+pub struct Choices {
+    /// mu, e and law of all contacts that have none of their own
+    #[pyo3(item)]
+    surface: (f64, f64, String),
+    /// mu, e and law of contacts, by number
+    #[pyo3(item)]
+    surfaces: Vec<(usize, f64, f64, String)>,
+    #[pyo3(item)]
+    tolerance: f64,
+    #[pyo3(item)]
+    max_step: f64,
+    /// inputs as a function of time, coordinates and speeds
+    #[pyo3(item)]
+    control: Option<Py<PyAny>>,
+    /// the sampling time of `control`, s; none: it is evaluated at every time
+    #[pyo3(item)]
+    period: Option<f64>,
+}
+
 struct Found {
     times: Vec<f64>,
     coordinates: Vec<f64>,
     speeds: Vec<f64>,
-    events: Vec<(f64, Option<usize>, &'static str)>,
+    events: Vec<Event>,
+}
+
+/// The exception that a function of Python raised, kept until the motion ends for it.
+type Raised = Arc<Mutex<Option<PyErr>>>;
+
+/// A function of Python as a function that writes inputs; where it raises, they are not numbers, which ends the motion.
+fn controlled(control: Py<PyAny>, raised: &Raised) -> InputFunction {
+    let raised = Arc::clone(raised);
+    Arc::new(move |time, coordinates, speeds, inputs: &mut [f64]| {
+        let found: PyResult<()> = Python::attach(|py| {
+            let arrays = (time, PyArray1::from_slice(py, coordinates), PyArray1::from_slice(py, speeds));
+            let found = control.bind(py).call1(arrays)?;
+            let numbers: Vec<f64> = match found.extract() {
+                Ok(numbers) => numbers,
+                Err(_) => vec![found.extract()?],
+            };
+            if numbers.len() != inputs.len() {
+                let message =
+                    format!("`control` gave {} numbers: expected {} inputs", numbers.len(), inputs.len());
+                return Err(errors::argument(py, "control", "wrong_shape", &message));
+            }
+            inputs.copy_from_slice(&numbers);
+            Ok(())
+        });
+        if let Err(error) = found {
+            inputs.fill(f64::NAN);
+            raised.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        }
+    })
+}
+
+/// A surface from its numbers and the name of its law.
+fn surface(py: Python<'_>, mu: f64, e: f64, law: &str) -> PyResult<Surface<f64>> {
+    Ok(Surface { mu, e, law: law_named(py, law)? })
 }
 
 fn follow(
@@ -32,7 +92,7 @@ fn follow(
     for index in 0..=count {
         let time = (state.time + step * index as f64).min(until);
         while let Progress::Event(event) = simulation.advance(time)? {
-            found.events.push((event.time, event.contact, event.kind.name()));
+            found.events.push(event);
         }
         found.times.push(time);
         found.coordinates.extend_from_slice(simulation.coordinates());
@@ -47,39 +107,50 @@ pub fn simulate<'py>(
     mechanism: &InterpretedMechanism,
     states: &States<'py>,
     (until, step): (f64, f64),
-    (mu, e, law): (f64, f64, String),
-    tolerance: f64,
+    choices: Choices,
 ) -> PyResult<Bound<'py, PyDict>> {
     let wrong = |name: &str, message: &str| Err(errors::argument(py, name, "bad_option", message));
     if states.rows.is_some() {
         return wrong("q", "a motion begins in one state: expected arrays of shape (p,)");
     }
-    let law = match law.as_str() {
-        "newton" => Law::Newton,
-        "poisson" => Law::Poisson,
-        "stronge" => Law::Stronge,
-        other => {
-            return wrong("law", &format!("the law is '{other}': expected 'newton', 'poisson' or 'stronge'"));
-        }
-    };
     let start = states.time.as_ref().map_or(0.0, |time| time.slice()[0]);
     let lasts = until - start;
     if !(step > 0.0 && lasts >= 0.0 && lasts.is_finite() && lasts / step <= MOST) {
         return wrong("step", "expected step > 0, until not before the beginning, and at most 1e7 steps");
     }
-    let options = Options {
-        relative_tolerance: tolerance,
-        absolute_tolerance: tolerance,
-        surface: Some(Surface { mu, e, law }),
+    let (mu, e, law) = &choices.surface;
+    let mut options = Options {
+        relative_tolerance: choices.tolerance,
+        absolute_tolerance: choices.tolerance,
+        max_step: choices.max_step,
+        surface: Some(surface(py, *mu, *e, law)?),
         ..Options::default()
     };
+    for (contact, mu, e, law) in &choices.surfaces {
+        options.surfaces.push((*contact, surface(py, *mu, *e, law)?));
+    }
+    let raised = Raised::default();
+    if let Some(control) = choices.control {
+        let function = controlled(control, &raised);
+        options.drive = match choices.period {
+            None => Drive::Continuous(function),
+            Some(period) => Drive::Sampled {
+                period,
+                controller: Box::new(move |t: f64, q: &[f64], u: &[f64], w: &mut [f64]| function(t, q, u, w)),
+            },
+        };
+    }
     let state = State {
         time: start,
         coordinates: states.q.slice(),
         speeds: states.u.slice(),
         inputs: states.inputs.slice(),
     };
-    let found = py.detach(|| follow(mechanism, &state, (until, step), options)).map_err(|error| {
+    let followed = py.detach(|| follow(mechanism, &state, (until, step), options));
+    if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        return Err(error);
+    }
+    let found = followed.map_err(|error| {
         let place = match &error.contact {
             Some(contact) => format!("{contact}, time {} s", error.time),
             None => format!("time {} s", error.time),
@@ -94,9 +165,20 @@ pub fn simulate<'py>(
     all.set_item("q", array(py, rows, &[n], found.coordinates)?)?;
     all.set_item("u", array(py, rows, &[p], found.speeds)?)?;
     let events = PyList::empty(py);
-    for (time, contact, kind) in found.events {
-        let name = contact.and_then(|contact| mechanism.component(Kind::Contact, contact));
-        events.append((time, kind, name.map(|component| component.name)))?;
+    for event in found.events {
+        let name = event.contact.and_then(|contact| mechanism.component(Kind::Contact, contact));
+        let (impulse, energy) = match &event.kind {
+            EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
+                let impulse = struck.outcome.impulse_on_point;
+                (Some(PyArray1::from_slice(py, impulse.as_slice())), Some(struck.outcome.energy_change))
+            }
+            EventKind::StruckTogether(all) => (None, Some(all.energy_change)),
+            _ => (None, None),
+        };
+        let state = [&event.coordinates, &event.speeds].map(|numbers| PyArray1::from_slice(py, numbers));
+        let [q, u] = state;
+        let contact = name.map(|component| component.name);
+        events.append((event.time, event.kind.name(), contact, q, u, impulse, energy))?;
     }
     all.set_item("events", events)?;
     Ok(all)

@@ -15,6 +15,7 @@ def model(name):
 
 
 SLEDS = model("two_sleds")
+RANDOM = np.random.default_rng(5)
 SURFACE = dict(mu=0.6, e=0.8, law="stronge")
 MATRIX, APPROACH = np.array([0.25, -0.125, 0.0, 0.5, 0.0, 0.5]), np.array([-1.0, 0.5, 0.0])
 
@@ -89,6 +90,54 @@ def test_simulate():
         m.simulate(1.0, 0.0)
 
 
+def test_simulate_contacts_with_surfaces_and_events():
+    m = model("free_box_corner")
+    contact = m.contacts[0]
+    motion = m.simulate(0.05, 0.01, mu=0.3, e=0.5, law="stronge")
+    same = m.simulate(0.05, 0.01, surfaces={contact: dict(mu=0.3, e=0.5, law="stronge")})
+    other = m.simulate(0.05, 0.01, mu=0.3, e=0.5, law="stronge", surfaces={contact: {"e": 0.0}})
+    np.testing.assert_array_equal(motion.u, same.u)
+    first = motion.events[0]
+    assert first.kind == "collision" and first.contact == contact and first.q.shape == (len(m.coordinates),)
+    # the box touches the floor at the start
+    hit = m.collide(contact, mu=0.3, e=0.5, law="stronge")
+    assert first.time == 0
+    np.testing.assert_allclose(first.u, hit.speeds, rtol=1e-12, atol=1e-12)
+    np.testing.assert_allclose(first.impulse_on_point, hit.impulse_on_point, rtol=1e-12, atol=1e-12)
+    assert first.energy_change == pytest.approx(hit.energy_change)
+    assert not np.array_equal(motion.u, other.u)
+    assert list(motion.columns())[0] == "time" and len(motion.columns()) == 1 + motion.q.shape[1] + motion.u.shape[1]
+    with pytest.raises(hodograph.ArgumentError, match="expected one of"):
+        m.simulate(0.1, 0.01, surfaces={"nowhere": {}})
+    with pytest.raises(hodograph.ArgumentError, match="friction.*mu"):
+        m.simulate(0.1, 0.01, surfaces={contact: {"friction": 1}})
+
+
+def test_simulate_under_control():
+    m = model("puma_560")
+    q0 = np.array([q.value for q in m.coordinates])
+    # torques that make deviations die out
+    hold = lambda time, q, u: m.inverse_dynamics(-100.0 * (q - q0) - 20.0 * u, q, u, np.zeros(6))
+    rest = dict(q=q0, u=np.zeros(6))
+    for period in (None, 0.002):
+        motion = m.simulate(0.1, 0.02, **rest, control=hold, period=period, tolerance=1e-6)
+        assert abs(motion.q - q0).max() < 1e-2, period
+    assert abs(m.simulate(0.1, 0.02, **rest, tolerance=1e-6).q - q0).max() > 0.02
+    class Wrong(Exception):
+        pass
+    def wrong(time, q, u):
+        raise Wrong("no torque")
+    with pytest.raises(Wrong, match="no torque"):
+        m.simulate(0.1, 0.02, **rest, control=wrong)
+    with pytest.raises(hodograph.ArgumentError, match="gave 2 numbers: expected 6"):
+        m.simulate(0.1, 0.02, **rest, control=lambda *state: [1.0, 2.0])
+    with pytest.raises(hodograph.SimulationError) as caught:
+        m.simulate(0.1, 0.02, **rest, control=lambda *state: [np.nan] * 6)
+    assert caught.value.kind == "bad_input" and caught.value.number == 0.0
+    with pytest.raises(hodograph.ArgumentError, match="period"):
+        m.simulate(0.2, 0.02, period=0.1)
+
+
 def test_tables_by_column_name():
     pandas, pyarrow = pytest.importorskip("pandas"), pytest.importorskip("pyarrow")
     columns = {"u1": np.linspace(0.5, 1, 5), "u6": np.linspace(0, 0.2, 5)}
@@ -99,6 +148,83 @@ def test_tables_by_column_name():
     with pytest.raises(hodograph.ArgumentError, match="no column 'u9'.*u1") as caught:
         SLEDS.states({"u9": [1.0]})
     assert caught.value.place == "u9" and caught.value.kind == "unknown_name"
+
+
+def test_parameters_by_row_are_those_of_one_mechanism_each():
+    m = model("planar_double_pendulum")
+    rows = 70
+    masses, lengths = np.repeat(np.linspace(0.5, 2, rows // 2), 2), np.linspace(0.3, 0.8, rows)
+    q, u = RANDOM.normal(size=(rows, 2)), RANDOM.normal(size=(rows, 2))
+    for many, of in ((m.with_parameters(m2=masses, l1=0.6), [dict(m2=x, l1=0.6) for x in masses]), (m.with_parameters(m2=masses, l1=lengths), [dict(m2=x, l1=y) for x, y in zip(masses, lengths)])):
+        alone = [m.with_parameters(**parameters) for parameters in of]
+        for call in (
+            lambda m, *s: m.accelerations(*s),
+            lambda m, *s: m.mass_matrix(*s),
+            lambda m, *s: m.linearise(*s).a,
+            lambda m, *s: m.position("P2", *s),
+            lambda m, *s: m.collide("tip_wall", *s, mu=0.2, e=0.6, law="stronge", errors="nan").speeds,
+        ):
+            found = call(many, q, u)
+            assert len(found) == rows
+            for row in range(rows):
+                try:
+                    expected = call(alone[row], q[row], u[row])
+                except hodograph.ImpactError:
+                    expected = np.full(2, np.nan)
+                np.testing.assert_array_equal(found[row], expected)
+    # one state serves all machines
+    np.testing.assert_array_equal(many.accelerations()[3], alone[3].accelerations())
+    assert many.parameters[1].name == "m2" and many.parameters[1].value.shape == (rows,)
+
+
+def test_parameters_by_row_that_are_wrong():
+    m = model("planar_double_pendulum")
+    masses = np.ones(5)
+    masses[3] = -1
+    many = m.with_parameters(m1=masses)
+    with pytest.raises(hodograph.ParameterError, match="row 3.*1 of 5") as caught:
+        many.accelerations()
+    assert caught.value.place == "row 3"
+    found = many.accelerations(errors="nan")
+    assert np.isnan(found[3]).all() and np.isfinite(np.delete(found, 3, axis=0)).all()
+    with pytest.raises(hodograph.ParameterError, match="row 3"):
+        many.collide("tip_wall", mu=0, e=1, law="newton")
+    hits = many.collide("tip_wall", mu=0, e=1, law="newton", errors="nan")
+    assert np.isnan(hits.speeds[3]).all() and hits.kind[3] != "" and hits.kind[0] == ""
+    with pytest.raises(hodograph.ArgumentError, match="5 rows.*expected as many"):
+        many.accelerations(np.zeros((4, 2)))
+    with pytest.raises(hodograph.ArgumentError, match="different numbers of rows.*m1: 5.*m2: 4"):
+        m.with_parameters(m1=np.ones(5), m2=np.ones(4))
+    with pytest.raises(hodograph.ArgumentError, match=r"\(2, 2\)"):
+        m.with_parameters(m1=np.ones((2, 2)))
+
+
+def test_tables_in_and_out():
+    pandas, pyarrow = pytest.importorskip("pandas"), pytest.importorskip("pyarrow")
+    columns = {"u1": np.linspace(0.5, 1, 5), "u6": np.linspace(0, 0.2, 5)}
+    expected = SLEDS.accelerations(**SLEDS.states(columns))
+    frame = pandas.DataFrame(columns, index=list("abcde"))
+    found = SLEDS.tabulate("accelerations", frame)
+    assert list(found.columns) == ["u1'", "u3'", "u4'", "u6'"] and list(found.index) == list("abcde")
+    np.testing.assert_array_equal(found.to_numpy(), expected)
+    found = SLEDS.tabulate("accelerations", pyarrow.table(columns))
+    assert isinstance(found, pyarrow.Table)
+    np.testing.assert_array_equal(np.column_stack([found[name] for name in found.column_names]), expected)
+    assert SLEDS.tabulate("kinetic_energy", columns)["kinetic_energy"].shape == (5,)
+    for table in (frame, pyarrow.table(columns)):
+        hits = SLEDS.tabulate("collide", table, "BcAc", **SURFACE, errors="nan")
+        direct = SLEDS.collide("BcAc", **SLEDS.states(columns), **SURFACE, errors="nan")
+        np.testing.assert_array_equal(np.asarray(hits["u4"]), direct.speeds[:, 2])
+        assert [str(word) for word in np.asarray(hits["kind"])] == list(direct.kind)
+    # a column of parameters
+    name = next(p.name for p in SLEDS.parameters if p.unit == "kg")
+    masses = np.linspace(1, 2, 5)
+    heavier = SLEDS.tabulate("accelerations", frame.assign(**{name: masses}))
+    many = SLEDS.with_parameters(**{name: masses})
+    np.testing.assert_array_equal(heavier.to_numpy(), many.accelerations(**SLEDS.states(columns)))
+    assert not np.array_equal(heavier.to_numpy(), expected)
+    with pytest.raises(hodograph.ArgumentError, match="mass_matrix.*expected one of"):
+        SLEDS.tabulate("mass_matrix", frame)
 
 
 def test_parameters():
@@ -203,7 +329,7 @@ def test_stubs_name_what_there_is():
     stub = ast.parse((Path(hodograph.__file__).parent / "mechanism.pyi").read_text())
     of = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
     for cls in (hodograph.Mechanism, hodograph.NumericMechanism):
-        stubbed = {n.name: [a.arg for a in n.args.args + n.args.kwonlyargs] for n in of[cls.__name__].body if isinstance(n, ast.FunctionDef)}
+        stubbed = {n.name: [a.arg for a in [*n.args.args, *filter(None, [n.args.vararg]), *n.args.kwonlyargs]] for n in of[cls.__name__].body if isinstance(n, ast.FunctionDef)}
         for name, method in vars(cls).items():
             if inspect.isfunction(method) and not name.startswith("_"):
                 found = [p.name for p in inspect.signature(method).parameters.values() if p.kind != p.VAR_KEYWORD]

@@ -24,10 +24,10 @@ from .errors import (
     StateError,
 )
 from .mechanism import Contact, Derivatives, Linearisation, Mechanism, NumericMechanism, Quantity
-from .results import Collision, Hodograph, Impact, ImpactDerivative, Simulation
+from .results import Collision, Event, Hodograph, Impact, ImpactDerivative, Simulation
 
 __all__ = [
-    "ArgumentError", "Collision", "Contact", "DerivationError", "Derivatives", "Diagnostic", "Hodograph", "HodographError",
+    "ArgumentError", "Collision", "Contact", "DerivationError", "Derivatives", "Diagnostic", "Event", "Hodograph", "HodographError",
     "Impact", "ImpactDerivative", "ImpactError", "Linearisation", "Mechanism", "ModelError", "NumericMechanism", "ParameterError",
     "Quantity", "Simulation", "SimulationError", "StateError", "check", "derivative", "hodograph", "load", "solve",
 ]  # fmt: skip

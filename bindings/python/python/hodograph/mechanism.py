@@ -71,13 +71,28 @@ class Mechanism(_native.Mechanism):
         return [Quantity(*entry) for entry in self._describe(kind)]
 
     def with_parameters(self, **parameters):
-        """This mechanism with other values of some parameters, as :class:`Mechanism`."""
+        """This mechanism with other values of some parameters, as :class:`Mechanism`. Arrays (k,) make k machines, one for every row of a state: the
+        answers are those of k mechanisms, row by row. Rows that follow each other with equal parameters share the work that depends on these alone.
+        """
         values = {quantity.name: quantity.value for quantity in self.parameters}
         for name, value in parameters.items():
             if name not in values:
                 raise _unknown("parameter", name, values)
-            values[name] = float(value)
-        return Mechanism(self, None, list(values.values()))
+            value = np.asarray(value, dtype=np.float64)
+            if value.ndim > 1:
+                raise ArgumentError(
+                    f"`{name}` has the shape {value.shape}: expected a number or (k,)", kind="wrong_shape", place=name
+                )
+            values[name] = value
+        try:
+            columns = np.broadcast_arrays(*values.values()) if values else []
+        except ValueError:
+            sizes = ", ".join(f"{name}: {len(value)}" for name, value in values.items() if np.ndim(value))
+            raise ArgumentError(
+                f"parameters have different numbers of rows ({sizes}): expected as many", kind="wrong_shape", place="parameters"
+            ) from None
+        matrix = np.ascontiguousarray(np.stack(columns, axis=-1)) if columns else np.zeros(0)
+        return Mechanism(self, None, matrix)
 
     def states(self, table):
         """The arguments ``q``, ``u``, ``inputs`` and ``time`` of many states from a table of columns with the names of the model: a pandas
@@ -98,6 +113,32 @@ class Mechanism(_native.Mechanism):
         if "time" in names:
             states["time"] = column("time")
         return states
+
+    def tabulate(self, quantity, table, *names, **options):
+        """A quantity of all states of a table, as a table of the same kind (pandas DataFrame with the same index, pyarrow Table, or dictionary) by
+        column names: ``m.tabulate("accelerations", frame)``, ``m.tabulate("position", frame, "P")``,
+        ``m.tabulate("collide", frame, "tip", mu=0.3, e=0.5, law="poisson")``. ``quantity`` is the name of a method that gives a number, a vector
+        or a collision for a state; what else it needs follows. Columns with the names of parameters make one machine for every row. Rates have the name of their coordinate or speed and a prime, vectors x, y, z.
+        """
+        if quantity not in _COLUMNS:
+            raise _unknown("quantity for a table", str(quantity), _COLUMNS)
+        names_of = getattr(table, "column_names", None) or table.keys()
+        variable = {quantity.name for quantity in self.parameters}
+        machines = {name: np.asarray(table[name], dtype=np.float64) for name in names_of if name in variable}
+        states = self.states({name: table[name] for name in names_of if name not in variable})
+        mechanism = self.with_parameters(**machines) if machines else self
+        found = getattr(mechanism, quantity)(*names, **states, **options)
+        if quantity == "collide":
+            columns = {q.name: column for q, column in zip(self.speeds, found.speeds.T)}
+            for name, axes in (("impulse", "nts"), ("velocity", "nts"), ("impulse_on_point", "xyz")):
+                columns.update({f"{name}_{axis}": column for axis, column in zip(axes, getattr(found, name).T)})
+            for name in ("energy_change", "contact_work", "normal_work", "path", "kind"):
+                columns[name] = getattr(found, name)
+        elif found.ndim == 1:
+            columns = {quantity: found}
+        else:
+            columns = dict(zip(_COLUMNS[quantity](self), found.T))
+        return _like(table, columns)
 
     def accelerations(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
         """Rates u' of the independent speeds, (p,) or (k, p)."""
@@ -191,11 +232,27 @@ class Mechanism(_native.Mechanism):
         return Collision(self._collide(index, (q, u, inputs, time), mu, e, law, errors))
 
     def simulate(
-        self, until, step, q=None, u=None, inputs=None, time=None, *, mu=0.0, e=0.0, law="poisson", tolerance=1e-10
+        self, until, step, q=None, u=None, inputs=None, time=None, *, mu=0.0, e=0.0, law="poisson", tolerance=1e-10,
+        surfaces=None, control=None, period=None, max_step=float("inf"),
     ):
         """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
-        All contacts have the same surface."""
-        found = self._simulate((q, u, inputs, time), until, step, (mu, e, law), tolerance)
+
+        ``mu``, ``e``, ``law``: the surface of all contacts; ``surfaces``: {contact: {"mu": .., "e": .., "law": ..}} for contacts with another one.
+        ``control``: a function of time, q (n,) and u (p,) that gives the inputs (w,): with ``period`` (s) at these times and held in between, otherwise
+        continuously (it must be smooth then). What it raises ends the motion. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
+        """
+        of = lambda given: (float(given.get("mu", mu)), float(given.get("e", e)), given.get("law", law))
+        for contact, given in (surfaces or {}).items():
+            for name in given:
+                if name not in ("mu", "e", "law"):
+                    raise _unknown(f"property of the surface of {contact}", str(name), ("mu", "e", "law"))
+        if period is not None and control is None:
+            raise ArgumentError("`period` is that of `control`, which is missing", kind="bad_option", place="period")
+        choices = {
+            "surface": of({}), "tolerance": tolerance, "max_step": max_step, "control": control, "period": period,
+            "surfaces": [(_index("contact", contact, self.contacts), *of(given)) for contact, given in (surfaces or {}).items()],
+        }  # fmt: skip
+        found = self._simulate((q, u, inputs, time), until, step, choices)
         names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
         return Simulation(found, *names)
 
@@ -241,6 +298,40 @@ class NumericMechanism:
     def kinetic_energy(self, q, u, inputs=(), time=0.0):
         """Kinetic energy, J."""
         return float(self._of("kinetic_energy", q, u, inputs, time))
+
+
+def _primed(quantities):
+    return lambda mechanism: [f"{quantity.name}'" for quantity in getattr(mechanism, quantities)]
+
+
+def _named(quantities):
+    return lambda mechanism: [quantity.name for quantity in getattr(mechanism, quantities)]
+
+
+_AXES = lambda mechanism: "xyz"
+_NUMBER = None
+# the methods whose answers are rows of a table, and the names of the columns
+_COLUMNS = {
+    "accelerations": _primed("speeds"),
+    "coordinate_rates": _primed("coordinates"),
+    "forcing": _named("speeds"),
+    "compute_dependent_speeds": _named("dependent_speeds"),
+    "kinetic_energy": _NUMBER,
+    "potential_energy": _NUMBER,
+    "position": _AXES,
+    "velocity": _AXES,
+    "collide": None,
+}
+
+
+def _like(table, columns):
+    """Columns as a table of the kind of another one."""
+    kind = type(table).__module__.split(".")[0]
+    if kind == "pandas":
+        return type(table)(columns, index=table.index)
+    if kind == "pyarrow":
+        return type(table).from_pydict({name: list(c) if c.dtype == object else c for name, c in columns.items()})
+    return columns
 
 
 def _unknown(kind, name, known):

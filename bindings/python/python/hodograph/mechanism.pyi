@@ -1,4 +1,4 @@
-from typing import Any, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ Column = Union[Floats, float]
 class Quantity(NamedTuple):
     name: str
     unit: str
-    value: Optional[float]
+    value: Union[float, Floats, None]
 
 class Derivatives(NamedTuple):
     value: Floats
@@ -45,10 +45,11 @@ class Mechanism:
     frames: list[str]
     contacts: list[str]
     def __init__(
-        self, model: Union[str, Mechanism], derivation: Optional[str] = ..., parameters: Optional[Sequence[float]] = ...
+        self, model: Union[str, Mechanism], derivation: Optional[str] = ..., parameters: Union[Sequence[float], Floats, None] = ...
     ) -> None: ...
-    def with_parameters(self, **parameters: float) -> Mechanism: ...
+    def with_parameters(self, **parameters: Union[float, Floats]) -> Mechanism: ...
     def states(self, table: Any) -> dict[str, Floats]: ...
+    def tabulate(self, quantity: str, table: Any, *names: str, **options: Any) -> Any: ...
     def accelerations(self, q: Rows = ..., u: Rows = ..., inputs: Rows = ..., time: Optional[Column] = ..., *, errors: str = ...) -> Floats: ...
     def mass_matrix(self, q: Rows = ..., u: Rows = ..., inputs: Rows = ..., time: Optional[Column] = ..., *, errors: str = ...) -> Floats: ...
     def forcing(self, q: Rows = ..., u: Rows = ..., inputs: Rows = ..., time: Optional[Column] = ..., *, errors: str = ...) -> Floats: ...
@@ -106,6 +107,10 @@ class Mechanism:
         e: float = ...,
         law: str = ...,
         tolerance: float = ...,
+        surfaces: Optional[Mapping[str, Mapping[str, Any]]] = ...,
+        control: Optional[Callable[[float, Floats, Floats], Union[float, Sequence[float], Floats]]] = ...,
+        period: Optional[float] = ...,
+        max_step: float = ...,
     ) -> Simulation: ...
     def equations(self, format: str = ...) -> str: ...
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple, Optional
+
 import numpy as np
 
 from . import hodograph_native as _native
@@ -79,13 +81,33 @@ class Hodograph:
         return curve + _plot(lines, "normal impulse, N s", "m/s")
 
 
+class Event(NamedTuple):
+    """An event of a motion: its time, s; its ``kind`` ('collision', 'impact_without_collision', 'struck_together', 'contact', 'lift_off', 'slip', 'stick',
+    'rest'); the name of the contact, or None; the state after it, ``q`` (n,), ``u`` (p,). Of impacts, otherwise None: ``impulse_on_point`` (3,) along N.x,
+    N.y, N.z, N s, and ``energy_change``, J."""
+
+    time: float
+    kind: str
+    contact: Optional[str]
+    q: np.ndarray
+    u: np.ndarray
+    impulse_on_point: Optional[np.ndarray]
+    energy_change: Optional[float]
+
+
 class Simulation:
-    """A motion: ``time`` (k,), ``q`` (k, n), ``u`` (k, p), ``events``: (time, kind, contact or None)."""
+    """A motion: ``time`` (k,), ``q`` (k, n), ``u`` (k, p), ``events``: a list of :class:`Event`. ``columns()`` gives them by name, for a table."""
 
     def __init__(self, found, coordinates, speeds):
         for name, value in found.items():
             setattr(self, name, value)
+        self.events = [Event(*event) for event in self.events]
         self.coordinates, self.speeds = coordinates, speeds
+
+    def columns(self):
+        """Time, coordinates and speeds by name, each (k,): ``pandas.DataFrame(motion.columns())``."""
+        names = ["time", *self.coordinates, *self.speeds]
+        return dict(zip(names, [self.time, *self.q.T, *self.u.T]))
 
     def __repr__(self):
         return f"<hodograph.Simulation to {self.time[-1]} s: {len(self.time)} states, {len(self.events)} events>"

@@ -1,4 +1,4 @@
-from typing import Any, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,11 +42,21 @@ class Hodograph:
     slip_end: Optional[float]
     def _repr_html_(self) -> str: ...
 
+class Event(NamedTuple):
+    time: float
+    kind: str
+    contact: Optional[str]
+    q: Floats
+    u: Floats
+    impulse_on_point: Optional[Floats]
+    energy_change: Optional[float]
+
 class Simulation:
     time: Floats
     q: Floats
     u: Floats
-    events: list[tuple[float, str, Optional[str]]]
+    events: list[Event]
     coordinates: list[str]
     speeds: list[str]
+    def columns(self) -> dict[str, Floats]: ...
     def _repr_html_(self) -> str: ...
