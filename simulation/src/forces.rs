@@ -3,7 +3,7 @@
 use hodograph::{ContactError, ContactMode, contact_force};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
-use crate::closed_contacts::{ClosedContacts, solve};
+use crate::closed_contacts::{ClosedContacts, least_squares, null_space, solve};
 
 /// A sliding contact with f / m_nn below this jams: its force grows without bound as f falls to zero.
 pub(crate) const JAM: f64 = 1e-6;
@@ -85,7 +85,10 @@ pub(crate) fn forces(
     let matrix = DMatrix::from_fn(m, m, |a, b| share(columns[a].0) * pushed[(row(a), b)]);
     let right = DVector::from_fn(m, |a, _| -share(columns[a].0) * support.beta[row(a)]);
     let (z, unique) = solve(&matrix, &right);
-    let lambda = &push * z;
+    let mut lambda = &push * z;
+    if !unique {
+        share_friction(support, &columns, mu, &mut lambda);
+    }
     let acceleration = &support.coupled * &lambda + &support.beta;
     let left = (0..m).map(|a| acceleration[row(a)].abs()).fold(0.0, f64::max);
     let size = support.beta.amax() + (support.coupled.abs() * lambda.abs()).amax();
@@ -94,6 +97,40 @@ pub(crate) fn forces(
     }
     Ok(Forces { lambda, acceleration, unique, f: 1.0 })
 }
+
+/// Shares the friction of sticking contacts anew among those that can take it from each other, as the heel and the toe of a foot can, in proportion to what each may
+/// have: the sum of friction^2 / (mu lambda_n) is least. Normal forces and accelerations stay the same.
+fn share_friction(
+    support: &ClosedContacts,
+    columns: &[(usize, usize)],
+    mu: &[f64],
+    lambda: &mut DVector<f64>,
+) {
+    let tangential: Vec<(usize, usize)> = columns.iter().copied().filter(|&(_, axis)| axis > 0).collect();
+    let row = |(i, axis): (usize, usize)| 3 * i + axis;
+    let matrix = DMatrix::from_fn(columns.len(), tangential.len(), |a, b| {
+        support.coupled[(row(columns[a]), row(tangential[b]))]
+    });
+    let free = null_space(&matrix);
+    if free.ncols() == 0 {
+        return;
+    }
+    let most: Vec<f64> = tangential.iter().map(|&(i, _)| mu[i] * lambda[3 * i]).collect();
+    let greatest = most.iter().copied().fold(0.0, f64::max);
+    if greatest <= 0.0 {
+        return;
+    }
+    let weigh = |j: usize| 1.0 / (most[j] / greatest).max(LEAST_SHARE).sqrt();
+    let weighed = DMatrix::from_fn(free.nrows(), free.ncols(), |j, k| weigh(j) * free[(j, k)]);
+    let right = DVector::from_fn(free.nrows(), |j, _| -weigh(j) * lambda[row(tangential[j])]);
+    let change = &free * least_squares(&weighed, &right);
+    for (&place, change) in tangential.iter().zip(change.iter()) {
+        lambda[row(place)] += change;
+    }
+}
+
+/// Below this ratio to the greatest a share of friction counts as this.
+const LEAST_SHARE: f64 = 1e-10;
 
 /// The forces of an overdetermined support with nearly their own normal forces as weights, so that all contacts use their friction alike, and the weights
 /// with which they were found; `weights` are a first guess.
@@ -177,4 +214,42 @@ pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 
 /// Whether all conditions of the modes hold.
 pub(crate) fn hold_good(forces: &Forces, holds: &[Hold], mu: &[f64]) -> bool {
     margins(forces, holds, mu).iter().flatten().all(|&margin| margin >= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A foot in a plane that stands on its toe, with hardly a force at its heel: both use their friction alike. Where the heel was given a thousandth of the toe's
+    /// weight, its friction was used up when that of the foot was not, and it seemed to slip.
+    #[test]
+    fn heel_and_toe_use_their_friction_alike() {
+        let point = |x: f64, z: f64| [[0.0, 1.0, -x], [1.0, 0.0, z], [0.0, 0.0, 0.0]];
+        let rows: Vec<f64> =
+            [point(-0.07, -0.05), point(0.13, -0.05)].into_iter().flatten().flatten().collect();
+        let partials = DMatrix::from_row_slice(6, 3, &rows);
+        let inverse = DMatrix::from_diagonal(&DVector::from_vec(vec![2.0, 2.0, 600.0]));
+        let response = &inverse * partials.transpose();
+        let coupled = &partials * &response;
+        for heel in [1e-4, 0.1, 100.0] {
+            let wanted = DVector::from_vec(vec![heel, -20.0, 0.0, 274.0, -50.0, 0.0]);
+            let support = ClosedContacts {
+                contacts: vec![0, 1],
+                beta: -(&coupled * &wanted),
+                coupled: coupled.clone(),
+                partials: partials.clone(),
+                response: response.clone(),
+                velocity: DVector::zeros(6),
+            };
+            let found = forces(&support, &[Hold::Stick, Hold::Stick], &[0.63; 2], Some(&[1.0, 1.0])).unwrap();
+            assert!(
+                !found.unique
+                    && (found.lambda[0] - heel).abs() < 1e-9
+                    && (found.lambda[3] - 274.0).abs() < 1e-9
+            );
+            let (first, second) = (found.lambda[1] / found.lambda[0], found.lambda[4] / found.lambda[3]);
+            assert!((first / second - 1.0).abs() < 1e-6, "{heel}: {first} {second}");
+            assert!((found.lambda[1] + found.lambda[4] + 70.0).abs() < 1e-9);
+        }
+    }
 }
