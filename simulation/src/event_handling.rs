@@ -1,4 +1,4 @@
-//! Handles an event within a step: refines its time to rounding, goes to the state there, and changes the modes.
+//! Handles an event within a step: goes to the state there, and changes the modes.
 
 use crate::event_functions::Watched;
 use crate::event_location::Crossing;
@@ -13,7 +13,7 @@ use crate::{EventKind, Reason, SimulationError};
 const CROWD: usize = 2000;
 
 impl Simulation<'_> {
-    /// Refines the time of an event to rounding, goes to it and handles it.
+    /// Goes to an event and handles it.
     pub(crate) fn happen(
         &mut self,
         closed: &[Closed],
@@ -21,48 +21,7 @@ impl Simulation<'_> {
         watched: Watched,
         crossing: Crossing,
     ) -> Result<(), SimulationError> {
-        let mut after = crossing.place * whole.h;
-        let mut step = whole.clone();
-        for _ in 0..8 {
-            let Some(part) = self.part(closed, after) else { break };
-            step = part;
-            let change = match watched {
-                Watched::Gap(contact) => {
-                    let (gap, rate) = self.gap_at(&step, contact)?;
-                    let gap = match self.phases[contact] {
-                        Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
-                            let h = step.h;
-                            let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
-                            let value = self.values(closed, &[watched], h, &mut at);
-                            value.map_err(|failure| self.failure(failure))?[0]
-                        }
-                        // It has hardly left: its time is that of the interpolation.
-                        Phase::Open(Leaving::Lifted { .. }) => 0.0,
-                        _ => gap,
-                    };
-                    if rate < 0.0 { -gap / rate } else { 0.0 }
-                }
-                _ => {
-                    let d = 1e-4 * after.min(whole.h - after).max(1e-3 * whole.h);
-                    let value = |simulation: &Self, h: f64| {
-                        let mut step = simulation.part(closed, h)?;
-                        let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
-                        simulation.values(closed, &[watched], h, &mut at).ok().map(|values| values[0])
-                    };
-                    let (here, there) = (value(self, after), value(self, after - d));
-                    match (here, there) {
-                        (Some(here), Some(there)) if here < there => here * d / (there - here),
-                        _ => 0.0,
-                    }
-                }
-            };
-            let next = (after + change).clamp(0.0, whole.h);
-            // Relative to the time since the front: the state is as exact as that, however late it is.
-            if (next - after).abs() <= 2.0 * f64::EPSILON * after || (next - after).abs() > 0.1 * whole.h {
-                break;
-            }
-            after = next;
-        }
+        let mut step = self.at_event(closed, &whole, watched, &crossing)?;
         self.next = whole.next.min((10.0 * step.h).max(1e-7));
         let start = self.t;
         self.commit(&mut step)?;

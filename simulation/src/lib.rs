@@ -37,6 +37,7 @@ mod event;
 mod event_functions;
 mod event_handling;
 mod event_location;
+mod event_time;
 mod forces;
 mod front;
 mod impacts;

@@ -236,3 +236,37 @@ fn pushes_whose_times_are_told_are_not_stepped_over() {
         assert!(error.to_string().contains("finite and rise"), "{error}");
     }
 }
+
+/// A pull that rises from t = 0.5 on, slowly or steeply, drags a resting particle when it exceeds friction: then v = k (t - t1)^2 / (2 m).
+#[test]
+fn a_steep_pull_begins_to_slip_once() {
+    let mut body = particle();
+    body.mass = 2.0;
+    for (rate, told) in
+        [1.0, 30.0, 1e3, 1e5, 1e6, 1e7, 1e9].into_iter().flat_map(|rate| [(rate, true), (rate, false)])
+    {
+        let pull = move |t: f64, _: &[f64], _: &[f64], inputs: &mut [f64]| {
+            inputs[0] = rate * (t - 0.5).max(0.0);
+        };
+        let options = Options {
+            drive: Drive::Continuous(std::sync::Arc::new(pull)),
+            breaks: if told { vec![0.5] } else { Vec::new() },
+            ..surface(0.5, 0.0, Law::Newton)
+        };
+        let mut simulation = start(&body, &[0.0, 0.0, 0.0], &[0.0; 3], options);
+        let (mass, limit) = (body.mass, 0.5 * body.mass * 9.81);
+        let begins = 0.5 + limit / rate;
+        let end = begins + 0.1;
+        let events = run(&mut simulation, end);
+        let slips: Vec<f64> =
+            events.iter().filter(|event| event.kind.name() == "slip").map(|event| event.time).collect();
+        assert!(
+            slips.len() == 1 && (slips[0] - begins).abs() < 1e-9,
+            "{rate:e} {told}: {slips:?} {begins} {:?}",
+            names(&events)
+        );
+        let speed = simulation.speeds()[0];
+        let expected = 0.5 * rate * 0.01 / mass;
+        assert!((speed / expected - 1.0).abs() < 1e-6, "{rate:e} {told}: {speed} {expected}");
+    }
+}

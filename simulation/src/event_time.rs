@@ -1,0 +1,118 @@
+//! Refines the time of an event, which the dense output of a step gives to its own accuracy, to rounding: the motion is integrated to each trial anew.
+
+use crate::SimulationError;
+use crate::event_functions::Watched;
+use crate::event_location::Crossing;
+use crate::phase::{Closed, Leaving, Phase};
+use crate::simulation::Simulation;
+use crate::stepper::Step;
+
+/// The most trials of a time. Secants need three to five; where an input bends, intervals are halved.
+const TRIALS: usize = 80;
+/// After this many trials intervals are halved.
+const SECANTS: usize = 8;
+
+impl Simulation<'_> {
+    /// The part of a step that ends at the event in it.
+    pub(crate) fn at_event(
+        &self,
+        closed: &[Closed],
+        whole: &Step,
+        watched: Watched,
+        crossing: &Crossing,
+    ) -> Result<Step, SimulationError> {
+        let after = crossing.place * whole.h;
+        match watched {
+            Watched::Gap(contact) => self.at_gap(closed, whole, contact, after),
+            _ => Ok(self.at_zero(closed, whole, watched, after)),
+        }
+    }
+
+    /// A gap closes: Newton's method, for its rate is known.
+    fn at_gap(
+        &self,
+        closed: &[Closed],
+        whole: &Step,
+        contact: usize,
+        mut after: f64,
+    ) -> Result<Step, SimulationError> {
+        let mut step = whole.clone();
+        for _ in 0..8 {
+            let Some(part) = self.part(closed, after) else { break };
+            step = part;
+            let (gap, rate) = self.gap_at(&step, contact)?;
+            let gap = match self.phases[contact] {
+                Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
+                    let h = step.h;
+                    let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
+                    let value = self.values(closed, &[Watched::Gap(contact)], h, &mut at);
+                    value.map_err(|failure| self.failure(failure))?[0]
+                }
+                // It has hardly left: its time is that of the interpolation.
+                Phase::Open(Leaving::Lifted { .. }) => 0.0,
+                _ => gap,
+            };
+            let change = if rate < 0.0 { -gap / rate } else { 0.0 };
+            let next = (after + change).clamp(0.0, whole.h);
+            if settled(next, after) || (next - after).abs() > 0.1 * whole.h {
+                break;
+            }
+            after = next;
+        }
+        Ok(step)
+    }
+
+    /// Another function falls through zero: secants, kept between a time at which it is positive and one at which it is negative once these are known.
+    fn at_zero(&self, closed: &[Closed], whole: &Step, watched: Watched, mut after: f64) -> Step {
+        let trial = |after: f64| {
+            let mut step = self.part(closed, after)?;
+            let h = step.h;
+            let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
+            let value = self.values(closed, &[watched], h, &mut at).ok()?[0];
+            Some((step, value))
+        };
+        let (mut positive, mut negative) = (None, None);
+        let mut last = whole.clone();
+        // The first secant is a short one. It may lie across a bend of an input.
+        let mut width = (1e-4 * after.min(whole.h - after).max(1e-3 * whole.h)).min(0.5 * after);
+        let mut before = trial(after - width).map(|(_, value)| (after - width, value));
+        for count in 0..TRIALS {
+            let Some((step, value)) = trial(after) else { break };
+            last = step;
+            if value >= 0.0 {
+                positive = Some(after);
+            } else {
+                negative = Some(after);
+            }
+            let slope = before.map_or(0.0, |(time, there)| (value - there) / (after - time));
+            before = Some((after, value));
+            let secant = after - value / slope;
+            let next = match (positive, negative) {
+                _ if value == 0.0 => after,
+                (Some(low), Some(high))
+                    if count < SECANTS && low.min(high) < secant && secant < low.max(high) =>
+                {
+                    secant
+                }
+                (Some(low), Some(high)) => 0.5 * (low + high),
+                _ if slope < 0.0 => secant,
+                // It does not change here: the zero is looked for on the side where it must be.
+                _ => {
+                    width *= 8.0;
+                    if value > 0.0 { after + width } else { after - width }
+                }
+            };
+            let next = next.clamp(0.0, whole.h);
+            if settled(next, after) || (next - after).abs() > 0.1 * whole.h {
+                break;
+            }
+            after = next;
+        }
+        last
+    }
+}
+
+/// Whether two times since the front are the same but for rounding: the state is as exact as they are, however late it is.
+fn settled(next: f64, after: f64) -> bool {
+    (next - after).abs() <= 2.0 * f64::EPSILON * after
+}
