@@ -77,7 +77,8 @@ pub type File = (String, String);
 /// The files of the crate. `expanded` is the Rust text of the generated module, `dependency` what stands after `hodograph =` in the manifest, in braces.
 /// `None`: the text is no generated module.
 pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<File>> {
-    let module = module::read(&syn::parse_file(expanded).ok()?)?;
+    let mut module = module::read(&syn::parse_file(expanded).ok()?)?;
+    module.name = names::of(&module.path);
     let (c, rust) = match scalar {
         Scalar::Double => ("double", "f64"),
         Scalar::Single => ("float", "f32"),

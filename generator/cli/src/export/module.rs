@@ -1,6 +1,5 @@
 //! What of a generated module can be called from C: its records and routines, read from its Rust text.
 
-use super::names;
 use syn::{
     Attribute, Expr, Fields, FnArg, GenericArgument, ImplItem, Item, Lit, Meta, Pat, PathArguments,
     ReturnType, Type,
@@ -11,7 +10,7 @@ use syn::{
 pub struct Module {
     /// name of the module in Rust
     pub path: String,
-    /// the prefix of all names in C
+    /// the prefix of all names in C, at first the same
     pub name: String,
     /// name of the mechanism's type
     pub mechanism: String,
@@ -160,7 +159,7 @@ pub fn read(file: &syn::File) -> Option<Module> {
     let docs = docs(&module.attrs).lines().take_while(|line| !line.is_empty()).collect::<Vec<_>>().join(" ");
     Some(Module {
         path: module.ident.to_string(),
-        name: names::of(&module.ident.to_string()),
+        name: module.ident.to_string(),
         mechanism: mechanism.ident.to_string(),
         docs,
         numbers,
