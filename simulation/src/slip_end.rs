@@ -92,6 +92,15 @@ pub(crate) fn time_of_slip(here: &Evaluation, place: usize) -> Option<f64> {
     (along < 0.0).then(|| slip / -along)
 }
 
+/// Whether slip is so small that its rate could end it within [`ENDING`], were it against the slip. It may turn so before it ends: a slip of less than 1e-10 m/s
+/// has the direction that rounding and the errors of steps leave it, and for a moment seems to grow.
+pub(crate) fn may_end(here: &Evaluation, place: usize) -> bool {
+    let Some(forces) = here.forces.as_ref() else { return false };
+    let rate = forces.acceleration[3 * place + 1].hypot(forces.acceleration[3 * place + 2]);
+    let slip = here.support.slip(place).norm();
+    slip > 0.0 && slip < ENDING * rate
+}
+
 #[cfg(test)]
 mod tests {
     use nalgebra::{DMatrix, DVector, Matrix3};

@@ -12,7 +12,7 @@ use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Phase, mus};
 use crate::settled_slip::settled;
 use crate::simulation::Simulation;
-use crate::slip_end::{ENDING, Fate, fate, time_of_slip};
+use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
 use crate::{Reason, SimulationError};
 
@@ -41,13 +41,15 @@ impl Simulation<'_> {
             if contact.slides.is_none() {
                 continue;
             }
-            let Some(left) = time_of_slip(&here, i) else { continue };
-            if left < ENDING
+            let left = time_of_slip(&here, i);
+            if (left.is_some_and(|left| left < ENDING) || may_end(&here, i))
                 && let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i)
             {
                 return self.end_slip(&closed, &here, i, time);
             }
-            most = most.min((SHARE * left).max(ENDING));
+            if let Some(left) = left {
+                most = most.min((SHARE * left).max(ENDING));
+            }
         }
         let omegas = settled(&self.motion(&closed), self.t, &self.y, &here);
         for (contact, omega) in closed.iter_mut().zip(omegas) {

@@ -146,3 +146,16 @@ fn shipped_models_run_from_random_starts() {
     }
     assert!(failed.is_empty(), "{} starts:\n{}", failed.len(), failed.join("\n"));
 }
+
+/// The slip of this arm's hand ends where its direction, at 1e-10 m/s, has turned so far that it seems to grow: its end was passed by, and the motion stopped with an
+/// error that made no sense of it.
+#[test]
+fn slip_that_turns_at_its_end_ends() {
+    let arm = hodograph_models::stanford_arm::StanfordArm::<f64>::default();
+    let mut events = 0;
+    match run(&arm, 87, &mut events) {
+        End::Whole => assert!(events >= 9),
+        End::Failed(why) => panic!("{why}"),
+        End::Pole | End::Wedged => panic!("the arm has no poles and no walls"),
+    }
+}
