@@ -10,7 +10,7 @@ use crate::phase::Closed;
 use crate::slip_direction::settle_directions;
 
 /// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
-const DIRECTION: f64 = 1e-10;
+pub(crate) const DIRECTION: f64 = 1e-10;
 
 /// Why the rates cannot be evaluated.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use hodograph::{ContactError, State};
+use hodograph::{ContactError, Kind, State};
 use nalgebra::Vector2;
 
 use crate::event_functions::Watched;
@@ -37,18 +37,20 @@ impl Simulation<'_> {
         if let Some(limit) = self.limit() {
             most = most.min(limit - self.t);
         }
+        let n = self.mechanism.count(Kind::Coordinate);
+        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
         for (i, contact) in closed.iter().enumerate() {
             if contact.slides.is_none() {
                 continue;
             }
             let left = time_of_slip(&here, i);
-            if (left.is_some_and(|left| left < ENDING) || may_end(&here, i))
+            if (left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds))
                 && let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i)
             {
                 return self.end_slip(&closed, &here, i, time);
             }
             if let Some(left) = left {
-                most = most.min((SHARE * left).max(ENDING));
+                most = most.min(SHARE * left.max(ENDING));
             }
         }
         let omegas = settled(&self.motion(&closed), self.t, &self.y, &here);
