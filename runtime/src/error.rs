@@ -64,6 +64,13 @@ pub enum ImpactError<T> {
         /// The law that has no outcome.
         law: Law,
     },
+    /// The collision needs more quadratures than the [budget](crate::Budgeted) allows.
+    BudgetExceeded {
+        /// The quadratures made: the budget.
+        quadratures: u32,
+        /// The normal velocity up to which the collision was followed, in m/s.
+        normal_velocity: T,
+    },
 }
 
 /// The laws that every outcome is checked against.
@@ -111,6 +118,7 @@ impl<T> ImpactError<T> {
             Self::NoImpact { .. } => "no_impact",
             Self::Inaccurate { .. } => "inaccurate",
             Self::Wedged { .. } => "wedged",
+            Self::BudgetExceeded { .. } => "budget_exceeded",
         }
     }
 }
@@ -162,6 +170,11 @@ impl<T: fmt::Display> fmt::Display for ImpactError<T> {
                     Law::Poisson => "",
                     Law::Newton | Law::Stronge => " or, if the bodies merely jam, use Poisson's hypothesis",
                 }
+            ),
+            Self::BudgetExceeded { quadratures, normal_velocity } => write!(
+                out,
+                "the collision was followed up to normal velocity {normal_velocity} when its budget of {quadratures} quadratures was spent: allow more, or \
+                 use what the program keeps for a missed answer"
             ),
         }
     }

@@ -101,7 +101,7 @@ impl<T: Scalar> Hodograph<T> {
                     return units.snapshot(&state.in_units(share, T::one()), &velocity, first);
                 }
                 // The impulse asked for is the end of slip up to rounding.
-                Slide::Stopped(state) | Slide::Endless(state) => {
+                Slide::Stopped(state) | Slide::Endless(state) | Slide::OverBudget(state) => {
                     return units.snapshot(&state.in_units(share, T::one()), &Vector2::zeros(), first);
                 }
             },

@@ -97,7 +97,7 @@ pub use crate::{
     scalar::Scalar,
     sensitivity::Sensitivity,
     solve::{impact_without_collision, solve},
-    surface::Surface,
+    surface::{Budgeted, ContactSurface, Surface},
 };
 
 pub use nalgebra;

@@ -7,8 +7,8 @@ use common::emitted::{Emitted, emitted, routine};
 use common::random::samples;
 use hodograph::nalgebra::Vector3;
 use hodograph::{
-    ClosedContactError, CollisionError, ContactMode, Contacts, Kind, Law, ParameterError, State, StateError,
-    Surface,
+    ClosedContactError, CollisionError, ContactMode, Contacts, ImpactError, Kind, Law, ParameterError, State,
+    StateError, Surface,
 };
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use hodograph_interpreter::InterpretedMechanism;
@@ -97,6 +97,7 @@ fn everything(m: &dyn Contacts, state: &State<'_>) -> Vec<(String, Result<Vec<f6
 
 #[test]
 fn modules_and_the_interpreter_answer_with_the_same_bits() {
+    let mut refused = 0;
     for module in &emitted() {
         let model = Model::load(module.name());
         for sample in samples(&model, 3) {
@@ -121,6 +122,23 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
                         m.collide(contact, &state, &surface, &mut speeds).map(|hit| (speeds, hit))
                     };
                     assert_eq!(collide(&*generated), collide(&*interpreted), "{} {law:?}", module.name());
+                    for quadratures in [0, 1, 2, 1000] {
+                        let surface = surface.within(quadratures);
+                        let budgeted = |m: &dyn Contacts| {
+                            let mut speeds = vec![0.0; at.speeds.len()];
+                            m.collide_within(contact, &state, &surface, &mut speeds).map(|hit| (speeds, hit))
+                        };
+                        let answer = budgeted(&*generated);
+                        assert_eq!(answer, budgeted(&*interpreted), "{} {law:?}", module.name());
+                        match answer {
+                            Err(CollisionError::Impact(ImpactError::BudgetExceeded { .. }))
+                                if quadratures < 1000 =>
+                            {
+                                refused += 1;
+                            }
+                            answer => assert_eq!(answer, collide(&*generated), "{} {law:?}", module.name()),
+                        }
+                    }
                     let jump = |m: &dyn Contacts| {
                         let mut speeds = vec![0.0; at.speeds.len()];
                         m.impact_without_collision(contact, &state, &surface, &mut speeds)
@@ -151,6 +169,7 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
             }
         }
     }
+    assert!(refused > 100, "{refused}");
 }
 
 #[test]

@@ -7,8 +7,8 @@ use hodograph::generated::{
 use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
-    ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome, ContactState,
-    Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, Surface,
+    Budgeted, ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome,
+    ContactState, ContactSurface, Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, Surface,
 };
 use hodograph_generator::program::operation::Operation;
 use hodograph_generator::program::{ContactQuantity, Quantity, Structure};
@@ -52,7 +52,7 @@ impl InterpretedMechanism {
         &self,
         index: usize,
         contact: &Contact<f64>,
-        surface: &Surface<f64>,
+        surface: &impl ContactSurface<f64>,
     ) -> Result<Resolved<f64>, ImpactError<f64>> {
         match self.program().structures.get(index) {
             Some(Structure::Planar) => resolve_structured::<Planar, f64>(contact, surface),
@@ -271,6 +271,16 @@ impl Contacts for InterpretedMechanism {
         contact: usize,
         state: &State<'_>,
         surface: &Surface<f64>,
+        speeds: &mut [f64],
+    ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
+        self.struck(contact, state, speeds, NO_COLLISION, |known| self.resolve(contact, known, surface))
+    }
+
+    fn collide_within(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        surface: &Budgeted<f64>,
         speeds: &mut [f64],
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
         self.struck(contact, state, speeds, NO_COLLISION, |known| self.resolve(contact, known, surface))

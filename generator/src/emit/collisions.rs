@@ -194,13 +194,13 @@ impl Emitter<'_> {
         quote! {
             #docs
             #[inline]
-            pub fn #collide(#signature surface: &#krate::Surface<T>) -> #result {
+            pub fn #collide(#signature surface: &impl #krate::ContactSurface<T>) -> #result {
                 Self::#shared(self, #passed |contact| #resolve(contact, surface))
             }
 
             #docs_without
             #[inline]
-            pub fn #without(#signature surface: &#krate::Surface<T>) -> #result {
+            pub fn #without(#signature surface: &impl #krate::ContactSurface<T>) -> #result {
                 Self::#shared(self, #passed |contact| #krate::generated::resolve_without_collision(contact, surface))
             }
 

@@ -4,7 +4,7 @@ use nalgebra::{Vector2, Vector3};
 
 use super::number;
 use crate::{
-    Impact, ImpactError, ReducedMatrix, Scalar, Surface, impact_without_collision, solve,
+    ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar, impact_without_collision, solve,
     structure::{Structure, solve_structured},
 };
 
@@ -77,7 +77,10 @@ pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
 ///
 /// Those of [`solve`].
 #[inline]
-pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<Resolved<T>, ImpactError<T>> {
+pub fn resolve<T: Scalar>(
+    contact: &Contact<T>,
+    surface: &impl ContactSurface<T>,
+) -> Result<Resolved<T>, ImpactError<T>> {
     let (cos, sin) = contact_axes(contact);
     let Contact { velocity, .. } = contact;
     let reduced = contact.reduced.turned(cos, sin);
@@ -95,7 +98,7 @@ pub fn resolve<T: Scalar>(contact: &Contact<T>, surface: &Surface<T>) -> Result<
 #[inline]
 pub fn resolve_without_collision<T: Scalar>(
     contact: &Contact<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Resolved<T>, ImpactError<T>> {
     let (cos, sin) = contact_axes(contact);
     let Contact { velocity, .. } = contact;
@@ -114,7 +117,7 @@ pub fn resolve_without_collision<T: Scalar>(
 #[inline]
 pub fn resolve_structured<S: Structure, T: Scalar>(
     contact: &Contact<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Resolved<T>, ImpactError<T>> {
     let (cos, sin) = contact_axes(contact);
     let mut impact = solve_structured::<S, T>(&contact.reduced, &contact.velocity, surface)?;

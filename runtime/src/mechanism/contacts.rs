@@ -7,7 +7,8 @@ use super::{
     slices::{check_length, check_room},
 };
 use crate::{
-    ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError, Surface,
+    Budgeted, ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError,
+    Surface,
 };
 
 /// Gap, contact basis, velocity and reduced matrix of a contact in a state. The contact basis is `normal`,
@@ -99,6 +100,22 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         surface: &Surface<T>,
         speeds: &mut [T],
     ) -> Result<CollisionOutcome<T>, CollisionError<T>>;
+
+    /// [`Contacts::collide`] with a budget of quadratures.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Contacts::collide`], and [`ImpactError::BudgetExceeded`](crate::ImpactError::BudgetExceeded).
+    fn collide_within(
+        &self,
+        contact: usize,
+        state: &State<'_, T>,
+        surface: &Budgeted<T>,
+        speeds: &mut [T],
+    ) -> Result<CollisionOutcome<T>, CollisionError<T>> {
+        let _ = (contact, state, surface, speeds);
+        Err(StateError::Undefined { what: "collision within a budget" }.into())
+    }
 
     /// Selects the mode of a closed contact (stick, slide, begin to slip, separate) with its force, coming
     /// from no contact force. The gap and v_n count as zero: neither is looked at. Of the surface only `mu`

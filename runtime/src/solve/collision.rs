@@ -15,7 +15,7 @@ use super::{
     terminal::Terminal,
 };
 use crate::{
-    Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
+    ContactSurface, Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
     scalar::{Real, constant, fma, larger, length},
 };
 
@@ -39,12 +39,12 @@ use crate::{
 /// ```
 ///
 /// # Errors
-/// Each reason is a variant of [`ImpactError`]. No number of an outcome is NaN or infinite.
+/// Each reason is a variant of [`ImpactError`]; [`ImpactError::BudgetExceeded`] comes of [`crate::Budgeted`] surfaces alone. No number of an outcome is NaN or infinite.
 #[inline]
 pub fn solve<T: crate::Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     solve_real(matrix, approach, surface)
 }
@@ -54,8 +54,9 @@ pub fn solve<T: crate::Scalar>(
 pub(crate) fn solve_real<T: Real>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
+    let (quadratures, surface) = (surface.quadratures(), surface.surface());
     let cleaned;
     let matrix = match checked(matrix, approach, surface)? {
         None => matrix,
@@ -64,7 +65,7 @@ pub(crate) fn solve_real<T: Real>(
             &cleaned
         }
     };
-    let restitution = Restitution::new(surface.law, surface.e);
+    let restitution = Restitution::new(surface.law, surface.e).within(quadratures);
     collide(matrix, approach, -approach.x, surface, restitution, slide)
 }
 
@@ -97,6 +98,12 @@ pub(crate) fn collide<T: Real>(
                 (state, stops) = (stopped, true);
             }
             Slide::Endless(stopped) => (state, endless) = (stopped, true),
+            Slide::OverBudget(reached) => {
+                return Err(ImpactError::BudgetExceeded {
+                    quadratures: restitution.quadratures,
+                    normal_velocity: reached.velocity * speed,
+                });
+            }
         }
     }
     if ended.is_none() && !endless {

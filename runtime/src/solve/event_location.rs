@@ -33,7 +33,8 @@ pub(super) struct EventLocation<'a, T: Real> {
 }
 
 impl<T: Real> EventLocation<'_, T> {
-    /// Follows the arc to the next event or to the end of the stretch, and sets `to` to that point; true if the law ends the collision there.
+    /// Follows the arc to the next event or to the end of the stretch, and sets `to` to that point; true if the law ends the collision there. Once the panel is
+    /// over its budget, neither means anything.
     #[inline]
     pub fn follow(&mut self, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
         let zero = T::zero();
@@ -99,6 +100,9 @@ impl<T: Real> EventLocation<'_, T> {
     /// Sets `to` to the point at this length, with the work.
     #[inline]
     fn whole(&mut self, length: T, to: &mut ArcPoint<T>) {
+        if !self.panel.spend() {
+            return;
+        }
         self.arc.step(&self.from, length, self.panel, to);
         self.work(to);
     }
@@ -134,6 +138,9 @@ impl<T: Real> EventLocation<'_, T> {
         let mut x = if guess > lo && guess < limit { guess } else { limit };
         let works = matches!(event, Event::Work(_));
         for trial in 0..TRIALS {
+            if !self.panel.spend() {
+                return None;
+            }
             self.arc.step(&self.from, x, self.panel, to);
             if works {
                 self.work(to);

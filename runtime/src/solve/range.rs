@@ -62,6 +62,7 @@ fn rescaled<T: Real>(
         Slide::Ended(state, velocity) => Slide::Ended(back(state), velocity * unit),
         Slide::Stopped(state) => Slide::Stopped(back(state)),
         Slide::Endless(state) => Slide::Endless(back(state)),
+        Slide::OverBudget(state) => Slide::OverBudget(back(state)),
     };
     *restitution = scaled.in_units(one / x, rub, false);
     slide

@@ -70,6 +70,8 @@ pub(crate) struct Restitution<T: Real> {
     pub thorough: bool,
     /// If set, the arc ends at this normal impulse, and the law is not used.
     pub stop: Option<T>,
+    /// The greatest number of quadratures.
+    pub quadratures: u32,
     /// The turning points of v_n.
     pub grazing: Grazing<T>,
 }
@@ -93,6 +95,7 @@ impl<T: Real> Restitution<T> {
             latest: None,
             thorough: false,
             stop: None,
+            quadratures: u32::MAX,
             grazing: Grazing::new(if law == Law::Newton { e } else { T::zero() }),
         }
     }
@@ -105,6 +108,12 @@ impl<T: Real> Restitution<T> {
         let e = if law == Law::Newton { T::zero() } else { e };
         let start = -(eps * eps * eps * eps);
         Self { start, grazing: Grazing::falling(), ..Self::new(law, e) }
+    }
+
+    /// The same with a budget of quadratures.
+    #[inline]
+    pub fn within(self, quadratures: u32) -> Self {
+        Self { quadratures, ..self }
     }
 
     /// The state at the start.

@@ -46,7 +46,7 @@ pub(super) fn arc<T: Real>(
     let (arc, w) = SlidingArc::through(c, &direction);
     let mut at = ArcPoint { state: restitution.start(), since: T::zero(), w, sigma: speed / arc.e(w) };
     let stops = arc.last_rate() < T::zero();
-    let mut panel = Panel::new(speed);
+    let mut panel = Panel::new(speed, restitution.quadratures);
     for _ in 0..STRETCHES {
         let rates = arc.rates(&at);
         let slip = at.sigma * rates.e;
@@ -69,7 +69,11 @@ pub(super) fn arc<T: Real>(
         let panel = &mut panel;
         let mut location =
             EventLocation { arc: &arc, from: at, rates: &rates, rising, turning_point, fast, panel, reach };
-        if location.follow(restitution, &mut at) {
+        let ended = location.follow(restitution, &mut at);
+        if location.panel.is_over_budget() {
+            return Slide::OverBudget(location.from.state);
+        }
+        if ended {
             return Slide::Ended(at.state, arc.slip(&at));
         }
         restitution.grazing.moved(at.state.velocity);

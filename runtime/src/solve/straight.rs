@@ -18,6 +18,8 @@ pub(crate) enum Slide<T: Real> {
     Stopped(State<T>),
     /// Neither happens: slip never stops, and the law never ends the collision.
     Endless(State<T>),
+    /// The budget of quadratures was spent when the arc had been followed so far.
+    OverBudget(State<T>),
 }
 
 /// Slip along a fixed direction: everything is linear in I_n.

@@ -13,7 +13,7 @@ use super::{
     restitution::Restitution,
 };
 use crate::{
-    Impact, ImpactError, ReducedMatrix, Surface,
+    ContactSurface, Impact, ImpactError, ReducedMatrix,
     scalar::{Real, constant, length},
 };
 
@@ -45,7 +45,7 @@ use crate::{
 pub fn impact_without_collision<T: crate::Scalar>(
     matrix: &ReducedMatrix<T>,
     slip: &Vector2<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     without_collision(matrix, slip, surface)
 }
@@ -54,8 +54,9 @@ pub fn impact_without_collision<T: crate::Scalar>(
 pub(crate) fn without_collision<T: Real>(
     matrix: &ReducedMatrix<T>,
     slip: &Vector2<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
+    let (quadratures, surface) = (surface.quadratures(), surface.surface());
     let (zero, eps) = (T::zero(), T::default_epsilon());
     let approach = Vector3::new(zero, slip.x, slip.y);
     let matrix = check_closely(matrix, &approach, surface)?;
@@ -69,7 +70,7 @@ pub(crate) fn without_collision<T: Real>(
     if f > zero && !jam {
         return Err(ImpactError::NoImpact { rate: f * matrix.nn });
     }
-    let restitution = Restitution::without_collision(surface.law, surface.e);
+    let restitution = Restitution::without_collision(surface.law, surface.e).within(quadratures);
     let mut impact = collide(&matrix, &approach, speed, surface, restitution, slide)?;
     // f becomes positive at once: v_n has not fallen, and there is no impact.
     if impact.impulse.x * matrix.nn <= eps * speed * length(&(slip / speed)) {

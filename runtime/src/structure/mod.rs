@@ -22,7 +22,7 @@ use nalgebra::Vector3;
 
 pub(crate) use self::implementation::Shape;
 use crate::{
-    Impact, ImpactError, ReducedMatrix, Scalar, Surface,
+    ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar,
     solve::{Restitution, checked, collide},
 };
 
@@ -100,13 +100,14 @@ impl Shape for General {}
 pub fn solve_structured<S: Structure, T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
-    surface: &Surface<T>,
+    surface: &impl ContactSurface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
-    let (mut matrix, mut approach, mut surface) = (*matrix, *approach, *surface);
+    let quadratures = surface.quadratures();
+    let (mut matrix, mut approach, mut surface) = (*matrix, *approach, *surface.surface());
     S::impose(&mut matrix, &mut approach, &mut surface);
     if let Some(cleaned) = checked(&matrix, &approach, &surface)? {
         matrix = cleaned;
     }
-    let restitution = Restitution::new(surface.law, surface.e);
+    let restitution = Restitution::new(surface.law, surface.e).within(quadratures);
     collide(&matrix, &approach, -approach.x, &surface, restitution, S::slide)
 }

@@ -68,8 +68,15 @@ pub fn header(module: &Module, scalar: &str) -> String {
             out,
             "/**\n{} */\n{};\n\n",
             comment(&routine.docs, " * "),
-            prototype(module, scalar, routine)
+            prototype(module, scalar, routine, false)
         );
+        if routine.budgeted {
+            let _ = write!(
+                out,
+                "/**\n * The same with a budget: where the collision needs more than so many quadratures, the status is {upper}_BUDGET_EXCEEDED.\n */\n{};\n\n",
+                prototype(module, scalar, routine, true)
+            );
+        }
     }
     let _ = write!(out, "#ifdef __cplusplus\n}}\n#endif\n\n#endif /* {upper}_H */\n");
     out
@@ -105,8 +112,8 @@ fn structure(module: &Module, scalar: &str, record: &Record) -> String {
     out
 }
 
-/// A function's declaration without the semicolon.
-fn prototype(module: &Module, scalar: &str, routine: &Routine) -> String {
+/// A function's declaration without the semicolon; `within` a budget of quadratures.
+fn prototype(module: &Module, scalar: &str, routine: &Routine, within: bool) -> String {
     let mut arguments = vec![format!("const {} *mechanism", module.name)];
     for (name, form) in &routine.arguments {
         let name = names::of(name);
@@ -114,6 +121,9 @@ fn prototype(module: &Module, scalar: &str, routine: &Routine) -> String {
             Form::Number => format!("{scalar} {name}"),
             form => format!("const {}", names::declared(module, scalar, form, &format!("*{name}"))),
         });
+        if within && *form == Form::Surface {
+            arguments.push("uint32_t quadratures".to_owned());
+        }
     }
     arguments.push(match &routine.answer {
         form @ (Form::Vector(_) | Form::Matrix(..) | Form::Reduced | Form::Direction) => {
@@ -121,7 +131,8 @@ fn prototype(module: &Module, scalar: &str, routine: &Routine) -> String {
         }
         form => names::declared(module, scalar, form, "*answer"),
     });
-    format!("int32_t {}_{}({})", module.name, routine.name, arguments.join(", "))
+    let end = if within { "_within" } else { "" };
+    format!("int32_t {}_{}{end}({})", module.name, routine.name, arguments.join(", "))
 }
 
 /// Lines of a comment.

@@ -58,7 +58,10 @@ pub fn library(module: &Module, scalar: &str) -> String {
         );
     }
     for routine in &module.routines {
-        out += &function(module, scalar, routine);
+        out += &function(module, scalar, routine, false);
+        if routine.budgeted {
+            out += &function(module, scalar, routine, true);
+        }
     }
     out
 }
@@ -89,6 +92,8 @@ fn impact<T>(error: &ImpactError<T>) -> i32 {
         ImpactError::NoNormalMobility { .. } => NO_NORMAL_MOBILITY,
         ImpactError::NoImpact { .. } => NO_IMPACT,
         ImpactError::Inaccurate { .. } => INACCURATE,
+        ImpactError::Wedged { .. } => WEDGED,
+        ImpactError::BudgetExceeded { .. } => BUDGET_EXCEEDED,
         _ => OTHER,
     }
 }
@@ -176,7 +181,8 @@ fn construction(module: &Module, scalar: &str) -> String {
     )
 }
 
-fn function(module: &Module, scalar: &str, routine: &Routine) -> String {
+/// The function of a routine; `within` a budget of quadratures.
+fn function(module: &Module, scalar: &str, routine: &Routine, within: bool) -> String {
     let mut declared = vec!["mechanism: *const CMechanism".to_owned()];
     let mut nulls = vec!["mechanism.is_null()".to_owned()];
     let (mut read, mut passed) = (String::new(), Vec::new());
@@ -201,17 +207,23 @@ fn function(module: &Module, scalar: &str, routine: &Routine) -> String {
         }
         declared.push(format!("{name}: *const {memory}"));
         nulls.push(format!("{name}.is_null()"));
-        passed.push(format!("&{name}"));
+        if within && *form == Form::Surface {
+            declared.push("quadratures: u32".to_owned());
+            passed.push(format!("&{name}.within(quadratures)"));
+        } else {
+            passed.push(format!("&{name}"));
+        }
     }
     declared.push(format!("answer: *mut {}", names::memory(module, scalar, &routine.answer)));
     nulls.push("answer.is_null()".to_owned());
     let of = &module.name;
     format!(
-        "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {of}_{}(\n    {},\n) -> i32 {{\n    if {} {{\n        return NULL;\n    }}\n    \
+        "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {of}_{}{}(\n    {},\n) -> i32 {{\n    if {} {{\n        return NULL;\n    }}\n    \
          // SAFETY: the pointers are not null, and point to what the header says; values are copied before anything is written.\n    \
          let mechanism = unsafe {{ &*mechanism.cast::<Mechanism>() }};\n{read}    match mechanism.{}({}) {{\n        Ok(value) => {{\n            \
          // SAFETY: as above.\n            unsafe {{ answer.write({}) }};\n            OK\n        }}\n        Err(error) => error.status(),\n    }}\n}}\n\n",
         routine.name,
+        if within { "_within" } else { "" },
         declared.join(",\n    "),
         nulls.join(" || "),
         routine.name,

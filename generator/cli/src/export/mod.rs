@@ -35,6 +35,8 @@ const STATUSES: &[(&str, &str)] = &[
     ),
     ("JAM", "the contact jams: the force grows without bound"),
     ("NO_MODE", "no mode of the contact fits"),
+    ("WEDGED", "the bodies wedge: no impulse ends the collision under this hypothesis"),
+    ("BUDGET_EXCEEDED", "the collision needs more quadratures than allowed"),
     ("OTHER", "another error"),
 ];
 

@@ -66,6 +66,8 @@ pub struct Routine {
     pub arguments: Vec<(String, Form)>,
     /// what it answers
     pub answer: Form,
+    /// whether its surface may have a budget
+    pub budgeted: bool,
 }
 
 /// What has a form in C.
@@ -178,10 +180,15 @@ fn routine(method: &syn::ImplItemFn, records: &[Record]) -> Option<Routine> {
     if receiver.mutability.is_some() {
         return None;
     }
+    let mut budgeted = false;
     let arguments = inputs.map(|argument| {
         let FnArg::Typed(argument) = argument else { return None };
         let Pat::Ident(name) = &*argument.pat else { return None };
         let form = match &*argument.ty {
+            Type::Reference(reference) if takes_budgets(&reference.elem) => {
+                budgeted = true;
+                Form::Surface
+            }
             Type::Reference(reference) => form(&reference.elem)?,
             other => form(other)?,
         };
@@ -205,6 +212,18 @@ fn routine(method: &syn::ImplItemFn, records: &[Record]) -> Option<Routine> {
         docs: docs(&method.attrs),
         arguments,
         answer,
+        budgeted,
+    })
+}
+
+/// Whether it is a surface with or without a budget.
+fn takes_budgets(of: &Type) -> bool {
+    let Type::ImplTrait(of) = of else { return false };
+    of.bounds.iter().any(|bound| match bound {
+        syn::TypeParamBound::Trait(bound) => {
+            bound.path.segments.last().is_some_and(|part| part.ident == "ContactSurface")
+        }
+        _ => false,
     })
 }
 

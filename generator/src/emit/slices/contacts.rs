@@ -30,6 +30,7 @@ impl Emitter<'_> {
         );
         let response = self.contact_matrix(ContactQuantity::Response, "response", "the response");
         let collide = self.collisions("collide", "collision of this contact");
+        let within = &collide;
         let without = self.collisions("impact_without_collision", "impact without collision of this contact");
         let mode = self.closed_contacts("contact_mode", "mode of this contact", &quote!());
         let force = self.closed_contacts("contact_force", "force of this contact", &quote!(mode,));
@@ -90,6 +91,15 @@ impl Emitter<'_> {
                     speeds: &mut [T],
                 ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
                     #collide
+                }
+                fn collide_within(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Budgeted<T>,
+                    speeds: &mut [T],
+                ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
+                    #within
                 }
                 fn impact_without_collision(
                     &self,

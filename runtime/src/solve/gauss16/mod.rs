@@ -46,12 +46,14 @@ pub(super) struct Panel<T> {
     middle: T,
     central: T,
     rubbed: T,
+    /// One more than the quadratures that the budget still allows; zero when one more was asked for.
+    left: u32,
 }
 
 impl<T: Real> Panel<T> {
     /// A panel whose contents mean nothing yet: `step` overwrites all of them. `any` is any number that depends on the input.
     #[inline]
-    pub fn new(any: T) -> Self {
+    pub fn new(any: T, quadratures: u32) -> Self {
         let nodes = Nodes { ahead: [any; HALF], behind: [any; HALF] };
         Self {
             w: nodes,
@@ -64,7 +66,21 @@ impl<T: Real> Panel<T> {
             middle: any,
             central: any,
             rubbed: any,
+            left: quadratures.saturating_add(1),
         }
+    }
+
+    /// Whether the budget allows one more quadrature, which then counts as made.
+    #[inline(always)]
+    pub fn spend(&mut self) -> bool {
+        self.left = self.left.saturating_sub(1);
+        self.left > 0
+    }
+
+    /// Whether more quadratures were asked for than the budget allows.
+    #[inline(always)]
+    pub fn is_over_budget(&self) -> bool {
+        self.left == 0
     }
 }
 

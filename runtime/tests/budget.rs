@@ -1,0 +1,137 @@
+//! A budget of quadratures changes no bit of an answer, and is kept: the least budget that suffices is found by trying, and every smaller one is refused.
+
+mod common;
+
+use common::random::Random;
+use hodograph::nalgebra::{Matrix3, Vector2, Vector3};
+use hodograph::structure::{Balanced, Planar, solve_structured};
+use hodograph::{
+    Budgeted, ContactSurface, Impact, ImpactError, Law, ReducedMatrix, Scalar, Surface,
+    impact_without_collision, solve,
+};
+
+type Answer<T> = Result<Impact<T>, ImpactError<T>>;
+
+/// A contact of any rank, often with fast or slow slip, and steep friction.
+fn contact(random: &mut Random) -> (ReducedMatrix<f64>, Vector3<f64>, Surface<f64>) {
+    let rank = [3, 3, 3, 2, 1][random.pick(5)];
+    let b = Matrix3::from_fn(|_, j| if j < rank { random.next() } else { 0.0 });
+    let slip = if random.pick(3) == 0 { random.power(6.0) } else { 1.0 };
+    let approach = Vector3::new(-1.0 - random.next(), slip * random.next(), slip * random.next());
+    let surface = random.surface();
+    let mu = if random.pick(4) == 0 { random.between(5.0, 1e4) } else { surface.mu };
+    (ReducedMatrix::from(b * b.transpose()), approach, Surface { mu, ..surface })
+}
+
+/// The least budget that suffices, having checked that it and larger ones give the bits of the answer without one, and that smaller ones are refused.
+fn least<T: Scalar>(solve: impl Fn(&Budgeted<T>) -> Answer<T>, free: &Answer<T>, surface: Surface<T>) -> u32 {
+    let bits = |answer: &Answer<T>| format!("{answer:?}");
+    let exceeds = |quadratures: u32| match solve(&surface.within(quadratures)) {
+        Err(ImpactError::BudgetExceeded { quadratures: made, normal_velocity }) => {
+            assert_eq!(made, quadratures);
+            assert!(normal_velocity.is_finite(), "{surface:?}");
+            true
+        }
+        answer => {
+            assert_eq!(bits(&answer), bits(free), "{surface:?} within {quadratures}");
+            false
+        }
+    };
+    let least = (0..4096).find(|&quadratures| !exceeds(quadratures)).expect("some budget suffices");
+    for more in [least + 1, least + 7, 1000, u32::MAX - 1, u32::MAX] {
+        assert!(!exceeds(more));
+    }
+    least
+}
+
+#[test]
+fn an_answer_within_its_budget_has_the_bits_of_one_without() {
+    let mut random = Random(16);
+    let mut met = [0; 64];
+    for _ in 0..1000 {
+        let (matrix, approach, surface) = contact(&mut random);
+        let free = solve(&matrix, &approach, &surface);
+        let least = least(|surface| solve(&matrix, &approach, surface), &free, surface);
+        met[least.min(63) as usize] += 1;
+        let other = solve_structured::<Balanced, _>(&matrix, &approach, &surface);
+        self::least(|surface| solve_structured::<Balanced, _>(&matrix, &approach, surface), &other, surface);
+        let slip = Vector2::new(approach.y, approach.z);
+        let jump = impact_without_collision(&matrix, &slip, &surface);
+        self::least(|surface| impact_without_collision(&matrix, &slip, surface), &jump, surface);
+    }
+    // Some collisions take no quadrature, some one, some several: all ways were gone.
+    assert!(met[0] > 10 && met[1] > 10 && met[2] > 10 && met[4..].iter().sum::<i32>() > 10, "{met:?}");
+}
+
+#[test]
+fn singles_keep_their_budget() {
+    let mut random = Random(32);
+    for _ in 0..1000 {
+        let (matrix, approach, surface) = contact(&mut random);
+        let matrix = ReducedMatrix::<f32>::new(
+            matrix.nn as f32,
+            matrix.nt as f32,
+            matrix.ns as f32,
+            matrix.tt as f32,
+            matrix.ts as f32,
+            matrix.ss as f32,
+        );
+        let approach = approach.map(|x| x as f32);
+        let surface = Surface { mu: surface.mu as f32, e: surface.e as f32, law: surface.law };
+        let free = solve(&matrix, &approach, &surface);
+        least(|surface| solve(&matrix, &approach, surface), &free, surface);
+    }
+}
+
+#[test]
+fn the_velocity_reached_lies_on_the_way() {
+    let (matrix, approach, surface) = common::two_sleds(0.6, Law::Stronge);
+    let mut last = approach.x;
+    for quadratures in 0.. {
+        match solve(&matrix, &approach, &surface.within(quadratures)) {
+            Err(ImpactError::BudgetExceeded { normal_velocity, .. }) => {
+                assert!(normal_velocity >= last, "{normal_velocity} after {last}");
+                last = normal_velocity;
+            }
+            answer => {
+                assert!(quadratures > 1 && answer.is_ok());
+                break;
+            }
+        }
+    }
+    assert!(last > approach.x);
+}
+
+#[test]
+fn closed_forms_need_no_quadrature() {
+    let matrix = ReducedMatrix::new(1.0, 0.3, 0.0, 2.0, 0.0, 1.0);
+    let approach = Vector3::new(-1.0, 0.5, 0.0);
+    let surface = Surface { mu: 0.3, e: 0.5, law: Law::Stronge };
+    let hit = solve_structured::<Planar, f64>(&matrix, &approach, &surface.within(0));
+    assert_eq!(hit, solve_structured::<Planar, f64>(&matrix, &approach, &surface));
+    assert!(hit.is_ok());
+}
+
+#[test]
+fn the_error_says_what_to_do_and_other_mistakes_come_first() {
+    let (matrix, approach, surface) = common::two_sleds(0.6, Law::Stronge);
+    let error = solve(&matrix, &approach, &surface.within(1)).unwrap_err();
+    assert_eq!(error.kind(), "budget_exceeded");
+    let text = error.to_string();
+    assert!(text.contains("budget of 1 ") && text.contains("allow more"), "{text}");
+    let surface = Surface { mu: -1.0, ..surface };
+    let error = solve(&matrix, &approach, &surface.within(0)).unwrap_err();
+    assert_eq!(error.kind(), "negative_friction");
+}
+
+#[test]
+fn a_reference_to_a_surface_is_a_surface() {
+    let (matrix, approach, surface) = common::two_sleds(0.6, Law::Stronge);
+    let by_reference: &dyn ContactSurface<f64> = &surface;
+    assert_eq!(by_reference.quadratures(), u32::MAX);
+    assert_eq!(solve(&matrix, &approach, &&surface), solve(&matrix, &approach, &surface));
+    assert_eq!(
+        solve(&matrix, &approach, &&surface.within(2)).is_ok(),
+        solve(&matrix, &approach, &surface.within(2)).is_ok()
+    );
+}
