@@ -4,5 +4,28 @@
 
 pub mod bits;
 pub mod board;
+pub mod hard;
 pub mod juggling;
 pub mod random;
+
+#[doc(hidden)]
+pub use hodograph_models as models;
+
+/// Calls a function with a writer, the name of each shipped model's type and that mechanism, in numbers of a type.
+#[macro_export]
+macro_rules! shipped {
+    ($call:ident, $number:ty, $output:expr) => {
+        $crate::shipped! { @ $call, $number, $output,
+            arm_7dof Arm7dof, ball_joint_body BallJointBody, ball_on_turntable BallOnTurntable, cart_5_link Cart5Link,
+            chaplygin_sleigh ChaplyginSleigh, driven_rotary_pendulum DrivenRotaryPendulum, five_bar FiveBar, four_bar FourBar,
+            free_box_corner FreeBoxCorner, free_box_quaternion FreeBoxQuaternion, planar_double_pendulum PlanarDoublePendulum,
+            planar_triple_pendulum PlanarTriplePendulum, puma_560 Puma560, rattleback Rattleback, rolling_disc RollingDisc,
+            shaken_pendulum_moving_plate ShakenPendulumMovingPlate, slender_rod_5dof SlenderRod5dof, slider_crank SliderCrank,
+            spherical_pendulum SphericalPendulum, spring_damper_cart_rod SpringDamperCartRod, stanford_arm StanfordArm,
+            two_sleds TwoSleds, two_sleds_planar TwoSledsPlanar, whipple_bicycle WhippleBicycle,
+        }
+    };
+    (@ $call:ident, $number:ty, $output:expr, $($module:ident $type:ident,)*) => {
+        $($call::<$number>($output, &$crate::models::$module::$type::<$number>::default());)*
+    };
+}

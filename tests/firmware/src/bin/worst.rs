@@ -1,0 +1,133 @@
+//! Calls every routine of every shipped model at many states, a large part of them from families that make collisions dear, and the solver alone within several
+//! budgets. It prints a line per routine with the number of its calls; the emulator counts each call. `HODOGRAPH_STATES`, read while compiling, says how many states.
+
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+use core::hint::black_box;
+
+use firmware::bits::Number;
+use firmware::board::{Output, Write, counted, run};
+use firmware::hard;
+use firmware::random::Random;
+use hodograph::nalgebra::{Matrix3, Vector3};
+use hodograph::{Contacts, Kind, ReducedMatrix, State, Surface, solve};
+
+/// More coordinates, speeds or inputs than any shipped model has.
+const MOST: usize = 16;
+/// Budgets of the solver alone, in quadratures; the last is none.
+const BUDGETS: [u32; 9] = [0, 1, 2, 3, 4, 6, 8, 12, u32::MAX];
+
+#[cfg(feature = "double")]
+type Chosen = f64;
+#[cfg(not(feature = "double"))]
+type Chosen = f32;
+
+/// States per model.
+fn states() -> u32 {
+    option_env!("HODOGRAPH_STATES").and_then(|text| text.parse().ok()).unwrap_or(1000)
+}
+
+#[inline(never)]
+fn mechanism<T: Number>(output: &mut Output, mechanism: &dyn Contacts<T>) {
+    let zero = T::zero();
+    let [n, p, inputs] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| mechanism.count(kind));
+    let (mut q0, mut u0, mut w0) = ([zero; MOST], [zero; MOST], [zero; MOST]);
+    if mechanism.initial_state(&mut q0[..n], &mut u0[..p], &mut w0[..inputs]).is_err() {
+        return;
+    }
+    let mut random = Random::new(n as u64 + 100 * p as u64);
+    for number in 0..states() {
+        let family = number % hard::FAMILIES;
+        // Far angles are reduced in more digits.
+        let far = if family == 7 { 1000.0 } else { 0.5 };
+        let mut near = |from: &[T; MOST], size: f64| from.map(|x| x + T::of(size * random.number()));
+        let (mut q, u, w) = (near(&q0, far), near(&u0, 2.0), near(&w0, 1.0));
+        let _ = mechanism.normalize(&mut q[..n]);
+        let time = T::of(random.number());
+        let ahead = State { time, coordinates: &q[..n], speeds: &u[..p], inputs: &w[..inputs] };
+        let (speeds, surface) = struck(&mut random, family, mechanism, &ahead);
+        let state = black_box(State { speeds: &speeds[..p], ..ahead });
+        let mut out = [zero; MOST];
+        let out = &mut out[..p];
+        let _ = counted(|| mechanism.accelerations(&state, out).is_ok());
+        let _ = counted(|| mechanism.collide(0, &state, &surface, out).is_ok());
+        let _ = counted(|| mechanism.contact_mode(0, &state, &surface, out).is_ok());
+    }
+    for routine in ["accelerations", "collide", "contact_mode"] {
+        let _ = writeln!(output, "{}\t{routine}\t{}", mechanism.name(), states());
+    }
+}
+
+/// Speeds with which the contact approaches as its family says, and the surface.
+fn struck<T: Number>(
+    random: &mut Random,
+    family: u32,
+    mechanism: &dyn Contacts<T>,
+    state: &State<'_, T>,
+) -> ([T; MOST], Surface<T>) {
+    let mut speeds = [T::zero(); MOST];
+    speeds[..state.speeds.len()].copy_from_slice(state.speeds);
+    let mut response = [T::zero(); 3 * MOST];
+    let known = mechanism.contact_state(0, state);
+    let (matrix, v) = match &known {
+        Ok(contact) => (contact.reduced, contact.velocity),
+        Err(_) => (
+            ReducedMatrix::from([T::one(), T::zero(), T::zero(), T::one(), T::zero(), T::one()]),
+            -Vector3::x(),
+        ),
+    };
+    let doubles = |number: T| number.to_subset().unwrap_or(0.0);
+    let entries: [T; 6] = matrix.into();
+    let v = v.map(doubles);
+    let ordinary = if v.x > 0.0 { -v } else { v };
+    let (aim, surface) = hard::case(random, family, &ReducedMatrix::from(entries.map(doubles)), &ordinary);
+    if v.x > 0.0 {
+        speeds = speeds.map(|u| -u);
+    }
+    let change = (aim - ordinary).map(T::of);
+    if family >= 4
+        && mechanism.response(0, state, &mut response[..3 * state.speeds.len()]).is_ok()
+        && let Some(inverse) = Matrix3::from(matrix).try_inverse()
+    {
+        let impulse = inverse * change;
+        for (u, row) in speeds.iter_mut().zip(response.chunks_exact(3)) {
+            *u += row[0] * impulse.x + row[1] * impulse.y + row[2] * impulse.z;
+        }
+    }
+    (speeds, Surface { mu: T::of(surface.mu), e: T::of(surface.e), law: surface.law })
+}
+
+/// The solver alone, on contacts of all families, within each budget.
+#[inline(never)]
+fn alone<T: Number>(output: &mut Output) {
+    for budget in BUDGETS {
+        let mut random = Random::new(16);
+        for number in 0..states() {
+            let (matrix, ordinary) = hard::contact(&mut random);
+            let (v, surface) = hard::case(&mut random, number % hard::FAMILIES, &matrix, &ordinary);
+            let entries: [f64; 6] = matrix.into();
+            let matrix = black_box(ReducedMatrix::from(entries.map(T::of)));
+            let (v, surface) =
+                (v.map(T::of), Surface { mu: T::of(surface.mu), e: T::of(surface.e), law: surface.law });
+            let surface = black_box(surface.within(budget));
+            let _ = counted(|| solve(&matrix, &v, &surface).is_ok());
+        }
+        let _ = writeln!(output, "solve\t{budget}\t{}", states());
+    }
+}
+
+fn program(output: &mut Output) {
+    alone::<Chosen>(output);
+    firmware::shipped!(mechanism, Chosen, output);
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    run(program);
+}
+
+#[cfg(target_os = "none")]
+#[cortex_m_rt::entry]
+fn main() -> ! {
+    run(program)
+}
