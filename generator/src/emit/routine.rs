@@ -21,6 +21,7 @@ impl Emitter<'_> {
             &slice.guards,
         );
         let order: Vec<Value> = slice.order.iter().copied().filter(|value| needed.contains(value)).collect();
+        let order = self.program.with_few_live(&order, |value| !self.is_work(value));
         let guards = slice
             .guards
             .iter()

@@ -39,7 +39,7 @@ impl Emitter<'_> {
     }
 
     /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only fetched.
-    fn is_work(&self, value: Value) -> bool {
+    pub fn is_work(&self, value: Value) -> bool {
         self.stage(value) > Stage::Parameter && !matches!(self.program.operation(value), Operation::Input(_))
     }
 

@@ -12,6 +12,7 @@ pub mod graph;
 mod inputs;
 pub mod jacobian;
 pub mod ldl;
+mod live_values;
 mod lower;
 mod merge;
 pub mod operation;
