@@ -1,6 +1,6 @@
 //! Every shipped model with a gap runs for ten seconds from random starts.
 //!
-//! 100 starts of each: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test shipped -- --nocapture`
+//! 300 starts of each: `HODOGRAPH_STARTS=300 cargo test --release -p hodograph-simulation --test shipped -- --nocapture`
 
 mod common;
 
