@@ -1,0 +1,74 @@
+//! Bipeds land on heels and toes from random postures: up to four points strike, slide and stick at a time, and the forces of a foot that stands are not unique.
+//!
+//! All starts: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test bipeds -- --nocapture`
+
+mod common;
+
+use biped::Biped;
+use common::names;
+use common::random::{Random, starts};
+use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph_simulation::{Event, Options, Progress, Simulation, Together};
+
+hodograph::mechanism!("models/biped.mech");
+
+/// Two seconds from a random posture: how many events there were, or what went wrong.
+fn land(biped: &dyn Contacts<f64>, seed: u64) -> Result<usize, String> {
+    let mut random = Random(seed + 1);
+    let count = |kind| biped.count(kind);
+    let (mut q, mut u) = (vec![0.0; count(Kind::Coordinate)], vec![0.0; count(Kind::Speed)]);
+    let mut inputs = vec![0.0; count(Kind::Input)];
+    biped.initial_state(&mut q, &mut u, &mut inputs).unwrap();
+    for name in ["qh1", "qh2", "qk1", "qk2", "qa1", "qa2"] {
+        q[Mechanism::index(biped, Kind::Coordinate, name).unwrap()] += random.between(-0.35, 0.35);
+    }
+    u.iter_mut().for_each(|u| *u += random.between(-0.3, 0.3));
+    let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
+    let law = Law::ALL[random.place(Law::ALL.len())];
+    let e = if random.place(3) == 0 { 0.0 } else { random.between(0.0, 0.7) };
+    let surface = Surface { mu: random.between(0.05, 1.2), e, law };
+    let options = Options {
+        surface: Some(surface),
+        compare_orders: false,
+        together: Together::Sequential,
+        ..Options::default()
+    };
+    let mut simulation =
+        Simulation::new(biped, &state, options).map_err(|error| format!("{seed}: {error}"))?;
+    let mut seen: Vec<Event> = Vec::new();
+    loop {
+        match simulation.advance(2.0) {
+            Ok(Progress::Event(event)) => seen.push(event),
+            Ok(Progress::Reached) => break,
+            Err(error) => {
+                return Err(format!(
+                    "{seed} {surface:?}: {error} after {:?}",
+                    names(&seen[seen.len().saturating_sub(8)..])
+                ));
+            }
+        }
+    }
+    let (q, u) = (simulation.coordinates(), simulation.speeds());
+    let state = State { time: simulation.time(), coordinates: q, speeds: u, inputs: &inputs };
+    for contact in 0..count(Kind::Contact) {
+        let gap = biped.gap(contact, &state).unwrap().unwrap();
+        assert!(gap > -1e-9, "{seed}: gap {gap:e}");
+    }
+    Ok(seen.len())
+}
+
+#[test]
+fn bipeds_land() {
+    let biped = Biped::<f64>::default();
+    let starts = starts(2);
+    let mut events = 0;
+    let mut failed = Vec::new();
+    for seed in starts.clone() {
+        match land(&biped, seed) {
+            Ok(count) => events += count,
+            Err(why) => failed.push(why),
+        }
+    }
+    println!("bipeds {starts:?}: {events} events, {} failed", failed.len());
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
