@@ -24,6 +24,7 @@ fn program() -> Program {
         structures: vec![Structure::Planar, Structure::General],
         samples: vec![],
         apart: vec![],
+        solve: None,
     })
 }
 

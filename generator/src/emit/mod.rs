@@ -2,7 +2,8 @@
 //!
 //! The module holds the structs of named numbers (`record`), the mechanism's own type with its constructor
 //! (`construct`), a method per quantity (`methods`) and per contact (`contacts`). Every path in it starts at the
-//! runtime's own crate or at `::core`; it has no panics, no loops over data and no `std`.
+//! runtime's own crate or at `::core`; it has no panics and no `std`, and loops
+//! over columns of matrices only (`lanes`).
 
 mod angles;
 mod closed;
@@ -10,6 +11,7 @@ mod collisions;
 mod conformance;
 mod construct;
 mod contacts;
+mod lanes;
 mod linearisation;
 mod methods;
 mod record;

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::lanes::Lanes;
 use super::values::local;
 use crate::program::Guard;
 use crate::program::Quantity;
@@ -32,9 +33,20 @@ impl Emitter<'_> {
         let finite = self.finite(&results);
         let late = slice.guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter);
         let checked = late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
-        let wanted: BTreeSet<Value> = results.iter().copied().chain(checked).collect();
+        let looked_at: BTreeSet<Value> = checked.collect();
+        let wanted: BTreeSet<Value> = results.union(&looked_at).copied().collect();
+        let lanes: Vec<Lanes> = match quantities {
+            [quantity] if quantity.is_solved_by_columns() => {
+                slice.outputs.iter().flat_map(|output| self.lanes(output, &order, &looked_at)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let in_lanes: BTreeSet<Value> = lanes.iter().flat_map(Lanes::computed).collect();
+        let order: Vec<Value> = order.into_iter().filter(|value| !in_lanes.contains(value)).collect();
+        let wanted = wanted.into_iter().chain(lanes.iter().flat_map(Lanes::needed)).collect();
         let statements = self.statements(&order, &wanted);
-        quote! { #statements #(#guards)* #finite }
+        let lanes = lanes.iter().zip(0..).map(|(lanes, number)| lanes.statements(self, number));
+        quote! { #statements #(#lanes)* #(#guards)* #finite }
     }
 
     /// The values that a method computes: what depends on parameters alone is only fetched.

@@ -1,11 +1,11 @@
 //! Splits long routines into several functions, since the time to compile a function grows faster than its length.
 //!
-//! A part receives values of earlier parts and inputs of the routine, and returns the values that later parts or the result need. The operations are the
-//! same as in one function, and so are the bits.
+//! A part receives inputs of the routine and the arrays that earlier parts have written, and writes an array of its own: the values that later parts or the
+//! result need, each as soon as it is there. The operations are the same as in one function, and so are the bits.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
@@ -15,6 +15,33 @@ use crate::program::operation::{Operation, Stage, Value};
 /// The greatest number of statements in one function of an emitted module, roughly. In builds with debug information each opens a scope within the
 /// one before, and the compiler descends into them: at 4100 its stack overflows.
 pub const LONGEST: usize = 3000;
+
+/// Where the values of earlier parts are.
+#[derive(Default)]
+struct Gone {
+    places: BTreeMap<String, Slot>,
+    /// length of the array of each part
+    lengths: Vec<usize>,
+}
+
+/// A place in the array of a part.
+#[derive(Clone, Copy)]
+struct Slot {
+    part: usize,
+    at: usize,
+}
+
+impl Slot {
+    fn tokens(self) -> TokenStream {
+        let (array, at) = (array(self.part), Literal::usize_unsuffixed(self.at));
+        quote!(#array[#at])
+    }
+}
+
+/// The array that a part writes.
+fn array(part: usize) -> Ident {
+    format_ident!("of_part_{part}")
+}
 
 impl Emitter<'_> {
     /// The statements that compute `values`, in their order; `wanted` are those that are looked at afterwards.
@@ -34,8 +61,15 @@ impl Emitter<'_> {
         let length = work.len().div_ceil(rest.len().div_ceil(self.longest.max(1))).max(1);
         let parts: Vec<&[Value]> = work.chunks(length).collect();
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
-        let calls = (0..parts.len()).map(|index| self.part(&parts, index, &wanted));
-        quote! { #(#angles)* #of_angles #(#given)* #(#calls)* }
+        let mut gone = Gone::default();
+        let calls: Vec<TokenStream> =
+            (0..parts.len()).map(|index| self.part(&parts, index, &wanted, &mut gone)).collect();
+        let looked_at = gone.places.iter().filter(|(name, _)| wanted.contains(*name));
+        let looked_at = looked_at.map(|(name, place)| {
+            let (name, place) = (format_ident!("{name}"), place.tokens());
+            quote!(let #name = #place;)
+        });
+        quote! { #(#angles)* #of_angles #(#given)* #(#calls)* #(#looked_at)* }
     }
 
     /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only fetched.
@@ -44,7 +78,13 @@ impl Emitter<'_> {
     }
 
     /// A part as a function, and its call.
-    fn part(&self, parts: &[&[Value]], index: usize, wanted: &BTreeSet<String>) -> TokenStream {
+    fn part(
+        &self,
+        parts: &[&[Value]],
+        index: usize,
+        wanted: &BTreeSet<String>,
+        gone: &mut Gone,
+    ) -> TokenStream {
         let krate = self.krate;
         let part = parts[index];
         let made: BTreeSet<String> = part.iter().flat_map(|&value| self.makes(value)).collect();
@@ -52,23 +92,57 @@ impl Emitter<'_> {
             part.iter().flat_map(|&value| self.program.operation(value).operands()).collect();
         let numbers = used.iter().filter(|&&value| self.stage(value) == Stage::Constant);
         let numbers = numbers.filter_map(|&value| self.statement(value, Place::Method));
-        let taken = self.takes(part);
-        let taken: Vec<_> = taken.difference(&made).map(|name| format_ident!("{name}")).collect();
         let later: BTreeSet<String> = parts[index + 1..].iter().flat_map(|part| self.takes(part)).collect();
-        let given = made.iter().filter(|name| later.contains(*name) || wanted.contains(*name));
-        let given: Vec<_> = given.map(|name| format_ident!("{name}")).collect();
-        let (takes, gives) = (Literal::usize_unsuffixed(taken.len()), Literal::usize_unsuffixed(given.len()));
-        let statements = part.iter().filter_map(|&value| self.statement(value, Place::Method));
-        let name = format_ident!("part_{index}");
+        let taken: BTreeSet<String> = self.takes(part).difference(&made).cloned().collect();
+        let (earlier, outside): (Vec<String>, Vec<String>) =
+            taken.into_iter().partition(|name| gone.places.contains_key(name));
+        let mut places: BTreeMap<String, TokenStream> = BTreeMap::new();
+        let mut arrays: BTreeSet<usize> = BTreeSet::new();
+        for name in earlier {
+            if let Some(place) = gone.places.get(&name) {
+                arrays.insert(place.part);
+                places.insert(name, place.tokens());
+            }
+        }
+        for (at, name) in outside.iter().enumerate() {
+            let at = Literal::usize_unsuffixed(at);
+            places.insert(name.clone(), quote!(taken[#at]));
+        }
+        let mut statements = Vec::new();
+        let mut gives = 0;
+        for &value in part {
+            for name in self.takes(&[value]) {
+                // A value is fetched where it is needed first: all at the start would not stay in registers.
+                if let Some(place) = places.remove(&name) {
+                    let name = format_ident!("{name}");
+                    statements.push(quote!(let #name = #place;));
+                }
+            }
+            statements.extend(self.statement(value, Place::Method));
+            for name in self.makes(value) {
+                if later.contains(&name) || wanted.contains(&name) {
+                    let (at, name_) = (Literal::usize_unsuffixed(gives), format_ident!("{name}"));
+                    statements.push(quote!(gives[#at] = #name_;));
+                    gone.places.insert(name, Slot { part: index, at: gives });
+                    gives += 1;
+                }
+            }
+        }
+        gone.lengths.push(gives);
+        let outside: Vec<_> = outside.iter().map(|name| format_ident!("{name}")).collect();
+        let (takes, gives) = (Literal::usize_unsuffixed(outside.len()), Literal::usize_unsuffixed(gives));
+        let earlier: Vec<_> = arrays.iter().map(|&part| array(part)).collect();
+        let lengths = arrays.iter().map(|&part| Literal::usize_unsuffixed(gone.lengths[part]));
+        let (name, own) = (format_ident!("part_{index}"), array(index));
         quote! {
             #[inline(never)]
-            fn #name<T: #krate::Scalar>(taken: &[T; #takes]) -> [T; #gives] {
-                let [#(#taken),*] = *taken;
+            fn #name<T: #krate::Scalar>(taken: &[T; #takes], #(#earlier: &[T; #lengths],)* gives: &mut [T; #gives]) {
                 #(#numbers)*
                 #(#statements)*
-                [#(#given),*]
             }
-            let [#(#given),*] = #name(&[#(#taken),*]);
+            // Ones, since compilers call a function to fill a long array with zeros, and that takes longer.
+            let mut #own = [T::one(); #gives];
+            #name(&[#(#outside),*], #(&#earlier,)* &mut #own);
         }
     }
 

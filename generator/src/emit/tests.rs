@@ -136,7 +136,15 @@ fn derived() -> Derived {
         contact(ContactQuantity::Response, 1, 3, vec![responses[0], responses[1], zero]),
     ];
     let guards = vec![Guard { value: mass, scale: None, message: "the bob has no inertia".into() }];
-    Derived { graph: g, outputs, guards, structures: vec![Structure::Planar], samples: vec![], apart: vec![] }
+    Derived {
+        graph: g,
+        outputs,
+        guards,
+        structures: vec![Structure::Planar],
+        samples: vec![],
+        apart: vec![],
+        solve: None,
+    }
 }
 
 fn emitted() -> String {

@@ -46,6 +46,7 @@ fn pendulum() -> (Mechanism, Program) {
         structures: Vec::new(),
         samples: Vec::new(),
         apart: Vec::new(),
+        solve: None,
     };
     (rod(), Program::new(&derived))
 }
@@ -186,8 +187,15 @@ fn quantities_do_not_look_like_names_of_the_model() {
     let [mass, force] = [Input::Parameter(0), Input::Input(0)].map(|input| graph.input(input));
     let one = |quantity, node| Output { quantity, rows: 1, columns: 1, values: vec![node] };
     let outputs = vec![one(Quantity::Forcing, force), one(Quantity::KineticEnergy, mass)];
-    let derived =
-        Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![], apart: vec![] };
+    let derived = Derived {
+        graph,
+        outputs,
+        guards: vec![],
+        structures: vec![],
+        samples: vec![],
+        apart: vec![],
+        solve: None,
+    };
     let program = Program::new(&derived);
     let [text, latex, html] = [Format::Text, Format::Latex, Format::Html]
         .map(|format| explain(&mechanism, &program, &[Quantity::Forcing, Quantity::KineticEnergy], format));
@@ -289,8 +297,15 @@ fn what_mends_the_rounding_of_angles_is_left_out() {
         let angle = form(&mut graph, nodes);
         let nodes = [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![angle])).to_vec();
         let outputs = vec![Output { quantity: Quantity::Forcing, rows: 2, columns: 1, values: nodes }];
-        let derived =
-            Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![], apart: vec![] };
+        let derived = Derived {
+            graph,
+            outputs,
+            guards: vec![],
+            structures: vec![],
+            samples: vec![],
+            apart: vec![],
+            solve: None,
+        };
         let text = explain(&rod(), &Program::new(&derived), &[Quantity::Forcing], Format::Text);
         let equations =
             text.lines().filter_map(|line| line.strip_prefix("  ").filter(|line| line.contains(" = ")));

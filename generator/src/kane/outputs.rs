@@ -88,6 +88,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
         structures,
         samples,
         apart,
+        solve: None,
     }
 }
 

@@ -4,6 +4,7 @@ use super::graph::{Graph, Node};
 use super::inputs::Inputs;
 use super::output::{Guard, Output};
 use super::quantity::Structure;
+use super::solve::Solve;
 
 /// The result of deriving a mechanism.
 #[derive(Clone, Debug)]
@@ -20,4 +21,6 @@ pub struct Derived {
     pub samples: Vec<Inputs>,
     /// quantities that go through the passes on their own, so that what they share with others does not shape the routines of those
     pub apart: Vec<Derived>,
+    /// that the only output holds systems of equations, which are solved after the passes
+    pub solve: Option<Solve>,
 }

@@ -92,6 +92,18 @@ impl Factor {
         y
     }
 
+    /// The order of elimination, and a square block in it: L below the diagonal, -1 / D on it.
+    pub fn block(&self, graph: &mut Graph) -> (Vec<usize>, Vec<Vec<Node>>) {
+        let zero = graph.integer(0);
+        let n = self.order.len();
+        let entry = |graph: &mut Graph, row: usize, column: usize| match row == column {
+            true => graph.neg(self.inverse[row]),
+            false => self.lower[row][column].unwrap_or(zero),
+        };
+        let rows = (0..n).map(|row| (0..n).map(|column| entry(graph, row, column)).collect()).collect();
+        (self.order.clone(), rows)
+    }
+
     /// y' D^-1 z of two half-solved vectors.
     pub fn product(&self, graph: &mut Graph, y: &[Node], z: &[Node]) -> Node {
         let terms: Vec<Node> = (0..y.len())

@@ -372,7 +372,15 @@ mod tests {
         let nodes = [second, third].map(|angle| calls(&mut graph, angle)).concat();
         let outputs =
             vec![crate::program::Output { quantity: Quantity::Forcing, rows: 4, columns: 1, values: nodes }];
-        Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![], apart: vec![] }
+        Derived {
+            graph,
+            outputs,
+            guards: vec![],
+            structures: vec![],
+            samples: vec![],
+            apart: vec![],
+            solve: None,
+        }
     }
 
     #[test]
@@ -420,6 +428,7 @@ mod tests {
             structures: vec![],
             samples: vec![],
             apart: vec![],
+            solve: None,
         });
         assert_eq!(program.operations.len(), 4, "an input, a pair, and its two parts");
     }

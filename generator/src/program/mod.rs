@@ -21,6 +21,7 @@ pub mod passes;
 mod quantity;
 mod semantics;
 mod slice;
+pub mod solve;
 mod straight_line;
 
 pub use derivation::Derived;

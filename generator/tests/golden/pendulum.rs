@@ -687,7 +687,7 @@ pub mod pendulum {
             &self,
             q: &Coordinates<T>,
             u: &Speeds<T>,
-            surface: &::hodograph::Surface<T>,
+            surface: &impl ::hodograph::ContactSurface<T>,
         ) -> ::core::result::Result<Collision<T>, ::hodograph::CollisionError<T>> {
             Self::struck_tip_wall(
                 self,
@@ -705,7 +705,7 @@ pub mod pendulum {
             &self,
             q: &Coordinates<T>,
             u: &Speeds<T>,
-            surface: &::hodograph::Surface<T>,
+            surface: &impl ::hodograph::ContactSurface<T>,
         ) -> ::core::result::Result<Collision<T>, ::hodograph::CollisionError<T>> {
             Self::struck_tip_wall(
                 self,
@@ -1458,6 +1458,53 @@ pub mod pendulum {
             contact: usize,
             state: &::hodograph::State<'_, T>,
             surface: &::hodograph::Surface<T>,
+            speeds: &mut [T],
+        ) -> ::core::result::Result<
+            ::hodograph::CollisionOutcome<T>,
+            ::hodograph::CollisionError<T>,
+        > {
+            match contact {
+                0 => {
+                    DESCRIPTION.check(state)?;
+                    let q = &<Coordinates<
+                        T,
+                    > as ::core::convert::From<
+                        [T; 1],
+                    >>::from(
+                        ::hodograph::generated::array::<
+                            T,
+                            1,
+                        >(state.coordinates, "coordinates")?,
+                    );
+                    let u = &<Speeds<
+                        T,
+                    > as ::core::convert::From<
+                        [T; 1],
+                    >>::from(
+                        ::hodograph::generated::array::<T, 1>(state.speeds, "speeds")?,
+                    );
+                    let hit = Self::collide_tip_wall(self, q, u, surface)?;
+                    ::hodograph::generated::write_array::<
+                        T,
+                        1,
+                    >(speeds, hit.speeds, "the speeds after the collision")?;
+                    ::core::result::Result::Ok(hit.outcome())
+                }
+                index => {
+                    ::core::result::Result::Err(
+                        ::core::convert::From::from(::hodograph::StateError::Missing {
+                            kind: ::hodograph::Kind::Contact,
+                            index,
+                        }),
+                    )
+                }
+            }
+        }
+        fn collide_within(
+            &self,
+            contact: usize,
+            state: &::hodograph::State<'_, T>,
+            surface: &::hodograph::Budgeted<T>,
             speeds: &mut [T],
         ) -> ::core::result::Result<
             ::hodograph::CollisionOutcome<T>,

@@ -451,20 +451,29 @@ pub mod pendulum_in_parts {
             let v14 = self.hoisted[1];
             let v5 = inputs.tau;
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 1] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 1]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v7 = v6;
-                [v7]
+                gives[0] = v7;
             }
-            let [v7] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 1];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 1] {
-                let [v14, v5, v7] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 2],
+                of_part_0: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v14 = taken[0];
+                let v5 = taken[1];
+                let v7 = of_part_0[0];
                 let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
-                [v15]
+                gives[0] = v15;
             }
-            let [v15] = part_1(&[v14, v5, v7]);
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[v14, v5], &of_part_0, &mut of_part_1);
+            let v15 = of_part_1[0];
             if !::hodograph::generated::all_finite([v15]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -485,21 +494,31 @@ pub mod pendulum_in_parts {
             let v5 = inputs.tau;
             let v16 = self.hoisted[2];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 1] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 1]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 let v7 = v6;
-                [v7]
+                gives[0] = v7;
             }
-            let [v7] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 1];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 1] {
-                let [v14, v16, v5, v7] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 3],
+                of_part_0: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v14 = taken[0];
+                let v5 = taken[2];
+                let v7 = of_part_0[0];
                 let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
+                let v16 = taken[1];
                 let v17 = v15 * v16;
-                [v17]
+                gives[0] = v17;
             }
-            let [v17] = part_1(&[v14, v16, v5, v7]);
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[v14, v16, v5], &of_part_0, &mut of_part_1);
+            let v17 = of_part_1[0];
             if !::hodograph::generated::all_finite([v17]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -517,19 +536,28 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v20 = self.hoisted[3];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v20, v4] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
+                let v20 = taken[0];
+                let v4 = taken[1];
                 let v21 = v4 * v20;
-                [v21]
+                gives[0] = v21;
             }
-            let [v21] = part_0(&[v20, v4]);
+            let mut of_part_0 = [T::one(); 1];
+            part_0(&[v20, v4], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v21, v4] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v21 = of_part_0[0];
+                let v4 = taken[0];
                 let v22 = v4 * v21;
-                [v22]
+                gives[0] = v22;
             }
-            let [v22] = part_1(&[v21, v4]);
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[v4], &of_part_0, &mut of_part_1);
+            let v22 = of_part_1[0];
             if !::hodograph::generated::all_finite([v22]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -550,29 +578,47 @@ pub mod pendulum_in_parts {
             let v3 = q.q1;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                gives[0] = v6c;
                 let v7 = v6;
-                [v6c, v7]
+                gives[1] = v7;
             }
-            let [v6c, v7] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 2];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v1, v6c, v7] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v1 = taken[0];
+                let v7 = of_part_0[1];
                 let v23 = v1 * v7;
+                gives[0] = v23;
+                let v6c = of_part_0[0];
                 let v8 = v6c;
-                [v23, v8]
+                gives[1] = v8;
             }
-            let [v23, v8] = part_1(&[v1, v6c, v7]);
+            let mut of_part_1 = [T::one(); 2];
+            part_1(&[v1], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v1, v8] = *taken;
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_1: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v1 = taken[0];
+                let v8 = of_part_1[1];
                 let v24 = v1 * v8;
                 let v37 = -v24;
-                [v37]
+                gives[0] = v37;
             }
-            let [v37] = part_2(&[v1, v8]);
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v1], &of_part_1, &mut of_part_2);
+            let v23 = of_part_1[0];
+            let v37 = of_part_2[0];
             if !::hodograph::generated::all_finite([v23, v37]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -597,36 +643,63 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                gives[0] = v6;
                 let v8 = v6c;
-                [v6, v8]
+                gives[1] = v8;
             }
-            let [v6, v8] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 2];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v1, v4, v8] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 2],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v1 = taken[0];
+                let v4 = taken[1];
                 let v25 = v1 * v4;
+                gives[0] = v25;
+                let v8 = of_part_0[1];
                 let v27 = v8 * v25;
-                [v25, v27]
+                gives[1] = v27;
             }
-            let [v25, v27] = part_1(&[v1, v4, v8]);
+            let mut of_part_1 = [T::one(); 2];
+            part_1(&[v1, v4], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
-                let [v27, v6] = *taken;
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                of_part_1: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v27 = of_part_1[1];
                 let v39 = -v27;
+                gives[0] = v39;
+                let v6 = of_part_0[0];
                 let v7 = v6;
-                [v39, v7]
+                gives[1] = v7;
             }
-            let [v39, v7] = part_2(&[v27, v6]);
+            let mut of_part_2 = [T::one(); 2];
+            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v25, v7] = *taken;
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 2],
+                of_part_2: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v25 = of_part_1[0];
+                let v7 = of_part_2[1];
                 let v26 = v7 * v25;
-                [v26]
+                gives[0] = v26;
             }
-            let [v26] = part_3(&[v25, v7]);
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
+            let v26 = of_part_3[0];
+            let v39 = of_part_2[0];
             if !::hodograph::generated::all_finite([v26, v39]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -649,29 +722,45 @@ pub mod pendulum_in_parts {
             let v34 = self.hoisted[5];
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                gives[0] = v6;
                 let v8 = v6c;
-                [v6, v8]
+                gives[1] = v8;
             }
-            let [v6, v8] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 2];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v34, v8] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v34 = taken[0];
+                let v8 = of_part_0[1];
                 let v35 = v8 * v34;
                 let v41 = -v35;
-                [v41]
+                gives[0] = v41;
             }
-            let [v41] = part_1(&[v34, v8]);
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[v34], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v34, v6] = *taken;
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v6 = of_part_0[0];
                 let v7 = v6;
+                let v34 = taken[0];
                 let v36 = v7 * v34;
-                [v36]
+                gives[0] = v36;
             }
-            let [v36] = part_2(&[v34, v6]);
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v34], &of_part_0, &mut of_part_2);
+            let v36 = of_part_2[0];
+            let v41 = of_part_1[0];
             if !::hodograph::generated::all_finite([v36, v41]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -714,32 +803,58 @@ pub mod pendulum_in_parts {
             let v28 = self.hoisted[4];
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 3] {
-                let [v28, v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 3]) {
+                let v3 = taken[1];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                gives[0] = v6;
                 let v8 = v6c;
+                gives[1] = v8;
+                let v28 = taken[0];
                 let v29 = v8 * v28;
-                [v29, v6, v8]
+                gives[2] = v29;
             }
-            let [v29, v6, v8] = part_0(&[v28, v3]);
+            let mut of_part_0 = [T::one(); 3];
+            part_0(&[v28, v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 3] {
-                let [v28, v29, v6, v8] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 3],
+                gives: &mut [T; 3],
+            ) {
+                let v29 = of_part_0[2];
+                let v8 = of_part_0[1];
                 let v30 = v8 * v29;
+                gives[0] = v30;
+                let v6 = of_part_0[0];
                 let v7 = v6;
+                gives[1] = v7;
+                let v28 = taken[0];
                 let v31 = v7 * v28;
-                [v30, v31, v7]
+                gives[2] = v31;
             }
-            let [v30, v31, v7] = part_1(&[v28, v29, v6, v8]);
+            let mut of_part_1 = [T::one(); 3];
+            part_1(&[v28], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v31, v7, v8] = *taken;
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 3],
+                of_part_1: &[T; 3],
+                gives: &mut [T; 2],
+            ) {
+                let v31 = of_part_1[2];
+                let v8 = of_part_0[1];
                 let v32 = v8 * v31;
                 let v40 = -v32;
+                gives[0] = v40;
+                let v7 = of_part_1[1];
                 let v33 = v7 * v31;
-                [v33, v40]
+                gives[1] = v33;
             }
-            let [v33, v40] = part_2(&[v31, v7, v8]);
+            let mut of_part_2 = [T::one(); 2];
+            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
+            let v30 = of_part_1[0];
+            let v33 = of_part_2[1];
+            let v40 = of_part_2[0];
             if !::hodograph::generated::all_finite([v30, v33, v40]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -767,60 +882,119 @@ pub mod pendulum_in_parts {
             let v4 = u.u1;
             let v28 = self.hoisted[4];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                gives[0] = v6;
                 let v8 = v6c;
-                [v6, v8]
+                gives[1] = v8;
             }
-            let [v6, v8] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 2];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v1, v4, v8] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 2],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v1 = taken[0];
+                let v4 = taken[1];
                 let v25 = v1 * v4;
+                gives[0] = v25;
+                let v8 = of_part_0[1];
                 let v27 = v8 * v25;
-                [v25, v27]
+                gives[1] = v27;
             }
-            let [v25, v27] = part_1(&[v1, v4, v8]);
+            let mut of_part_1 = [T::one(); 2];
+            part_1(&[v1, v4], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
-                let [v27, v6] = *taken;
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                of_part_1: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v27 = of_part_1[1];
                 let v39 = -v27;
+                gives[0] = v39;
+                let v6 = of_part_0[0];
                 let v7 = v6;
-                [v39, v7]
+                gives[1] = v7;
             }
-            let [v39, v7] = part_2(&[v27, v6]);
+            let mut of_part_2 = [T::one(); 2];
+            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
-                let [v25, v28, v7, v8] = *taken;
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                of_part_1: &[T; 2],
+                of_part_2: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v25 = of_part_1[0];
+                let v7 = of_part_2[1];
                 let v26 = v7 * v25;
+                gives[0] = v26;
+                let v28 = taken[0];
+                let v8 = of_part_0[1];
                 let v29 = v8 * v28;
-                [v26, v29]
+                gives[1] = v29;
             }
-            let [v26, v29] = part_3(&[v25, v28, v7, v8]);
+            let mut of_part_3 = [T::one(); 2];
+            part_3(&[v28], &of_part_0, &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
-                let [v28, v29, v7, v8] = *taken;
+            fn part_4<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                of_part_2: &[T; 2],
+                of_part_3: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v29 = of_part_3[1];
+                let v8 = of_part_0[1];
                 let v30 = v8 * v29;
+                gives[0] = v30;
+                let v28 = taken[0];
+                let v7 = of_part_2[1];
                 let v31 = v7 * v28;
-                [v30, v31]
+                gives[1] = v31;
             }
-            let [v30, v31] = part_4(&[v28, v29, v7, v8]);
+            let mut of_part_4 = [T::one(); 2];
+            part_4(&[v28], &of_part_0, &of_part_2, &of_part_3, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v31, v8] = *taken;
+            fn part_5<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                of_part_4: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_4[1];
+                let v8 = of_part_0[1];
                 let v32 = v8 * v31;
                 let v40 = -v32;
-                [v40]
+                gives[0] = v40;
             }
-            let [v40] = part_5(&[v31, v8]);
+            let mut of_part_5 = [T::one(); 1];
+            part_5(&[], &of_part_0, &of_part_4, &mut of_part_5);
             #[inline(never)]
-            fn part_6<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v31, v7] = *taken;
+            fn part_6<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_2: &[T; 2],
+                of_part_4: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_4[1];
+                let v7 = of_part_2[1];
                 let v33 = v7 * v31;
-                [v33]
+                gives[0] = v33;
             }
-            let [v33] = part_6(&[v31, v7]);
+            let mut of_part_6 = [T::one(); 1];
+            part_6(&[], &of_part_2, &of_part_4, &mut of_part_6);
+            let v26 = of_part_3[0];
+            let v30 = of_part_4[0];
+            let v33 = of_part_6[0];
+            let v39 = of_part_2[0];
+            let v40 = of_part_5[0];
             if !::hodograph::generated::all_finite([v26, v30, v33, v39, v40]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -843,7 +1017,7 @@ pub mod pendulum_in_parts {
             &self,
             q: &Coordinates<T>,
             u: &Speeds<T>,
-            surface: &::hodograph::Surface<T>,
+            surface: &impl ::hodograph::ContactSurface<T>,
         ) -> ::core::result::Result<Collision<T>, ::hodograph::CollisionError<T>> {
             Self::struck_tip_wall(
                 self,
@@ -861,7 +1035,7 @@ pub mod pendulum_in_parts {
             &self,
             q: &Coordinates<T>,
             u: &Speeds<T>,
-            surface: &::hodograph::Surface<T>,
+            surface: &impl ::hodograph::ContactSurface<T>,
         ) -> ::core::result::Result<Collision<T>, ::hodograph::CollisionError<T>> {
             Self::struck_tip_wall(
                 self,
@@ -894,69 +1068,143 @@ pub mod pendulum_in_parts {
             let v28 = self.hoisted[4];
             let v34 = self.hoisted[5];
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1]) -> [T; 2] {
-                let [v3] = *taken;
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
+                gives[0] = v6;
                 let v8 = v6c;
-                [v6, v8]
+                gives[1] = v8;
             }
-            let [v6, v8] = part_0(&[v3]);
+            let mut of_part_0 = [T::one(); 2];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
-            fn part_1<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v1, v4, v8] = *taken;
+            fn part_1<T: ::hodograph::Scalar>(
+                taken: &[T; 2],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v1 = taken[0];
+                let v4 = taken[1];
                 let v25 = v1 * v4;
+                gives[0] = v25;
+                let v8 = of_part_0[1];
                 let v27 = v8 * v25;
-                [v25, v27]
+                gives[1] = v27;
             }
-            let [v25, v27] = part_1(&[v1, v4, v8]);
+            let mut of_part_1 = [T::one(); 2];
+            part_1(&[v1, v4], &of_part_0, &mut of_part_1);
             #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 2] {
-                let [v27, v6] = *taken;
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                of_part_1: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v27 = of_part_1[1];
                 let v39 = -v27;
+                gives[0] = v39;
+                let v6 = of_part_0[0];
                 let v7 = v6;
-                [v39, v7]
+                gives[1] = v7;
             }
-            let [v39, v7] = part_2(&[v27, v6]);
+            let mut of_part_2 = [T::one(); 2];
+            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
             #[inline(never)]
-            fn part_3<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
-                let [v25, v28, v7, v8] = *taken;
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                of_part_1: &[T; 2],
+                of_part_2: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v25 = of_part_1[0];
+                let v7 = of_part_2[1];
                 let v26 = v7 * v25;
+                gives[0] = v26;
+                let v28 = taken[0];
+                let v8 = of_part_0[1];
                 let v29 = v8 * v28;
-                [v26, v29]
+                gives[1] = v29;
             }
-            let [v26, v29] = part_3(&[v25, v28, v7, v8]);
+            let mut of_part_3 = [T::one(); 2];
+            part_3(&[v28], &of_part_0, &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
-            fn part_4<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
-                let [v28, v29, v7, v8] = *taken;
+            fn part_4<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                of_part_2: &[T; 2],
+                of_part_3: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v29 = of_part_3[1];
+                let v8 = of_part_0[1];
                 let v30 = v8 * v29;
+                gives[0] = v30;
+                let v28 = taken[0];
+                let v7 = of_part_2[1];
                 let v31 = v7 * v28;
-                [v30, v31]
+                gives[1] = v31;
             }
-            let [v30, v31] = part_4(&[v28, v29, v7, v8]);
+            let mut of_part_4 = [T::one(); 2];
+            part_4(&[v28], &of_part_0, &of_part_2, &of_part_3, &mut of_part_4);
             #[inline(never)]
-            fn part_5<T: ::hodograph::Scalar>(taken: &[T; 2]) -> [T; 1] {
-                let [v31, v8] = *taken;
+            fn part_5<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                of_part_4: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_4[1];
+                let v8 = of_part_0[1];
                 let v32 = v8 * v31;
                 let v40 = -v32;
-                [v40]
+                gives[0] = v40;
             }
-            let [v40] = part_5(&[v31, v8]);
+            let mut of_part_5 = [T::one(); 1];
+            part_5(&[], &of_part_0, &of_part_4, &mut of_part_5);
             #[inline(never)]
-            fn part_6<T: ::hodograph::Scalar>(taken: &[T; 4]) -> [T; 2] {
-                let [v31, v34, v7, v8] = *taken;
+            fn part_6<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_0: &[T; 2],
+                of_part_2: &[T; 2],
+                of_part_4: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v31 = of_part_4[1];
+                let v7 = of_part_2[1];
                 let v33 = v7 * v31;
+                gives[0] = v33;
+                let v34 = taken[0];
+                let v8 = of_part_0[1];
                 let v35 = v8 * v34;
-                [v33, v35]
+                gives[1] = v35;
             }
-            let [v33, v35] = part_6(&[v31, v34, v7, v8]);
+            let mut of_part_6 = [T::one(); 2];
+            part_6(&[v34], &of_part_0, &of_part_2, &of_part_4, &mut of_part_6);
             #[inline(never)]
-            fn part_7<T: ::hodograph::Scalar>(taken: &[T; 3]) -> [T; 2] {
-                let [v34, v35, v7] = *taken;
+            fn part_7<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_2: &[T; 2],
+                of_part_6: &[T; 2],
+                gives: &mut [T; 2],
+            ) {
+                let v35 = of_part_6[1];
                 let v41 = -v35;
+                gives[0] = v41;
+                let v34 = taken[0];
+                let v7 = of_part_2[1];
                 let v36 = v7 * v34;
-                [v36, v41]
+                gives[1] = v36;
             }
-            let [v36, v41] = part_7(&[v34, v35, v7]);
+            let mut of_part_7 = [T::one(); 2];
+            part_7(&[v34], &of_part_2, &of_part_6, &mut of_part_7);
+            let v26 = of_part_3[0];
+            let v30 = of_part_4[0];
+            let v33 = of_part_6[0];
+            let v36 = of_part_7[1];
+            let v39 = of_part_2[0];
+            let v40 = of_part_5[0];
+            let v41 = of_part_7[0];
             if !::hodograph::generated::all_finite([v26, v30, v33, v36, v39, v40, v41]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -1662,6 +1910,53 @@ pub mod pendulum_in_parts {
             contact: usize,
             state: &::hodograph::State<'_, T>,
             surface: &::hodograph::Surface<T>,
+            speeds: &mut [T],
+        ) -> ::core::result::Result<
+            ::hodograph::CollisionOutcome<T>,
+            ::hodograph::CollisionError<T>,
+        > {
+            match contact {
+                0 => {
+                    DESCRIPTION.check(state)?;
+                    let q = &<Coordinates<
+                        T,
+                    > as ::core::convert::From<
+                        [T; 1],
+                    >>::from(
+                        ::hodograph::generated::array::<
+                            T,
+                            1,
+                        >(state.coordinates, "coordinates")?,
+                    );
+                    let u = &<Speeds<
+                        T,
+                    > as ::core::convert::From<
+                        [T; 1],
+                    >>::from(
+                        ::hodograph::generated::array::<T, 1>(state.speeds, "speeds")?,
+                    );
+                    let hit = Self::collide_tip_wall(self, q, u, surface)?;
+                    ::hodograph::generated::write_array::<
+                        T,
+                        1,
+                    >(speeds, hit.speeds, "the speeds after the collision")?;
+                    ::core::result::Result::Ok(hit.outcome())
+                }
+                index => {
+                    ::core::result::Result::Err(
+                        ::core::convert::From::from(::hodograph::StateError::Missing {
+                            kind: ::hodograph::Kind::Contact,
+                            index,
+                        }),
+                    )
+                }
+            }
+        }
+        fn collide_within(
+            &self,
+            contact: usize,
+            state: &::hodograph::State<'_, T>,
+            surface: &::hodograph::Budgeted<T>,
             speeds: &mut [T],
         ) -> ::core::result::Result<
             ::hodograph::CollisionOutcome<T>,

@@ -10,6 +10,7 @@ use crate::program::graph::{Graph, Input, Node};
 use crate::program::jacobian::{Direction, Jacobian, ORDERS, jacobian};
 use crate::program::ldl::factorise;
 use crate::program::passes::simplified;
+use crate::program::solve::Solve;
 use crate::program::{Derived, Guard, Inputs, Output, Program, Quantity};
 
 /// Up to this work every order of elimination goes through the passes, and the one with the fewest operations after them is taken.
@@ -37,7 +38,15 @@ impl Writer<'_, '_> {
             let columns = rows.first().map_or(0, Vec::len);
             let output = Output { quantity, rows: rows.len(), columns, values: rows.concat() };
             let (guards, samples) = (guards.to_vec(), samples.to_vec());
-            Derived { graph, outputs: vec![output], guards, structures: vec![], samples, apart: vec![] }
+            Derived {
+                graph,
+                outputs: vec![output],
+                guards,
+                structures: vec![],
+                samples,
+                apart: vec![],
+                solve: None,
+            }
         };
         let mut all = Vec::new();
         if !pieces.rates.is_empty() {
@@ -47,9 +56,10 @@ impl Writer<'_, '_> {
         let (graph, rows) = pieces.best(&pieces.inverse);
         let with_value = beside(&pieces.inverse, &rows);
         all.push(derived(graph.clone(), &pieces.guards, Quantity::InverseDynamicsDerivatives, with_value));
-        if let Some((graph, pivots, rows)) = self.accelerations_derivatives(&pieces, graph, &rows) {
+        if let Some((graph, pivots, rows, solve)) = self.accelerations_derivatives(&pieces, graph, &rows) {
             let guards = [&pieces.guards[..], &pivots].concat();
-            all.push(derived(graph, &guards, Quantity::AccelerationsDerivatives, rows));
+            let system = derived(graph, &guards, Quantity::AccelerationsDerivatives, rows);
+            all.push(Derived { solve: Some(solve), ..system });
         }
         all
     }
@@ -83,6 +93,7 @@ impl Writer<'_, '_> {
             structures: Vec::new(),
             samples: Vec::new(),
             apart: Vec::new(),
+            solve: None,
         });
         let mut parts = derived.outputs.into_iter().map(|output| output.values);
         let mut next = || parts.next().unwrap_or_default();
@@ -121,7 +132,7 @@ impl Writer<'_, '_> {
         coordinates.chain(speeds).chain(inputs).map(along).collect()
     }
 
-    /// u' and its derivatives, from the derivatives of the inverse dynamics for given u'; with what must not vanish. `None` where that is too
+    /// u' and the systems of equations of its derivatives, from the derivatives of the inverse dynamics for given u'; with what must not vanish. `None` where that is too
     /// long for a straight line.
     #[allow(clippy::type_complexity)]
     fn accelerations_derivatives(
@@ -129,7 +140,7 @@ impl Writer<'_, '_> {
         pieces: &Pieces,
         mut graph: Graph,
         rows: &[Vec<Node>],
-    ) -> Option<(Graph, Vec<Guard<Node>>, Vec<Vec<Node>>)> {
+    ) -> Option<(Graph, Vec<Guard<Node>>, Vec<Vec<Node>>, Solve)> {
         let factor = factorise(&mut graph, &pieces.matrix);
         let each = 2 * factor.entries() + rows.len();
         if each * pieces.directions.len() > LONGEST {
@@ -140,17 +151,14 @@ impl Writer<'_, '_> {
         let accelerations = factor.finish(&mut graph, &half);
         let held = (0..).map(Input::Acceleration).zip(accelerations.iter().copied());
         let entries = graph.replaced(&rows.concat(), &held.collect::<HashMap<Input, Node>>());
+        let (order, block) = factor.block(&mut graph);
         let count = pieces.directions.len();
-        let mut solved = rows.to_vec();
-        for column in 0..count {
-            let opposite: Vec<Node> =
-                (0..rows.len()).map(|row| graph.neg(entries[row * count + column])).collect();
-            let half = factor.half_solve(&mut graph, &opposite);
-            for (row, node) in solved.iter_mut().zip(factor.finish(&mut graph, &half)) {
-                row[column] = node;
-            }
-        }
-        Some((graph, pivots, beside(&accelerations, &solved)))
+        let system = order.iter().zip(block).map(|(&row, block)| {
+            let columns = &entries[row * count..(row + 1) * count];
+            std::iter::once(accelerations[row]).chain(columns.iter().copied()).chain(block).collect()
+        });
+        let system = system.collect();
+        Some((graph, pivots, system, Solve { order, held: 1 }))
     }
 }
 
@@ -180,6 +188,7 @@ fn cost(graph: &Graph, found: &Jacobian) -> usize {
         structures: Vec::new(),
         samples: Vec::new(),
         apart: Vec::new(),
+        solve: None,
     });
     let count = program.cost(&[Quantity::Forcing]).evaluation();
     count.total() - count.fused

@@ -25,6 +25,7 @@ mod vanishing;
 use super::derivation::Derived;
 use super::inputs::Inputs;
 use super::lower::lower;
+use super::solve::solved;
 use super::straight_line::Program;
 
 /// A pass.
@@ -99,9 +100,9 @@ pub fn run(derived: &Derived, mut show: impl FnMut(&'static str, &dyn Fn() -> Pr
             // The list has one pass that lowers, after those on the graph: a test holds it to that.
             (_, form) => form,
         };
-        show(pass.name, &|| form.program());
+        show(pass.name, &|| solved(form.program(), derived.solve.as_ref()));
     }
-    form.program()
+    solved(form.program(), derived.solve.as_ref())
 }
 
 impl Form {

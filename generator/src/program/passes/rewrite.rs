@@ -89,7 +89,7 @@ pub fn rewrite(
     });
     let (outputs, guards) = (outputs.collect(), guards.collect());
     let (structures, samples) = (derived.structures.clone(), derived.samples.clone());
-    Derived { graph, outputs, guards, structures, samples, apart: Vec::new() }
+    Derived { graph, outputs, guards, structures, samples, apart: Vec::new(), solve: None }
 }
 
 /// New nodes for old.

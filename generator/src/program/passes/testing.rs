@@ -15,7 +15,15 @@ pub fn small(build: impl FnOnce(&mut Graph) -> Vec<Node>) -> Derived {
     let mut graph = Graph::new();
     let nodes = build(&mut graph);
     let outputs = vec![Output { quantity: Quantity::Forcing, rows: nodes.len(), columns: 1, values: nodes }];
-    Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![inputs()], apart: vec![] }
+    Derived {
+        graph,
+        outputs,
+        guards: vec![],
+        structures: vec![],
+        samples: vec![inputs()],
+        apart: vec![],
+        solve: None,
+    }
 }
 
 /// Four numbers that change from call to call.
@@ -55,7 +63,15 @@ pub fn random(seed: u64) -> Derived {
     }
     let nodes: Vec<Node> = nodes.iter().rev().take(12).copied().collect();
     let outputs = vec![Output { quantity: Quantity::Forcing, rows: 12, columns: 1, values: nodes }];
-    Derived { graph, outputs, guards: vec![], structures: vec![], samples: vec![inputs()], apart: vec![] }
+    Derived {
+        graph,
+        outputs,
+        guards: vec![],
+        structures: vec![],
+        samples: vec![inputs()],
+        apart: vec![],
+        solve: None,
+    }
 }
 
 /// Numbers for what random and small derivations read.

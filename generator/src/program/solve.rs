@@ -1,0 +1,140 @@
+//! Appends the solution of systems of equations to a program: M X = -B for the columns of B, with the factor of M.
+//!
+//! The columns are solved after all passes, each by the same operations in the same order. So a column costs no work of the passes, and emitted code may
+//! take several columns at a time (`emit/lanes.rs`).
+
+use super::build::Builder;
+use super::operation::{Operation, Value};
+use super::output::{Guard, Output};
+use super::straight_line::Program;
+
+/// What a solution is made of. The only output of the program holds, row by row in the order of elimination, `held` columns that stay as they are, the
+/// columns of B, and a square block: the entries of L below the diagonal of M = L D L^T, on the diagonal -1 / D.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Solve {
+    /// which row of M is eliminated at which step
+    pub order: Vec<usize>,
+    /// columns before those of B
+    pub held: usize,
+}
+
+/// The program with the solution in the place of its output.
+pub fn solved(program: Program, solve: Option<&Solve>) -> Program {
+    let (Some(solve), [output]) = (solve, &program.outputs[..]) else { return program };
+    let rows = solve.order.len();
+    let Some(count) = output.columns.checked_sub(rows + solve.held) else { return program };
+    let mut builder = Builder::default();
+    let mut renamed: Vec<Value> = Vec::with_capacity(program.operations.len());
+    for operation in &program.operations {
+        let value = builder.push(operation.map(|operand| renamed[operand.index()]));
+        renamed.push(value);
+    }
+    let entry = |row: usize, column: usize| renamed[output.values[row * output.columns + column].index()];
+    let factor = |row: usize, column: usize| entry(row, solve.held + count + column);
+    let columns = solve.held + count;
+    let mut values = vec![Value(0); rows * columns];
+    for column in 0..columns {
+        let mut x: Vec<Value> = (0..rows).map(|row| entry(row, column)).collect();
+        if column >= solve.held {
+            for row in 0..rows {
+                x[row] = (0..row).fold(x[row], |sum, at| less(&mut builder, sum, factor(row, at), x[at]));
+            }
+            for (row, value) in x.iter_mut().enumerate() {
+                *value = builder.mul(factor(row, row), *value);
+            }
+            for row in (0..rows).rev() {
+                x[row] =
+                    (row + 1..rows).fold(x[row], |sum, at| less(&mut builder, sum, factor(at, row), x[at]));
+            }
+        }
+        for (&row, &value) in solve.order.iter().zip(&x) {
+            values[row * columns + column] = value;
+        }
+    }
+    let guards = program.guards.iter().map(|guard| Guard {
+        value: renamed[guard.value.index()],
+        scale: guard.scale.map(|scale| renamed[scale.index()]),
+        message: guard.message.clone(),
+    });
+    let guards = guards.collect();
+    let outputs = vec![Output { quantity: output.quantity, rows, columns, values }];
+    Program { operations: builder.finish(), outputs, guards, structures: program.structures }
+}
+
+/// sum - factor * value; what is 0 takes no operation.
+fn less(builder: &mut Builder, sum: Value, factor: Value, value: Value) -> Value {
+    let is_zero = |value| builder.number(value) == Some(0.0);
+    match (is_zero(sum), is_zero(factor) || is_zero(value)) {
+        (_, true) => sum,
+        (true, false) => {
+            let product = builder.mul(factor, value);
+            builder.neg(product)
+        }
+        (false, false) if [factor, value].iter().any(|&value| builder.number(value).is_some()) => {
+            let product = builder.mul(factor, value);
+            builder.sub(sum, product)
+        }
+        (false, false) => builder.push(Operation::NegMulAdd(factor, value, sum)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::derivation::Derived;
+    use super::super::graph::{Graph, Input, Node};
+    use super::super::ldl::factorise;
+    use super::super::{Inputs, Quantity};
+    use super::*;
+    use crate::interpret::Evaluator;
+
+    /// M X = -B with a matrix of four rows, whose second row is coupled to the first alone; `held` is a column that stays.
+    #[test]
+    fn the_solution_satisfies_the_equations() {
+        let m = [[5.0, 1.0, 2.0, 1.0], [1.0, 4.0, 0.0, 0.0], [2.0, 0.0, 6.0, 1.0], [1.0, 0.0, 1.0, 3.0]];
+        let b = [[1.0, 0.0, 0.5], [2.0, 0.0, 0.0], [-3.0, 1.0, 0.0], [4.0, 0.0, 0.25]];
+        let mut graph = Graph::new();
+        let mut inputs = Inputs::default();
+        let mut input = |graph: &mut Graph, number: f64| -> Node {
+            if number == 0.0 {
+                return graph.integer(0);
+            }
+            inputs.speeds.push(number);
+            graph.input(Input::Speed(inputs.speeds.len() as u32 - 1))
+        };
+        let mut matrix = vec![vec![graph.integer(0); 4]; 4];
+        for row in 0..4 {
+            for column in 0..=row {
+                let entry = input(&mut graph, m[row][column]);
+                (matrix[row][column], matrix[column][row]) = (entry, entry);
+            }
+        }
+        let right: Vec<Vec<Node>> =
+            b.iter().map(|row| row.iter().map(|&number| input(&mut graph, number)).collect()).collect();
+        let (order, block) = factorise(&mut graph, &matrix).block(&mut graph);
+        let seven = graph.integer(7);
+        let rows = order.iter().zip(block);
+        let values: Vec<Node> =
+            rows.flat_map(|(&row, block)| [vec![seven], right[row].clone(), block].concat()).collect();
+        let quantity = Quantity::AccelerationsDerivatives;
+        let derived = Derived {
+            graph,
+            outputs: vec![Output { quantity, rows: 4, columns: 8, values }],
+            guards: vec![],
+            structures: vec![],
+            samples: vec![],
+            apart: vec![],
+            solve: Some(Solve { order, held: 1 }),
+        };
+        let program = Program::new(&derived);
+        assert_eq!((program.outputs[0].rows, program.outputs[0].columns), (4, 4));
+        let found =
+            Evaluator::new(&program).evaluate(&inputs, &[quantity]).expect("regular").remove(0).values;
+        for (row, (of_m, of_b)) in m.iter().zip(&b).enumerate() {
+            assert_eq!(found[row * 4], 7.0);
+            for column in 0..3 {
+                let product: f64 = (0..4).map(|at| of_m[at] * found[at * 4 + 1 + column]).sum();
+                assert!((product + of_b[column]).abs() < 1e-14, "{row} {column}: {product}");
+            }
+        }
+    }
+}
