@@ -1,0 +1,119 @@
+//! The processes of a cluster: Ballista's scheduler and executor with our functions.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use ballista_core::config::TaskSchedulingPolicy;
+use ballista_core::registry::BallistaFunctionRegistry;
+use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
+use ballista_scheduler::cluster::BallistaCluster;
+use ballista_scheduler::config::SchedulerConfig;
+use ballista_scheduler::scheduler_process::start_server;
+
+use crate::codec::{Logical, Physical};
+use crate::failure::Failure;
+use crate::functions;
+use crate::models::shipped;
+use crate::session;
+
+/// Seconds between the signs of life of an executor.
+pub const HEARTBEAT: u64 = 2;
+
+/// The scheduler's arguments.
+#[derive(Clone, Debug)]
+pub struct Scheduler {
+    /// where it listens
+    pub listen: SocketAddr,
+    /// the name by which executors reach it
+    pub host: String,
+    /// seconds after which an executor without sign of life is given up, and its work done again by others
+    pub patience: u64,
+}
+
+/// Runs a scheduler until the process ends.
+///
+/// # Errors
+///
+/// An address in use; the engine's.
+pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
+    let mut config = SchedulerConfig::default()
+        .with_hostname(given.host.clone())
+        .with_port(given.listen.port())
+        .with_scheduler_policy(TaskSchedulingPolicy::PullStaged)
+        .with_no_executors_grace_period_seconds(given.patience.max(30))
+        .with_override_config_producer(Arc::new(session::configuration))
+        .with_override_session_builder(Arc::new(|config| session::planner(config)));
+    config.bind_host = given.listen.ip().to_string();
+    config.executor_timeout_seconds = given.patience;
+    config.expire_dead_executor_interval_seconds = (given.patience / 3).max(1);
+    config.override_logical_codec = Some(Arc::new(Logical::default()));
+    config.override_physical_codec = Some(Arc::new(Physical::default()));
+    let failed =
+        |error: String| Failure::Engine(format!("the scheduler at {} stopped: {error}", given.listen));
+    // a clear word before the engine's own
+    drop(tokio::net::TcpListener::bind(given.listen).await.map_err(|error| failed(error.to_string()))?);
+    let cluster =
+        BallistaCluster::new_from_config(&config).await.map_err(|error| failed(error.to_string()))?;
+    println!("scheduler listens at {}", given.listen);
+    start_server(cluster, given.listen, Arc::new(config)).await.map_err(|error| failed(error.to_string()))
+}
+
+/// An executor's arguments.
+#[derive(Clone, Debug)]
+pub struct Executor {
+    /// host and port of the scheduler
+    pub scheduler: String,
+    /// where it hands out results
+    pub listen: SocketAddr,
+    /// the name by which others reach it
+    pub host: String,
+    /// threads that compute
+    pub cores: usize,
+    /// bytes that its tasks may hold before they spill
+    pub memory: u64,
+    /// where results wait until they are fetched
+    pub work: PathBuf,
+}
+
+/// Runs an executor until it is told to stop.
+///
+/// # Errors
+///
+/// A scheduler that does not answer; the engine's.
+pub async fn executor(given: &Executor) -> Result<(), Failure> {
+    let Some((host, port)) =
+        given.scheduler.rsplit_once(':').and_then(|(host, port)| Some((host, port.parse().ok()?)))
+    else {
+        return Err(Failure::Input(format!("--scheduler {}: expected HOST:PORT", given.scheduler)));
+    };
+    session::answers(&given.scheduler).await?;
+    std::fs::create_dir_all(&given.work)
+        .map_err(|error| Failure::file(&given.work, "make the directory", error))?;
+    let mut registry = BallistaFunctionRegistry::default();
+    functions::insert(&mut registry.scalar_functions, &mut registry.aggregate_functions, shipped());
+    let config = ExecutorProcessConfig {
+        bind_host: given.listen.ip().to_string(),
+        external_host: Some(given.host.clone()),
+        port: given.listen.port(),
+        grpc_port: given.listen.port() + 1,
+        scheduler_host: host.to_owned(),
+        scheduler_port: port,
+        vcores: given.cores,
+        task_scheduling_policy: TaskSchedulingPolicy::PullStaged,
+        work_dir: Some(given.work.display().to_string()),
+        executor_heartbeat_interval_seconds: HEARTBEAT,
+        memory_pool_size: Some(given.memory),
+        job_data_ttl_seconds: 3600,
+        job_data_clean_up_interval_seconds: 600,
+        override_function_registry: Some(Arc::new(registry)),
+        override_config_producer: Some(Arc::new(session::configuration)),
+        override_logical_codec: Some(Arc::new(Logical::default())),
+        override_physical_codec: Some(Arc::new(Physical::default())),
+        ..Default::default()
+    };
+    println!("executor at {} works for the scheduler at {}", given.listen, given.scheduler);
+    start_executor_process(Arc::new(config)).await.map_err(|error| {
+        Failure::Engine(format!("the executor of the scheduler at {} stopped: {error}", given.scheduler))
+    })
+}

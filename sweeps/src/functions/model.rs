@@ -1,0 +1,499 @@
+//! `<model>_collide`, `<model>_accelerations` and `<model>_energy`: the routines of a mechanism on columns of states.
+
+use std::hash::{Hash, Hasher};
+use std::ops::Range;
+use std::sync::{Arc, OnceLock};
+
+use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array, StringArray};
+use datafusion::arrow::compute::cast;
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields, Float64Type};
+use datafusion::common::{Result, exec_datafusion_err, plan_datafusion_err, plan_err};
+use datafusion::logical_expr::{
+    ColumnarValue, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility,
+};
+use hodograph::{CollisionError, CollisionOutcome, Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph_generator::program::Quantity;
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::columns::{Collisions, Column, Columns, Table};
+
+use super::answers::{Answers, NULL, fields};
+use super::places::{self, Place};
+use super::{UNKNOWN_CONTACT, UNKNOWN_LAW};
+use crate::models::Model;
+
+/// What is asked of a mechanism.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Routine {
+    /// the collision of a contact
+    Collide,
+    /// rates of the independent speeds without contact forces
+    Accelerations,
+    /// kinetic and potential energy
+    Energy,
+}
+
+impl Routine {
+    /// Every routine.
+    pub const ALL: [Self; 3] = [Self::Collide, Self::Accelerations, Self::Energy];
+
+    /// The end of the function's name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Collide => "collide",
+            Self::Accelerations => "accelerations",
+            Self::Energy => "energy",
+        }
+    }
+}
+
+const COLLISION: [&str; 12] = [
+    "approach_n",
+    "approach_t",
+    "approach_s",
+    "impulse_n",
+    "impulse_t",
+    "impulse_s",
+    "separation_n",
+    "separation_t",
+    "separation_s",
+    "contact_work",
+    "normal_work",
+    "energy_change",
+];
+
+/// A function of a model.
+#[derive(Debug)]
+pub struct ModelFunction {
+    /// the model
+    pub model: Arc<Model>,
+    routine: Routine,
+    name: String,
+    signature: Signature,
+    prepared: OnceLock<Prepared>,
+}
+
+/// What all batches share.
+#[derive(Debug)]
+struct Prepared {
+    known: Vec<(String, Place)>,
+    /// coordinates, speeds, inputs, parameters: what a field that is not given is
+    defaults: [Vec<f64>; 4],
+    contacts: Vec<String>,
+    /// a routine for each contact; none where the contact has no collision
+    collisions: Vec<Option<Collisions>>,
+    columns: Columns,
+}
+
+impl PartialEq for ModelFunction {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+            && (Arc::ptr_eq(&self.model, &other.model) || self.model.digest() == other.model.digest())
+    }
+}
+
+impl Eq for ModelFunction {}
+
+impl Hash for ModelFunction {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.name.hash(state);
+    }
+}
+
+impl ModelFunction {
+    /// A function of this model.
+    pub fn new(model: Arc<Model>, routine: Routine) -> Self {
+        let name = format!("{}_{}", model.name, routine.name());
+        let signature = Signature::any(1, Volatility::Immutable);
+        ModelFunction { model, routine, name, signature, prepared: OnceLock::new() }
+    }
+
+    fn mechanism(&self) -> Result<&InterpretedMechanism> {
+        self.model.mechanism().map_err(|error| plan_datafusion_err!("{error}"))
+    }
+
+    fn prepared(&self) -> Result<&Prepared> {
+        let mechanism = self.mechanism()?;
+        Ok(self.prepared.get_or_init(|| Prepared::new(mechanism, self.routine)))
+    }
+
+    fn collides(&self) -> bool {
+        self.routine == Routine::Collide
+    }
+
+    /// The fields of the answer.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the model.
+    pub fn answer(&self) -> Result<Fields> {
+        let mechanism = self.mechanism()?;
+        let speeds = (0..Mechanism::count(mechanism, Kind::Speed))
+            .filter_map(|index| Mechanism::component(mechanism, Kind::Speed, index))
+            .map(|speed| speed.name.to_owned());
+        let numbers: Vec<String> = match self.routine {
+            Routine::Collide => COLLISION
+                .map(str::to_owned)
+                .into_iter()
+                .chain(speeds.map(|name| format!("after_{name}")))
+                .collect(),
+            Routine::Accelerations => speeds.map(|name| format!("rate_{name}")).collect(),
+            Routine::Energy => vec!["kinetic".to_owned(), "potential".to_owned()],
+        };
+        Ok(fields(self.collides(), &numbers))
+    }
+
+    /// The names of all fields that the argument may have.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the model.
+    pub fn known(&self) -> Result<Vec<(String, Place)>> {
+        Ok(self.prepared()?.known.clone())
+    }
+
+    fn places(&self, given: &DataType) -> Result<Vec<Place>> {
+        let DataType::Struct(given) = given else {
+            return plan_err!(
+                "{} takes one struct of named fields, as {}(named_struct('{}', 1.0, ..)); {given} is given",
+                self.name,
+                self.name,
+                self.prepared()?.known.iter().map(|(name, _)| name.as_str()).next().unwrap_or("time")
+            );
+        };
+        let places = places::resolve(&self.name, &self.prepared()?.known, self.collides(), given)?;
+        if self.collides() && self.prepared()?.contacts.is_empty() {
+            return plan_err!("{}: the model has no contacts", self.name);
+        }
+        Ok(places)
+    }
+}
+
+impl Prepared {
+    fn new(mechanism: &InterpretedMechanism, routine: Routine) -> Self {
+        let count = |kind| Mechanism::count(mechanism, kind);
+        let zeros = |kind| vec![0.0; count(kind)];
+        let [mut q, mut u, mut inputs, mut parameters] =
+            [Kind::Coordinate, Kind::Speed, Kind::Input, Kind::Parameter].map(zeros);
+        // the slices have the lengths asked for
+        let _ = mechanism.initial_state(&mut q, &mut u, &mut inputs);
+        let _ = mechanism.parameters(&mut parameters);
+        let contacts = (0..count(Kind::Contact))
+            .filter_map(|index| Mechanism::component(mechanism, Kind::Contact, index));
+        Prepared {
+            known: places::known(mechanism, routine == Routine::Collide),
+            defaults: [q, u, inputs, parameters],
+            contacts: contacts.map(|contact| contact.name.to_owned()).collect(),
+            collisions: (0..count(Kind::Contact)).map(|contact| mechanism.collisions(contact).ok()).collect(),
+            columns: mechanism.columns(&quantities(routine)),
+        }
+    }
+}
+
+fn quantities(routine: Routine) -> Vec<Quantity> {
+    match routine {
+        Routine::Collide => Vec::new(),
+        Routine::Accelerations => vec![Quantity::Accelerations],
+        Routine::Energy => vec![Quantity::KineticEnergy, Quantity::PotentialEnergy],
+    }
+}
+
+/// The columns of a batch.
+struct Batch {
+    rows: usize,
+    places: Vec<Place>,
+    numbers: Vec<Option<Float64Array>>,
+    law: Option<StringArray>,
+    contact: Option<StringArray>,
+    valid: Vec<bool>,
+}
+
+impl Batch {
+    fn new(argument: &ArrayRef, places: Vec<Place>) -> Result<Self> {
+        let Some(columns) = argument.as_struct_opt() else { return plan_err!("the argument is no struct") };
+        let rows = argument.len();
+        let mut batch =
+            Batch { rows, numbers: Vec::new(), law: None, contact: None, valid: vec![true; rows], places };
+        let mut see = |array: &dyn Array| {
+            if array.null_count() > 0 {
+                batch.valid.iter_mut().enumerate().for_each(|(row, valid)| *valid &= !array.is_null(row));
+            }
+        };
+        see(argument);
+        for (place, column) in batch.places.iter().zip(columns.columns()) {
+            match place {
+                Place::Law | Place::Contact => {
+                    let text = cast(column, &DataType::Utf8)?;
+                    see(&text);
+                    let text = text.as_string::<i32>().clone();
+                    *(if *place == Place::Law { &mut batch.law } else { &mut batch.contact }) = Some(text);
+                    batch.numbers.push(None);
+                }
+                _ => {
+                    let numbers = cast(column, &DataType::Float64)?;
+                    see(&numbers);
+                    batch.numbers.push(Some(numbers.as_primitive::<Float64Type>().clone()));
+                }
+            }
+        }
+        Ok(batch)
+    }
+
+    fn given(&self, place: Place) -> Option<Column<'_>> {
+        let index = self.places.iter().position(|&given| given == place)?;
+        self.numbers.get(index)?.as_ref().map(|numbers| Column::new(numbers.values()))
+    }
+
+    fn list<'a>(&'a self, defaults: &'a [f64], place: fn(usize) -> Place) -> Vec<Column<'a>> {
+        let column = |index: usize| {
+            self.given(place(index)).unwrap_or(Column::strided(defaults.get(index..).unwrap_or(&[]), 0))
+        };
+        (0..defaults.len()).map(column).collect()
+    }
+
+    fn table<'a>(&'a self, prepared: &'a Prepared) -> Table<'a> {
+        let [coordinates, speeds, inputs, _] = &prepared.defaults;
+        Table {
+            rows: self.rows,
+            time: self.given(Place::Time),
+            coordinates: self.list(coordinates, Place::Coordinate),
+            speeds: self.list(speeds, Place::Speed),
+            inputs: self.list(inputs, Place::Input),
+            ..Table::default()
+        }
+    }
+
+    fn surface(&self, row: usize) -> Result<Surface<f64>, &'static str> {
+        let number = |place| self.given(place).map_or(f64::NAN, |column| column.get(row));
+        let name = self.law.as_ref().map_or("", |law| law.value(row));
+        let law = Law::named(name).ok_or(UNKNOWN_LAW)?;
+        Ok(Surface { mu: number(Place::Mu), e: number(Place::E), law })
+    }
+
+    /// The contact of a row: the named one, or the only one.
+    fn contact(&self, contacts: &[String], row: usize) -> Result<usize, &'static str> {
+        match (&self.contact, contacts) {
+            (None, [_]) => Ok(0),
+            (None, _) => Err(UNKNOWN_CONTACT),
+            (Some(names), _) => {
+                contacts.iter().position(|contact| contact == names.value(row)).ok_or(UNKNOWN_CONTACT)
+            }
+        }
+    }
+
+    /// The ends of the stretches of rows with the same parameters, and the parameters of each.
+    fn stretches(&self, defaults: &[f64]) -> Vec<(Range<usize>, Vec<f64>)> {
+        let columns = self.list(defaults, Place::Parameter);
+        let of = |row: usize| columns.iter().map(|column| column.get(row)).collect::<Vec<f64>>();
+        let mut all: Vec<(Range<usize>, Vec<f64>)> = Vec::new();
+        for row in 0..self.rows {
+            let parameters = of(row);
+            let same = |known: &[f64]| known.iter().zip(&parameters).all(|(a, b)| a.to_bits() == b.to_bits());
+            match all.last_mut() {
+                Some((range, known)) if same(known) => range.end = row + 1,
+                _ => all.push((row..row + 1, parameters)),
+            }
+        }
+        all
+    }
+}
+
+type Solved<'a> = Result<(CollisionOutcome<f64>, &'a [f64]), CollisionError<f64>>;
+
+fn push(answers: &mut Answers, solved: Solved<'_>) {
+    match solved {
+        Ok((outcome, speeds)) => {
+            let impact = &outcome.impact;
+            let works = [impact.contact_work, impact.normal_work, outcome.energy_change];
+            let vectors = outcome.approach.iter().chain(&impact.impulse).chain(&impact.velocity).copied();
+            let numbers = vectors.chain(works).chain(speeds.iter().copied());
+            answers.answer(Some((impact.path, impact.compressions)), numbers);
+        }
+        Err(error) => answers.refuse(error.kind()),
+    }
+}
+
+impl ModelFunction {
+    fn collide(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
+        let table = batch.table(prepared);
+        // rows that cannot be asked get a refusal in their turn
+        let asked = |row: usize| -> Result<(usize, Surface<f64>), &'static str> {
+            if !batch.valid[row] {
+                return Err(NULL);
+            }
+            Ok((batch.contact(&prepared.contacts, row)?, batch.surface(row)?))
+        };
+        let asked: Vec<_> = (0..batch.rows).map(asked).collect();
+        let nowhere = Surface { mu: f64::NAN, e: f64::NAN, law: Law::Newton };
+        let surface =
+            |row: usize| asked.get(row).and_then(|row| row.ok()).map_or(nowhere, |(_, surface)| surface);
+        let mut row = 0;
+        for rows in asked.chunk_by(|a, b| a.map(|(contact, _)| contact) == b.map(|(contact, _)| contact)) {
+            let range = row..row + rows.len();
+            row = range.end;
+            match rows.first() {
+                Some(Err(kind)) => range.for_each(|_| answers.refuse(kind)),
+                Some(Ok((contact, _))) => match prepared.collisions.get(*contact) {
+                    Some(Some(collisions)) => {
+                        collisions.solve(&table, surface, range, |_, solved| push(answers, solved));
+                    }
+                    _ => range.for_each(|_| answers.refuse("undefined")),
+                },
+                None => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Collisions where parameters differ from row to row.
+    fn collide_with_parameters(
+        &self,
+        batch: &Batch,
+        prepared: &Prepared,
+        answers: &mut Answers,
+    ) -> Result<()> {
+        let table = batch.table(prepared);
+        let mut machine = self.mechanism()?.clone();
+        let mut state = Row::new(prepared);
+        let mut speeds = vec![0.0; prepared.defaults[1].len()];
+        for (range, parameters) in batch.stretches(&prepared.defaults[3]) {
+            let refused = machine.set_parameters(&parameters).err();
+            for row in range {
+                let asked = batch.contact(&prepared.contacts, row);
+                match (&refused, batch.valid[row], asked) {
+                    (_, false, _) => answers.refuse(NULL),
+                    (Some(error), ..) => answers.refuse(error.kind()),
+                    (_, _, Err(kind)) => answers.refuse(kind),
+                    (None, true, Ok(contact)) => match batch.surface(row) {
+                        Err(kind) => answers.refuse(kind),
+                        Ok(surface) => {
+                            state.read(&table, row);
+                            let solved = machine.collide(contact, &state.state(), &surface, &mut speeds);
+                            push(answers, solved.map(|outcome| (outcome, speeds.as_slice())));
+                        }
+                    },
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Quantities without a contact.
+    fn evaluate(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
+        let table = batch.table(prepared);
+        let mechanism = self.mechanism()?;
+        let width = if self.routine == Routine::Energy { 2 } else { prepared.defaults[1].len() };
+        let own = batch.places.iter().any(|place| matches!(place, Place::Parameter(_)));
+        let mut machine = mechanism.clone();
+        let stretches =
+            if own { batch.stretches(&prepared.defaults[3]) } else { vec![(0..batch.rows, Vec::new())] };
+        for (range, parameters) in stretches {
+            if own && let Err(error) = machine.set_parameters(&parameters) {
+                range.for_each(|row| answers.refuse(if batch.valid[row] { error.kind() } else { NULL }));
+                continue;
+            }
+            let fresh;
+            let columns = if own {
+                fresh = machine.columns(&quantities(self.routine));
+                &fresh
+            } else {
+                &prepared.columns
+            };
+            let mut numbers = vec![0.0; width];
+            columns.for_each_block(&table, range, |block| {
+                for (lane, failure) in block.failures().iter().enumerate() {
+                    if !batch.valid[block.first + lane] {
+                        answers.refuse(NULL);
+                        continue;
+                    }
+                    if let Some(failed) = failure {
+                        answers.refuse(mechanism.state_error(*failed).kind());
+                        continue;
+                    }
+                    numbers.fill(0.0);
+                    for (result, number) in numbers.iter_mut().enumerate().take(columns.len()) {
+                        *number = block.column(result).get(lane).copied().unwrap_or(0.0);
+                    }
+                    if numbers.iter().all(|number| number.is_finite()) {
+                        answers.answer(None, numbers.iter().copied());
+                    } else {
+                        answers.refuse("not_finite");
+                    }
+                }
+            });
+        }
+        Ok(())
+    }
+}
+
+/// The numbers of one row of a table.
+struct Row {
+    time: f64,
+    lists: [Vec<f64>; 3],
+}
+
+impl Row {
+    fn new(prepared: &Prepared) -> Self {
+        let [q, u, inputs, _] = &prepared.defaults;
+        Row { time: 0.0, lists: [q.clone(), u.clone(), inputs.clone()] }
+    }
+
+    fn read(&mut self, table: &Table<'_>, row: usize) {
+        self.time = table.time.map_or(0.0, |time| time.get(row));
+        for (list, columns) in self.lists.iter_mut().zip([&table.coordinates, &table.speeds, &table.inputs]) {
+            list.iter_mut().zip(columns).for_each(|(number, column)| *number = column.get(row));
+        }
+    }
+
+    fn state(&self) -> State<'_> {
+        let [coordinates, speeds, inputs] = &self.lists;
+        State { time: self.time, coordinates, speeds, inputs }
+    }
+}
+
+impl ScalarUDFImpl for ModelFunction {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn return_type(&self, _: &[DataType]) -> Result<DataType> {
+        Ok(DataType::Struct(self.answer()?))
+    }
+
+    fn return_field_from_args(&self, args: ReturnFieldArgs) -> Result<FieldRef> {
+        if let Some(argument) = args.arg_fields.first() {
+            self.places(argument.data_type())?;
+        }
+        Ok(Arc::new(Field::new(&self.name, DataType::Struct(self.answer()?), false)))
+    }
+
+    fn invoke_with_args(&self, args: ScalarFunctionArgs) -> Result<ColumnarValue> {
+        let Some(argument) = args.args.first() else { return plan_err!("{} takes one struct", self.name) };
+        let argument = argument.to_array(args.number_rows)?;
+        let places = self.places(argument.data_type())?;
+        let prepared = self.prepared()?;
+        let fields = self.answer()?;
+        let own = places.iter().any(|place| matches!(place, Place::Parameter(_)));
+        let batch = Batch::new(&argument, places)?;
+        let texts = if self.collides() { 3 } else { 1 };
+        let mut answers = Answers::new(self.collides(), fields.len() - texts, batch.rows);
+        match self.routine {
+            Routine::Collide if own => self.collide_with_parameters(&batch, prepared, &mut answers)?,
+            Routine::Collide => self.collide(&batch, prepared, &mut answers)?,
+            _ => self.evaluate(&batch, prepared, &mut answers)?,
+        }
+        let answer = answers.finish(fields);
+        if answer.len() != batch.rows {
+            return Err(exec_datafusion_err!(
+                "{}: {} answers for {} rows",
+                self.name,
+                answer.len(),
+                batch.rows
+            ));
+        }
+        Ok(ColumnarValue::Array(answer))
+    }
+}

@@ -1,0 +1,103 @@
+//! What the fields of a model function's argument mean: `two_sleds_collide(named_struct('q3', 0.8, 'mu', 0.5, ..))`.
+
+use datafusion::arrow::datatypes::{DataType, Field, Fields};
+use datafusion::common::{Result, plan_err};
+use hodograph::{Kind, Mechanism};
+use hodograph_interpreter::InterpretedMechanism;
+
+use super::{is_number, is_text};
+
+/// Where a field goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// time, s
+    Time,
+    /// coordinate of this number
+    Coordinate(usize),
+    /// independent speed of this number
+    Speed(usize),
+    /// parameter of this number
+    Parameter(usize),
+    /// named input of this number
+    Input(usize),
+    /// coefficient of friction
+    Mu,
+    /// coefficient of restitution
+    E,
+    /// hypothesis of restitution
+    Law,
+    /// name of the contact
+    Contact,
+}
+
+/// The fields that belong to a collision, not to a model.
+const SURFACE: [(&str, Place); 4] =
+    [("mu", Place::Mu), ("e", Place::E), ("law", Place::Law), ("contact", Place::Contact)];
+
+/// All fields that a function of this mechanism knows. A component of the model that is called as a field of the collision, or `time`, has `model_`
+/// before its name.
+pub fn known(mechanism: &InterpretedMechanism, collision: bool) -> Vec<(String, Place)> {
+    let surface = if collision { SURFACE.as_slice() } else { &[] };
+    let mut all: Vec<(String, Place)> =
+        surface.iter().map(|&(name, place)| (name.to_owned(), place)).collect();
+    all.push(("time".to_owned(), Place::Time));
+    let reserved = all.len();
+    let kinds: [(Kind, fn(usize) -> Place); 4] = [
+        (Kind::Coordinate, Place::Coordinate),
+        (Kind::Speed, Place::Speed),
+        (Kind::Input, Place::Input),
+        (Kind::Parameter, Place::Parameter),
+    ];
+    for (kind, place) in kinds {
+        for index in 0..Mechanism::count(mechanism, kind) {
+            let name = Mechanism::component(mechanism, kind, index).map_or("", |component| component.name);
+            let taken = all.iter().take(reserved).any(|(reserved, _)| reserved == name);
+            all.push((if taken { format!("model_{name}") } else { name.to_owned() }, place(index)));
+        }
+    }
+    all
+}
+
+/// The place of each field of an argument.
+///
+/// # Errors
+///
+/// A field that the model does not know, that is there twice, whose type is wrong, or that is missing.
+pub fn resolve(
+    function: &str,
+    known: &[(String, Place)],
+    collision: bool,
+    given: &Fields,
+) -> Result<Vec<Place>> {
+    let mut places = Vec::with_capacity(given.len());
+    for field in given {
+        let Some(&(_, place)) = known.iter().find(|(name, _)| name == field.name()) else {
+            let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
+            return plan_err!("{function} has no field `{}`; it has {}", field.name(), names.join(", "));
+        };
+        if places.contains(&place) {
+            return plan_err!("{function}: the field `{}` is given twice", field.name());
+        }
+        check(function, field, place)?;
+        places.push(place);
+    }
+    for (name, place) in SURFACE.iter().take(3) {
+        if collision && !places.contains(place) {
+            return plan_err!(
+                "{function} needs the field `{name}`: a collision has 'mu', 'e' and 'law' ('newton', 'poisson' or 'stronge'), and the state \
+                 where it differs from the initial one of the model"
+            );
+        }
+    }
+    Ok(places)
+}
+
+fn check(function: &str, field: &Field, place: Place) -> Result<()> {
+    let given: &DataType = field.data_type();
+    let text = matches!(place, Place::Law | Place::Contact);
+    if if text { is_text(given) } else { is_number(given) } {
+        return Ok(());
+    }
+    let noun = if text { "text" } else { "a number" };
+    plan_err!("{function}: the field `{}` is {given}, it must be {noun}", field.name())
+}

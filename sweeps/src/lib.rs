@@ -1,0 +1,19 @@
+//! Sweeps of collisions as SQL: DataFusion embedded, or Ballista across machines, with the collisions of mechanisms as functions of its columns.
+//!
+//! `docs/sweeps.md` describes the tool `hodograph-sweep`; the files of this package each know one thing, in the order in which they build on each
+//! other: `failure`, `models`, `functions`, `rows`, `codec`, `session`, `cluster`, `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
+
+pub mod arguments;
+pub mod cluster;
+mod codec;
+pub mod describe;
+pub mod failure;
+pub mod functions;
+pub mod models;
+pub mod output;
+mod parts;
+mod progress;
+pub mod rows;
+pub mod run;
+pub mod session;
+pub mod short;

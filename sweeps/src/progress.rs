@@ -1,0 +1,72 @@
+//! How far a sweep is: part done, rows per second and the time that is left, on standard error.
+
+use std::io::{IsTerminal, Write};
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use crate::rows::COUNTED;
+
+/// The report of a sweep of so many rows.
+#[derive(Clone, Debug)]
+pub struct Progress {
+    started: Instant,
+    total: u64,
+    quiet: bool,
+}
+
+/// A span of time as people say it.
+pub fn span(seconds: f64) -> String {
+    match seconds {
+        ..90.0 => format!("{seconds:.0} s"),
+        ..5400.0 => format!("{:.0} min", seconds / 60.0),
+        _ => format!("{:.1} h", seconds / 3600.0),
+    }
+}
+
+impl Progress {
+    /// Begins now.
+    pub fn new(total: u64, quiet: bool) -> Self {
+        Progress { started: Instant::now(), total, quiet }
+    }
+
+    /// Seconds since the beginning.
+    pub fn seconds(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Says how far it is; `skipped` rows were done before.
+    pub fn say(&self, done: u64, skipped: u64) {
+        if self.quiet || self.total == 0 {
+            return;
+        }
+        let rate = done.saturating_sub(skipped) as f64 / self.seconds().max(1e-9);
+        let left = self.total.saturating_sub(done) as f64 / rate;
+        let left = if left.is_finite() { span(left) } else { "unknown time".to_owned() };
+        let line = format!(
+            "{:5.1} %  {:.3e} of {:.3e} rows  {rate:.3e} rows/s  {left} left",
+            100.0 * done as f64 / self.total as f64,
+            done as f64,
+            self.total as f64
+        );
+        let mut out = std::io::stderr().lock();
+        // a report that cannot be written is no reason to stop
+        let _ = if out.is_terminal() { write!(out, "\r{line}   ") } else { writeln!(out, "{line}") };
+        let _ = out.flush();
+    }
+
+    /// Reports from time to time what this process counts, until it is dropped. `before` rows were counted before.
+    pub async fn watch(self, before: u64) {
+        let pause = if std::io::stderr().is_terminal() { 1 } else { 10 };
+        loop {
+            tokio::time::sleep(Duration::from_secs(pause)).await;
+            self.say(COUNTED.load(Ordering::Relaxed).saturating_sub(before).min(self.total), 0);
+        }
+    }
+}
+
+/// The most memory that this process had so far, MB, where the system tells it.
+pub fn peak_memory() -> Option<f64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    line.split_whitespace().nth(1)?.parse::<f64>().ok().map(|kilobytes| kilobytes / 1024.0)
+}

@@ -1,0 +1,157 @@
+//! Sessions of the three engines: embedded, Ballista in this process, Ballista across machines.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use ballista::prelude::SessionContextExt;
+use ballista_core::extension::SessionConfigExt;
+use ballista_core::optimizer::ballista_default_optimizer_rules;
+use datafusion::execution::memory_pool::FairSpillPool;
+use datafusion::execution::runtime_env::RuntimeEnvBuilder;
+use datafusion::execution::{SessionState, SessionStateBuilder};
+use datafusion::prelude::{SessionConfig, SessionContext};
+
+use crate::codec::{Logical, Physical};
+use crate::failure::Failure;
+use crate::functions;
+use crate::models::{Model, shipped};
+use crate::rows::RowsFunction;
+
+/// Where a query runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Engine {
+    /// DataFusion in this process
+    Embedded,
+    /// Ballista's scheduler and executor in this process
+    InProcess,
+    /// the scheduler at this address
+    Cluster(String),
+}
+
+/// What a session is made of.
+#[derive(Clone, Debug)]
+pub struct Setup {
+    /// the engine
+    pub engine: Engine,
+    /// threads that compute
+    pub cores: usize,
+    /// bytes that sorts, groups and joins may hold before they spill to disk
+    pub memory: usize,
+    /// models of the user
+    pub models: Vec<PathBuf>,
+}
+
+/// The shipped models and the user's.
+///
+/// # Errors
+///
+/// A file that is no model, or a name that is there already.
+pub fn models(own: &[PathBuf]) -> Result<Vec<Arc<Model>>, Failure> {
+    let mut all = shipped().to_vec();
+    for path in own {
+        let model = Model::read(path).map_err(Failure::Input)?;
+        if all.iter().any(|known| known.name == model.name) {
+            return Err(Failure::Input(format!(
+                "{}: there is a model `{}` already; rename the file",
+                path.display(),
+                model.name
+            )));
+        }
+        all.push(Arc::new(model));
+    }
+    Ok(all)
+}
+
+/// A configuration with the codecs by which our tables and models travel.
+pub fn configuration() -> SessionConfig {
+    SessionConfig::new_with_ballista()
+        .with_ballista_logical_extension_codec(Arc::new(Logical::default()))
+        .with_ballista_physical_extension_codec(Arc::new(Physical::default()))
+}
+
+/// A state with all functions, for this configuration.
+///
+/// # Errors
+///
+/// The engine's.
+pub fn state(
+    config: SessionConfig,
+    memory: usize,
+    models: &[Arc<Model>],
+) -> datafusion::common::Result<SessionState> {
+    let pool = Arc::new(FairSpillPool::new(memory));
+    let runtime = RuntimeEnvBuilder::new().with_memory_pool(pool).build_arc()?;
+    let mut state = SessionStateBuilder::new()
+        .with_config(config)
+        .with_runtime_env(runtime)
+        .with_default_features()
+        .build();
+    functions::register(&mut state, models)?;
+    Ok(state)
+}
+
+/// A state of the scheduler, which plans the queries of all clients.
+///
+/// # Errors
+///
+/// The engine's.
+pub fn planner(config: SessionConfig) -> datafusion::common::Result<SessionState> {
+    let state = state(config, 1 << 30, shipped())?;
+    let rules = ballista_default_optimizer_rules();
+    Ok(SessionStateBuilder::new_from_existing(state).with_optimizer_rules(rules).build())
+}
+
+impl Setup {
+    /// Opens a session; the table function is the session's `rows`.
+    ///
+    /// # Errors
+    ///
+    /// A model that is none, a scheduler that does not answer.
+    pub async fn open(&self) -> Result<(SessionContext, Arc<RowsFunction>), Failure> {
+        let models = models(&self.models)?;
+        let config = match self.engine {
+            Engine::Embedded => SessionConfig::new(),
+            _ => configuration().with_ballista_standalone_parallelism(self.cores),
+        };
+        let state = state(config.with_target_partitions(self.cores), self.memory, &models)?;
+        let context = match &self.engine {
+            Engine::Embedded => SessionContext::new_with_state(state),
+            Engine::InProcess => SessionContext::standalone_with_state(state).await?,
+            Engine::Cluster(address) => {
+                answers(address).await?;
+                SessionContext::remote_with_state(&format!("df://{address}"), state).await?
+            }
+        };
+        // 'file.parquet' in FROM is a table
+        let context = context.enable_url_table();
+        // Ballista's client begins with its own functions
+        for function in functions::scalar_functions(&models) {
+            context.register_udf((*function).clone());
+        }
+        for function in functions::aggregate_functions() {
+            context.register_udaf((*function).clone());
+        }
+        let rows = Arc::new(RowsFunction::default());
+        context.register_udtf("rows", Arc::clone(&rows) as _);
+        Ok((context, rows))
+    }
+}
+
+/// Whether somebody listens at an address.
+///
+/// # Errors
+///
+/// Nobody does.
+pub async fn answers(address: &str) -> Result<(), Failure> {
+    let unreachable = |why: String| {
+        Failure::Engine(format!(
+            "the scheduler at {address} cannot be reached: {why}. Start it with `hodograph-sweep scheduler`, and give --cluster its HOST:PORT"
+        ))
+    };
+    match tokio::time::timeout(Duration::from_secs(10), tokio::net::TcpStream::connect(address)).await {
+        Ok(Ok(_)) => Ok(()),
+        Ok(Err(error)) => Err(unreachable(error.to_string())),
+        Err(_) => Err(unreachable("no answer within 10 s".to_owned())),
+    }
+}

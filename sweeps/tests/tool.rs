@@ -1,0 +1,201 @@
+//! The tool: what it writes, how it goes on after an interruption, and what it says about mistakes.
+
+mod common;
+
+use std::fs;
+
+use common::{collisions, digest, fails, run, succeeds, tool};
+
+const ROW_BY_ROW: &str = "SELECT i, two_sleds_collide(named_struct('mu', uniform(i, 0, 0), 'e', 0.5, 'law', 'poisson')) AS c FROM rows(20000)";
+
+#[test]
+fn a_query_file_gives_a_summary_a_digest_and_files() {
+    let home = tempfile::tempdir().unwrap();
+    fs::write(home.path().join("query.sql"), collisions(20_000)).unwrap();
+    let shown = succeeds(home.path(), &["run", "query.sql"]);
+    assert!(shown.contains("| 0.25 | 4000") && shown.contains("rows/s and core"), "{shown}");
+    let parquet = succeeds(home.path(), &["run", "query.sql", "--out", "a.parquet", "--cores", "1"]);
+    let csv = succeeds(home.path(), &["run", "query.sql", "--out", "a.csv"]);
+    assert_eq!(digest(&parquet), digest(&shown));
+    assert_eq!(digest(&csv), digest(&shown));
+    assert!(succeeds(home.path(), &["verify", "a.parquet"]).contains("as stated"));
+    let text = fs::read_to_string(home.path().join("a.csv")).unwrap();
+    assert_eq!(text.lines().next(), Some("mu,collisions,solved,checksum,energy"));
+    assert_eq!(text.lines().count(), 6);
+    let note = fs::read_to_string(home.path().join("a.csv.digest")).unwrap();
+    assert!(note.contains("hodograph.rows: 5") && note.contains("two_sleds_collide"), "{note}");
+    // what was written is a table of the next query
+    let again = succeeds(home.path(), &["run", "--sql", "SELECT sum(solved) AS all_solved FROM 'a.parquet'"]);
+    assert!(again.contains("20000"), "{again}");
+}
+
+#[test]
+fn a_damaged_file_is_found_out() {
+    let home = tempfile::tempdir().unwrap();
+    succeeds(home.path(), &["run", "--sql", "SELECT i FROM rows(1000)", "--out", "a.parquet"]);
+    let path = home.path().join("a.parquet");
+    let mut bytes = fs::read(&path).unwrap();
+    let middle = bytes.len() / 4;
+    bytes[middle] ^= 0x55;
+    fs::write(&path, bytes).unwrap();
+    fails(home.path(), &["verify", "a.parquet"], 1);
+}
+
+#[test]
+fn the_short_form_is_a_query() {
+    let home = tempfile::tempdir().unwrap();
+    let arguments = ["run", "--model", "two_sleds", "--vary", "mu=0:2:5", "--sample", "5e3"];
+    let shown = succeeds(home.path(), &arguments);
+    let sql = succeeds(home.path(), &[&arguments[..], &["--show-sql"]].concat());
+    fs::write(home.path().join("same.sql"), &sql).unwrap();
+    assert_eq!(digest(&succeeds(home.path(), &["run", "same.sql"])), digest(&shown));
+    // in parts, merged: the same answer
+    let parts = succeeds(home.path(), &[&arguments[..], &["--parts", "3", "--out", "p.parquet"]].concat());
+    assert_eq!(digest(&parts), digest(&shown));
+}
+
+#[test]
+fn an_interrupted_sweep_goes_on() {
+    let home = tempfile::tempdir().unwrap();
+    let whole = succeeds(home.path(), &["run", "--sql", ROW_BY_ROW]);
+    let arguments = ["run", "--sql", ROW_BY_ROW, "--parts", "4", "--out", "rows"];
+    let first = succeeds(home.path(), &arguments);
+    assert_eq!(digest(&first), digest(&whole));
+    // as if it had been interrupted in the third part
+    let kept = home.path().join("rows/part-000000.parquet");
+    let before = fs::metadata(&kept).unwrap().modified().unwrap();
+    fs::remove_file(home.path().join("rows/part-000002.parquet")).unwrap();
+    fs::write(home.path().join("rows/part-000002.parquet.partial"), "half").unwrap();
+    let second = run(home.path(), &arguments);
+    assert!(second.status.success());
+    assert_eq!(digest(&String::from_utf8_lossy(&second.stdout)), digest(&whole));
+    assert_eq!(fs::metadata(&kept).unwrap().modified().unwrap(), before);
+    // another query does not take its parts
+    let other = ROW_BY_ROW.replace("0.5", "0.6");
+    assert!(
+        fails(home.path(), &["run", "--sql", &other, "--parts", "4", "--out", "rows"], 2)
+            .contains("parts of another sweep")
+    );
+}
+
+#[test]
+fn parts_of_a_query_over_several_rows_need_a_merge() {
+    let home = tempfile::tempdir().unwrap();
+    let sql = "SELECT count(*) AS n FROM rows(1000)";
+    let said = fails(home.path(), &["run", "--sql", sql, "--parts", "4", "--out", "n.parquet"], 2);
+    assert!(said.contains("give --merge"), "{said}");
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
+    fs::write(home.path().join("merge.sql"), "SELECT sum(n) AS n FROM parts").unwrap();
+    let shown = succeeds(
+        home.path(),
+        &["run", "--sql", sql, "--parts", "4", "--out", "n.parquet", "--merge", "merge.sql"],
+    );
+    assert!(shown.contains("| 1000 |"), "{shown}");
+}
+
+#[test]
+fn mistakes_are_told_with_their_cause() {
+    let home = tempfile::tempdir().unwrap();
+    let sql = |sql: &str| ["run".to_owned(), "--sql".to_owned(), sql.to_owned()];
+    let cases = [
+        ("SELECT speed FROM rows(3)", 2, "speed"),
+        ("SELECT hodograph(i) FROM rows(3)", 2, "hodograph"),
+        ("SELECT * FROM 'missing.parquet'", 2, "missing.parquet"),
+        ("SELECT * FROM rows(-3)", 2, "not negative"),
+        ("SELEC i FROM rows(3)", 2, "SELEC"),
+        ("", 2, "empty"),
+        ("CREATE TABLE t AS SELECT 1", 2, "last statement must be a query"),
+        ("COPY (SELECT 1) TO 'x.csv'", 2, "must be a query"),
+        ("SELECT sobol(i, 300, 0) FROM rows(3)", 2, "dimensions 0 to 255"),
+        ("SELECT histogram(1.0, 2.0, 1.0, 5)", 1, "low must be less than high"),
+    ];
+    for (text, status, wanted) in cases {
+        let said = fails(home.path(), &sql(text).each_ref().map(String::as_str), status);
+        assert!(said.contains(wanted), "{text}: {said}");
+    }
+    let cases: [(&[&str], &str); 9] = [
+        (&["run", "none.sql"], "cannot read none.sql"),
+        (&["run"], "give a query"),
+        (&["run", "--model", "three_sleds", "--sample", "10"], "there is no model `three_sleds`"),
+        (&["run", "--model", "none.mech", "--sample", "10"], "cannot read none.mech"),
+        (&["run", "--model", "two_sleds", "--vary", "q9=0:1:2", "--sample", "10"], "no field `q9`"),
+        (
+            &["run", "--model", "two_sleds", "--vary", "mu=0:1:20", "--sample", "10"],
+            "less than the 20 points",
+        ),
+        (&["run", "--sql", "SELECT 1", "--out", "x.json"], ".parquet or .csv"),
+        (&["run", "--sql", "SELECT 1", "--out", "no/x.csv"], "there is no directory no"),
+        (&["run", "--sql", "SELECT 1", "--out", "/dev/full"], ".parquet or .csv"),
+    ];
+    for (arguments, wanted) in cases {
+        let said = fails(home.path(), arguments, 2);
+        assert!(said.contains(wanted), "{arguments:?}: {said}");
+    }
+    let said = fails(home.path(), &["run", "--sql", "SELECT 1", "--cluster", "127.0.0.1:1"], 1);
+    assert!(said.contains("127.0.0.1:1 cannot be reached"), "{said}");
+    let said = fails(home.path(), &["executor", "--scheduler", "127.0.0.1:1", "--listen", "127.0.0.1:0"], 1);
+    assert!(said.contains("127.0.0.1:1"), "{said}");
+    assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
+}
+
+/// A disk that is full, as a limit on the size of files.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    for out in ["a.parquet", "a.csv"] {
+        let script = "trap '' XFSZ; ulimit -f 8; exec \"$0\" \"$@\"";
+        let output = std::process::Command::new("bash")
+            .args(["-c", script])
+            .arg(tool().get_program())
+            .args(["run", "--quiet", "--sql", "SELECT uniform(i, 0, 0) AS x FROM rows(100000)", "--out", out])
+            .current_dir(home.path())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains(&format!("cannot write {out}")), "{said}");
+        assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0, "{out}");
+    }
+}
+
+/// A user's own model: its functions bear the name of its file.
+#[test]
+fn a_model_of_the_user_has_functions() {
+    let home = tempfile::tempdir().unwrap();
+    let models = concat!(env!("CARGO_MANIFEST_DIR"), "/../models/");
+    for end in ["mech", "derivation"] {
+        fs::copy(format!("{models}two_sleds.{end}"), home.path().join(format!("mine.{end}"))).unwrap();
+    }
+    let sql = "SELECT outcome_hash(mine_energy(named_struct('q3', q3))) = outcome_hash(two_sleds_energy(named_struct('q3', q3))) AS same
+               FROM (SELECT uniform(i, 0, 0) AS q3 FROM rows(10)) WHERE i IS NOT NULL";
+    let sql = sql.replace(" WHERE i IS NOT NULL", "");
+    let shown = succeeds(home.path(), &["run", "--model", "mine.mech", "--sql", &sql]);
+    assert!(shown.matches("true").count() == 10, "{shown}");
+    let described = succeeds(home.path(), &["functions", "--model", "mine.mech", "mine_collide"]);
+    assert!(
+        described.contains("mu, e, law, contact, time, q1") && described.contains("after_u6 Float64"),
+        "{described}"
+    );
+    let said = fails(home.path(), &["run", "--sql", &sql], 2);
+    assert!(said.contains("mine_energy"), "{said}");
+    fs::write(home.path().join("mine.derivation"), "nonsense").unwrap();
+    let said = fails(home.path(), &["run", "--model", "mine.mech", "--sql", &sql], 2);
+    assert!(said.contains("damaged"), "{said}");
+}
+
+#[test]
+fn memory_does_not_grow_with_rows() {
+    let home = tempfile::tempdir().unwrap();
+    let peak = |rows: u64| -> f64 {
+        let sql = format!(
+            "SELECT count(*) AS n, checksum(outcome_hash(uniform(i, 0, 0))) AS sum FROM rows({rows})"
+        );
+        let shown = succeeds(home.path(), &["run", "--cores", "2", "--sql", &sql]);
+        let line =
+            shown.lines().find(|line| line.starts_with("at most")).unwrap_or("at most 0 MB").to_owned();
+        line.split_whitespace().nth(2).unwrap().parse().unwrap()
+    };
+    let (small, great) = (peak(4_200_000), peak(42_000_000));
+    assert!(great < 1.5 * small + 20.0, "{small} MB, {great} MB");
+}
