@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
 use hodograph_generator::artifact;
 use hodograph_generator::program::Program;
@@ -10,7 +9,7 @@ use hodograph_generator::program::Program;
 use crate::cases::{Case, Origin};
 use crate::chain;
 use crate::states::{self, State};
-use crate::tools::{Failure, Folders, output};
+use crate::tools::{Effort, Failure, Folders, effort, output};
 
 /// A derived mechanism.
 pub struct Derivation<'a> {
@@ -54,7 +53,9 @@ pub fn derive<'a>(
     std::fs::write(&path, model(folders, tool, case, fixed)?)?;
     let kept = path.with_extension("derivation");
     let _ = std::fs::remove_file(&kept);
-    let (seconds, kilobytes) = timed(tool, &path)?;
+    let mut command = Command::new(tool);
+    command.args(["derive", "--force"]).arg(&path);
+    let Effort { seconds, kilobytes } = effort(&mut command, &path.with_extension("effort"))?;
     let text = std::fs::read_to_string(&kept)?;
     let artifact =
         artifact::decode(&text).map_err(|error| Failure::new(format!("{}: {error:?}", kept.display())))?;
@@ -114,22 +115,4 @@ fn with_fixed_parameters(model: &str) -> String {
         line.to_owned()
     });
     lines.collect::<Vec<_>>().join("\n") + "\n"
-}
-
-/// Derives in a process of its own; seconds and kB.
-fn timed(tool: &Path, model: &Path) -> Result<(f64, Option<u64>), Failure> {
-    const TIME: &str = "/usr/bin/time";
-    let figure = model.with_extension("memory");
-    let mut command = if Path::new(TIME).exists() {
-        let mut command = Command::new(TIME);
-        command.args(["-f", "%M", "-o"]).arg(&figure).arg(tool);
-        command
-    } else {
-        Command::new(tool)
-    };
-    let start = Instant::now();
-    output(command.args(["derive", "--force"]).arg(model))?;
-    let seconds = start.elapsed().as_secs_f64();
-    let kilobytes = std::fs::read_to_string(&figure).ok().and_then(|text| text.trim().parse().ok());
-    Ok((seconds, kilobytes))
 }

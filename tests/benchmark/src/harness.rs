@@ -3,11 +3,10 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
-use std::time::Instant;
 
 use crate::derive::Derivation;
 use crate::states::{Named, State};
-use crate::tools::{Failure, Folders, output};
+use crate::tools::{Failure, Folders, effort};
 
 /// What the code is compiled for.
 pub const TARGET: &str = "x86-64-v3";
@@ -18,7 +17,7 @@ pub struct Built {
     pub program: PathBuf,
     /// name of its package
     pub package: String,
-    /// seconds of compiling and linking it, dependencies apart
+    /// seconds of the processor for compiling and linking it, dependencies apart
     pub seconds: f64,
 }
 
@@ -72,30 +71,29 @@ pub fn write_library(folders: &Folders, package: &str, text: &str, module: &str)
     write(folders, package, "lib.rs", text)
 }
 
-/// Compiles a package; the program.
-pub fn cargo(folders: &Folders, package: &str) -> Result<PathBuf, Failure> {
+/// Compiles a package.
+pub fn cargo(folders: &Folders, package: &str) -> Result<Built, Failure> {
     let target = folders.work.join("target");
-    output(
-        Command::new("cargo")
-            .args(["build", "--release", "-p", package, "--target-dir"])
-            .arg(&target)
-            .current_dir(folders.work.join("crates"))
-            // A cache of compiled crates would hide what compiling takes.
-            .env_remove("RUSTC_WRAPPER")
-            .env("RUSTFLAGS", format!("-C target-cpu={TARGET}")),
-    )?;
-    Ok(target.join("release").join(package))
+    let mut command = Command::new("cargo");
+    command
+        .args(["build", "--release", "-p", package, "--target-dir"])
+        .arg(&target)
+        .current_dir(folders.work.join("crates"))
+        // A cache of compiled crates would hide what compiling takes.
+        .env_remove("RUSTC_WRAPPER")
+        .env("RUSTFLAGS", format!("-C target-cpu={TARGET}"));
+    let taken = effort(&mut command, &folders.work.join("effort"))?;
+    let program = target.join("release").join(package);
+    Ok(Built { program, package: package.to_owned(), seconds: taken.seconds })
 }
 
-/// Compiles the program of a derivation and takes the time.
+/// Compiles the program of a derivation.
 pub fn build(folders: &Folders, derivation: &Derivation<'_>) -> Result<Built, Failure> {
     let package = derivation.package();
     // Even an unchanged program is compiled again.
     let main = folders.work.join("crates").join(&package).join("src/main.rs");
     std::fs::write(&main, self::main(derivation))?;
-    let start = Instant::now();
-    let program = cargo(folders, &package)?;
-    Ok(Built { program, package, seconds: start.elapsed().as_secs_f64() })
+    cargo(folders, &package)
 }
 
 /// The program: `numbers` prints what the routines answer at its states, `answer` at states that it reads, a number repeats all routines

@@ -78,7 +78,7 @@ pub fn print(rows: &[Row<'_>], peers: &Peers) {
         "\nOperations (parameters fixed): multiplications/additions/divisions/pairs of sine and cosine (of them fused).\n"
     );
     println!(
-        "| mechanism | parameters | derivation (s) | memory (MB) | compiling (s) | construction (instructions) |"
+        "| mechanism | parameters | derivation (CPU s) | memory (MB) | compiling (CPU s) | construction (instructions) |"
     );
     println!("| --- | --- | ---: | ---: | ---: | ---: |");
     for row in rows {

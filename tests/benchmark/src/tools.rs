@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::time::Instant;
 
 /// Why the benchmark stops.
 #[derive(Debug)]
@@ -70,4 +71,40 @@ pub fn tool(folders: &Folders, given: Option<&Path>) -> Result<PathBuf, Failure>
     )?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or(folders.root.join("target"), PathBuf::from);
     Ok(target.join("release/hodograph").canonicalize()?)
+}
+
+/// What a program took.
+pub struct Effort {
+    /// seconds of the processor, of all its threads and children; other work on the machine is not in them. Without `/usr/bin/time` it is the time that passed.
+    pub seconds: f64,
+    /// the most memory of one of its processes, kB
+    pub kilobytes: Option<u64>,
+}
+
+/// Runs a program and says what it took. `figure` is a file for what `time` says.
+pub fn effort(command: &mut Command, figure: &Path) -> Result<Effort, Failure> {
+    const TIME: &str = "/usr/bin/time";
+    if !Path::new(TIME).exists() {
+        let start = Instant::now();
+        output(command)?;
+        return Ok(Effort { seconds: start.elapsed().as_secs_f64(), kilobytes: None });
+    }
+    let mut timed = Command::new(TIME);
+    timed.args(["-f", "%U %S %M", "-o"]).arg(figure).arg(command.get_program()).args(command.get_args());
+    if let Some(folder) = command.get_current_dir() {
+        timed.current_dir(folder);
+    }
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => timed.env(name, value),
+            None => timed.env_remove(name),
+        };
+    }
+    output(&mut timed)?;
+    let text = std::fs::read_to_string(figure)?;
+    let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+    match numbers[..] {
+        [user, system, kilobytes] => Ok(Effort { seconds: user + system, kilobytes: Some(kilobytes as u64) }),
+        _ => Err(Failure::new(format!("{}: {text}", figure.display()))),
+    }
 }
