@@ -58,8 +58,7 @@ impl Emitter<'_> {
             return quote! { #(#angles)* #of_angles #(#statements)* };
         }
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
-        let length = work.len().div_ceil(rest.len().div_ceil(self.longest.max(1))).max(1);
-        let parts: Vec<&[Value]> = work.chunks(length).collect();
+        let parts = self.parts(&work, rest.len().div_ceil(self.longest.max(1)));
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
         let mut gone = Gone::default();
         let calls: Vec<TokenStream> =
@@ -70,6 +69,24 @@ impl Emitter<'_> {
             quote!(let #name = #place;)
         });
         quote! { #(#angles)* #of_angles #(#given)* #(#calls)* #(#looked_at)* }
+    }
+
+    /// Parts of about equal length, at least so many. None makes more variables than a function may, but for a sixth more, unless it is one statement.
+    fn parts<'v>(&self, work: &'v [Value], least: usize) -> Vec<&'v [Value]> {
+        let most = self.longest + self.longest / 6;
+        let variables = |part: &[Value]| {
+            let operands = part.iter().flat_map(|&value| self.program.operation(value).operands());
+            operands.chain(part.iter().copied()).collect::<BTreeSet<Value>>().len()
+        };
+        let mut count = least.max(1);
+        loop {
+            let length = work.len().div_ceil(count).max(1);
+            let parts: Vec<&[Value]> = work.chunks(length).collect();
+            if length == 1 || parts.iter().all(|part| variables(part) <= most) {
+                return parts;
+            }
+            count += 1;
+        }
     }
 
     /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only fetched.

@@ -454,26 +454,37 @@ pub mod pendulum_in_parts {
             fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 1]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                let v7 = v6;
-                gives[0] = v7;
+                gives[0] = v6;
             }
             let mut of_part_0 = [T::one(); 1];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 2],
+                taken: &[T; 0],
                 of_part_0: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v6 = of_part_0[0];
+                let v7 = v6;
+                gives[0] = v7;
+            }
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 2],
+                of_part_1: &[T; 1],
                 gives: &mut [T; 1],
             ) {
                 let v14 = taken[0];
                 let v5 = taken[1];
-                let v7 = of_part_0[0];
+                let v7 = of_part_1[0];
                 let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
                 gives[0] = v15;
             }
-            let mut of_part_1 = [T::one(); 1];
-            part_1(&[v14, v5], &of_part_0, &mut of_part_1);
-            let v15 = of_part_1[0];
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v14, v5], &of_part_1, &mut of_part_2);
+            let v15 = of_part_2[0];
             if !::hodograph::generated::all_finite([v15]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -497,28 +508,50 @@ pub mod pendulum_in_parts {
             fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 1]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                let v7 = v6;
-                gives[0] = v7;
+                gives[0] = v6;
             }
             let mut of_part_0 = [T::one(); 1];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 3],
+                taken: &[T; 0],
                 of_part_0: &[T; 1],
                 gives: &mut [T; 1],
             ) {
+                let v6 = of_part_0[0];
+                let v7 = v6;
+                gives[0] = v7;
+            }
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(
+                taken: &[T; 2],
+                of_part_1: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
                 let v14 = taken[0];
-                let v5 = taken[2];
-                let v7 = of_part_0[0];
+                let v5 = taken[1];
+                let v7 = of_part_1[0];
                 let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
-                let v16 = taken[1];
+                gives[0] = v15;
+            }
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v14, v5], &of_part_1, &mut of_part_2);
+            #[inline(never)]
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_2: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v15 = of_part_2[0];
+                let v16 = taken[0];
                 let v17 = v15 * v16;
                 gives[0] = v17;
             }
-            let mut of_part_1 = [T::one(); 1];
-            part_1(&[v14, v16, v5], &of_part_0, &mut of_part_1);
-            let v17 = of_part_1[0];
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[v16], &of_part_2, &mut of_part_3);
+            let v17 = of_part_3[0];
             if !::hodograph::generated::all_finite([v17]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -582,43 +615,74 @@ pub mod pendulum_in_parts {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
                 gives[0] = v6c;
-                let v7 = v6;
-                gives[1] = v7;
+                gives[1] = v6;
             }
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
+                taken: &[T; 0],
                 of_part_0: &[T; 2],
-                gives: &mut [T; 2],
+                gives: &mut [T; 1],
             ) {
-                let v1 = taken[0];
-                let v7 = of_part_0[1];
-                let v23 = v1 * v7;
-                gives[0] = v23;
-                let v6c = of_part_0[0];
-                let v8 = v6c;
-                gives[1] = v8;
+                let v6 = of_part_0[1];
+                let v7 = v6;
+                gives[0] = v7;
             }
-            let mut of_part_1 = [T::one(); 2];
-            part_1(&[v1], &of_part_0, &mut of_part_1);
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
             fn part_2<T: ::hodograph::Scalar>(
                 taken: &[T; 1],
-                of_part_1: &[T; 2],
+                of_part_1: &[T; 1],
                 gives: &mut [T; 1],
             ) {
                 let v1 = taken[0];
-                let v8 = of_part_1[1];
-                let v24 = v1 * v8;
-                let v37 = -v24;
-                gives[0] = v37;
+                let v7 = of_part_1[0];
+                let v23 = v1 * v7;
+                gives[0] = v23;
             }
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v1], &of_part_1, &mut of_part_2);
-            let v23 = of_part_1[0];
-            let v37 = of_part_2[0];
+            #[inline(never)]
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v6c = of_part_0[0];
+                let v8 = v6c;
+                gives[0] = v8;
+            }
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[], &of_part_0, &mut of_part_3);
+            #[inline(never)]
+            fn part_4<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_3: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v1 = taken[0];
+                let v8 = of_part_3[0];
+                let v24 = v1 * v8;
+                gives[0] = v24;
+            }
+            let mut of_part_4 = [T::one(); 1];
+            part_4(&[v1], &of_part_3, &mut of_part_4);
+            #[inline(never)]
+            fn part_5<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_4: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v24 = of_part_4[0];
+                let v37 = -v24;
+                gives[0] = v37;
+            }
+            let mut of_part_5 = [T::one(); 1];
+            part_5(&[], &of_part_4, &mut of_part_5);
+            let v23 = of_part_2[0];
+            let v37 = of_part_5[0];
             if !::hodograph::generated::all_finite([v23, v37]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -646,60 +710,86 @@ pub mod pendulum_in_parts {
             fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                gives[0] = v6;
-                let v8 = v6c;
-                gives[1] = v8;
+                gives[0] = v6c;
+                gives[1] = v6;
             }
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 2],
+                taken: &[T; 0],
                 of_part_0: &[T; 2],
-                gives: &mut [T; 2],
+                gives: &mut [T; 1],
             ) {
+                let v6c = of_part_0[0];
+                let v8 = v6c;
+                gives[0] = v8;
+            }
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v1 = taken[0];
                 let v4 = taken[1];
                 let v25 = v1 * v4;
                 gives[0] = v25;
-                let v8 = of_part_0[1];
-                let v27 = v8 * v25;
-                gives[1] = v27;
             }
-            let mut of_part_1 = [T::one(); 2];
-            part_1(&[v1, v4], &of_part_0, &mut of_part_1);
-            #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
-                taken: &[T; 0],
-                of_part_0: &[T; 2],
-                of_part_1: &[T; 2],
-                gives: &mut [T; 2],
-            ) {
-                let v27 = of_part_1[1];
-                let v39 = -v27;
-                gives[0] = v39;
-                let v6 = of_part_0[0];
-                let v7 = v6;
-                gives[1] = v7;
-            }
-            let mut of_part_2 = [T::one(); 2];
-            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v1, v4], &mut of_part_2);
             #[inline(never)]
             fn part_3<T: ::hodograph::Scalar>(
                 taken: &[T; 0],
-                of_part_1: &[T; 2],
-                of_part_2: &[T; 2],
+                of_part_1: &[T; 1],
+                of_part_2: &[T; 1],
                 gives: &mut [T; 1],
             ) {
-                let v25 = of_part_1[0];
-                let v7 = of_part_2[1];
-                let v26 = v7 * v25;
-                gives[0] = v26;
+                let v25 = of_part_2[0];
+                let v8 = of_part_1[0];
+                let v27 = v8 * v25;
+                gives[0] = v27;
             }
             let mut of_part_3 = [T::one(); 1];
             part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
-            let v26 = of_part_3[0];
-            let v39 = of_part_2[0];
+            #[inline(never)]
+            fn part_4<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_3: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v27 = of_part_3[0];
+                let v39 = -v27;
+                gives[0] = v39;
+            }
+            let mut of_part_4 = [T::one(); 1];
+            part_4(&[], &of_part_3, &mut of_part_4);
+            #[inline(never)]
+            fn part_5<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v6 = of_part_0[1];
+                let v7 = v6;
+                gives[0] = v7;
+            }
+            let mut of_part_5 = [T::one(); 1];
+            part_5(&[], &of_part_0, &mut of_part_5);
+            #[inline(never)]
+            fn part_6<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_2: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v25 = of_part_2[0];
+                let v7 = of_part_5[0];
+                let v26 = v7 * v25;
+                gives[0] = v26;
+            }
+            let mut of_part_6 = [T::one(); 1];
+            part_6(&[], &of_part_2, &of_part_5, &mut of_part_6);
+            let v26 = of_part_6[0];
+            let v39 = of_part_4[0];
             if !::hodograph::generated::all_finite([v26, v39]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -725,42 +815,75 @@ pub mod pendulum_in_parts {
             fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                gives[0] = v6;
-                let v8 = v6c;
-                gives[1] = v8;
+                gives[0] = v6c;
+                gives[1] = v6;
             }
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
+                taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
             ) {
-                let v34 = taken[0];
-                let v8 = of_part_0[1];
-                let v35 = v8 * v34;
-                let v41 = -v35;
-                gives[0] = v41;
+                let v6c = of_part_0[0];
+                let v8 = v6c;
+                gives[0] = v8;
             }
             let mut of_part_1 = [T::one(); 1];
-            part_1(&[v34], &of_part_0, &mut of_part_1);
+            part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
             fn part_2<T: ::hodograph::Scalar>(
                 taken: &[T; 1],
+                of_part_1: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v34 = taken[0];
+                let v8 = of_part_1[0];
+                let v35 = v8 * v34;
+                gives[0] = v35;
+            }
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v34], &of_part_1, &mut of_part_2);
+            #[inline(never)]
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_2: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v35 = of_part_2[0];
+                let v41 = -v35;
+                gives[0] = v41;
+            }
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[], &of_part_2, &mut of_part_3);
+            #[inline(never)]
+            fn part_4<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
                 of_part_0: &[T; 2],
                 gives: &mut [T; 1],
             ) {
-                let v6 = of_part_0[0];
+                let v6 = of_part_0[1];
                 let v7 = v6;
+                gives[0] = v7;
+            }
+            let mut of_part_4 = [T::one(); 1];
+            part_4(&[], &of_part_0, &mut of_part_4);
+            #[inline(never)]
+            fn part_5<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_4: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
                 let v34 = taken[0];
+                let v7 = of_part_4[0];
                 let v36 = v7 * v34;
                 gives[0] = v36;
             }
-            let mut of_part_2 = [T::one(); 1];
-            part_2(&[v34], &of_part_0, &mut of_part_2);
-            let v36 = of_part_2[0];
-            let v41 = of_part_1[0];
+            let mut of_part_5 = [T::one(); 1];
+            part_5(&[v34], &of_part_4, &mut of_part_5);
+            let v36 = of_part_5[0];
+            let v41 = of_part_3[0];
             if !::hodograph::generated::all_finite([v36, v41]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -803,58 +926,121 @@ pub mod pendulum_in_parts {
             let v28 = self.hoisted[4];
             let v9 = ::hodograph::generated::number::<T>(0f64);
             #[inline(never)]
-            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 3]) {
-                let v3 = taken[1];
+            fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
+                let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                gives[0] = v6;
-                let v8 = v6c;
-                gives[1] = v8;
-                let v28 = taken[0];
-                let v29 = v8 * v28;
-                gives[2] = v29;
+                gives[0] = v6c;
+                gives[1] = v6;
             }
-            let mut of_part_0 = [T::one(); 3];
-            part_0(&[v28, v3], &mut of_part_0);
+            let mut of_part_0 = [T::one(); 2];
+            part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
-                of_part_0: &[T; 3],
-                gives: &mut [T; 3],
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 1],
             ) {
-                let v29 = of_part_0[2];
-                let v8 = of_part_0[1];
-                let v30 = v8 * v29;
-                gives[0] = v30;
-                let v6 = of_part_0[0];
-                let v7 = v6;
-                gives[1] = v7;
-                let v28 = taken[0];
-                let v31 = v7 * v28;
-                gives[2] = v31;
+                let v6c = of_part_0[0];
+                let v8 = v6c;
+                gives[0] = v8;
             }
-            let mut of_part_1 = [T::one(); 3];
-            part_1(&[v28], &of_part_0, &mut of_part_1);
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
             #[inline(never)]
             fn part_2<T: ::hodograph::Scalar>(
-                taken: &[T; 0],
-                of_part_0: &[T; 3],
-                of_part_1: &[T; 3],
-                gives: &mut [T; 2],
+                taken: &[T; 1],
+                of_part_1: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v31 = of_part_1[2];
-                let v8 = of_part_0[1];
+                let v28 = taken[0];
+                let v8 = of_part_1[0];
+                let v29 = v8 * v28;
+                gives[0] = v29;
+            }
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v28], &of_part_1, &mut of_part_2);
+            #[inline(never)]
+            fn part_3<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_2: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v29 = of_part_2[0];
+                let v8 = of_part_1[0];
+                let v30 = v8 * v29;
+                gives[0] = v30;
+            }
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
+            #[inline(never)]
+            fn part_4<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_0: &[T; 2],
+                gives: &mut [T; 1],
+            ) {
+                let v6 = of_part_0[1];
+                let v7 = v6;
+                gives[0] = v7;
+            }
+            let mut of_part_4 = [T::one(); 1];
+            part_4(&[], &of_part_0, &mut of_part_4);
+            #[inline(never)]
+            fn part_5<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_4: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v28 = taken[0];
+                let v7 = of_part_4[0];
+                let v31 = v7 * v28;
+                gives[0] = v31;
+            }
+            let mut of_part_5 = [T::one(); 1];
+            part_5(&[v28], &of_part_4, &mut of_part_5);
+            #[inline(never)]
+            fn part_6<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_5[0];
+                let v8 = of_part_1[0];
                 let v32 = v8 * v31;
+                gives[0] = v32;
+            }
+            let mut of_part_6 = [T::one(); 1];
+            part_6(&[], &of_part_1, &of_part_5, &mut of_part_6);
+            #[inline(never)]
+            fn part_7<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_6: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v32 = of_part_6[0];
                 let v40 = -v32;
                 gives[0] = v40;
-                let v7 = of_part_1[1];
-                let v33 = v7 * v31;
-                gives[1] = v33;
             }
-            let mut of_part_2 = [T::one(); 2];
-            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
-            let v30 = of_part_1[0];
-            let v33 = of_part_2[1];
-            let v40 = of_part_2[0];
+            let mut of_part_7 = [T::one(); 1];
+            part_7(&[], &of_part_6, &mut of_part_7);
+            #[inline(never)]
+            fn part_8<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_4: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_5[0];
+                let v7 = of_part_4[0];
+                let v33 = v7 * v31;
+                gives[0] = v33;
+            }
+            let mut of_part_8 = [T::one(); 1];
+            part_8(&[], &of_part_4, &of_part_5, &mut of_part_8);
+            let v30 = of_part_3[0];
+            let v33 = of_part_8[0];
+            let v40 = of_part_7[0];
             if !::hodograph::generated::all_finite([v30, v33, v40]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -885,116 +1071,169 @@ pub mod pendulum_in_parts {
             fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                gives[0] = v6;
-                let v8 = v6c;
-                gives[1] = v8;
+                gives[0] = v6c;
+                gives[1] = v6;
             }
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 2],
+                taken: &[T; 0],
                 of_part_0: &[T; 2],
-                gives: &mut [T; 2],
+                gives: &mut [T; 1],
             ) {
+                let v6c = of_part_0[0];
+                let v8 = v6c;
+                gives[0] = v8;
+            }
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v1 = taken[0];
                 let v4 = taken[1];
                 let v25 = v1 * v4;
                 gives[0] = v25;
-                let v8 = of_part_0[1];
-                let v27 = v8 * v25;
-                gives[1] = v27;
             }
-            let mut of_part_1 = [T::one(); 2];
-            part_1(&[v1, v4], &of_part_0, &mut of_part_1);
-            #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
-                taken: &[T; 0],
-                of_part_0: &[T; 2],
-                of_part_1: &[T; 2],
-                gives: &mut [T; 2],
-            ) {
-                let v27 = of_part_1[1];
-                let v39 = -v27;
-                gives[0] = v39;
-                let v6 = of_part_0[0];
-                let v7 = v6;
-                gives[1] = v7;
-            }
-            let mut of_part_2 = [T::one(); 2];
-            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v1, v4], &mut of_part_2);
             #[inline(never)]
             fn part_3<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
-                of_part_0: &[T; 2],
-                of_part_1: &[T; 2],
-                of_part_2: &[T; 2],
-                gives: &mut [T; 2],
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_2: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v25 = of_part_1[0];
-                let v7 = of_part_2[1];
-                let v26 = v7 * v25;
-                gives[0] = v26;
-                let v28 = taken[0];
-                let v8 = of_part_0[1];
-                let v29 = v8 * v28;
-                gives[1] = v29;
+                let v25 = of_part_2[0];
+                let v8 = of_part_1[0];
+                let v27 = v8 * v25;
+                gives[0] = v27;
             }
-            let mut of_part_3 = [T::one(); 2];
-            part_3(&[v28], &of_part_0, &of_part_1, &of_part_2, &mut of_part_3);
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
             fn part_4<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
-                of_part_0: &[T; 2],
-                of_part_2: &[T; 2],
-                of_part_3: &[T; 2],
-                gives: &mut [T; 2],
+                taken: &[T; 0],
+                of_part_3: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v29 = of_part_3[1];
-                let v8 = of_part_0[1];
-                let v30 = v8 * v29;
-                gives[0] = v30;
-                let v28 = taken[0];
-                let v7 = of_part_2[1];
-                let v31 = v7 * v28;
-                gives[1] = v31;
+                let v27 = of_part_3[0];
+                let v39 = -v27;
+                gives[0] = v39;
             }
-            let mut of_part_4 = [T::one(); 2];
-            part_4(&[v28], &of_part_0, &of_part_2, &of_part_3, &mut of_part_4);
+            let mut of_part_4 = [T::one(); 1];
+            part_4(&[], &of_part_3, &mut of_part_4);
             #[inline(never)]
             fn part_5<T: ::hodograph::Scalar>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
-                of_part_4: &[T; 2],
                 gives: &mut [T; 1],
             ) {
-                let v31 = of_part_4[1];
-                let v8 = of_part_0[1];
-                let v32 = v8 * v31;
-                let v40 = -v32;
-                gives[0] = v40;
+                let v6 = of_part_0[1];
+                let v7 = v6;
+                gives[0] = v7;
             }
             let mut of_part_5 = [T::one(); 1];
-            part_5(&[], &of_part_0, &of_part_4, &mut of_part_5);
+            part_5(&[], &of_part_0, &mut of_part_5);
             #[inline(never)]
             fn part_6<T: ::hodograph::Scalar>(
                 taken: &[T; 0],
-                of_part_2: &[T; 2],
-                of_part_4: &[T; 2],
+                of_part_2: &[T; 1],
+                of_part_5: &[T; 1],
                 gives: &mut [T; 1],
             ) {
-                let v31 = of_part_4[1];
-                let v7 = of_part_2[1];
+                let v25 = of_part_2[0];
+                let v7 = of_part_5[0];
+                let v26 = v7 * v25;
+                gives[0] = v26;
+            }
+            let mut of_part_6 = [T::one(); 1];
+            part_6(&[], &of_part_2, &of_part_5, &mut of_part_6);
+            #[inline(never)]
+            fn part_7<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_1: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v28 = taken[0];
+                let v8 = of_part_1[0];
+                let v29 = v8 * v28;
+                gives[0] = v29;
+            }
+            let mut of_part_7 = [T::one(); 1];
+            part_7(&[v28], &of_part_1, &mut of_part_7);
+            #[inline(never)]
+            fn part_8<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_7: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v29 = of_part_7[0];
+                let v8 = of_part_1[0];
+                let v30 = v8 * v29;
+                gives[0] = v30;
+            }
+            let mut of_part_8 = [T::one(); 1];
+            part_8(&[], &of_part_1, &of_part_7, &mut of_part_8);
+            #[inline(never)]
+            fn part_9<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v28 = taken[0];
+                let v7 = of_part_5[0];
+                let v31 = v7 * v28;
+                gives[0] = v31;
+            }
+            let mut of_part_9 = [T::one(); 1];
+            part_9(&[v28], &of_part_5, &mut of_part_9);
+            #[inline(never)]
+            fn part_10<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_9: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_9[0];
+                let v8 = of_part_1[0];
+                let v32 = v8 * v31;
+                gives[0] = v32;
+            }
+            let mut of_part_10 = [T::one(); 1];
+            part_10(&[], &of_part_1, &of_part_9, &mut of_part_10);
+            #[inline(never)]
+            fn part_11<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_10: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v32 = of_part_10[0];
+                let v40 = -v32;
+                gives[0] = v40;
+            }
+            let mut of_part_11 = [T::one(); 1];
+            part_11(&[], &of_part_10, &mut of_part_11);
+            #[inline(never)]
+            fn part_12<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_5: &[T; 1],
+                of_part_9: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_9[0];
+                let v7 = of_part_5[0];
                 let v33 = v7 * v31;
                 gives[0] = v33;
             }
-            let mut of_part_6 = [T::one(); 1];
-            part_6(&[], &of_part_2, &of_part_4, &mut of_part_6);
-            let v26 = of_part_3[0];
-            let v30 = of_part_4[0];
-            let v33 = of_part_6[0];
-            let v39 = of_part_2[0];
-            let v40 = of_part_5[0];
+            let mut of_part_12 = [T::one(); 1];
+            part_12(&[], &of_part_5, &of_part_9, &mut of_part_12);
+            let v26 = of_part_6[0];
+            let v30 = of_part_8[0];
+            let v33 = of_part_12[0];
+            let v39 = of_part_4[0];
+            let v40 = of_part_11[0];
             if !::hodograph::generated::all_finite([v26, v30, v33, v39, v40]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
@@ -1071,140 +1310,209 @@ pub mod pendulum_in_parts {
             fn part_0<T: ::hodograph::Scalar>(taken: &[T; 1], gives: &mut [T; 2]) {
                 let v3 = taken[0];
                 let (v6, v6c) = ::hodograph::generated::sin_cos(v3);
-                gives[0] = v6;
-                let v8 = v6c;
-                gives[1] = v8;
+                gives[0] = v6c;
+                gives[1] = v6;
             }
             let mut of_part_0 = [T::one(); 2];
             part_0(&[v3], &mut of_part_0);
             #[inline(never)]
             fn part_1<T: ::hodograph::Scalar>(
-                taken: &[T; 2],
+                taken: &[T; 0],
                 of_part_0: &[T; 2],
-                gives: &mut [T; 2],
+                gives: &mut [T; 1],
             ) {
+                let v6c = of_part_0[0];
+                let v8 = v6c;
+                gives[0] = v8;
+            }
+            let mut of_part_1 = [T::one(); 1];
+            part_1(&[], &of_part_0, &mut of_part_1);
+            #[inline(never)]
+            fn part_2<T: ::hodograph::Scalar>(taken: &[T; 2], gives: &mut [T; 1]) {
                 let v1 = taken[0];
                 let v4 = taken[1];
                 let v25 = v1 * v4;
                 gives[0] = v25;
-                let v8 = of_part_0[1];
-                let v27 = v8 * v25;
-                gives[1] = v27;
             }
-            let mut of_part_1 = [T::one(); 2];
-            part_1(&[v1, v4], &of_part_0, &mut of_part_1);
-            #[inline(never)]
-            fn part_2<T: ::hodograph::Scalar>(
-                taken: &[T; 0],
-                of_part_0: &[T; 2],
-                of_part_1: &[T; 2],
-                gives: &mut [T; 2],
-            ) {
-                let v27 = of_part_1[1];
-                let v39 = -v27;
-                gives[0] = v39;
-                let v6 = of_part_0[0];
-                let v7 = v6;
-                gives[1] = v7;
-            }
-            let mut of_part_2 = [T::one(); 2];
-            part_2(&[], &of_part_0, &of_part_1, &mut of_part_2);
+            let mut of_part_2 = [T::one(); 1];
+            part_2(&[v1, v4], &mut of_part_2);
             #[inline(never)]
             fn part_3<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
-                of_part_0: &[T; 2],
-                of_part_1: &[T; 2],
-                of_part_2: &[T; 2],
-                gives: &mut [T; 2],
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_2: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v25 = of_part_1[0];
-                let v7 = of_part_2[1];
-                let v26 = v7 * v25;
-                gives[0] = v26;
-                let v28 = taken[0];
-                let v8 = of_part_0[1];
-                let v29 = v8 * v28;
-                gives[1] = v29;
+                let v25 = of_part_2[0];
+                let v8 = of_part_1[0];
+                let v27 = v8 * v25;
+                gives[0] = v27;
             }
-            let mut of_part_3 = [T::one(); 2];
-            part_3(&[v28], &of_part_0, &of_part_1, &of_part_2, &mut of_part_3);
+            let mut of_part_3 = [T::one(); 1];
+            part_3(&[], &of_part_1, &of_part_2, &mut of_part_3);
             #[inline(never)]
             fn part_4<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
-                of_part_0: &[T; 2],
-                of_part_2: &[T; 2],
-                of_part_3: &[T; 2],
-                gives: &mut [T; 2],
+                taken: &[T; 0],
+                of_part_3: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v29 = of_part_3[1];
-                let v8 = of_part_0[1];
-                let v30 = v8 * v29;
-                gives[0] = v30;
-                let v28 = taken[0];
-                let v7 = of_part_2[1];
-                let v31 = v7 * v28;
-                gives[1] = v31;
+                let v27 = of_part_3[0];
+                let v39 = -v27;
+                gives[0] = v39;
             }
-            let mut of_part_4 = [T::one(); 2];
-            part_4(&[v28], &of_part_0, &of_part_2, &of_part_3, &mut of_part_4);
+            let mut of_part_4 = [T::one(); 1];
+            part_4(&[], &of_part_3, &mut of_part_4);
             #[inline(never)]
             fn part_5<T: ::hodograph::Scalar>(
                 taken: &[T; 0],
                 of_part_0: &[T; 2],
-                of_part_4: &[T; 2],
                 gives: &mut [T; 1],
             ) {
-                let v31 = of_part_4[1];
-                let v8 = of_part_0[1];
-                let v32 = v8 * v31;
-                let v40 = -v32;
-                gives[0] = v40;
+                let v6 = of_part_0[1];
+                let v7 = v6;
+                gives[0] = v7;
             }
             let mut of_part_5 = [T::one(); 1];
-            part_5(&[], &of_part_0, &of_part_4, &mut of_part_5);
+            part_5(&[], &of_part_0, &mut of_part_5);
             #[inline(never)]
             fn part_6<T: ::hodograph::Scalar>(
-                taken: &[T; 1],
-                of_part_0: &[T; 2],
-                of_part_2: &[T; 2],
-                of_part_4: &[T; 2],
-                gives: &mut [T; 2],
+                taken: &[T; 0],
+                of_part_2: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v31 = of_part_4[1];
-                let v7 = of_part_2[1];
-                let v33 = v7 * v31;
-                gives[0] = v33;
-                let v34 = taken[0];
-                let v8 = of_part_0[1];
-                let v35 = v8 * v34;
-                gives[1] = v35;
+                let v25 = of_part_2[0];
+                let v7 = of_part_5[0];
+                let v26 = v7 * v25;
+                gives[0] = v26;
             }
-            let mut of_part_6 = [T::one(); 2];
-            part_6(&[v34], &of_part_0, &of_part_2, &of_part_4, &mut of_part_6);
+            let mut of_part_6 = [T::one(); 1];
+            part_6(&[], &of_part_2, &of_part_5, &mut of_part_6);
             #[inline(never)]
             fn part_7<T: ::hodograph::Scalar>(
                 taken: &[T; 1],
-                of_part_2: &[T; 2],
-                of_part_6: &[T; 2],
-                gives: &mut [T; 2],
+                of_part_1: &[T; 1],
+                gives: &mut [T; 1],
             ) {
-                let v35 = of_part_6[1];
+                let v28 = taken[0];
+                let v8 = of_part_1[0];
+                let v29 = v8 * v28;
+                gives[0] = v29;
+            }
+            let mut of_part_7 = [T::one(); 1];
+            part_7(&[v28], &of_part_1, &mut of_part_7);
+            #[inline(never)]
+            fn part_8<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_7: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v29 = of_part_7[0];
+                let v8 = of_part_1[0];
+                let v30 = v8 * v29;
+                gives[0] = v30;
+            }
+            let mut of_part_8 = [T::one(); 1];
+            part_8(&[], &of_part_1, &of_part_7, &mut of_part_8);
+            #[inline(never)]
+            fn part_9<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v28 = taken[0];
+                let v7 = of_part_5[0];
+                let v31 = v7 * v28;
+                gives[0] = v31;
+            }
+            let mut of_part_9 = [T::one(); 1];
+            part_9(&[v28], &of_part_5, &mut of_part_9);
+            #[inline(never)]
+            fn part_10<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_1: &[T; 1],
+                of_part_9: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_9[0];
+                let v8 = of_part_1[0];
+                let v32 = v8 * v31;
+                gives[0] = v32;
+            }
+            let mut of_part_10 = [T::one(); 1];
+            part_10(&[], &of_part_1, &of_part_9, &mut of_part_10);
+            #[inline(never)]
+            fn part_11<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_10: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v32 = of_part_10[0];
+                let v40 = -v32;
+                gives[0] = v40;
+            }
+            let mut of_part_11 = [T::one(); 1];
+            part_11(&[], &of_part_10, &mut of_part_11);
+            #[inline(never)]
+            fn part_12<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_5: &[T; 1],
+                of_part_9: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v31 = of_part_9[0];
+                let v7 = of_part_5[0];
+                let v33 = v7 * v31;
+                gives[0] = v33;
+            }
+            let mut of_part_12 = [T::one(); 1];
+            part_12(&[], &of_part_5, &of_part_9, &mut of_part_12);
+            #[inline(never)]
+            fn part_13<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_1: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v34 = taken[0];
+                let v8 = of_part_1[0];
+                let v35 = v8 * v34;
+                gives[0] = v35;
+            }
+            let mut of_part_13 = [T::one(); 1];
+            part_13(&[v34], &of_part_1, &mut of_part_13);
+            #[inline(never)]
+            fn part_14<T: ::hodograph::Scalar>(
+                taken: &[T; 0],
+                of_part_13: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v35 = of_part_13[0];
                 let v41 = -v35;
                 gives[0] = v41;
-                let v34 = taken[0];
-                let v7 = of_part_2[1];
-                let v36 = v7 * v34;
-                gives[1] = v36;
             }
-            let mut of_part_7 = [T::one(); 2];
-            part_7(&[v34], &of_part_2, &of_part_6, &mut of_part_7);
-            let v26 = of_part_3[0];
-            let v30 = of_part_4[0];
-            let v33 = of_part_6[0];
-            let v36 = of_part_7[1];
-            let v39 = of_part_2[0];
-            let v40 = of_part_5[0];
-            let v41 = of_part_7[0];
+            let mut of_part_14 = [T::one(); 1];
+            part_14(&[], &of_part_13, &mut of_part_14);
+            #[inline(never)]
+            fn part_15<T: ::hodograph::Scalar>(
+                taken: &[T; 1],
+                of_part_5: &[T; 1],
+                gives: &mut [T; 1],
+            ) {
+                let v34 = taken[0];
+                let v7 = of_part_5[0];
+                let v36 = v7 * v34;
+                gives[0] = v36;
+            }
+            let mut of_part_15 = [T::one(); 1];
+            part_15(&[v34], &of_part_5, &mut of_part_15);
+            let v26 = of_part_6[0];
+            let v30 = of_part_8[0];
+            let v33 = of_part_12[0];
+            let v36 = of_part_15[0];
+            let v39 = of_part_4[0];
+            let v40 = of_part_11[0];
+            let v41 = of_part_14[0];
             if !::hodograph::generated::all_finite([v26, v30, v33, v36, v39, v40, v41]) {
                 return ::core::result::Result::Err(
                     ::hodograph::StateError::NotFinite.into(),
