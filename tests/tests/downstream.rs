@@ -53,6 +53,24 @@ fn a_users_crate_builds_and_collides() {
     for line in messages.lines() {
         assert!(serde_json::from_str::<serde_json::Value>(line).is_ok(), "not JSON: {line}");
     }
+    one_ready_made_model_is_built();
+}
+
+/// The user's crate names one of the ready-made models: the compiler has read that one.
+fn one_ready_made_model_is_built() {
+    let built = Path::new(env!("CARGO_TARGET_TMPDIR")).join("downstream/debug/deps");
+    let mut lists = 0;
+    for entry in std::fs::read_dir(built).expect("it was built there").flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with("hodograph_models-") && name.ends_with(".d") {
+            let files = std::fs::read_to_string(entry.path()).expect("text");
+            let models: BTreeSet<&str> =
+                files.split(['/', ' ', ':', '\n']).filter(|file| file.ends_with(".mech")).collect();
+            assert_eq!(models, BTreeSet::from(["two_sleds.mech"]), "{name}");
+            lists += 1;
+        }
+    }
+    assert!(lists > 0, "no list of what hodograph-models was built of");
 }
 
 /// `cargo build` of three crates with models, and beside it `cargo check`, as an editor runs it: nothing waits for ever, nothing aborts, and

@@ -11,10 +11,14 @@ use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 
 #[test]
 fn every_model_has_its_module() {
-    let library = std::fs::read_to_string(root().join("models/src/lib.rs")).expect("models/src/lib.rs");
-    for model in models() {
-        let line = format!("mechanism!(\"{}.mech\");", model.name);
-        assert!(library.contains(&line), "add `{line}` to models/src/lib.rs");
+    let read = |path: &str| std::fs::read_to_string(root().join(path)).expect(path);
+    let (library, package) = (read("models/src/lib.rs"), read("models/Cargo.toml"));
+    for Model { name, .. } in models() {
+        let lines = format!("#[cfg(feature = \"{name}\")]\nmechanism!(\"{name}.mech\");");
+        assert!(library.contains(&lines), "add to models/src/lib.rs:\n{lines}");
+        let (feature, of_all) = (format!("\n{name} = []\n"), format!("\n    \"{name}\",\n"));
+        assert!(package.contains(&feature), "add the feature `{name} = []` to models/Cargo.toml");
+        assert!(package.contains(&of_all), "add \"{name}\" to the feature `all` in models/Cargo.toml");
     }
 }
 

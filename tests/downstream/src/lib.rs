@@ -1,4 +1,4 @@
-//! A user's crate: `no_std`, the dependency renamed, a model in a file and one in the source.
+//! A user's crate: `no_std`, the dependency renamed, a model in a file, one in the source, and one that is ready-made.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(warnings, missing_docs, clippy::all, clippy::pedantic)]
@@ -18,6 +18,7 @@ contact::mechanism! {
 }
 
 use contact::{CollisionError, Law, Surface};
+use hodograph_models::two_sleds::{self, TwoSleds};
 use hopper::{Coordinates, Hopper, Speeds};
 
 /// The speeds after the foot has struck the ground.
@@ -30,9 +31,26 @@ pub fn strike(q: &Coordinates<f32>, u: &Speeds<f32>) -> Result<Speeds<f32>, Coll
     Ok(Hopper::default().collide_foot_ground(q, u, &surface)?.speeds)
 }
 
+/// The speeds of two sleds after they have struck each other.
+///
+/// # Errors
+///
+/// Where the collision has no outcome.
+pub fn ready_made(u: &two_sleds::Speeds<f32>) -> Result<two_sleds::Speeds<f32>, CollisionError<f32>> {
+    let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge };
+    Ok(TwoSleds::default().collide_bc_ac(&two_sleds::Coordinates::default(), u, &surface)?.speeds)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sleds_strike_each_other() {
+        let before = two_sleds::Speeds::default();
+        let after = ready_made(&before).unwrap();
+        assert!((after - before).iter().any(|(_, change)| change.abs() > 0.1));
+    }
 
     #[test]
     fn the_foot_leaves_the_ground() {
