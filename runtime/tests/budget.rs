@@ -135,3 +135,58 @@ fn a_reference_to_a_surface_is_a_surface() {
         solve(&matrix, &approach, &surface.within(2)).is_ok()
     );
 }
+
+/// Slip that falls to 1e-14 of what it was, far from all other directions in which slip keeps its direction, and slip that hardly stops before v_n is zero: few
+/// quadratures suffice, since stretches grow with the distance from the zeros of q, and no trials are made where the end of the stretch lies before the event.
+#[test]
+fn slip_that_nearly_stops_takes_few_quadratures() {
+    let cases: [([f64; 6], [f64; 3], f64, Law); 3] = [
+        (
+            [
+                0.6227256753461732,
+                -0.25021255108031937,
+                -0.604343062423163,
+                1.5859466382081537,
+                0.5117500559729922,
+                1.4122641313125892,
+            ],
+            [-1.3678993416540224, 0.786297936837681, 1.8091999579524949],
+            0.027652896108600337,
+            Law::Poisson,
+        ),
+        (
+            [
+                1.4297848574664593,
+                -0.06457416621922873,
+                -1.3909347628104893,
+                0.6077218171940699,
+                -0.2787854823827677,
+                1.692569005584747,
+            ],
+            [-1.2796657947303969, 0.007678903589188715, 0.8180529132681993],
+            0.17830434919009275,
+            Law::Stronge,
+        ),
+        (
+            [
+                0.7489787477697148,
+                -0.42632012206678965,
+                0.014111780195597057,
+                0.6038258649265799,
+                -0.18521586729893366,
+                0.08719036714508038,
+            ],
+            [-1.161788469766577, 0.5108223288538767, 0.05192939483641465],
+            1.105799512449671,
+            Law::Poisson,
+        ),
+    ];
+    for (matrix, approach, mu, law) in cases {
+        let surface = Surface { mu, e: 1.0, law };
+        let (matrix, approach) = (ReducedMatrix::from(matrix), Vector3::from(approach));
+        let free = solve(&matrix, &approach, &surface);
+        assert!(free.is_ok());
+        let least = least(|surface| solve(&matrix, &approach, surface), &free, surface);
+        assert!((2..=12).contains(&least), "{surface:?}: {least}");
+    }
+}

@@ -177,9 +177,10 @@ impl<T: Real> EventLocation<'_, T> {
                 return Some(x + self.polish(event, rates, correction, to));
             }
             let next = (x + correction.step).primal();
-            // Every fourth trial halves the bracket, in case the steps converge slowly.
-            let slow = trial % 4 == 3;
-            x = if next > lo && next < hi && (open || !slow) {
+            // Where the second trial still lies before the event, the end of the stretch decides whether there is one. Every fourth trial halves the bracket, in
+            // case the steps converge slowly.
+            let slow = if open { trial == 1 } else { trial % 4 == 3 };
+            x = if next > lo && next < hi && !slow {
                 next
             } else if open && (next >= hi || slow) {
                 limit

@@ -2,14 +2,14 @@
 //!
 //! Theory: docs/theory.md, sections 5.3 and 8.1.
 
-use super::sliding_arc::{ArcPoint, Rates, SlidingArc, rough_ln};
+use super::sliding_arc::{ArcPoint, Rates, SlidingArc, wide_ln};
 use crate::scalar::{Real, constant, dot, fma, larger, smaller};
 
 impl<T: Real> SlidingArc<T> {
     /// The distance in lambda by which a point lies beyond the mean modulus of the zeros of q, or a lower bound of it; negative before them.
     #[inline(always)]
     pub fn beyond(&self, point: &ArcPoint<T>) -> T {
-        rough_ln(point.w.primal() * self.scale)
+        wide_ln(point.w.primal() * self.scale)
     }
 
     /// The greatest length in lambda that one quadrature from `point` may have.
