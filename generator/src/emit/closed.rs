@@ -1,9 +1,10 @@
 //! Emits the methods for mode and force of a closed contact, and their result type.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::record;
 use super::routine::Arguments;
 use super::values::local;
 use crate::program::{ContactQuantity, Quantity};
@@ -34,8 +35,19 @@ impl Emitter<'_> {
                 pub dependent_accelerations: DependentSpeeds<T>,
             }
         });
-        let dependent_field = has_dependent.then(|| quote!(dependent_accelerations));
-        let count = Literal::usize_unsuffixed(10 + usize::from(has_dependent));
+        let dependent_field = has_dependent.then_some("dependent_accelerations");
+        let fields = [
+            "force",
+            "force_on_point",
+            "force_on_struck",
+            "contact_acceleration",
+            "direction",
+            "margins",
+            "outcome",
+        ];
+        let fields: Vec<&str> =
+            ["mode", "selection", "accelerations"].into_iter().chain(dependent_field).chain(fields).collect();
+        let written = record::outcome(krate, "ClosedContact", &fields);
         quote! {
             /// Mode, force and accelerations of a closed contact. n, t, s are the axes `normal`, `first`, `second` of the contact basis.
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,10 +77,7 @@ impl Emitter<'_> {
                 pub outcome: #krate::ContactOutcome<T>,
             }
 
-            #krate::generated::serialize_outcome! {
-                ClosedContact #count mode selection accelerations #dependent_field force force_on_point force_on_struck
-                contact_acceleration direction margins outcome
-            }
+            #written
         }
     }
 

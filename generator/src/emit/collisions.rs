@@ -1,9 +1,10 @@
 //! Emits the methods for the collision and the impact without collision of a contact, and their result type.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::record;
 use super::routine::Arguments;
 use super::values::local;
 use crate::program::Output;
@@ -38,8 +39,23 @@ impl Emitter<'_> {
                 pub dependent_speeds: DependentSpeeds<T>,
             }
         });
-        let dependent_field = (!self.dependent.is_empty()).then(|| quote!(dependent_speeds));
-        let count = Literal::usize_unsuffixed(13 + usize::from(!self.dependent.is_empty()));
+        let dependent_field = (!self.dependent.is_empty()).then_some("dependent_speeds");
+        let fields = [
+            "impulse",
+            "impulse_on_point",
+            "impulse_on_struck",
+            "normal",
+            "tangent",
+            "binormal",
+            "approach",
+            "separation",
+            "reduced",
+            "energy_change",
+            "path",
+            "impact",
+        ];
+        let fields: Vec<&str> = ["speeds"].into_iter().chain(dependent_field).chain(fields).collect();
+        let written = record::outcome(krate, "Collision", &fields);
         quote! {
             /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,10 +109,7 @@ impl Emitter<'_> {
                 }
             }
 
-            #krate::generated::serialize_outcome! {
-                Collision #count speeds #dependent_field impulse impulse_on_point impulse_on_struck normal tangent binormal
-                approach separation reduced energy_change path impact
-            }
+            #written
         }
     }
 

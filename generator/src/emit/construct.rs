@@ -61,6 +61,7 @@ impl Emitter<'_> {
                 }
             }
         });
+        let constant = self.constant();
         quote! {
             #[doc = #docs]
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,7 +98,22 @@ impl Emitter<'_> {
             }
 
             #default
+            #constant
         }
+    }
+
+    /// The mechanism as a constant, where nothing is left to compute at run time.
+    fn constant(&self) -> Option<TokenStream> {
+        let name = &self.name;
+        let known = self.parameters.is_empty() && self.hoisted.is_empty();
+        known.then(|| {
+            quote! {
+                impl<T> #name<T> {
+                    /// The mechanism: all parameters are fixed, so that it can stand in a constant or a `static`.
+                    pub const MODEL: Self = Self { hoisted: [] };
+                }
+            }
+        })
     }
 
     /// Whether all run-time parameters have a value in the model.

@@ -98,6 +98,7 @@ impl Record {
         let docs = format!(" {docs}");
         let labels = fields.iter().map(|field| &field.label);
         let units = fields.iter().map(|field| &field.unit);
+        let logged = logged(krate, &name.to_string(), &names);
         quote! {
             #[doc = #docs]
             #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,6 +106,7 @@ impl Record {
 
             #krate::generated::serialize_record! { #name #count #(#names)* }
             #krate::generated::record! { #name #count #(#names #labels #units)* }
+            #logged
 
             /// The values that the model gives, and 0 where it gives none.
             impl<T: #krate::Scalar> ::core::default::Default for #name<T> {
@@ -148,6 +150,26 @@ impl Record {
             }
         }
     }
+}
+
+/// How a struct of results is serialised and logged.
+pub fn outcome(krate: &TokenStream, name: &str, fields: &[&str]) -> TokenStream {
+    let (record, count) = (ident(name), Literal::usize_unsuffixed(fields.len()));
+    let names: Vec<Ident> = fields.iter().map(|field| ident(field)).collect();
+    let logged = logged(krate, name, &names.iter().collect::<Vec<_>>());
+    quote! {
+        #krate::generated::serialize_outcome! { #record #count #(#names)* }
+        #logged
+    }
+}
+
+/// How a struct is logged on a target: a format string for the whole, because it must be one literal.
+fn logged(krate: &TokenStream, name: &str, fields: &[&Ident]) -> TokenStream {
+    let each: Vec<String> =
+        fields.iter().map(|field| format!("{}: {{}}", field.to_string().trim_start_matches("r#"))).collect();
+    let format = format!("{name} {{{{ {} }}}}", each.join(", "));
+    let name = ident(name);
+    quote! { #krate::generated::log! { #name #format #(#fields)* } }
 }
 
 /// A number in the generic scalar.

@@ -28,6 +28,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::record! {
         Parameters 3 m "m" "kg" l "l" "m" g "g" "m/s^2"
     }
+    ::hodograph::generated::log! {
+        Parameters "Parameters {{ m: {}, l: {}, g: {} }}" m l g
+    }
     /// The values that the model gives, and 0 where it gives none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Parameters<T> {
         #[inline]
@@ -83,6 +86,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::record! {
         Coordinates 1 q1 "q1" "rad"
     }
+    ::hodograph::generated::log! {
+        Coordinates "Coordinates {{ q1: {} }}" q1
+    }
     /// The values that the model gives, and 0 where it gives none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Coordinates<T> {
         #[inline]
@@ -136,6 +142,9 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::record! {
         Speeds 1 u1 "u1" "rad/s"
     }
+    ::hodograph::generated::log! {
+        Speeds "Speeds {{ u1: {} }}" u1
+    }
     /// The values that the model gives, and 0 where it gives none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Speeds<T> {
         #[inline]
@@ -188,6 +197,9 @@ pub mod pendulum_in_parts {
     }
     ::hodograph::generated::record! {
         Inputs 1 tau "tau" "N*m"
+    }
+    ::hodograph::generated::log! {
+        Inputs "Inputs {{ tau: {} }}" tau
     }
     /// The values that the model gives, and 0 where it gives none.
     impl<T: ::hodograph::Scalar> ::core::default::Default for Inputs<T> {
@@ -392,6 +404,12 @@ pub mod pendulum_in_parts {
     ::hodograph::generated::serialize_outcome! {
         Collision 13 speeds impulse impulse_on_point impulse_on_struck normal tangent
         binormal approach separation reduced energy_change path impact
+    }
+    ::hodograph::generated::log! {
+        Collision
+        "Collision {{ speeds: {}, impulse: {}, impulse_on_point: {}, impulse_on_struck: {}, normal: {}, tangent: {}, binormal: {}, approach: {}, separation: {}, reduced: {}, energy_change: {}, path: {}, impact: {} }}"
+        speeds impulse impulse_on_point impulse_on_struck normal tangent binormal
+        approach separation reduced energy_change path impact
     }
     /// The derivative of a collision at one configuration. Rows and columns of speeds are `u1`, in this order.
     #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,6 +7,7 @@ mod closed;
 #[doc(hidden)]
 pub mod construction;
 mod contact;
+mod log;
 mod records;
 mod saltation;
 mod serial;
@@ -29,6 +30,9 @@ pub use saltation::{by_coordinate, reset, salted, state};
 #[doc(hidden)]
 pub use slices::{Description, normalize_quaternions, write_array, write_rows};
 
+#[cfg(feature = "defmt")]
+#[doc(hidden)]
+pub use defmt;
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub use serde;
@@ -38,7 +42,8 @@ pub use serial::{FieldIndex, FieldNames};
 
 #[doc(hidden)]
 pub use crate::{
-    __record as record, __serialize_outcome as serialize_outcome, __serialize_record as serialize_record,
+    __log as log, __record as record, __serialize_outcome as serialize_outcome,
+    __serialize_record as serialize_record,
 };
 
 /// Generated code names this constant, so that a module made by a generator of another version does not compile with this runtime.

@@ -3,6 +3,7 @@
 #![forbid(unsafe_code)]
 #![deny(warnings, missing_docs, clippy::all, clippy::pedantic)]
 
+contact::mechanism!("models/gate.mech");
 contact::mechanism!("models/hopper.mech");
 
 contact::mechanism! {
@@ -31,6 +32,9 @@ pub fn strike(q: &Coordinates<f32>, u: &Speeds<f32>) -> Result<Speeds<f32>, Coll
     Ok(Hopper::default().collide_foot_ground(q, u, &surface)?.speeds)
 }
 
+/// All its parameters are fixed: nothing is computed at run time.
+pub static GATE: gate::Gate<f32> = gate::Gate::MODEL;
+
 /// The speeds of two sleds after they have struck each other.
 ///
 /// # Errors
@@ -44,6 +48,17 @@ pub fn ready_made(u: &two_sleds::Speeds<f32>) -> Result<two_sleds::Speeds<f32>, 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_constant_is_what_is_constructed() {
+        assert_eq!(Ok(GATE), gate::Gate::new());
+        assert_eq!(GATE, gate::Gate::default());
+        assert_eq!(core::mem::size_of_val(&GATE), 0);
+        let surface = Surface { mu: 0.3, e: 0.5, law: Law::Poisson };
+        let (q, u) = (gate::Coordinates { q1: 0.0 }, gate::Speeds { u1: -1.0 });
+        // The edge approaches with b u1 and leaves with e times that.
+        assert!((GATE.collide_edge_post(&q, &u, &surface).unwrap().separation.x - 0.45).abs() < 1e-6);
+    }
 
     #[test]
     fn sleds_strike_each_other() {
