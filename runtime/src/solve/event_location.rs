@@ -162,6 +162,7 @@ impl<T: Real> EventLocation<'_, T> {
             let correction = Correction::new(event, to, &rates);
             let far = correction.step.primal().abs();
             let near = correction.size <= constant(0.25)
+                && far <= constant(0.125)
                 && (far <= constant::<T>(0.035) * larger(self.reach, x)
                     || far <= constant::<T>(0.065) * self.arc.beyond(to))
                 && (!works || far * rates.growth.primal().abs() <= constant(0.3));
@@ -210,7 +211,7 @@ impl<T: Real> EventLocation<'_, T> {
                 break;
             }
             let step = correction.step.primal();
-            self.arc.short_step(to, step);
+            self.arc.short_step(to, &rates, step);
             length += step;
             rates = self.arc.rates(to);
             correction = Correction::new(event, to, &rates);

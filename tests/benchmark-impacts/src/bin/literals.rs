@@ -12,7 +12,7 @@ use std::{
 };
 
 /// Instructions of a stretch, a short step, a block of the series and the direct integration of work.
-const WEIGHTS: &str = "[640.0, 230.0, 130.0, 250.0]";
+const WEIGHTS: &str = "[560.0, 220.0, 120.0, 250.0]";
 
 fn main() -> Result<(), Box<dyn Error>> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
