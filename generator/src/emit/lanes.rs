@@ -6,10 +6,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::homes::Homes;
 use super::values::local;
 use crate::program::Output;
 use crate::program::operation::{Operation, Stage, Value};
@@ -258,30 +259,52 @@ impl Lanes {
         self.steps.iter().flatten().copied()
     }
 
-    /// All values that it needs.
-    pub fn needed(&self) -> impl Iterator<Item = Value> {
-        self.shared.iter().chain(self.given.iter().flatten()).copied()
+    /// How many columns the loop takes, with those that fill up the last register.
+    fn width(&self) -> usize {
+        self.columns().next_multiple_of(WIDTH)
     }
 
-    /// The loop as a function, its call, and its results as local variables.
-    pub fn statements(&self, emitter: &Emitter<'_>, number: usize) -> TokenStream {
-        let krate = emitter.krate;
-        let width = self.columns().next_multiple_of(WIDTH);
-        let [width, given_rows, made_rows, shared_count] =
-            [width, self.given.len(), self.made.len(), self.shared.len()].map(Literal::usize_unsuffixed);
-        let (name, given, made) = (
-            format_ident!("lanes_{number}"),
-            format_ident!("given_{number}"),
-            format_ident!("made_{number}"),
-        );
-        let index = Literal::usize_unsuffixed;
-        let shared: Vec<_> = self.shared.iter().map(|&value| local(value)).collect();
-        let store = self.given.iter().enumerate().flat_map(|(row, values)| {
-            let given = &given;
-            values.iter().enumerate().map(move |(lane, &value)| {
-                let (row, lane, value) = (index(row), index(lane), local(value));
-                quote!(#given[#row][#lane] = #value;)
+    /// The array of the operands that each column has for itself.
+    fn given_array(number: usize) -> Ident {
+        format_ident!("given_{number}")
+    }
+
+    /// The array of the results.
+    pub fn made_array(number: usize) -> Ident {
+        format_ident!("made_{number}")
+    }
+
+    /// All results.
+    pub fn results(&self) -> impl Iterator<Item = Value> {
+        self.made.iter().flat_map(|&step| &self.steps[step]).copied()
+    }
+
+    /// The results as local variables.
+    pub fn fetch(&self, number: usize) -> TokenStream {
+        let made = Self::made_array(number);
+        let fetch = self.made.iter().enumerate().flat_map(|(row, &step)| {
+            let made = &made;
+            self.steps[step].iter().enumerate().map(move |(lane, &value)| {
+                let (row, lane) = (Literal::usize_unsuffixed(row), Literal::usize_unsuffixed(lane));
+                let value = local(value);
+                quote!(let #value = #made[#row][#lane];)
             })
+        });
+        quote!(#(#fetch)*)
+    }
+
+    /// The loop as a function, and its call. `common` are the values in the array that all loops share.
+    fn statements(&self, emitter: &Emitter<'_>, number: usize, common: &[Value]) -> TokenStream {
+        let krate = emitter.krate;
+        let index = Literal::usize_unsuffixed;
+        let [width, given_rows, made_rows, common_count] =
+            [self.width(), self.given.len(), self.made.len(), common.len()].map(index);
+        let (name, given, made) =
+            (format_ident!("lanes_{number}"), Self::given_array(number), Self::made_array(number));
+        let places = common.iter().enumerate().filter(|(_, value)| self.shared.contains(value));
+        let shared = places.map(|(at, &value)| {
+            let (at, value) = (index(at), local(value));
+            quote!(let #value = shared[#at];)
         });
         let load = self.given.iter().enumerate().map(|(row, values)| {
             let (row, value) = (index(row), local(values[0]));
@@ -293,32 +316,48 @@ impl Lanes {
             let (row, value) = (index(row), local(self.steps[step][0]));
             quote!(made[#row][lane] = #value;)
         });
-        let fetch = self.made.iter().enumerate().flat_map(|(row, &step)| {
-            let made = &made;
-            self.steps[step].iter().enumerate().map(move |(lane, &value)| {
-                let (row, lane, value) = (index(row), index(lane), local(value));
-                quote!(let #value = #made[#row][#lane];)
-            })
-        });
         quote! {
             #[inline(never)]
             fn #name<T: #krate::Scalar>(
-                shared: &[T; #shared_count],
+                shared: &[T; #common_count],
                 given: &[[T; #width]; #given_rows],
                 made: &mut [[T; #width]; #made_rows],
             ) {
-                let [#(#shared),*] = *shared;
+                #(#shared)*
                 for lane in 0..#width {
                     #(#load)*
                     #(#steps)*
                     #(#results)*
                 }
             }
-            let mut #given = [[T::one(); #width]; #given_rows];
-            #(#store)*
+            // Ones, since compilers call a function to fill a long array with zeros, and that takes longer.
             let mut #made = [[T::one(); #width]; #made_rows];
-            #name(&[#(#shared),*], &#given, &mut #made);
-            #(#fetch)*
+            #name(&shared, &#given, &mut #made);
         }
     }
+}
+
+/// The values that loops share, in the order of the first that needs them.
+fn common(lanes: &[Lanes]) -> Vec<Value> {
+    let mut seen = BTreeSet::new();
+    lanes.iter().flat_map(|lanes| &lanes.shared).copied().filter(|&value| seen.insert(value)).collect()
+}
+
+/// The arrays that loops read.
+pub fn homes(lanes: &[Lanes]) -> Homes {
+    let mut homes = Homes::default();
+    if !lanes.is_empty() {
+        homes.list("shared", common(lanes));
+    }
+    for (number, lanes) in lanes.iter().enumerate() {
+        homes.table(&Lanes::given_array(number), lanes.given.clone(), lanes.width());
+    }
+    homes
+}
+
+/// All loops.
+pub fn loops(lanes: &[Lanes], emitter: &Emitter<'_>) -> TokenStream {
+    let common = common(lanes);
+    let loops = lanes.iter().enumerate().map(|(number, lanes)| lanes.statements(emitter, number, &common));
+    quote!(#(#loops)*)
 }

@@ -6,7 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
-use super::lanes::Lanes;
+use super::lanes::{self, Lanes};
 use super::values::local;
 use crate::program::Guard;
 use crate::program::Quantity;
@@ -30,7 +30,6 @@ impl Emitter<'_> {
             .map(|guard| self.guard(guard));
         let results: BTreeSet<Value> =
             slice.outputs.iter().flat_map(|output| output.values.iter().copied()).collect();
-        let finite = self.finite(&results);
         let late = slice.guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter);
         let checked = late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
         let looked_at: BTreeSet<Value> = checked.collect();
@@ -43,10 +42,13 @@ impl Emitter<'_> {
         };
         let in_lanes: BTreeSet<Value> = lanes.iter().flat_map(Lanes::computed).collect();
         let order: Vec<Value> = order.into_iter().filter(|value| !in_lanes.contains(value)).collect();
-        let wanted = wanted.into_iter().chain(lanes.iter().flat_map(Lanes::needed)).collect();
-        let statements = self.statements(&order, &wanted);
-        let lanes = lanes.iter().zip(0..).map(|(lanes, number)| lanes.statements(self, number));
-        quote! { #statements #(#lanes)* #(#guards)* #finite }
+        let statements = self.statements(&order, &wanted, &lanes::homes(&lanes));
+        let loops = lanes::loops(&lanes, self);
+        let made: BTreeSet<Value> = lanes.iter().flat_map(Lanes::results).collect();
+        let finite = self.finite(results.difference(&made).copied(), lanes.len());
+        // Results are fetched last: fetched before the checks, they would be stored and fetched again.
+        let fetch = lanes.iter().zip(0..).map(|(lanes, number)| lanes.fetch(number));
+        quote! { #statements #loops #(#guards)* #finite #(#fetch)* }
     }
 
     /// The values that a method computes: what depends on parameters alone is only fetched.
@@ -87,17 +89,22 @@ impl Emitter<'_> {
         }
     }
 
-    /// The statement that checks that results are finite; constants are.
-    fn finite(&self, results: &BTreeSet<Value>) -> TokenStream {
+    /// The statement that checks that results are finite, those of loops too; constants are.
+    fn finite(&self, results: impl Iterator<Item = Value>, loops: usize) -> TokenStream {
         let krate = self.krate;
-        let results =
-            results.iter().filter(|&&value| self.stage(value) > Stage::Parameter).map(|&value| local(value));
-        let results: Vec<_> = results.collect();
-        if results.is_empty() {
-            return quote!();
-        }
+        let results: Vec<_> =
+            results.filter(|&value| self.stage(value) > Stage::Parameter).map(local).collect();
+        let single = (!results.is_empty()).then(|| quote!(#krate::generated::all_finite([#(#results),*])));
+        let arrays = (0..loops).map(Lanes::made_array);
+        let arrays = arrays.map(|made| quote!(#krate::generated::all_rows_finite(&#made)));
+        let checks: Vec<TokenStream> = single.into_iter().chain(arrays).collect();
+        let wrong = match &checks[..] {
+            [] => return quote!(),
+            [check] => quote!(!#check),
+            _ => quote!(!(#(#checks)&&*)),
+        };
         quote! {
-            if !#krate::generated::all_finite([#(#results),*]) {
+            if #wrong {
                 return ::core::result::Result::Err(#krate::StateError::NotFinite.into());
             }
         }

@@ -9,6 +9,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::homes::{Home, Homes};
 use super::values::{Place, local};
 use crate::program::operation::{Operation, Stage, Value};
 
@@ -20,21 +21,30 @@ pub const LONGEST: usize = 3000;
 #[derive(Default)]
 struct Gone {
     places: BTreeMap<String, Slot>,
+    /// values in the arrays of loops
+    stored: BTreeSet<Value>,
     /// length of the array of each part
     lengths: Vec<usize>,
 }
 
-/// A place in the array of a part.
-#[derive(Clone, Copy)]
-struct Slot {
-    part: usize,
-    at: usize,
+/// A place in an array.
+#[derive(Clone)]
+enum Slot {
+    /// in that of a part
+    Part { part: usize, at: usize },
+    /// in one that loops read
+    Home(Home),
 }
 
 impl Slot {
-    fn tokens(self) -> TokenStream {
-        let (array, at) = (array(self.part), Literal::usize_unsuffixed(self.at));
-        quote!(#array[#at])
+    fn tokens(&self) -> TokenStream {
+        match self {
+            Slot::Part { part, at } => {
+                let (array, at) = (array(*part), Literal::usize_unsuffixed(*at));
+                quote!(#array[#at])
+            }
+            Slot::Home(home) => home.tokens(),
+        }
     }
 }
 
@@ -44,8 +54,8 @@ fn array(part: usize) -> Ident {
 }
 
 impl Emitter<'_> {
-    /// The statements that compute `values`, in their order; `wanted` are those that are looked at afterwards.
-    pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>) -> TokenStream {
+    /// The statements that compute `values`, in their order, and fill the arrays of loops; `wanted` are those that are looked at afterwards.
+    pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>, homes: &Homes) -> TokenStream {
         let pairs = self.together(values);
         let angles = self.angles(&pairs, values);
         let of_angles = self.sines_and_cosines(&pairs);
@@ -55,20 +65,22 @@ impl Emitter<'_> {
         let (work, given): (Vec<Value>, Vec<Value>) = rest.iter().partition(|&&value| self.is_work(value));
         if rest.len() <= self.longest {
             let statements = rest.iter().filter_map(|&value| self.statement(value, Place::Method));
-            return quote! { #(#angles)* #of_angles #(#statements)* };
+            let full = homes.full();
+            return quote! { #(#angles)* #of_angles #(#statements)* #full };
         }
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
         let parts = self.parts(&work, rest.len().div_ceil(self.longest.max(1)));
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
         let mut gone = Gone::default();
         let calls: Vec<TokenStream> =
-            (0..parts.len()).map(|index| self.part(&parts, index, &wanted, &mut gone)).collect();
+            (0..parts.len()).map(|index| self.part(&parts, index, &wanted, homes, &mut gone)).collect();
         let looked_at = gone.places.iter().filter(|(name, _)| wanted.contains(*name));
         let looked_at = looked_at.map(|(name, place)| {
             let (name, place) = (format_ident!("{name}"), place.tokens());
             quote!(let #name = #place;)
         });
-        quote! { #(#angles)* #of_angles #(#given)* #(#calls)* #(#looked_at)* }
+        let (empty, stores) = (homes.empty(), homes.stores(&gone.stored));
+        quote! { #(#angles)* #of_angles #(#given)* #empty #(#calls)* #(#looked_at)* #stores }
     }
 
     /// Parts of about equal length, at least so many. None makes more variables than a function may, but for a sixth more, unless it is one statement.
@@ -100,6 +112,7 @@ impl Emitter<'_> {
         parts: &[&[Value]],
         index: usize,
         wanted: &BTreeSet<String>,
+        homes: &Homes,
         gone: &mut Gone,
     ) -> TokenStream {
         let krate = self.krate;
@@ -115,9 +128,13 @@ impl Emitter<'_> {
             taken.into_iter().partition(|name| gone.places.contains_key(name));
         let mut places: BTreeMap<String, TokenStream> = BTreeMap::new();
         let mut arrays: BTreeSet<usize> = BTreeSet::new();
+        let mut filled: BTreeSet<Ident> = BTreeSet::new();
         for name in earlier {
             if let Some(place) = gone.places.get(&name) {
-                arrays.insert(place.part);
+                match place {
+                    Slot::Part { part, .. } => drop(arrays.insert(*part)),
+                    Slot::Home(home) => drop(filled.insert(home.array.clone())),
+                }
                 places.insert(name, place.tokens());
             }
         }
@@ -136,11 +153,20 @@ impl Emitter<'_> {
                 }
             }
             statements.extend(self.statement(value, Place::Method));
+            if let [first, ..] = homes.of(value) {
+                for home in homes.of(value) {
+                    statements.push(home.store(value));
+                    filled.insert(home.array.clone());
+                }
+                gone.stored.insert(value);
+                gone.places.insert(local(value).to_string(), Slot::Home(first.clone()));
+                continue;
+            }
             for name in self.makes(value) {
                 if later.contains(&name) || wanted.contains(&name) {
                     let (at, name_) = (Literal::usize_unsuffixed(gives), format_ident!("{name}"));
                     statements.push(quote!(gives[#at] = #name_;));
-                    gone.places.insert(name, Slot { part: index, at: gives });
+                    gone.places.insert(name, Slot::Part { part: index, at: gives });
                     gives += 1;
                 }
             }
@@ -151,15 +177,18 @@ impl Emitter<'_> {
         let earlier: Vec<_> = arrays.iter().map(|&part| array(part)).collect();
         let lengths = arrays.iter().map(|&part| Literal::usize_unsuffixed(gone.lengths[part]));
         let (name, own) = (format_ident!("part_{index}"), array(index));
+        let shapes = filled.iter().map(|array| homes.shape(array));
+        let shapes = filled.iter().zip(shapes).map(|(array, shape)| quote!(#array: &mut #shape,));
+        let filled = filled.iter().map(|array| quote!(&mut #array,));
         quote! {
             #[inline(never)]
-            fn #name<T: #krate::Scalar>(taken: &[T; #takes], #(#earlier: &[T; #lengths],)* gives: &mut [T; #gives]) {
+            fn #name<T: #krate::Scalar>(taken: &[T; #takes], #(#earlier: &[T; #lengths],)* #(#shapes)* gives: &mut [T; #gives]) {
                 #(#numbers)*
                 #(#statements)*
             }
             // Ones, since compilers call a function to fill a long array with zeros, and that takes longer.
             let mut #own = [T::one(); #gives];
-            #name(&[#(#outside),*], #(&#earlier,)* &mut #own);
+            #name(&[#(#outside),*], #(&#earlier,)* #(#filled)* &mut #own);
         }
     }
 

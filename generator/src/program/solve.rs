@@ -32,22 +32,36 @@ pub fn solved(program: Program, solve: Option<&Solve>) -> Program {
     let entry = |row: usize, column: usize| renamed[output.values[row * output.columns + column].index()];
     let factor = |row: usize, column: usize| entry(row, solve.held + count + column);
     let columns = solve.held + count;
-    let mut values = vec![Value(0); rows * columns];
+    let single: Vec<Option<Single>> = (solve.held..columns)
+        .map(|column| Single::of((0..rows).map(|row| builder.number(entry(row, column)))))
+        .collect();
+    let mut found: Vec<Vec<Value>> = Vec::with_capacity(columns);
     for column in 0..columns {
         let mut x: Vec<Value> = (0..rows).map(|row| entry(row, column)).collect();
         if column >= solve.held {
+            let first = mirrors(&single, column - solve.held).len();
             for row in 0..rows {
                 x[row] = (0..row).fold(x[row], |sum, at| less(&mut builder, sum, factor(row, at), x[at]));
             }
-            for (row, value) in x.iter_mut().enumerate() {
+            for (row, value) in x.iter_mut().enumerate().skip(first) {
                 *value = builder.mul(factor(row, row), *value);
             }
-            for row in (0..rows).rev() {
+            for row in (first..rows).rev() {
                 x[row] =
                     (row + 1..rows).fold(x[row], |sum, at| less(&mut builder, sum, factor(at, row), x[at]));
             }
         }
-        for (&row, &value) in solve.order.iter().zip(&x) {
+        found.push(x);
+    }
+    for column in solve.held..columns {
+        let others = mirrors(&single, column - solve.held);
+        for (row, (other, of)) in others.into_iter().enumerate() {
+            found[column][row] = found[solve.held + other][of];
+        }
+    }
+    let mut values = vec![Value(0); rows * columns];
+    for (column, x) in found.iter().enumerate() {
+        for (&row, &value) in solve.order.iter().zip(x) {
             values[row * columns + column] = value;
         }
     }
@@ -59,6 +73,35 @@ pub fn solved(program: Program, solve: Option<&Solve>) -> Program {
     let guards = guards.collect();
     let outputs = vec![Output { quantity: output.quantity, rows, columns, values }];
     Program { operations: builder.finish(), outputs, guards, structures: program.structures }
+}
+
+/// A right side that is a number in one row and 0 in all others.
+#[derive(Clone, Copy, PartialEq)]
+struct Single {
+    row: usize,
+    number: f64,
+}
+
+impl Single {
+    /// `entries`: the numbers of the rows; `None` where an entry is none.
+    fn of(entries: impl Iterator<Item = Option<f64>>) -> Option<Self> {
+        let mut found = None;
+        for (row, entry) in entries.enumerate() {
+            let number = entry?;
+            if number != 0.0 && found.replace(Single { row, number }).is_some() {
+                return None;
+            }
+        }
+        found
+    }
+}
+
+/// The inverse of M is symmetric, so that its entry in the column of one single number is that in the column of another, transposed. For the first rows of a
+/// column, while this holds: in which other column the entry is, and in which row of it. Both are computed from the last row on.
+fn mirrors(single: &[Option<Single>], column: usize) -> Vec<(usize, usize)> {
+    let Some(own) = single[column] else { return Vec::new() };
+    let other = |row: usize| single.iter().position(|&other| other == Some(Single { row, ..own }));
+    (0..own.row).map_while(|row| Some((other(row)?, own.row))).collect()
 }
 
 /// sum - factor * value; what is 0 takes no operation.
@@ -87,16 +130,22 @@ mod tests {
     use super::*;
     use crate::interpret::Evaluator;
 
-    /// M X = -B with a matrix of four rows, whose second row is coupled to the first alone; `held` is a column that stays.
+    /// M X = -B with a matrix of four rows, whose second row is coupled to the first alone; `held` is a column that stays. Three columns of B are columns of
+    /// the identity matrix, so that entries of X are equal.
     #[test]
     fn the_solution_satisfies_the_equations() {
         let m = [[5.0, 1.0, 2.0, 1.0], [1.0, 4.0, 0.0, 0.0], [2.0, 0.0, 6.0, 1.0], [1.0, 0.0, 1.0, 3.0]];
-        let b = [[1.0, 0.0, 0.5], [2.0, 0.0, 0.0], [-3.0, 1.0, 0.0], [4.0, 0.0, 0.25]];
+        let b = [
+            [1.0, 0.0, 0.5, 0.0, 1.0],
+            [2.0, 0.0, 0.0, 1.0, 0.0],
+            [-3.0, 1.0, 0.0, 0.0, 0.0],
+            [4.0, 0.0, 0.25, 0.0, 0.0],
+        ];
         let mut graph = Graph::new();
         let mut inputs = Inputs::default();
         let mut input = |graph: &mut Graph, number: f64| -> Node {
-            if number == 0.0 {
-                return graph.integer(0);
+            if number == 0.0 || number == 1.0 {
+                return graph.integer(number as i64);
             }
             inputs.speeds.push(number);
             graph.input(Input::Speed(inputs.speeds.len() as u32 - 1))
@@ -118,7 +167,7 @@ mod tests {
         let quantity = Quantity::AccelerationsDerivatives;
         let derived = Derived {
             graph,
-            outputs: vec![Output { quantity, rows: 4, columns: 8, values }],
+            outputs: vec![Output { quantity, rows: 4, columns: 10, values }],
             guards: vec![],
             structures: vec![],
             samples: vec![],
@@ -126,15 +175,18 @@ mod tests {
             solve: Some(Solve { order, held: 1 }),
         };
         let program = Program::new(&derived);
-        assert_eq!((program.outputs[0].rows, program.outputs[0].columns), (4, 4));
+        assert_eq!((program.outputs[0].rows, program.outputs[0].columns), (4, 6));
         let found =
             Evaluator::new(&program).evaluate(&inputs, &[quantity]).expect("regular").remove(0).values;
         for (row, (of_m, of_b)) in m.iter().zip(&b).enumerate() {
-            assert_eq!(found[row * 4], 7.0);
-            for column in 0..3 {
-                let product: f64 = (0..4).map(|at| of_m[at] * found[at * 4 + 1 + column]).sum();
+            assert_eq!(found[row * 6], 7.0);
+            for column in 0..5 {
+                let product: f64 = (0..4).map(|at| of_m[at] * found[at * 6 + 1 + column]).sum();
                 assert!((product + of_b[column]).abs() < 1e-14, "{row} {column}: {product}");
             }
         }
+        // by row of M and column of X: the second row of M is eliminated first
+        let entry = |row: usize, column: usize| program.outputs[0].values[row * 6 + column];
+        assert_eq!((entry(1, 2), entry(1, 5)), (entry(2, 4), entry(0, 4)));
     }
 }

@@ -58,6 +58,22 @@ pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) == T::zero()
 }
 
+/// Whether all values of a table are finite, likewise. Its rows are long: there are sixteen sums, since in fewer each would wait for the one before.
+#[inline(always)]
+pub fn all_rows_finite<T: Scalar, const WIDTH: usize, const ROWS: usize>(rows: &[[T; WIDTH]; ROWS]) -> bool {
+    let mut sums = [T::zero(); 16];
+    let mut sixteens = rows.as_flattened().chunks_exact(16);
+    for sixteen in sixteens.by_ref() {
+        for (sum, &value) in sums.iter_mut().zip(sixteen) {
+            *sum = mul_add(value, T::zero(), *sum);
+        }
+    }
+    for (sum, &value) in sums.iter_mut().zip(sixteens.remainder()) {
+        *sum = mul_add(value, T::zero(), *sum);
+    }
+    all_finite(sums)
+}
+
 /// Checks a mass.
 #[inline]
 pub fn check_mass<T: Scalar>(mass: T, body: &'static str) -> Result<(), ParameterError> {
