@@ -58,94 +58,121 @@ fn dual(argument: &str) -> &'static str {
     }
 }
 
-fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
-    let path = format!("hodograph_models::{module}");
-    let name = rust_names::type_name(&mechanism.name);
-    let mut routines = String::new();
-    let mut collisions = String::new();
-    let mut duals = String::new();
-    for method in code.split("pub fn ").skip(1) {
-        let Some((method, rest)) = method.split_once('(') else { continue };
-        let method = method.trim();
-        // the arguments, between the parentheses
+/// A public method of a generated module, read from its tokens.
+struct Method<'a> {
+    name: &'a str,
+    /// names of its arguments without `&self`
+    arguments: Vec<&'a str>,
+    /// what follows the arguments: the type of the result, and the body
+    rest: &'a str,
+}
+
+/// The methods of a module that take `&self`.
+fn methods(code: &str) -> impl Iterator<Item = Method<'_>> {
+    code.split("pub fn ").skip(1).filter_map(|method| {
+        let (name, rest) = method.split_once('(')?;
         let mut depth = 1;
         let end = rest.find(|c| {
             depth += i32::from(c == '(') - i32::from(c == ')');
             depth == 0
-        });
-        let Some((arguments, after)) = end.map(|end| rest.split_at(end)) else { continue };
-        let Some(arguments) = arguments.trim().strip_prefix("& self") else { continue };
-        // `mechanisms_by_slices.rs` and `closed_contacts.rs` test them
-        if ["contact_mode_", "contact_force_", "impact_without_collision_"]
-            .iter()
-            .any(|prefix| method.starts_with(prefix))
-        {
-            continue;
-        }
-        let names: Vec<&str> = arguments
+        })?;
+        let (arguments, rest) = rest.split_at(end);
+        let mut arguments: Vec<&str> = arguments
+            .trim()
+            .strip_prefix("& self")?
             .split(" : ")
             .filter_map(|before| before.rsplit([' ', ',']).find(|word| !word.is_empty()))
             .collect();
-        // the last word is of the last type
-        let names = &names[..names.len().saturating_sub(1)];
-        let passed: Vec<&str> = names
+        // The last word is of the last type.
+        arguments.pop();
+        Some(Method { name: name.trim(), arguments, rest })
+    })
+}
+
+impl Method<'_> {
+    /// Whether other tests call it: `mechanisms_by_slices.rs`, `closed_contacts.rs` and `saltation.rs`.
+    fn is_called_elsewhere(&self) -> bool {
+        ["contact_mode_", "contact_force_", "impact_without_collision_", "saltation_"]
             .iter()
-            .map(|name| match *name {
-                "time" => "at.time",
-                "q" => "&array(&at.coordinates).into()",
-                "u" => "&array(&at.speeds).into()",
-                "acceleration" => "&array(&at.accelerations).into()",
-                "inputs" => "&array(&at.inputs).into()",
-                "tangent" => "&array(&at.tangent)",
-                "surface" => "surface",
-                other => panic!("{module}::{method} has an argument {other} that tests do not know"),
-            })
-            .collect();
-        let call = format!("Self::machine(at).{method}({})", passed.join(", "));
-        if method.starts_with("collide_") {
-            let position = mechanism.contacts.iter().position(|contact| {
-                method.strip_prefix("collide_") == Some(snake_case(&contact.name).as_str())
-            });
-            if let Some(index) = position {
-                writeln!(collisions, "            {index} => hit!({call}),").unwrap();
+            .any(|prefix| self.name.starts_with(prefix))
+    }
+
+    /// The call with plain numbers.
+    fn call(&self) -> String {
+        let passed = |argument: &&str| match *argument {
+            "time" => "at.time",
+            "q" => "&array(&at.coordinates).into()",
+            "u" => "&array(&at.speeds).into()",
+            "acceleration" => "&array(&at.accelerations).into()",
+            "inputs" => "&array(&at.inputs).into()",
+            "tangent" => "&array(&at.tangent)",
+            "surface" => "surface",
+            other => panic!("{} has an argument {other} that tests do not know", self.name),
+        };
+        let passed: Vec<&str> = self.arguments.iter().map(passed).collect();
+        format!("Self::machine(at).{}({})", self.name, passed.join(", "))
+    }
+
+    /// The call with numbers that carry derivatives.
+    fn dual_call(&self) -> String {
+        let passed: Vec<&str> = self.arguments.iter().map(|argument| dual(argument)).collect();
+        format!("Self::dual_machine(at).{}({})", self.name, passed.join(", "))
+    }
+
+    /// What makes a list of numbers of its `value`; nothing for a method that is no routine or that collisions and
+    /// `mechanisms_by_slices.rs` call.
+    fn flat(&self) -> Option<&'static str> {
+        let (result, _) = self.rest.split_once("StateError")?;
+        let holds = |name: &str| result.contains(name);
+        if holds("Result < (") || holds("ContactState") {
+            return None;
+        }
+        Some(if holds("SMatrix") || holds("Matrix3") {
+            "by_rows(value)"
+        } else if holds("ReducedMatrix") {
+            "<[f64; 6]>::from(value).to_vec()"
+        } else if holds("Coordinates") || holds("Speeds") {
+            "<[_; _]>::from(value).to_vec()"
+        } else if holds("Derivatives") {
+            "beside!(value)"
+        } else if holds("Linearisation") {
+            "[by_rows(value.a), by_rows(value.b)].concat()"
+        } else if holds("Result < T ,") {
+            "vec![value]"
+        } else {
+            panic!("{} has a result that tests do not know: {result}", self.name)
+        })
+    }
+}
+
+/// Writes the calls of a module's methods.
+fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
+    let path = format!("hodograph_models::{module}");
+    let name = rust_names::type_name(&mechanism.name);
+    let contact_of = |method: &Method| {
+        let contact = method.name.strip_prefix("collide_")?;
+        mechanism.contacts.iter().position(|of| snake_case(&of.name) == contact)
+    };
+    let mut routines = String::new();
+    let mut collisions = String::new();
+    let mut duals = String::new();
+    for method in methods(code).filter(|method| !method.is_called_elsewhere()) {
+        let (name, call) = (method.name, method.call());
+        if name.starts_with("collide_") {
+            if let Some(contact) = contact_of(&method) {
+                writeln!(collisions, "            {contact} => hit!({call}),").unwrap();
             }
-        } else if method.starts_with("saltation_") {
-            // `saltation.rs` tests them
-            continue;
-        } else if after.contains("StateError") {
-            let result = after.split("StateError").next().unwrap_or_default();
-            let flat = if result.contains("Result < (") {
-                // what collisions use
-                continue;
-            } else if result.contains("ContactState") {
-                // `mechanisms_by_slices.rs` tests it
-                continue;
-            } else if result.contains("SMatrix") || result.contains("Matrix3") {
-                "by_rows(value)"
-            } else if result.contains("ReducedMatrix") {
-                "<[f64; 6]>::from(value).to_vec()"
-            } else if ["Coordinates", "Speeds"].iter().any(|record| result.contains(record)) {
-                "<[_; _]>::from(value).to_vec()"
-            } else if result.contains("Derivatives") {
-                "beside!(value)"
-            } else if result.contains("Linearisation") {
-                "[by_rows(value.a), by_rows(value.b)].concat()"
-            } else if result.contains("Result < T ,") {
-                "vec![value]"
-            } else {
-                panic!("{module}::{method} has a result that tests do not know: {result}")
-            };
-            if DIFFERENTIATED.contains(&method) {
-                let passed: Vec<&str> = names.iter().map(|name| dual(name)).collect();
-                let call = format!("Self::dual_machine(at).{method}({})", passed.join(", "));
-                // said as clippy wants it
+        } else if let Some(flat) = method.flat() {
+            if DIFFERENTIATED.contains(&name) {
+                let call = method.dual_call();
+                // The closure as clippy wants it.
                 let flatten =
                     if flat == "by_rows(value)" { "by_rows".into() } else { format!("|value| {flat}") };
-                writeln!(duals, "            \"{method}\" => {call}.map({flatten}),").unwrap();
+                writeln!(duals, "            \"{name}\" => {call}.map({flatten}),").unwrap();
             }
             writeln!(
                 routines,
-                "            \"{method}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
+                "            \"{name}\" => match {call} {{ Ok(value) => Ok({flat}), Err(error) => Err(error.to_string()) }},"
             )
             .unwrap();
         }
