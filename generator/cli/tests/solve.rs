@@ -200,6 +200,7 @@ fn every_method_comes_near_the_exact_answer() {
     let exact = hodograph(&["solve"], &input).lines();
     for (arguments, bound) in [
         (&["--method", "exact"][..], 0.0),
+        (&["--budget", "24"], 0.0),
         (&["--method", "integrate"], 1e-8),
         (&["--method", "integrate", "--tolerance", "1e-6"], 1e-4),
         (&["--method", "irs", "--tolerance", "1e-10"], 1e-8),
@@ -232,6 +233,8 @@ fn methods_answer_bad_lines_too_and_refuse_options_that_are_not_theirs() {
     for arguments in [
         &["--steps", "5"][..],
         &["--tolerance", "1e-6"],
+        &["--budget", "-1"],
+        &["--method", "sum", "--budget", "9"],
         &["--method", "sum", "--steps", "0"],
         &["--method", "sum", "--tolerance", "1e-6"],
         &["--method", "integrate", "--steps", "5"],
@@ -242,5 +245,22 @@ fn methods_answer_bad_lines_too_and_refuse_options_that_are_not_theirs() {
         let run = hodograph(&[&["solve"], arguments].concat(), "");
         assert_eq!(run.code, 2, "{arguments:?}");
         assert!(run.stdout.is_empty() && !run.stderr.is_empty());
+    }
+}
+
+/// The command line has no clock, but it can show what a budget makes of a collision.
+#[test]
+fn a_budget_ends_collisions_with_an_error() {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../models/two_sleds.mech");
+    let collide = ["collide", model, "--mu", "0.6", "--e", "0.8", "--law", "stronge"];
+    let exact = hodograph(&collide, "");
+    assert_eq!(hodograph(&[&collide[..], &["--budget", "24"]].concat(), "").stdout, exact.stdout);
+    let sleds = json!({"m": [0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211], "v": [-0.946108022, 1.06306701, 0],
+        "mu": 0.6, "e": 0.8, "law": "stronge"});
+    for run in [
+        hodograph(&["solve", "--budget", "1"], &sleds.to_string()),
+        hodograph(&[&collide[..], &["--budget", "1"]].concat(), ""),
+    ] {
+        assert_eq!((run.code, kind(&run.line()).as_str()), (1, "budget_exceeded"), "{}", run.stderr);
     }
 }

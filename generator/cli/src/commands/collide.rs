@@ -24,6 +24,9 @@ pub struct Arguments {
     contact: Option<String>,
     #[command(flatten)]
     surface: SurfaceArguments,
+    /// quadratures that the collision may take; if it needs more, the error is `budget_exceeded` [default: no limit but the solver's own]
+    #[arg(long, value_name = "QUADRATURES")]
+    budget: Option<u32>,
     /// a file with the state, `-` for standard input, or the state itself
     #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
     state: Option<String>,
@@ -39,7 +42,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
-    let surface = arguments.surface.surface()?;
+    let surface = arguments.surface.surface()?.within(arguments.budget.unwrap_or(u32::MAX));
     let index = machine.contact(arguments.contact.as_deref())?;
     let state = machine.state(text.as_deref())?;
     output::json(&collide(&machine, &state, index, &surface)?)

@@ -39,6 +39,9 @@ pub struct Arguments {
     /// `integrate`, and `irs` instead of steps: error allowed per step, relative, 1e-14 to 0.1 [default: 1e-10]
     #[arg(long, value_parser = tolerance, conflicts_with = "steps")]
     pub tolerance: Option<f64>,
+    /// `exact`: quadratures that a collision may take; one that needs more has the error `budget_exceeded` [default: no limit but the solver's own]
+    #[arg(long, value_name = "QUADRATURES")]
+    pub budget: Option<u32>,
 }
 
 /// The roads to an outcome.
@@ -65,6 +68,7 @@ impl Arguments {
     /// Names an option that the method does not have.
     fn check(&self) -> Outcome {
         let misfit = match self.method {
+            Method::Integrate | Method::Sum | Method::Irs if self.budget.is_some() => "--budget",
             Method::Exact if self.steps.is_some() => "--steps",
             Method::Exact | Method::Sum if self.tolerance.is_some() => "--tolerance",
             Method::Integrate if self.steps.is_some() => "--steps",
@@ -95,7 +99,9 @@ impl Arguments {
             Partial::Sum(self.summation())
         };
         Ok(match self.method {
-            Method::Exact => hodograph::solve(matrix, approach, surface)?,
+            Method::Exact => {
+                hodograph::solve(matrix, approach, &surface.within(self.budget.unwrap_or(u32::MAX)))?
+            }
             Method::Integrate => methods::integrate(matrix, approach, surface, &self.integration())?,
             Method::Sum => methods::sum(matrix, approach, surface, &self.summation())?,
             Method::Irs => methods::irs(matrix, approach, surface, &partial)?,

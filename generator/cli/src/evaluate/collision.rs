@@ -1,6 +1,6 @@
 //! Evaluates a collision of a model in a state.
 
-use hodograph::{ReducedMatrix, Surface};
+use hodograph::{Budgeted, ReducedMatrix};
 use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ pub fn collide<'a>(
     machine: &'a Machine,
     state: &State,
     index: usize,
-    surface: &Surface<f64>,
+    surface: &Budgeted<f64>,
 ) -> Result<Collision<'a>, Failure> {
     let more =
         [ContactQuantity::Response, ContactQuantity::DependentResponse, ContactQuantity::PrescribedWork];

@@ -32,6 +32,8 @@ pub enum Kind {
     Wedged,
     /// rounding forbids an outcome that obeys the laws of impact
     Inaccurate,
+    /// the collision needs more quadratures than it may take
+    BudgetExceeded,
     /// a method other than the exact one did not come to an end
     Unfinished,
     /// the equations cannot be evaluated in this state
@@ -89,6 +91,7 @@ impl From<ImpactError<f64>> for Failure {
             ImpactError::NoNormalMobility { .. } => Kind::NoNormalMobility,
             ImpactError::Wedged { .. } => Kind::Wedged,
             ImpactError::Inaccurate { .. } => Kind::Inaccurate,
+            ImpactError::BudgetExceeded { .. } => Kind::BudgetExceeded,
             _ => Kind::NotFinite,
         };
         Failure::new(kind, error.to_string())
