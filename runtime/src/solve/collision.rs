@@ -16,7 +16,7 @@ use super::{
 };
 use crate::{
     ContactSurface, Impact, ImpactError, Path, ReducedMatrix, Sensitivity, Surface,
-    scalar::{Real, constant, fma, larger, length},
+    scalar::{Real, constant, larger, length},
 };
 
 /// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
@@ -212,14 +212,12 @@ fn after_slip<T: Real>(
     restitution: &mut Restitution<T>,
     sensitivity: &mut Sensitivity,
 ) -> Option<(State<T>, Vector2<T>, Path)> {
-    let eps = T::default_epsilon();
     let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
     // Where slip and normal velocity vanish together, rounding must not decide which does so first. A wrong sign of v_n does most harm where v_n
     // hardly changes afterwards, or where compression has ended before: the bound is wider there.
-    let scale = fma(state.normal, contact.normal_size(), T::one());
     let again = restitution.compressions > 0 && state.velocity < T::zero();
-    let few = constant::<T>(if again || rate <= constant(0.01) { 256.0 } else { 8.0 });
-    if slips && state.velocity.abs() <= few * eps * scale {
+    let more = constant::<T>(if again || rate <= constant(0.01) { 32.0 } else { 1.0 });
+    if slips && state.velocity.abs() <= more * contact.together(state) {
         state.velocity = T::zero();
         if restitution.compressions == 0 && stop_together(restitution, state) {
             return Some((*state, Vector2::zeros(), Path::Sliding));

@@ -4,6 +4,7 @@
 
 use nalgebra::Vector2;
 
+use super::restitution::State;
 use crate::{
     ReducedMatrix,
     scalar::{Real, constant, dot, fma, larger, smaller},
@@ -99,6 +100,12 @@ impl<T: Real> Contact<T> {
     #[inline]
     pub fn normal_size(&self) -> T {
         self.nn + self.mu_b.x.abs() + self.mu_b.y.abs()
+    }
+
+    /// The size of v_n that is taken for zero where slip stops: some roundings of its terms.
+    #[inline]
+    pub fn together(&self, stop: &State<T>) -> T {
+        constant::<T>(8.0) * T::default_epsilon() * fma(stop.normal, self.normal_size(), T::one())
     }
 
     /// The sum of the sizes of the terms of g and h, likewise.

@@ -252,15 +252,15 @@ impl<T: Real> Restitution<T> {
     }
 
     /// Whether no event that must be located lies between a state and a later one, if v_n is monotone between them. Counts an end of compression whose place
-    /// is not needed.
+    /// is not needed. A v_n below `noise` at the end counts as zero: compression ends with the stretch.
     #[inline]
-    pub fn passes(&mut self, from: &State<T>, to: &State<T>) -> bool {
+    pub fn passes(&mut self, from: &State<T>, to: &State<T>, noise: T) -> bool {
         let zero = T::zero();
         if let Some(stop) = self.stop {
             return to.normal < stop;
         }
         if from.velocity < zero {
-            if to.velocity < zero {
+            if to.velocity < noise {
                 return true;
             }
             if self.law == Law::Newton && self.target > to.velocity && !self.thorough {

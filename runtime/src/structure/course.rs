@@ -134,7 +134,7 @@ fn piece<T: Real>(
     let passes = if works && from.1.state.velocity >= zero {
         to.1.velocity >= zero && to.2 < restitution.wanted
     } else {
-        restitution.passes(&from.1.state, &to.1)
+        restitution.passes(&from.1.state, &to.1, T::zero())
     };
     if passes {
         return Piece::Passed;
