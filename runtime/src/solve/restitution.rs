@@ -252,7 +252,8 @@ impl<T: Real> Restitution<T> {
     }
 
     /// Whether no event that must be located lies between a state and a later one, if v_n is monotone between them. Counts an end of compression whose place
-    /// is not needed. A v_n below `noise` at the end counts as zero: compression ends with the stretch.
+    /// is not needed. A v_n within `noise` of zero at the end counts as zero: compression ends, or v_n
+    /// falls to zero, at the end of the stretch.
     #[inline]
     pub fn passes(&mut self, from: &State<T>, to: &State<T>, noise: T) -> bool {
         let zero = T::zero();
@@ -269,7 +270,7 @@ impl<T: Real> Restitution<T> {
             }
             return false;
         }
-        to.velocity >= zero && self.watched(to) < self.target
+        to.velocity >= -noise && self.watched(to) < self.target
     }
 
     /// Follows an arc on which v_n is linear in I_n with slope `rate`, over an impulse of at most `length` (no limit if `None`). The tangential impulse is
