@@ -58,6 +58,54 @@ fn check(robot: &str, how: &str, state: &Value, answers: &Answers) {
     }
 }
 
+/// Derivatives of accelerations and of inverse dynamics, by rows.
+struct Slopes {
+    by_coordinates: Vec<f64>,
+    by_speeds: Vec<f64>,
+    by_inputs: Vec<f64>,
+}
+
+/// Holds derivatives to the reference numbers, relative to the largest entry of each matrix; the largest difference.
+fn check_slopes(robot: &str, how: &str, number: usize, [forward, inverse]: [Slopes; 2]) -> f64 {
+    let text = include_str!("../data/peers/derivatives.json");
+    let all: Value = serde_json::from_str(text).unwrap();
+    let expected = &all[robot][number];
+    let pairs = [
+        ("forward_by_q", forward.by_coordinates),
+        ("forward_by_v", forward.by_speeds),
+        ("forward_by_tau", forward.by_inputs),
+        ("inverse_by_q", inverse.by_coordinates),
+        ("inverse_by_v", inverse.by_speeds),
+    ];
+    let mut worst = 0.0_f64;
+    for (what, found) in pairs {
+        let rows = expected[what].as_array().unwrap();
+        let error = difference(&found, &rows.iter().flat_map(numbers).collect::<Vec<f64>>());
+        assert!(error <= 1e-11, "{robot} {how}, {what}: off by {error:e}");
+        worst = worst.max(error);
+    }
+    worst
+}
+
+/// The derivatives that the derived program gives: of the accelerations with inputs, of the inverse dynamics without.
+fn interpreted_slopes(model: &Model, state: &Value) -> [Slopes; 2] {
+    let [q, v, a, tau] = ["q", "v", "a", "tau"].map(|key| numbers(&state[key]));
+    let joints = q.len();
+    let zeros = vec![0.0; tau.len()];
+    let free = Inputs { coordinates: q, speeds: v, accelerations: a, inputs: zeros, ..model.initial() };
+    let driven = Inputs { inputs: tau, ..free.clone() };
+    let asked =
+        [(&driven, Quantity::AccelerationsDerivatives), (&free, Quantity::InverseDynamicsDerivatives)];
+    asked.map(|(at, quantity)| {
+        let rows = model.get(at, quantity).values;
+        let block = |first: usize| {
+            let rows = rows.chunks_exact(1 + 3 * joints);
+            rows.flat_map(|row| row[1 + first * joints..][..joints].to_vec()).collect()
+        };
+        Slopes { by_coordinates: block(0), by_speeds: block(1), by_inputs: block(2) }
+    })
+}
+
 /// What the derived program answers.
 fn interpreted(model: &Model, state: &Value) -> Answers {
     let [q, v, a, tau] = ["q", "v", "a", "tau"].map(|key| numbers(&state[key]));
@@ -83,8 +131,11 @@ macro_rules! robot_agrees {
             let robot = stringify!($module);
             let model = Model::load(&format!("../tests/models/{robot}"));
             let machine = $mechanism::<f64>::default();
-            for state in states(robot) {
+            let mut worst = 0.0_f64;
+            for (number, state) in states(robot).into_iter().enumerate() {
                 check(robot, "interpreted", &state, &interpreted(&model, &state));
+                let slopes = interpreted_slopes(&model, &state);
+                worst = worst.max(check_slopes(robot, "interpreted", number, slopes));
                 let [q, v, a, tau] = ["q", "v", "a", "tau"]
                     .map(|key| <[f64; $joints]>::try_from(numbers(&state[key])).unwrap());
                 let (q, u, a, tau) =
@@ -101,7 +152,18 @@ macro_rules! robot_agrees {
                     reduced: reduced.into(),
                 };
                 check(robot, "emitted", &state, &emitted);
+                let slopes = [
+                    machine.accelerations_derivatives(&q, &u, &tau).unwrap(),
+                    machine.inverse_dynamics_derivatives(&q, &u, &a, &free).unwrap(),
+                ];
+                let slopes = slopes.map(|slopes| Slopes {
+                    by_coordinates: slopes.by_coordinates.transpose().as_slice().to_vec(),
+                    by_speeds: slopes.by_speeds.transpose().as_slice().to_vec(),
+                    by_inputs: slopes.by_inputs.transpose().as_slice().to_vec(),
+                });
+                worst = worst.max(check_slopes(robot, "emitted", number, slopes));
             }
+            println!("{robot}: derivatives off by at most {worst:.1e}");
         }
     };
 }

@@ -13,6 +13,7 @@ mod precise;
 mod python;
 mod robots;
 mod rounding;
+mod slopes;
 mod states;
 mod table;
 mod tools;
@@ -87,6 +88,7 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
         eprintln!("measuring {}", derivation.package());
         let built = harness::build(&folders, derivation)?;
         states::agree(&built, derivation)?;
+        let slopes = slopes::difference(&folders, &built, derivation)?;
         let counts = count::instructions(&folders, &built)?;
         if derivation.case.has_peers() {
             // Each mechanism is derived with parameters at run time first.
@@ -94,7 +96,13 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
             let keep = arguments.peers && !derivation.fixed;
             errors.push((derivation, rounding::measure(&folders, &built, derivation, reference, keep)?));
         }
-        rows.push(Row { derivation, compile_seconds: built.seconds, counts, sizes: count::sizes(&built)? });
+        rows.push(Row {
+            derivation,
+            compile_seconds: built.seconds,
+            counts,
+            sizes: count::sizes(&built)?,
+            slopes,
+        });
     }
     let peers = peers::read(&folders)?;
     table::print(&rows, &peers);

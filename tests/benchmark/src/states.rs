@@ -46,11 +46,13 @@ pub fn states(folders: &Folders, tool: &Path, case: &Case, model: &Path) -> Resu
     }
 }
 
-fn parsed(text: &str) -> Result<Value, Failure> {
+/// JSON.
+pub fn parsed(text: &str) -> Result<Value, Failure> {
     serde_json::from_str(text).map_err(|error| Failure::new(error.to_string()))
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+/// All numbers of a list of lists.
+pub fn numbers(value: &Value) -> Vec<f64> {
     match value {
         Value::Array(entries) => entries.iter().flat_map(numbers).collect(),
         _ => vec![value.as_f64().unwrap_or(f64::NAN)],

@@ -21,6 +21,8 @@ pub struct Row<'a> {
     pub counts: Counts,
     /// bytes of machine code
     pub sizes: BTreeMap<&'static str, u64>,
+    /// the largest difference of the derivatives from a peer's, as a part of the largest entry of a matrix
+    pub slopes: Option<f64>,
 }
 
 /// The quantities of a routine.
@@ -92,5 +94,16 @@ pub fn print(rows: &[Row<'_>], peers: &Peers) {
             row.compile_seconds,
             row.counts.get(CONSTRUCTION).map_or(String::new(), |count| format!("{count:.0}"))
         );
+    }
+    println!(
+        "\nDerivatives beside Pinocchio's at the same states: the largest difference, as a part of the largest entry of its matrix.\n"
+    );
+    println!("| mechanism | run-time | fixed |");
+    println!("| --- | ---: | ---: |");
+    for pair in rows.chunks_exact(2) {
+        let [run_time, fixed] = pair else { continue };
+        if let (Some(slow), Some(fast)) = (run_time.slopes, fixed.slopes) {
+            println!("| {} | {slow:.1e} | {fast:.1e} |", run_time.derivation.case.title);
+        }
     }
 }
