@@ -59,6 +59,11 @@ impl Homes {
         self.places.get(&value).map_or(&[], Vec::as_slice)
     }
 
+    /// All values that belong somewhere.
+    pub fn values(&self) -> impl Iterator<Item = Value> {
+        self.places.keys().copied()
+    }
+
     /// The type of an array.
     pub fn shape(&self, array: &Ident) -> Option<TokenStream> {
         self.arrays.iter().find(|filled| filled.name == *array).map(Filled::shape)

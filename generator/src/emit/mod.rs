@@ -11,6 +11,7 @@ mod collisions;
 mod conformance;
 mod construct;
 mod contacts;
+mod groups;
 mod homes;
 mod lanes;
 mod linearisation;

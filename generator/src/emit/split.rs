@@ -9,13 +9,13 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::groups::{Statement, grouped};
 use super::homes::{Home, Homes};
 use super::values::{Place, local};
 use crate::program::operation::{Operation, Stage, Value};
 
-/// The greatest number of statements in one function of an emitted module, roughly. In builds with debug information each opens a scope within the
-/// one before, and the compiler descends into them: at 4100 its stack overflows.
-pub const LONGEST: usize = 3000;
+/// The greatest number of statements in one function of an emitted module, roughly. What passes from one function to the next is stored and loaded.
+pub const LONGEST: usize = 4400;
 
 /// Where the values of earlier parts are.
 #[derive(Default)]
@@ -64,9 +64,12 @@ impl Emitter<'_> {
         let angles = angles.into_iter().filter_map(|value| self.statement(value, Place::Method));
         let (work, given): (Vec<Value>, Vec<Value>) = rest.iter().partition(|&&value| self.is_work(value));
         if rest.len() <= self.longest {
-            let statements = rest.iter().filter_map(|&value| self.statement(value, Place::Method));
-            let full = homes.full();
-            return quote! { #(#angles)* #of_angles #(#statements)* #full };
+            let statements = rest.iter().filter_map(|&value| self.listed(value)).collect();
+            // The arrays of loops need what is in them.
+            let needed = wanted.iter().copied().chain(homes.values());
+            let needed = needed.map(|value| local(value).to_string()).collect();
+            let (statements, full) = (grouped(statements, &needed), homes.full());
+            return quote! { #(#angles)* #of_angles #statements #full };
         }
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
         let parts = self.parts(&work, rest.len().div_ceil(self.longest.max(1)));
@@ -148,14 +151,16 @@ impl Emitter<'_> {
             for name in self.takes(&[value]) {
                 // A value is fetched where it is needed first: all at the start would not stay in registers.
                 if let Some(place) = places.remove(&name) {
-                    let name = format_ident!("{name}");
-                    statements.push(quote!(let #name = #place;));
+                    let local = format_ident!("{name}");
+                    let tokens = quote!(let #local = #place;);
+                    statements.push(Statement { tokens, makes: vec![name], takes: BTreeSet::new() });
                 }
             }
-            statements.extend(self.statement(value, Place::Method));
+            statements.extend(self.listed(value));
+            let store = |tokens, name| Statement { tokens, makes: vec![], takes: BTreeSet::from([name]) };
             if let [first, ..] = homes.of(value) {
                 for home in homes.of(value) {
-                    statements.push(home.store(value));
+                    statements.push(store(home.store(value), local(value).to_string()));
                     filled.insert(home.array.clone());
                 }
                 gone.stored.insert(value);
@@ -165,7 +170,7 @@ impl Emitter<'_> {
             for name in self.makes(value) {
                 if later.contains(&name) || wanted.contains(&name) {
                     let (at, name_) = (Literal::usize_unsuffixed(gives), format_ident!("{name}"));
-                    statements.push(quote!(gives[#at] = #name_;));
+                    statements.push(store(quote!(gives[#at] = #name_;), name.clone()));
                     gone.places.insert(name, Slot::Part { part: index, at: gives });
                     gives += 1;
                 }
@@ -180,16 +185,26 @@ impl Emitter<'_> {
         let shapes = filled.iter().map(|array| homes.shape(array));
         let shapes = filled.iter().zip(shapes).map(|(array, shape)| quote!(#array: &mut #shape,));
         let filled = filled.iter().map(|array| quote!(&mut #array,));
+        let statements = grouped(statements, &BTreeSet::new());
         quote! {
             #[inline(never)]
             fn #name<T: #krate::Scalar>(taken: &[T; #takes], #(#earlier: &[T; #lengths],)* #(#shapes)* gives: &mut [T; #gives]) {
                 #(#numbers)*
-                #(#statements)*
+                #statements
             }
             // Ones, since compilers call a function to fill a long array with zeros, and that takes longer.
             let mut #own = [T::one(); #gives];
             #name(&[#(#outside),*], #(&#earlier,)* #(#filled)* &mut #own);
         }
+    }
+
+    /// The statement of a value for a list that may be grouped; `None` where it needs none.
+    fn listed(&self, value: Value) -> Option<Statement> {
+        let tokens = self.statement(value, Place::Method)?;
+        let operation = self.program.operation(value);
+        let cosine = matches!(operation, Operation::Cosine(_));
+        let name = |operand| if cosine { format!("{}c", local(operand)) } else { local(operand).to_string() };
+        Some(Statement { tokens, makes: self.makes(value), takes: operation.operands().map(name).collect() })
     }
 
     /// The variables that a statement makes.
