@@ -192,8 +192,12 @@ impl Sink {
             }
             None => {}
         }
-        self.file.sync_all().map_err(|error| failed(&error))?;
-        std::fs::rename(&self.temporary, &target).map_err(|error| failed(&error))?;
+        let placed = self.file.sync_all().and_then(|()| std::fs::rename(&self.temporary, &target));
+        placed.map_err(|error| {
+            // A digest without its file would speak of nothing; a Parquet file has none beside it.
+            let _ = std::fs::remove_file(beside(&target, ".digest"));
+            failed(&error)
+        })?;
         // what is dropped now is no partial file any more
         self.temporary = PathBuf::new();
         Ok(self.digest)

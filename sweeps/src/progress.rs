@@ -48,20 +48,43 @@ impl Progress {
             done as f64,
             self.total as f64
         );
-        let mut out = std::io::stderr().lock();
-        // a report that cannot be written is no reason to stop
-        let _ = if out.is_terminal() { write!(out, "\r{line}   ") } else { writeln!(out, "{line}") };
-        let _ = out.flush();
+        write_line(&line);
     }
 
     /// Reports from time to time what this process counts, until it is dropped. `before` rows were counted before.
     pub async fn watch(self, before: u64) {
-        let pause = if std::io::stderr().is_terminal() { 1 } else { 10 };
         loop {
-            tokio::time::sleep(Duration::from_secs(pause)).await;
+            tokio::time::sleep(pause()).await;
             self.say(COUNTED.load(Ordering::Relaxed).saturating_sub(before).min(self.total), 0);
         }
     }
+
+    /// Reports from time to time, until it is dropped, for how long other processes have been at work: how many of the rows they have done is known
+    /// between parts only.
+    pub async fn wait(self) {
+        loop {
+            tokio::time::sleep(pause()).await;
+            if !self.quiet {
+                write_line(&format!(
+                    "the cluster works for {}; with --parts it says how far it is",
+                    span(self.seconds())
+                ));
+            }
+        }
+    }
+}
+
+/// The time between two reports.
+fn pause() -> Duration {
+    Duration::from_secs(if std::io::stderr().is_terminal() { 1 } else { 10 })
+}
+
+/// Writes a report; on a terminal over the one before.
+fn write_line(line: &str) {
+    let mut out = std::io::stderr().lock();
+    // a report that cannot be written is no reason to stop
+    let _ = if out.is_terminal() { write!(out, "\r{line}   ") } else { writeln!(out, "{line}") };
+    let _ = out.flush();
 }
 
 /// The most memory that this process had so far, MB, where the system tells it.

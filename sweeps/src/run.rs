@@ -152,9 +152,11 @@ pub async fn run(sweep: &Sweep) -> Result<(), Failure> {
             };
             let before = COUNTED.load(Ordering::Relaxed);
             let progress = Progress::new(total as u64, sweep.quiet);
+            let elsewhere = matches!(sweep.setup.engine, Engine::Cluster(_));
             let digest = tokio::select! {
                 digest = open.answer(plan, sweep.out.as_deref(), &mut summary) => digest?,
-                () = progress.watch(before) => Digest::default(),
+                () = progress.clone().wait(), if elsewhere => Digest::default(),
+                () = progress.watch(before), if !elsewhere => Digest::default(),
             };
             (digest, total as u64)
         }

@@ -1,31 +1,17 @@
 //! The functions against the generated module, the solver and answers that are known.
 
+mod sql;
+
 use std::sync::Arc;
 
 use datafusion::arrow::array::{Array, AsArray, RecordBatch};
-use datafusion::arrow::datatypes::{Float64Type, Int32Type, UInt64Type};
+use datafusion::arrow::datatypes::{Int32Type, UInt64Type};
 use hodograph::nalgebra::Vector3;
 use hodograph::{Law, ReducedMatrix, Surface};
-use hodograph_sweeps::session::{Engine, Setup};
+use sql::{numbers, query, texts};
 
 hodograph::mechanism!("../models/two_sleds.mech");
 use two_sleds::{Coordinates, Parameters, Speeds, TwoSleds};
-
-async fn query(sql: &str) -> RecordBatch {
-    let setup = Setup { engine: Engine::Embedded, cores: 2, memory: 1 << 30, models: Vec::new() };
-    let (context, _) = setup.open().await.unwrap();
-    let batches = context.sql(sql).await.unwrap().collect().await.unwrap();
-    let schema = batches.first().expect("no rows").schema();
-    datafusion::arrow::compute::concat_batches(&schema, &batches).unwrap()
-}
-
-fn numbers(batch: &RecordBatch, column: usize) -> Vec<Option<f64>> {
-    batch.column(column).as_primitive::<Float64Type>().iter().collect()
-}
-
-fn texts(batch: &RecordBatch, column: usize) -> Vec<Option<String>> {
-    batch.column(column).as_string::<i32>().iter().map(|text| text.map(str::to_owned)).collect()
-}
 
 /// Every number of a collision has the bits of the generated module, with the parameters of the file and with others, for all laws.
 #[tokio::test]

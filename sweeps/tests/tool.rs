@@ -159,6 +159,37 @@ fn a_full_disk_leaves_nothing() {
     }
 }
 
+/// A disk that is full: a file system of 64 kB in memory. Where the system lets nobody mount one, the test says so.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_file_system_leaves_nothing() {
+    let home = tempfile::tempdir().unwrap();
+    fs::create_dir(home.path().join("disk")).unwrap();
+    let on_small_disk = |script: &str, arguments: &[&str]| {
+        let script = format!("mount -t tmpfs -o size=64k none disk && cd disk && {{ {script}; }}");
+        std::process::Command::new("unshare")
+            .args(["-Urm", "bash", "-c", &script])
+            .arg(tool().get_program())
+            .args(arguments)
+            .current_dir(home.path())
+            .output()
+    };
+    if !on_small_disk("true", &[]).is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: this system lets nobody mount a file system");
+        return;
+    }
+    let sql = "SELECT i, uniform(i, 0, 0) AS x FROM rows(100000)";
+    for (out, parts) in [("a.parquet", None), ("a.csv", None), ("rows", Some("2"))] {
+        let mut arguments = vec!["run", "--quiet", "--sql", sql, "--out", out];
+        parts.iter().for_each(|parts| arguments.extend(["--parts", parts]));
+        let output = on_small_disk(r#""$0" "$@"; code=$?; find . -type f; exit $code"#, &arguments).unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("cannot write") && said.contains("No space left"), "{said}");
+        assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{out}");
+    }
+}
+
 /// A user's own model: its functions bear the name of its file.
 #[test]
 fn a_model_of_the_user_has_functions() {

@@ -168,7 +168,7 @@ fn collisions_of_many_states_are_those_of_one() {
             let batch = Batch::of(&states, 67);
             let table = batch.table();
             let mut next = 0;
-            collisions.solve(&table, surface, 0..batch.rows, |row, found| {
+            collisions.solve(&table, &surface, 0..batch.rows, &mut |row, found| {
                 assert_eq!(row, next);
                 next += 1;
                 let at = &states[row % states.len()];
@@ -222,7 +222,7 @@ fn impacts_by_rows_are_those_one_by_one() {
         |row: usize| Surface { mu: 0.1 * (row % 9) as f64, e: 0.5, law: Law::ALL[row % Law::ALL.len()] };
     let parts = over_rows(rows, |range| {
         let mut found = Vec::new();
-        impacts.solve(surface, range, |row, impact| found.push((row, format!("{impact:?}"))));
+        impacts.solve(&surface, range, &mut |row, impact| found.push((row, format!("{impact:?}"))));
         found
     });
     assert!(parts.len() > 1, "more than one task");

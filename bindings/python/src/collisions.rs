@@ -181,7 +181,7 @@ pub fn collide<'py>(
         };
         match machines {
             Some(machines) => machines.collide(mechanism, contact, (&table, range), &surface, answer),
-            None => collisions.solve(&table, &surface, range, |row, struck| {
+            None => collisions.solve(&table, &surface, range, &mut |row, struck| {
                 answer(row, struck.map_err(Struck::Collision));
             }),
         }

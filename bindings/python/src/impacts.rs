@@ -98,7 +98,7 @@ pub fn solve_rows<'py>(
     let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
     let answers = answered(py, given.rows, raises(py, errors)?, 8, |row, answers| {
         let mut outcome = Ok(());
-        impacts.solve(&surface, row..row + 1, |_, impact| match impact {
+        impacts.solve(&surface, row..row + 1, &mut |_, impact| match impact {
             Ok(impact) => {
                 answers.numbers.extend(impact.impulse.iter().chain(impact.velocity.iter()));
                 answers.numbers.extend([impact.contact_work, impact.normal_work]);

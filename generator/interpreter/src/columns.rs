@@ -99,26 +99,29 @@ impl InterpretedMechanism {
 
 impl Collisions {
     /// Solves the collisions of the states of these rows, each on the surface of its row; `with` receives the row and the answer, in order.
+    ///
+    /// The functions are no generic ones, so that all of this is compiled in this crate, however the caller's is compiled.
     pub fn solve(
         &self,
         table: &Table<'_>,
-        surface: impl Fn(usize) -> Surface<f64>,
+        surface: &dyn Fn(usize) -> Surface<f64>,
         rows: Range<usize>,
-        mut with: impl FnMut(usize, Struck<'_>),
+        with: &mut dyn FnMut(usize, Struck<'_>),
     ) {
         let mechanism = &self.mechanism;
         let mut numbers = vec![0.0; self.columns.len()];
         let freedom = Mechanism::count(mechanism, Kind::Speed);
         let mut speeds = vec![0.0; freedom];
         self.columns.for_each_block(table, rows, |block| {
+            let results: Vec<&[f64]> = (0..self.columns.len()).map(|result| block.column(result)).collect();
             for (lane, failure) in block.failures().iter().enumerate() {
                 let row = block.first + lane;
                 if let Some(failed) = failure {
                     with(row, Err(mechanism.state_error(*failed).into()));
                     continue;
                 }
-                for (result, number) in numbers.iter_mut().enumerate() {
-                    *number = block.column(result)[lane];
+                for (number, results) in numbers.iter_mut().zip(&results) {
+                    *number = results[lane];
                 }
                 let before = (0..freedom)
                     .map(|speed| table.speeds.get(speed).map_or(f64::NAN, |column| column.get(row)));
@@ -145,9 +148,9 @@ impl Impacts<'_> {
     /// Solves the collisions of these rows, each on the surface of its row; `with` receives the row and the answer, in order.
     pub fn solve(
         &self,
-        surface: impl Fn(usize) -> Surface<f64>,
+        surface: &dyn Fn(usize) -> Surface<f64>,
         rows: Range<usize>,
-        mut with: impl FnMut(usize, Result<Impact<f64>, ImpactError<f64>>),
+        with: &mut dyn FnMut(usize, Result<Impact<f64>, ImpactError<f64>>),
     ) {
         for row in rows {
             let matrix = ReducedMatrix::from(self.matrix.map(|column| column.get(row)));

@@ -1,6 +1,7 @@
 //! The SQL functions, and where engines register them.
 
 mod answers;
+mod batch;
 mod checksum;
 mod hash;
 mod histogram;

@@ -1,24 +1,22 @@
 //! `<model>_collide`, `<model>_accelerations` and `<model>_energy`: the routines of a mechanism on columns of states.
 
 use std::hash::{Hash, Hasher};
-use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array, StringArray};
-use datafusion::arrow::compute::cast;
-use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields, Float64Type};
+use datafusion::arrow::array::Array;
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields};
 use datafusion::common::{Result, exec_datafusion_err, plan_datafusion_err, plan_err};
 use datafusion::logical_expr::{
     ColumnarValue, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility,
 };
-use hodograph::{CollisionError, CollisionOutcome, Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph::{CollisionError, CollisionOutcome, Contacts, Kind, Law, Mechanism, Surface};
 use hodograph_generator::program::Quantity;
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_interpreter::columns::{Collisions, Column, Columns, Table};
+use hodograph_interpreter::columns::{Collisions, Columns};
 
 use super::answers::{Answers, NULL, fields};
+use super::batch::{Batch, Row};
 use super::places::{self, Place};
-use super::{UNKNOWN_CONTACT, UNKNOWN_LAW};
 use crate::models::Model;
 
 /// What is asked of a mechanism.
@@ -197,106 +195,6 @@ fn quantities(routine: Routine) -> Vec<Quantity> {
     }
 }
 
-/// The columns of a batch.
-struct Batch {
-    rows: usize,
-    places: Vec<Place>,
-    numbers: Vec<Option<Float64Array>>,
-    law: Option<StringArray>,
-    contact: Option<StringArray>,
-    valid: Vec<bool>,
-}
-
-impl Batch {
-    fn new(argument: &ArrayRef, places: Vec<Place>) -> Result<Self> {
-        let Some(columns) = argument.as_struct_opt() else { return plan_err!("the argument is no struct") };
-        let rows = argument.len();
-        let mut batch =
-            Batch { rows, numbers: Vec::new(), law: None, contact: None, valid: vec![true; rows], places };
-        let mut see = |array: &dyn Array| {
-            if array.null_count() > 0 {
-                batch.valid.iter_mut().enumerate().for_each(|(row, valid)| *valid &= !array.is_null(row));
-            }
-        };
-        see(argument);
-        for (place, column) in batch.places.iter().zip(columns.columns()) {
-            match place {
-                Place::Law | Place::Contact => {
-                    let text = cast(column, &DataType::Utf8)?;
-                    see(&text);
-                    let text = text.as_string::<i32>().clone();
-                    *(if *place == Place::Law { &mut batch.law } else { &mut batch.contact }) = Some(text);
-                    batch.numbers.push(None);
-                }
-                _ => {
-                    let numbers = cast(column, &DataType::Float64)?;
-                    see(&numbers);
-                    batch.numbers.push(Some(numbers.as_primitive::<Float64Type>().clone()));
-                }
-            }
-        }
-        Ok(batch)
-    }
-
-    fn given(&self, place: Place) -> Option<Column<'_>> {
-        let index = self.places.iter().position(|&given| given == place)?;
-        self.numbers.get(index)?.as_ref().map(|numbers| Column::new(numbers.values()))
-    }
-
-    fn list<'a>(&'a self, defaults: &'a [f64], place: fn(usize) -> Place) -> Vec<Column<'a>> {
-        let column = |index: usize| {
-            self.given(place(index)).unwrap_or(Column::strided(defaults.get(index..).unwrap_or(&[]), 0))
-        };
-        (0..defaults.len()).map(column).collect()
-    }
-
-    fn table<'a>(&'a self, prepared: &'a Prepared) -> Table<'a> {
-        let [coordinates, speeds, inputs, _] = &prepared.defaults;
-        Table {
-            rows: self.rows,
-            time: self.given(Place::Time),
-            coordinates: self.list(coordinates, Place::Coordinate),
-            speeds: self.list(speeds, Place::Speed),
-            inputs: self.list(inputs, Place::Input),
-            ..Table::default()
-        }
-    }
-
-    fn surface(&self, row: usize) -> Result<Surface<f64>, &'static str> {
-        let number = |place| self.given(place).map_or(f64::NAN, |column| column.get(row));
-        let name = self.law.as_ref().map_or("", |law| law.value(row));
-        let law = Law::named(name).ok_or(UNKNOWN_LAW)?;
-        Ok(Surface { mu: number(Place::Mu), e: number(Place::E), law })
-    }
-
-    /// The contact of a row: the named one, or the only one.
-    fn contact(&self, contacts: &[String], row: usize) -> Result<usize, &'static str> {
-        match (&self.contact, contacts) {
-            (None, [_]) => Ok(0),
-            (None, _) => Err(UNKNOWN_CONTACT),
-            (Some(names), _) => {
-                contacts.iter().position(|contact| contact == names.value(row)).ok_or(UNKNOWN_CONTACT)
-            }
-        }
-    }
-
-    /// The ends of the stretches of rows with the same parameters, and the parameters of each.
-    fn stretches(&self, defaults: &[f64]) -> Vec<(Range<usize>, Vec<f64>)> {
-        let columns = self.list(defaults, Place::Parameter);
-        let of = |row: usize| columns.iter().map(|column| column.get(row)).collect::<Vec<f64>>();
-        let mut all: Vec<(Range<usize>, Vec<f64>)> = Vec::new();
-        for row in 0..self.rows {
-            let parameters = of(row);
-            let same = |known: &[f64]| known.iter().zip(&parameters).all(|(a, b)| a.to_bits() == b.to_bits());
-            match all.last_mut() {
-                Some((range, known)) if same(known) => range.end = row + 1,
-                _ => all.push((row..row + 1, parameters)),
-            }
-        }
-        all
-    }
-}
-
 type Solved<'a> = Result<(CollisionOutcome<f64>, &'a [f64]), CollisionError<f64>>;
 
 fn push(answers: &mut Answers, solved: Solved<'_>) {
@@ -314,7 +212,7 @@ fn push(answers: &mut Answers, solved: Solved<'_>) {
 
 impl ModelFunction {
     fn collide(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
-        let table = batch.table(prepared);
+        let table = batch.table(&prepared.defaults);
         // rows that cannot be asked get a refusal in their turn
         let asked = |row: usize| -> Result<(usize, Surface<f64>), &'static str> {
             if !batch.valid[row] {
@@ -334,7 +232,7 @@ impl ModelFunction {
                 Some(Err(kind)) => range.for_each(|_| answers.refuse(kind)),
                 Some(Ok((contact, _))) => match prepared.collisions.get(*contact) {
                     Some(Some(collisions)) => {
-                        collisions.solve(&table, surface, range, |_, solved| push(answers, solved));
+                        collisions.solve(&table, &surface, range, &mut |_, solved| push(answers, solved));
                     }
                     _ => range.for_each(|_| answers.refuse("undefined")),
                 },
@@ -351,9 +249,9 @@ impl ModelFunction {
         prepared: &Prepared,
         answers: &mut Answers,
     ) -> Result<()> {
-        let table = batch.table(prepared);
+        let table = batch.table(&prepared.defaults);
         let mut machine = self.mechanism()?.clone();
-        let mut state = Row::new(prepared);
+        let mut state = Row::new(&prepared.defaults);
         let mut speeds = vec![0.0; prepared.defaults[1].len()];
         for (range, parameters) in batch.stretches(&prepared.defaults[3]) {
             let refused = machine.set_parameters(&parameters).err();
@@ -379,7 +277,7 @@ impl ModelFunction {
 
     /// Quantities without a contact.
     fn evaluate(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
-        let table = batch.table(prepared);
+        let table = batch.table(&prepared.defaults);
         let mechanism = self.mechanism()?;
         let width = if self.routine == Routine::Energy { 2 } else { prepared.defaults[1].len() };
         let own = batch.places.iter().any(|place| matches!(place, Place::Parameter(_)));
@@ -422,31 +320,6 @@ impl ModelFunction {
             });
         }
         Ok(())
-    }
-}
-
-/// The numbers of one row of a table.
-struct Row {
-    time: f64,
-    lists: [Vec<f64>; 3],
-}
-
-impl Row {
-    fn new(prepared: &Prepared) -> Self {
-        let [q, u, inputs, _] = &prepared.defaults;
-        Row { time: 0.0, lists: [q.clone(), u.clone(), inputs.clone()] }
-    }
-
-    fn read(&mut self, table: &Table<'_>, row: usize) {
-        self.time = table.time.map_or(0.0, |time| time.get(row));
-        for (list, columns) in self.lists.iter_mut().zip([&table.coordinates, &table.speeds, &table.inputs]) {
-            list.iter_mut().zip(columns).for_each(|(number, column)| *number = column.get(row));
-        }
-    }
-
-    fn state(&self) -> State<'_> {
-        let [coordinates, speeds, inputs] = &self.lists;
-        State { time: self.time, coordinates, speeds, inputs }
     }
 }
 

@@ -107,18 +107,14 @@ impl ScalarUDFImpl for Solve {
                 continue;
             };
             let surface = Surface { mu: mu.get(row), e: e.get(row), law };
-            impacts.solve(
-                |_| surface,
-                row..row + 1,
-                |_, impact| match impact {
-                    Ok(impact) => {
-                        let works = [impact.contact_work, impact.normal_work];
-                        let numbers = impact.impulse.iter().chain(&impact.velocity).copied().chain(works);
-                        answers.answer(Some((impact.path, impact.compressions)), numbers);
-                    }
-                    Err(error) => answers.refuse(error.kind()),
-                },
-            );
+            impacts.solve(&|_| surface, row..row + 1, &mut |_, impact| match impact {
+                Ok(impact) => {
+                    let works = [impact.contact_work, impact.normal_work];
+                    let numbers = impact.impulse.iter().chain(&impact.velocity).copied().chain(works);
+                    answers.answer(Some((impact.path, impact.compressions)), numbers);
+                }
+                Err(error) => answers.refuse(error.kind()),
+            });
         }
         Ok(ColumnarValue::Array(answers.finish(answer())))
     }
