@@ -1,4 +1,4 @@
-//! The reference collisions as Rust, and the memory of the emulated boards.
+//! The reference collisions and the states that `run worst` chose, as Rust, and the memory of the emulated boards.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,6 +13,12 @@ fn main() {
     let text = fs::read_to_string(&data).expect("the reference collisions are in tests/data");
     fs::write(out.join("cases.rs"), cases(&text, false)).expect("the folder can be written");
     fs::write(out.join("families.rs"), cases(&text, true)).expect("the folder can be written");
+    println!("cargo::rerun-if-env-changed=HODOGRAPH_CHOSEN");
+    let chosen = env::var("HODOGRAPH_CHOSEN").map_or("&[]".into(), |file| {
+        println!("cargo::rerun-if-changed={file}");
+        fs::read_to_string(file).expect("HODOGRAPH_CHOSEN names a file")
+    });
+    fs::write(out.join("chosen.rs"), chosen).expect("the folder can be written");
     if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("none") {
         let memory = "MEMORY { FLASH : ORIGIN = 0, LENGTH = 4M\nRAM : ORIGIN = 0x20000000, LENGTH = 4M }\n";
         fs::write(out.join("memory.x"), memory).expect("the folder can be written");

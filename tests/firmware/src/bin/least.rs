@@ -1,36 +1,85 @@
-//! The least program that uses a model: accelerations alone, or a collision with the feature `collide`. Its size is what that costs, and its
-//! symbols show what is in it.
+//! The least program that uses a model: nothing without the feature of a model; accelerations with it, and what the other features name. Its size is what that
+//! costs, and its symbols show what is in it.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
+#![allow(unused_imports, dead_code, reason = "without any model")]
 
 use core::hint::black_box;
 
-use hodograph_models::two_sleds::{Coordinates, Speeds, TwoSleds};
+use firmware::models;
+use hodograph::{Law, Surface};
 
 #[cfg(feature = "double")]
 type Chosen = f64;
 #[cfg(not(feature = "double"))]
 type Chosen = f32;
+#[cfg(all(feature = "both", feature = "double"))]
+type Other = f32;
+#[cfg(all(feature = "both", not(feature = "double")))]
+type Other = f64;
+
+/// Friction and restitution known at run time only; the law too, unless a feature names one.
+fn surface<T>(mu: T, e: T) -> Surface<T> {
+    let law = if cfg!(feature = "newton") {
+        Law::Newton
+    } else if cfg!(feature = "poisson") {
+        Law::Poisson
+    } else if cfg!(feature = "stronge") {
+        Law::Stronge
+    } else {
+        black_box(Law::Stronge)
+    };
+    Surface { mu: black_box(mu), e: black_box(e), law }
+}
+
+/// What a program that uses a mechanism calls.
+macro_rules! uses {
+    ($name:ident: $feature:literal $module:ident $type:ident $collide:ident $mode:ident $($second:ident)?) => {
+        #[cfg(feature = $feature)]
+        fn $name() {
+            use models::$module::{Coordinates, Speeds, $type};
+            let mechanism = $type::<Chosen>::default();
+            let (q, u) = (black_box(Coordinates::default()), black_box(Speeds::default()));
+            black_box(mechanism.accelerations(&q, &u)).ok();
+            #[cfg(feature = "collide")]
+            black_box(mechanism.$collide(&q, &u, &surface(0.6, 0.8))).ok();
+            #[cfg(feature = "mode")]
+            black_box(mechanism.$mode(&q, &u, &surface(0.6, 0.8))).ok();
+            $(
+                #[cfg(feature = "second")]
+                black_box(mechanism.$second(&q, &u, &surface(0.6, 0.8))).ok();
+            )?
+            #[cfg(feature = "both")]
+            {
+                let mechanism = $type::<Other>::default();
+                let (q, u) = (black_box(Coordinates::default()), black_box(Speeds::default()));
+                black_box(mechanism.accelerations(&q, &u)).ok();
+                black_box(mechanism.$collide(&q, &u, &surface(0.6, 0.8))).ok();
+            }
+        }
+    };
+}
+
+uses!(sleds: "two_sleds" two_sleds TwoSleds collide_bc_ac contact_mode_bc_ac);
+uses!(pendulum: "planar_double_pendulum" planar_double_pendulum PlanarDoublePendulum collide_tip_wall contact_mode_tip_wall);
+uses!(disc: "rolling_disc" rolling_disc RollingDisc collide_rim_wall contact_mode_rim_wall collide_rim_slanted);
+uses!(arm: "arm_7dof" arm_7dof Arm7dof collide_tool_plane contact_mode_tool_plane);
 
 fn program() {
-    let sleds = TwoSleds::<Chosen>::default();
-    let (q, u) = (black_box(Coordinates::default()), black_box(Speeds::default()));
-    #[cfg(not(feature = "collide"))]
-    black_box(sleds.accelerations(&q, &u)).ok();
-    #[cfg(feature = "collide")]
-    {
-        let surface = hodograph::Surface { mu: 0.6, e: 0.8, law: hodograph::Law::Stronge };
-        black_box(sleds.collide_bc_ac(&q, &u, &black_box(surface))).ok();
-    }
+    #[cfg(feature = "two_sleds")]
+    sleds();
+    #[cfg(feature = "planar_double_pendulum")]
+    pendulum();
+    #[cfg(feature = "rolling_disc")]
+    disc();
+    #[cfg(feature = "arm_7dof")]
+    arm();
 }
 
 #[cfg(not(target_os = "none"))]
 fn main() {
     program();
 }
-
-#[cfg(target_os = "none")]
-use firmware as _;
 
 #[cfg(target_os = "none")]
 #[cortex_m_rt::entry]

@@ -1,5 +1,8 @@
-//! Calls every routine of every shipped model at many states, a large part of them from families that make collisions dear, and the solver alone within several
-//! budgets. It prints a line per routine with the number of its calls; the emulator counts each call. `HODOGRAPH_STATES`, read while compiling, says how many states.
+//! Every routine of every shipped model at random states, many of them hard, and the solver within several budgets: the emulator counts the instructions of each
+//! call. A line says how many calls of a routine there were.
+//!
+//! On this machine all states are called, as many as `HODOGRAPH_STATES` says; on a board those that were chosen here, named in the file `HODOGRAPH_CHOSEN`
+//! when the program was built. A state depends on its number alone.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -15,16 +18,45 @@ use hodograph::{Contacts, Kind, ReducedMatrix, State, Surface, solve};
 /// More coordinates, speeds or inputs than any shipped model has.
 const MOST: usize = 16;
 /// Budgets of the solver alone, in quadratures; the last is none.
-const BUDGETS: [u32; 9] = [0, 1, 2, 3, 4, 6, 8, 12, u32::MAX];
+const BUDGETS: [(u32, &str); 10] = [
+    (0, "0"),
+    (1, "1"),
+    (2, "2"),
+    (3, "3"),
+    (4, "4"),
+    (6, "6"),
+    (8, "8"),
+    (12, "12"),
+    (24, "24"),
+    (u32::MAX, "none"),
+];
 
 #[cfg(feature = "double")]
 type Chosen = f64;
 #[cfg(not(feature = "double"))]
 type Chosen = f32;
 
-/// States per model.
-fn states() -> u32 {
-    option_env!("HODOGRAPH_STATES").and_then(|text| text.parse().ok()).unwrap_or(1000)
+/// States chosen for a routine: what it belongs to, the routine, their numbers.
+#[cfg(target_os = "none")]
+type Choice = (&'static str, &'static str, &'static [u32]);
+#[cfg(target_os = "none")]
+static CHOSEN: &[Choice] = include!(concat!(env!("OUT_DIR"), "/chosen.rs"));
+
+/// The numbers of the states at which a routine is called.
+#[cfg(target_os = "none")]
+fn numbers(name: &str, routine: &str) -> impl Iterator<Item = u32> + use<> {
+    let mut chosen = CHOSEN.iter().filter(|entry| entry.0 == name && entry.1 == routine);
+    chosen.next().map_or(&[][..], |entry| entry.2).iter().copied()
+}
+#[cfg(not(target_os = "none"))]
+fn numbers(_: &str, _: &str) -> impl Iterator<Item = u32> + use<> {
+    let many = std::env::var("HODOGRAPH_STATES").ok().and_then(|text| text.parse().ok());
+    0..many.unwrap_or(1000)
+}
+
+/// Random numbers of one state.
+fn of_state(seed: u64, number: u32) -> Random {
+    Random::new(seed.wrapping_add(u64::from(number + 1).wrapping_mul(0xd134_2543_de82_ef95)))
 }
 
 #[inline(never)]
@@ -35,26 +67,30 @@ fn mechanism<T: Number>(output: &mut Output, mechanism: &dyn Contacts<T>) {
     if mechanism.initial_state(&mut q0[..n], &mut u0[..p], &mut w0[..inputs]).is_err() {
         return;
     }
-    let mut random = Random::new(n as u64 + 100 * p as u64);
-    for number in 0..states() {
-        let family = number % hard::FAMILIES;
-        // Far angles are reduced in more digits.
-        let far = if family == 7 { 1000.0 } else { 0.5 };
-        let mut near = |from: &[T; MOST], size: f64| from.map(|x| x + T::of(size * random.number()));
-        let (mut q, u, w) = (near(&q0, far), near(&u0, 2.0), near(&w0, 1.0));
-        let _ = mechanism.normalize(&mut q[..n]);
-        let time = T::of(random.number());
-        let ahead = State { time, coordinates: &q[..n], speeds: &u[..p], inputs: &w[..inputs] };
-        let (speeds, surface) = struck(&mut random, family, mechanism, &ahead);
-        let state = black_box(State { speeds: &speeds[..p], ..ahead });
-        let mut out = [zero; MOST];
-        let out = &mut out[..p];
-        let _ = counted(|| mechanism.accelerations(&state, out).is_ok());
-        let _ = counted(|| mechanism.collide(0, &state, &surface, out).is_ok());
-        let _ = counted(|| mechanism.contact_mode(0, &state, &surface, out).is_ok());
-    }
     for routine in ["accelerations", "collide", "contact_mode"] {
-        let _ = writeln!(output, "{}\t{routine}\t{}", mechanism.name(), states());
+        let mut calls = 0;
+        for number in numbers(mechanism.name(), routine) {
+            let mut random = of_state(n as u64 + 100 * p as u64, number);
+            let family = number % hard::FAMILIES;
+            // Far angles are reduced in more digits.
+            let far = if family == 7 { 1000.0 } else { 0.5 };
+            let mut near = |from: &[T; MOST], size: f64| from.map(|x| x + T::of(size * random.number()));
+            let (mut q, u, w) = (near(&q0, far), near(&u0, 2.0), near(&w0, 1.0));
+            let _ = mechanism.normalize(&mut q[..n]);
+            let time = T::of(random.number());
+            let ahead = State { time, coordinates: &q[..n], speeds: &u[..p], inputs: &w[..inputs] };
+            let (speeds, surface) = struck(&mut random, family, mechanism, &ahead);
+            let state = black_box(State { speeds: &speeds[..p], ..ahead });
+            let mut out = [zero; MOST];
+            let out = &mut out[..p];
+            let _ = match routine {
+                "accelerations" => counted(|| mechanism.accelerations(&state, out).is_ok()),
+                "collide" => counted(|| mechanism.collide(0, &state, &surface, out).is_ok()),
+                _ => counted(|| mechanism.contact_mode(0, &state, &surface, out).is_ok()),
+            };
+            calls += 1;
+        }
+        let _ = writeln!(output, "{}\t{routine}\t{calls}", mechanism.name());
     }
 }
 
@@ -100,9 +136,10 @@ fn struck<T: Number>(
 /// The solver alone, on contacts of all families, within each budget.
 #[inline(never)]
 fn alone<T: Number>(output: &mut Output) {
-    for budget in BUDGETS {
-        let mut random = Random::new(16);
-        for number in 0..states() {
+    for (budget, name) in BUDGETS {
+        let mut calls = 0;
+        for number in numbers("solve", name) {
+            let mut random = of_state(16, number);
             let (matrix, ordinary) = hard::contact(&mut random);
             let (v, surface) = hard::case(&mut random, number % hard::FAMILIES, &matrix, &ordinary);
             let entries: [f64; 6] = matrix.into();
@@ -111,8 +148,9 @@ fn alone<T: Number>(output: &mut Output) {
                 (v.map(T::of), Surface { mu: T::of(surface.mu), e: T::of(surface.e), law: surface.law });
             let surface = black_box(surface.within(budget));
             let _ = counted(|| solve(&matrix, &v, &surface).is_ok());
+            calls += 1;
         }
-        let _ = writeln!(output, "solve\t{budget}\t{}", states());
+        let _ = writeln!(output, "solve\t{name}\t{calls}");
     }
 }
 
