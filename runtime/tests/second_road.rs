@@ -89,6 +89,33 @@ fn every_rank() {
     }
 }
 
+/// Contacts that can move in one direction only, in turned axes, in which rounding makes their matrices regular: slip and normal velocity vanish
+/// together, and what rounding leaves of them must not be taken for a wedge.
+#[test]
+fn one_direction_in_turned_axes() {
+    let mut random = Random(7);
+    let (mut solved, mut wedged) = (0, 0);
+    for _ in 0..4000 {
+        let (m, v) = exact(&mut random, 1);
+        let surface = random.surface();
+        let (sin, cos) = (3.0 * random.next()).sin_cos();
+        let turned = |v: &Vector3<f64>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
+        let (ours, road) =
+            (solve(&m.turned(cos, sin), &turned(&v), &surface), second_road::solve(&m, &v, &surface));
+        match (ours, road) {
+            (Ok(hit), Ok(road)) => {
+                let error = (hit.velocity - turned(&road.velocity)).norm() / v.norm();
+                assert!(error < 1e-12, "{error:e} {m:?} {v:?} {cos:?} {sin:?} {surface:?}");
+                solved += 1;
+            }
+            (Err(_), Err(Failure::Wedged)) => wedged += 1,
+            (ours, road) => panic!("{ours:?} {road:?} {m:?} {v:?} {cos:?} {sin:?} {surface:?}"),
+        }
+    }
+    println!("{solved} solved, {wedged} wedged");
+    assert!(solved > 1000 && wedged > 100, "{solved} solved, {wedged} wedged");
+}
+
 /// Conditions to 1e8, in axes turned all round and reflected, and in units from micro to mega: each is right by itself.
 #[test]
 fn ill_conditioned_in_all_axes_and_units() {

@@ -4,10 +4,11 @@ mod sql;
 
 use std::sync::Arc;
 
-use datafusion::arrow::array::{Array, AsArray, RecordBatch};
+use datafusion::arrow::array::{Array, AsArray};
 use datafusion::arrow::datatypes::{Int32Type, UInt64Type};
 use hodograph::nalgebra::Vector3;
 use hodograph::{Law, ReducedMatrix, Surface};
+use hodograph_sweeps::session::{Engine, Setup};
 use sql::{numbers, query, texts};
 
 hodograph::mechanism!("../models/two_sleds.mech");

@@ -22,10 +22,10 @@ macro_rules! generated {
 }
 
 generated! {
-    arm_7dof Arm_7dof,
+    arm_7dof Arm7dof,
     ball_joint_body BallJointBody,
     ball_on_turntable BallOnTurntable,
-    cart_5_link Cart_5Link,
+    cart_5_link Cart5Link,
     chaplygin_sleigh ChaplyginSleigh,
     driven_rotary_pendulum DrivenRotaryPendulum,
     five_bar FiveBar,
@@ -34,11 +34,11 @@ generated! {
     free_box_quaternion FreeBoxQuaternion,
     planar_double_pendulum PlanarDoublePendulum,
     planar_triple_pendulum PlanarTriplePendulum,
-    puma_560 Puma_560,
+    puma_560 Puma560,
     rattleback Rattleback,
     rolling_disc RollingDisc,
     shaken_pendulum_moving_plate ShakenPendulumMovingPlate,
-    slender_rod_5dof SlenderRod_5dof,
+    slender_rod_5dof SlenderRod5dof,
     slider_crank SliderCrank,
     spherical_pendulum SphericalPendulum,
     spring_damper_cart_rod SpringDamperCartRod,

@@ -159,7 +159,8 @@ fn a_full_disk_leaves_nothing() {
     }
 }
 
-/// A disk that is full: a file system of 64 kB in memory. Where the system lets nobody mount one, the test says so.
+/// A disk that is full: a file system of 64 kB in memory. Where the system lets nobody mount one, the test says so. Of a sweep in parts the note stays
+/// that says which sweep it is.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_file_system_leaves_nothing() {
@@ -182,7 +183,7 @@ fn a_full_file_system_leaves_nothing() {
     for (out, parts) in [("a.parquet", None), ("a.csv", None), ("rows", Some("2"))] {
         let mut arguments = vec!["run", "--quiet", "--sql", sql, "--out", out];
         parts.iter().for_each(|parts| arguments.extend(["--parts", parts]));
-        let output = on_small_disk(r#""$0" "$@"; code=$?; find . -type f; exit $code"#, &arguments).unwrap();
+        let output = on_small_disk(r#""$0" "$@"; code=$?; find . -type f ! -name sweep.txt; exit $code"#, &arguments).unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert!(said.contains("cannot write") && said.contains("No space left"), "{said}");

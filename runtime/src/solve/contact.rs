@@ -108,6 +108,12 @@ impl<T: Real> Contact<T> {
         constant::<T>(8.0) * T::default_epsilon() * fma(stop.normal, self.normal_size(), T::one())
     }
 
+    /// Whether slip is no more than some roundings of the terms that have brought it down to this.
+    #[inline]
+    pub fn slip_is_rounding(&self, slip: T, at: &State<T>) -> bool {
+        slip <= constant::<T>(32.0) * T::default_epsilon() * fma(at.normal, self.slip_size(), T::one())
+    }
+
     /// The sum of the sizes of the terms of g and h, likewise.
     #[inline]
     pub fn slip_size(&self) -> T {

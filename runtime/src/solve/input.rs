@@ -88,6 +88,17 @@ pub(super) fn check_closely<T: Real>(
     without_noise(m)
 }
 
+/// The roots of two diagonal entries, the smaller of which is raised, within its uncertainty, where the coupling `x` of the two demands it by more than the
+/// uncertainty of `x`: beside a large entry, a small one decides by its rounding error alone how large the coupling may be.
+fn allowing<T: Real>(x: T, [p, q]: [T; 2], noise: T) -> [T; 2] {
+    let raised = |great: T, small: T| {
+        let needed = x.abs() / great;
+        let within = (needed - small) * (needed + small) <= noise;
+        if x.abs() - great * small > noise && within { needed } else { small }
+    };
+    if p >= q { [p, raised(p, q)] } else { [raised(q, p), q] }
+}
+
 /// The matrix, if it is positive semidefinite up to rounding. An entry m_ij may exceed sqrt(m_ii m_jj) by its uncertainty and is then set to that
 /// bound, which is zero where m_ii or m_jj is zero.
 fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactError<T>> {
@@ -100,7 +111,14 @@ fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, Impa
     };
     let (nn, tt, ss) = (diagonal(m.nn)?, diagonal(m.tt)?, diagonal(m.ss)?);
     // Roots before products, which may overflow or underflow. The minors are those of the correlations, which have no units.
-    let (n, t, s) = (nn.sqrt(), tt.sqrt(), ss.sqrt());
+    let mut roots = [nn.sqrt(), tt.sqrt(), ss.sqrt()];
+    for (x, i, j) in [(m.nt, 0, 1), (m.ns, 0, 2), (m.ts, 1, 2)] {
+        let [p, q] = allowing(x, [roots[i], roots[j]], noise);
+        (roots[i], roots[j]) = (p, q);
+    }
+    let [n, t, s] = roots;
+    let raised = |root: T, entry: T| if root > entry.sqrt() { root * root } else { entry };
+    let (nn, tt, ss) = (raised(n, nn), raised(t, tt), raised(s, ss));
     let slack = T::default_epsilon().sqrt() * constant(0.0625);
     let bounded = |x: T, p: T, q: T| {
         let most = p * q;

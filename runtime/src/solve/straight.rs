@@ -38,6 +38,10 @@ pub(crate) fn straight<T: Real>(
     }
     // If neither slip nor v_n changes, slip never stops.
     let dead = f == T::zero() && g.abs() <= noise * c.slip_size();
+    // What rounding has left of slip and v_n, which vanish together, changes no more: slip has stopped.
+    if dead && state.velocity.abs() <= c.together(&state) && c.slip_is_rounding(slip, &state) {
+        return Slide::Stopped(state);
+    }
     let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
     let across = Vector2::new(-d.y, d.x);
     let turned = |impulse: Option<T>| if T::refined() { deviation(c, &d, slip, impulse) } else { T::zero() };

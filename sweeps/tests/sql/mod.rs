@@ -1,7 +1,7 @@
 //! Queries inside the test's own process.
 #![allow(dead_code)]
 
-use datafusion::arrow::array::{Array, AsArray, RecordBatch};
+use datafusion::arrow::array::{AsArray, RecordBatch};
 use datafusion::arrow::datatypes::Float64Type;
 use hodograph_sweeps::session::{Engine, Setup};
 
