@@ -217,7 +217,7 @@ fn after_slip<T: Real>(
     // hardly changes afterwards, or where compression has ended before: the bound is wider there.
     let again = restitution.compressions > 0 && state.velocity < T::zero();
     let more = constant::<T>(if again || rate <= constant(0.01) { 32.0 } else { 1.0 });
-    if slips && state.velocity.abs() <= more * contact.together(state) {
+    if slips && state.velocity.abs() <= more * contact.together(state.normal) {
         state.velocity = T::zero();
         if restitution.compressions == 0 && stop_together(restitution, state) {
             return Some((*state, Vector2::zeros(), Path::Sliding));

@@ -4,7 +4,6 @@
 
 use nalgebra::Vector2;
 
-use super::restitution::State;
 use crate::{
     ReducedMatrix,
     scalar::{Real, constant, dot, fma, larger, smaller},
@@ -102,16 +101,16 @@ impl<T: Real> Contact<T> {
         self.nn + self.mu_b.x.abs() + self.mu_b.y.abs()
     }
 
-    /// The size of v_n that is taken for zero where slip stops: some roundings of its terms.
+    /// The size of v_n that is taken for zero where slip stops at this normal impulse: some roundings of its terms.
     #[inline]
-    pub fn together(&self, stop: &State<T>) -> T {
-        constant::<T>(8.0) * T::default_epsilon() * fma(stop.normal, self.normal_size(), T::one())
+    pub fn together(&self, normal: T) -> T {
+        constant::<T>(8.0) * T::default_epsilon() * fma(normal, self.normal_size(), T::one())
     }
 
-    /// Whether slip is no more than some roundings of the terms that have brought it down to this.
+    /// Whether slip is no more than some roundings of the terms that have brought it down to this at this normal impulse.
     #[inline]
-    pub fn slip_is_rounding(&self, slip: T, at: &State<T>) -> bool {
-        slip <= constant::<T>(32.0) * T::default_epsilon() * fma(at.normal, self.slip_size(), T::one())
+    pub fn slip_is_rounding(&self, slip: T, normal: T) -> bool {
+        slip <= constant::<T>(32.0) * T::default_epsilon() * fma(normal, self.slip_size(), T::one())
     }
 
     /// The sum of the sizes of the terms of g and h, likewise.

@@ -60,7 +60,7 @@ pub(super) fn arc<T: Real>(
         let (rising, turning_point) = arc.turning_point(&at, &rates);
         if stops && turning_point.is_none() && !fast && arc.settles(&at, slip / speed) {
             let (stop, since) = arc.stop(&at);
-            if restitution.passes(&at.state, &stop, c.together(&stop)) {
+            if restitution.passes(&at.state, &stop, c.together(stop.normal)) {
                 restitution.since(&stop, since);
                 return Slide::Stopped(stop);
             }

@@ -39,7 +39,7 @@ pub(crate) fn straight<T: Real>(
     // If neither slip nor v_n changes, slip never stops.
     let dead = f == T::zero() && g.abs() <= noise * c.slip_size();
     // What rounding has left of slip and v_n, which vanish together, changes no more: slip has stopped.
-    if dead && state.velocity.abs() <= c.together(&state) && c.slip_is_rounding(slip, &state) {
+    if dead && state.velocity.abs() <= c.together(state.normal) && c.slip_is_rounding(slip, state.normal) {
         return Slide::Stopped(state);
     }
     let length = if g < T::zero() && !dead { Some(-slip / g) } else { None };
