@@ -183,7 +183,9 @@ fn a_full_file_system_leaves_nothing() {
     for (out, parts) in [("a.parquet", None), ("a.csv", None), ("rows", Some("2"))] {
         let mut arguments = vec!["run", "--quiet", "--sql", sql, "--out", out];
         parts.iter().for_each(|parts| arguments.extend(["--parts", parts]));
-        let output = on_small_disk(r#""$0" "$@"; code=$?; find . -type f ! -name sweep.txt; exit $code"#, &arguments).unwrap();
+        let output =
+            on_small_disk(r#""$0" "$@"; code=$?; find . -type f ! -name sweep.txt; exit $code"#, &arguments)
+                .unwrap();
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(1), "{said}");
         assert!(said.contains("cannot write") && said.contains("No space left"), "{said}");

@@ -88,22 +88,47 @@ pub(super) fn check_closely<T: Real>(
     without_noise(m)
 }
 
-/// The roots of two diagonal entries, the smaller of which is raised, within its uncertainty, where the coupling `x` of the two demands it by more than the
-/// uncertainty of `x`: beside a large entry, a small one decides by its rounding error alone how large the coupling may be.
-fn allowing<T: Real>(x: T, [p, q]: [T; 2], noise: T) -> [T; 2] {
-    let raised = |great: T, small: T| {
-        let needed = x.abs() / great;
-        let within = (needed - small) * (needed + small) <= noise;
-        if x.abs() - great * small > noise && within { needed } else { small }
+/// The matrix without the effect of rounding, or an error.
+#[inline]
+fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactError<T>> {
+    match bounded(m) {
+        Err(error @ ImpactError::NotPositiveSemidefinite { .. }) => bounded(&raised(m)).or(Err(error)),
+        answer => answer,
+    }
+}
+
+/// The matrix with small diagonal entries raised, within their uncertainty, where a coupling demands it by more than its own uncertainty: beside a large
+/// entry, a small one decides by its rounding error alone how large the coupling may be.
+#[cold]
+#[inline(never)]
+fn raised<T: Real>(m: &ReducedMatrix<T>) -> ReducedMatrix<T> {
+    let noise = uncertainty(m);
+    let ReducedMatrix { mut nn, mut tt, mut ss, .. } = *m;
+    let raise = |x: T, p: &mut T, q: &mut T| {
+        let (great, small) = if *p >= *q { (*p, q) } else { (*q, p) };
+        let root = larger(*small, T::zero()).sqrt();
+        let needed = x.abs() / great.sqrt();
+        if x.abs() - great.sqrt() * root > noise && (needed - root) * (needed + root) <= noise {
+            *small = needed * needed;
+        }
     };
-    if p >= q { [p, raised(p, q)] } else { [raised(q, p), q] }
+    raise(m.nt, &mut nn, &mut tt);
+    raise(m.ns, &mut nn, &mut ss);
+    raise(m.ts, &mut tt, &mut ss);
+    ReducedMatrix { nn, tt, ss, ..*m }
+}
+
+/// The uncertainty of an entry.
+#[inline]
+fn uncertainty<T: Real>(m: &ReducedMatrix<T>) -> T {
+    constant::<T>(NOISE) * T::default_epsilon() * larger(larger(m.nn, m.tt), m.ss)
 }
 
 /// The matrix, if it is positive semidefinite up to rounding. An entry m_ij may exceed sqrt(m_ii m_jj) by its uncertainty and is then set to that
 /// bound, which is zero where m_ii or m_jj is zero.
-fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactError<T>> {
+fn bounded<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactError<T>> {
     let (zero, one) = (T::zero(), T::one());
-    let noise = constant::<T>(NOISE) * T::default_epsilon() * larger(larger(m.nn, m.tt), m.ss);
+    let noise = uncertainty(m);
     let diagonal = |minor: T| match minor {
         _ if minor >= zero => Ok(minor),
         _ if minor >= -noise => Ok(zero),
@@ -111,14 +136,7 @@ fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, Impa
     };
     let (nn, tt, ss) = (diagonal(m.nn)?, diagonal(m.tt)?, diagonal(m.ss)?);
     // Roots before products, which may overflow or underflow. The minors are those of the correlations, which have no units.
-    let mut roots = [nn.sqrt(), tt.sqrt(), ss.sqrt()];
-    for (x, i, j) in [(m.nt, 0, 1), (m.ns, 0, 2), (m.ts, 1, 2)] {
-        let [p, q] = allowing(x, [roots[i], roots[j]], noise);
-        (roots[i], roots[j]) = (p, q);
-    }
-    let [n, t, s] = roots;
-    let raised = |root: T, entry: T| if root > entry.sqrt() { root * root } else { entry };
-    let (nn, tt, ss) = (raised(n, nn), raised(t, tt), raised(s, ss));
+    let (n, t, s) = (nn.sqrt(), tt.sqrt(), ss.sqrt());
     let slack = T::default_epsilon().sqrt() * constant(0.0625);
     let bounded = |x: T, p: T, q: T| {
         let most = p * q;
