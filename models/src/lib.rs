@@ -22,6 +22,8 @@
 //! ```
 #![no_std]
 
+mod every;
+
 #[allow(unused_imports, reason = "without any model")]
 use hodograph::mechanism;
 

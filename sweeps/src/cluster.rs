@@ -43,7 +43,7 @@ pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
         .with_scheduler_policy(TaskSchedulingPolicy::PullStaged)
         .with_no_executors_grace_period_seconds(given.patience.max(30))
         .with_override_config_producer(Arc::new(session::configuration))
-        .with_override_session_builder(Arc::new(|config| session::planner(config)));
+        .with_override_session_builder(Arc::new(session::planner));
     config.bind_host = given.listen.ip().to_string();
     config.executor_timeout_seconds = given.patience;
     config.expire_dead_executor_interval_seconds = (given.patience / 3).max(1);

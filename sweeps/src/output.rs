@@ -69,7 +69,7 @@ pub fn origin(sql: &str) -> Origin {
 
 enum Writer {
     Parquet(Box<ArrowWriter<File>>),
-    Csv(csv::Writer<File>),
+    Csv(Box<csv::Writer<File>>),
 }
 
 /// A file that is being written.
@@ -128,7 +128,7 @@ impl Sink {
         let file = File::create(&temporary).map_err(|error| failed(&error))?;
         let copy = file.try_clone().map_err(|error| failed(&error))?;
         let writer = if target.extension().is_some_and(|end| end == "csv") {
-            Writer::Csv(csv::WriterBuilder::new().with_header(true).build(copy))
+            Writer::Csv(Box::new(csv::WriterBuilder::new().with_header(true).build(copy)))
         } else {
             let properties =
                 WriterProperties::builder().set_compression(Compression::ZSTD(Default::default())).build();

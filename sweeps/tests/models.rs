@@ -13,40 +13,15 @@ use sql::query;
 const ROWS: usize = 400;
 
 macro_rules! generated {
-    ($($module:ident $mechanism:ident),* $(,)?) => {
+    ($($name:literal $module:ident $mechanism:ident,)*) => {
         /// The generated modules by the names of their files.
         fn generated() -> Vec<(&'static str, Box<dyn Contacts>)> {
-            vec![$((stringify!($module), Box::new(hodograph_models::$module::$mechanism::<f64>::default()))),*]
+            vec![$(($name, Box::new(hodograph_models::$module::$mechanism::<f64>::default()))),*]
         }
     };
 }
 
-generated! {
-    arm_7dof Arm7dof,
-    ball_joint_body BallJointBody,
-    ball_on_turntable BallOnTurntable,
-    cart_5_link Cart5Link,
-    chaplygin_sleigh ChaplyginSleigh,
-    driven_rotary_pendulum DrivenRotaryPendulum,
-    five_bar FiveBar,
-    four_bar FourBar,
-    free_box_corner FreeBoxCorner,
-    free_box_quaternion FreeBoxQuaternion,
-    planar_double_pendulum PlanarDoublePendulum,
-    planar_triple_pendulum PlanarTriplePendulum,
-    puma_560 Puma560,
-    rattleback Rattleback,
-    rolling_disc RollingDisc,
-    shaken_pendulum_moving_plate ShakenPendulumMovingPlate,
-    slender_rod_5dof SlenderRod5dof,
-    slider_crank SliderCrank,
-    spherical_pendulum SphericalPendulum,
-    spring_damper_cart_rod SpringDamperCartRod,
-    stanford_arm StanfordArm,
-    two_sleds TwoSleds,
-    two_sleds_planar TwoSledsPlanar,
-    whipple_bicycle WhippleBicycle,
-}
+hodograph_models::every_mechanism!(generated);
 
 /// What a query gives a function: the struct's fields, and the columns that they are read from.
 struct Given {

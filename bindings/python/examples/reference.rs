@@ -3,38 +3,13 @@
 use hodograph::{Contacts, Kind, Law, State, Surface};
 
 macro_rules! models {
-    ($($module:ident::$name:ident),* $(,)?) => {
-        vec![$((stringify!($module), Box::new(hodograph_models::$module::$name::<f64>::default()) as Box<dyn Contacts>)),*]
+    ($($name:literal $module:ident $mechanism:ident,)*) => {
+        vec![$(($name, Box::new(hodograph_models::$module::$mechanism::<f64>::default()) as Box<dyn Contacts>)),*]
     };
 }
 
 fn models() -> Vec<(&'static str, Box<dyn Contacts>)> {
-    models![
-        arm_7dof::Arm7dof,
-        ball_joint_body::BallJointBody,
-        ball_on_turntable::BallOnTurntable,
-        cart_5_link::Cart5Link,
-        chaplygin_sleigh::ChaplyginSleigh,
-        driven_rotary_pendulum::DrivenRotaryPendulum,
-        five_bar::FiveBar,
-        four_bar::FourBar,
-        free_box_corner::FreeBoxCorner,
-        free_box_quaternion::FreeBoxQuaternion,
-        planar_double_pendulum::PlanarDoublePendulum,
-        planar_triple_pendulum::PlanarTriplePendulum,
-        puma_560::Puma560,
-        rattleback::Rattleback,
-        rolling_disc::RollingDisc,
-        shaken_pendulum_moving_plate::ShakenPendulumMovingPlate,
-        slender_rod_5dof::SlenderRod5dof,
-        slider_crank::SliderCrank,
-        spherical_pendulum::SphericalPendulum,
-        spring_damper_cart_rod::SpringDamperCartRod,
-        stanford_arm::StanfordArm,
-        two_sleds::TwoSleds,
-        two_sleds_planar::TwoSledsPlanar,
-        whipple_bicycle::WhippleBicycle,
-    ]
+    hodograph_models::every_mechanism!(models)
 }
 
 fn line(model: &str, routine: &str, row: usize, numbers: &[f64]) {

@@ -42,7 +42,8 @@ pub fn known(mechanism: &InterpretedMechanism, collision: bool) -> Vec<(String, 
         surface.iter().map(|&(name, place)| (name.to_owned(), place)).collect();
     all.push(("time".to_owned(), Place::Time));
     let reserved = all.len();
-    let kinds: [(Kind, fn(usize) -> Place); 4] = [
+    type PlaceOf = fn(usize) -> Place;
+    let kinds: [(Kind, PlaceOf); 4] = [
         (Kind::Coordinate, Place::Coordinate),
         (Kind::Speed, Place::Speed),
         (Kind::Input, Place::Input),

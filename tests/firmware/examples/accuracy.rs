@@ -175,7 +175,7 @@ fn main() {
 }
 
 macro_rules! models {
-    ($($module:ident $type:ident,)*) => {
+    ($($name:literal $module:ident $type:ident,)*) => {
         fn models() -> Vec<[String; 2]> {
             vec![$(model(
                 &hodograph_models::$module::$type::<f32>::default(),
@@ -185,29 +185,4 @@ macro_rules! models {
     };
 }
 
-models! {
-    arm_7dof Arm7dof,
-    ball_joint_body BallJointBody,
-    ball_on_turntable BallOnTurntable,
-    cart_5_link Cart5Link,
-    chaplygin_sleigh ChaplyginSleigh,
-    driven_rotary_pendulum DrivenRotaryPendulum,
-    five_bar FiveBar,
-    four_bar FourBar,
-    free_box_corner FreeBoxCorner,
-    free_box_quaternion FreeBoxQuaternion,
-    planar_double_pendulum PlanarDoublePendulum,
-    planar_triple_pendulum PlanarTriplePendulum,
-    puma_560 Puma560,
-    rattleback Rattleback,
-    rolling_disc RollingDisc,
-    shaken_pendulum_moving_plate ShakenPendulumMovingPlate,
-    slender_rod_5dof SlenderRod5dof,
-    slider_crank SliderCrank,
-    spherical_pendulum SphericalPendulum,
-    spring_damper_cart_rod SpringDamperCartRod,
-    stanford_arm StanfordArm,
-    two_sleds TwoSleds,
-    two_sleds_planar TwoSledsPlanar,
-    whipple_bicycle WhippleBicycle,
-}
+hodograph_models::every_mechanism!(models);

@@ -10,6 +10,7 @@ use core::hint::black_box;
 use firmware::bits::{Digest, Number};
 use firmware::board::{Output, Write, measured, run};
 use firmware::random::Random;
+use firmware::shipped;
 use hodograph::nalgebra::Vector3;
 use hodograph::{Contacts, Kind, Law, ReducedMatrix, State, Surface, solve};
 
@@ -121,7 +122,7 @@ fn reference<T: Number>(output: &mut Output) {
 
 fn program(output: &mut Output) {
     reference::<Chosen>(output);
-    firmware::shipped!(mechanism, Chosen, output);
+    shipped!(mechanism, Chosen, output);
 }
 
 #[cfg(not(target_os = "none"))]

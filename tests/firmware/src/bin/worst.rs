@@ -12,6 +12,7 @@ use firmware::bits::Number;
 use firmware::board::{Output, Write, counted, run};
 use firmware::hard;
 use firmware::random::Random;
+use firmware::shipped;
 use hodograph::nalgebra::{Matrix3, Vector3};
 use hodograph::{Contacts, Kind, ReducedMatrix, State, Surface, solve};
 
@@ -156,7 +157,7 @@ fn alone<T: Number>(output: &mut Output) {
 
 fn program(output: &mut Output) {
     alone::<Chosen>(output);
-    firmware::shipped!(mechanism, Chosen, output);
+    shipped!(mechanism, Chosen, output);
 }
 
 #[cfg(not(target_os = "none"))]

@@ -43,7 +43,7 @@ impl Bench {
 const SURFACE: Surface<f64> = Surface { mu: 0.3, e: 0.6, law: Law::Stronge };
 
 macro_rules! models {
-    ($($module:ident $type:ident,)*) => {
+    ($($feature:literal $module:ident $type:ident,)*) => {
         $(mod $module {
             use super::{Bench, SURFACE, State, black_box};
             use hodograph::{Contacts, Mechanism};
@@ -86,36 +86,11 @@ macro_rules! models {
         })*
 
         /// What can be measured, each in a run of its own: a name and what it runs.
-        const SUBJECTS: &[(&str, fn())] = &[$((stringify!($module), $module::run),)* ("solver", solver::run)];
+        const SUBJECTS: &[(&str, fn())] = &[$(($feature, $module::run),)* ("solver", solver::run)];
     };
 }
 
-models! {
-    arm_7dof Arm7dof,
-    ball_joint_body BallJointBody,
-    ball_on_turntable BallOnTurntable,
-    cart_5_link Cart5Link,
-    chaplygin_sleigh ChaplyginSleigh,
-    driven_rotary_pendulum DrivenRotaryPendulum,
-    five_bar FiveBar,
-    four_bar FourBar,
-    free_box_corner FreeBoxCorner,
-    free_box_quaternion FreeBoxQuaternion,
-    planar_double_pendulum PlanarDoublePendulum,
-    planar_triple_pendulum PlanarTriplePendulum,
-    puma_560 Puma560,
-    rattleback Rattleback,
-    rolling_disc RollingDisc,
-    shaken_pendulum_moving_plate ShakenPendulumMovingPlate,
-    slender_rod_5dof SlenderRod5dof,
-    slider_crank SliderCrank,
-    spherical_pendulum SphericalPendulum,
-    spring_damper_cart_rod SpringDamperCartRod,
-    stanford_arm StanfordArm,
-    two_sleds TwoSleds,
-    two_sleds_planar TwoSledsPlanar,
-    whipple_bicycle WhippleBicycle,
-}
+hodograph_models::every_mechanism!(models);
 
 mod solver {
     use super::black_box;
