@@ -30,8 +30,12 @@ fn main() {
         let Ok(derived) = std::fs::read_to_string(derivation) else { continue };
         let Ok(artifact) = artifact::decode(&derived) else { continue };
         let module = path.file_stem().expect("a stem").to_string_lossy().into_owned();
-        let options =
-            Options { krate: "hodograph".parse().expect("a path"), module: module.clone(), tracked: vec![] };
+        let options = Options {
+            krate: "hodograph".parse().expect("a path"),
+            module: module.clone(),
+            tracked: vec![],
+            sets: vec![],
+        };
         let Ok(tokens) = emit::module(&mechanism, &artifact.program, &options) else { continue };
         write_module(&mut text, &module, &mechanism, &tokens.to_string());
         modules.push(module);

@@ -1,8 +1,10 @@
 //! Finds inline models, `mechanism! { .. }`, in Rust files.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use hodograph_generator::expand::Sets;
 use hodograph_generator::reading;
 use hodograph_generator::source::Source;
 use proc_macro2::{TokenStream, TokenTree};
@@ -49,9 +51,12 @@ pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
             let TokenTree::Group(group) = tree else { continue };
             if index >= 2 && is_invocation(&trees[index - 2], &trees[index - 1]) {
                 let (from, to) = (group.span_open().byte_range().end, group.span_close().byte_range().start);
-                match group.stream().into_iter().next() {
+                let sets = Sets::take(group.stream().into_iter().collect());
+                match sets.rest.into_iter().next() {
                     Some(TokenTree::Ident(_) | TokenTree::Punct(_)) => {
-                        let source = Source::file(name.clone(), blanked(&text, from, to));
+                        let of_sets: Vec<Range<usize>> =
+                            sets.taken.iter().filter_map(|set| places(set)).collect();
+                        let source = Source::file(name.clone(), blanked(&text, from..to, &of_sets));
                         sources.push((from, Invocation::Inline(source)));
                     }
                     Some(TokenTree::Literal(literal)) => {
@@ -75,13 +80,16 @@ fn is_invocation(name: &TokenTree, bang: &TokenTree) -> bool {
         && matches!(bang, TokenTree::Punct(bang) if bang.as_char() == '!')
 }
 
-/// The text with everything outside a range blank, line by line and character by character the same length.
-fn blanked(text: &str, from: usize, to: usize) -> String {
-    let blank = |part: &str| part.chars().map(|c| if c == '\n' { '\n' } else { ' ' }).collect::<String>();
-    match (text.get(..from), text.get(from..to)) {
-        (Some(before), Some(model)) => blank(before) + model,
-        _ => String::new(),
-    }
+/// Where tokens stand in the file, from the first to the last.
+fn places(trees: &[TokenTree]) -> Option<Range<usize>> {
+    Some(trees.first()?.span().byte_range().start..trees.last()?.span().byte_range().end)
+}
+
+/// The text up to the end of a range, with everything outside it and in some parts of it blank, line by line and character by character the same length.
+fn blanked(text: &str, range: Range<usize>, parts: &[Range<usize>]) -> String {
+    let is_kept = |at: usize| at >= range.start && !parts.iter().any(|part| part.contains(&at));
+    let upto = text.char_indices().take_while(|(at, _)| *at < range.end);
+    upto.map(|(at, c)| if c == '\n' || is_kept(at) { c } else { ' ' }).collect()
 }
 
 /// The directory of the package that a file belongs to: the nearest above it with a `Cargo.toml`.
@@ -112,8 +120,8 @@ mod tests {
     fn inline_models_are_found_in_their_place() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("lib.rs");
-        let text = "// mechanism! { no }\nhodograph::mechanism! {\n    mechanism Té;\n}\nmod a { mechanism!(\"b.mech\"); \
-                    mechanism! { mechanism B; } }\nfn f() -> &'static str { \"mechanism! { no }\" }\n";
+        let text = "// mechanism! { no }\nhodograph::mechanism! {\n    mechanism Té;\n}\nmod a { mechanism!(\"b.mech\", evaluate x(é)); \
+                    mechanism! { evaluate é(forcing); mechanism B; evaluate y(é) } }\nfn f() -> &'static str { \"mechanism! { no }\" }\n";
         std::fs::write(&path, text).unwrap();
         let found = models(&path).unwrap();
         let [Invocation::Inline(first), Invocation::File(file), Invocation::Inline(last)] = &found[..] else {

@@ -5,6 +5,7 @@ use quote::quote;
 
 use super::Emitter;
 use super::methods::about;
+use super::routine::Routine;
 use super::values::local;
 use crate::program::Output;
 use crate::program::{ContactQuantity, Quantity};
@@ -22,6 +23,16 @@ impl Emitter<'_> {
     }
 
     fn contact(&self, contact: usize) -> TokenStream {
+        let routines = self.contact_routines(contact);
+        let routines = routines.iter().map(|routine| self.routine(routine));
+        let collide = self.collides(contact).then(|| self.collide(contact));
+        let closed = self.closes(contact).then(|| self.closed(contact));
+        let derivatives = self.collides(contact).then(|| self.derivatives(contact));
+        quote! { #(#routines)* #collide #closed #derivatives }
+    }
+
+    /// The routines of a contact but for its derivatives.
+    pub fn contact_routines(&self, contact: usize) -> Vec<Routine> {
         let queries = [
             (
                 ContactQuantity::Gap,
@@ -58,22 +69,16 @@ impl Emitter<'_> {
             let output = self.contact_output(contact, quantity)?;
             let (result, value) = self.shaped(output);
             let docs = format!("{docs} {}.", self.contact_words(contact));
-            Some(self.routine(
-                &self.contact_method(prefix, contact),
-                &docs,
-                &[output.quantity],
-                result,
-                value,
-            ))
+            let name = self.contact_method(prefix, contact);
+            Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
         });
-        let basis = self.contact_basis(contact);
-        let reduced = self.reduced_matrix(contact);
-        let matrices = self.contact_matrices(contact);
-        let collide = self.collides(contact).then(|| self.collide(contact));
-        let closed = self.closes(contact).then(|| self.closed(contact));
-        let derivatives = self.collides(contact).then(|| self.derivatives(contact));
-        let state = self.contact_state(contact);
-        quote! { #(#queries)* #basis #reduced #matrices #state #collide #closed #derivatives }
+        let several = [
+            self.contact_basis(contact),
+            self.reduced_matrix(contact),
+            self.contact_matrices(contact),
+            self.contact_state(contact),
+        ];
+        queries.chain(several.into_iter().flatten()).collect()
     }
 
     /// What the state of a contact is made of.
@@ -93,7 +98,7 @@ impl Emitter<'_> {
     }
 
     /// Gap, basis, velocity and reduced matrix at once.
-    fn contact_state(&self, contact: usize) -> Option<TokenStream> {
+    fn contact_state(&self, contact: usize) -> Option<Routine> {
         let krate = self.krate;
         let reduced = self.reduced(self.contact_output(contact, ContactQuantity::Reduced)?);
         let vector = |quantity: ContactQuantity| {
@@ -128,7 +133,7 @@ impl Emitter<'_> {
         };
         let name = self.contact_method("contact_state", contact);
         let quantities = self.contact_state_quantities(contact);
-        Some(self.routine(&name, &docs, &quantities, quote!(#krate::ContactState<T>), value))
+        Some(Routine { name, docs, quantities, result: quote!(#krate::ContactState<T>), value })
     }
 
     pub fn contact_words(&self, contact: usize) -> String {
@@ -138,7 +143,7 @@ impl Emitter<'_> {
             .map_or(String::new(), |contact| about(&contact.name, &contact.docs))
     }
 
-    fn contact_basis(&self, contact: usize) -> Option<TokenStream> {
+    fn contact_basis(&self, contact: usize) -> Option<Routine> {
         let axes = [ContactQuantity::Normal, ContactQuantity::First, ContactQuantity::Second];
         let outputs: Vec<&Output> =
             axes.iter().filter_map(|&axis| self.contact_output(contact, axis)).collect();
@@ -157,10 +162,10 @@ impl Emitter<'_> {
             self.contact_words(contact)
         );
         let name = self.contact_method("contact_basis", contact);
-        Some(self.routine(&name, &docs, &quantities, quote!(#krate::nalgebra::Matrix3<T>), value))
+        Some(Routine { name, docs, quantities, result: quote!(#krate::nalgebra::Matrix3<T>), value })
     }
 
-    fn reduced_matrix(&self, contact: usize) -> Option<TokenStream> {
+    fn reduced_matrix(&self, contact: usize) -> Option<Routine> {
         let krate = self.krate;
         let output = self.contact_output(contact, ContactQuantity::Reduced)?;
         let value = self.reduced(output);
@@ -169,11 +174,12 @@ impl Emitter<'_> {
             self.contact_words(contact)
         );
         let name = self.contact_method("reduced_matrix", contact);
-        Some(self.routine(&name, &docs, &[output.quantity], quote!(#krate::ReducedMatrix<T>), value))
+        let result = quote!(#krate::ReducedMatrix<T>);
+        Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
     }
 
     /// Both at once, for what they share.
-    fn contact_matrices(&self, contact: usize) -> Option<TokenStream> {
+    fn contact_matrices(&self, contact: usize) -> Option<Routine> {
         let krate = self.krate;
         let partial = self.contact_output(contact, ContactQuantity::PartialVelocities)?;
         let reduced = self.contact_output(contact, ContactQuantity::Reduced)?;
@@ -187,13 +193,8 @@ impl Emitter<'_> {
         );
         let name = self.contact_method("contact_matrices", contact);
         let result = quote!((#shape, #krate::ReducedMatrix<T>));
-        Some(self.routine(
-            &name,
-            &docs,
-            &[partial.quantity, reduced.quantity],
-            result,
-            quote!((#velocities, #matrix)),
-        ))
+        let quantities = vec![partial.quantity, reduced.quantity];
+        Some(Routine { name, docs, quantities, result, value: quote!((#velocities, #matrix)) })
     }
 
     pub fn reduced(&self, output: &Output) -> TokenStream {

@@ -7,6 +7,7 @@ use quote::{format_ident, quote};
 
 use super::Emitter;
 use super::record::Record;
+use super::routine::Routine;
 use super::values::local;
 use crate::program::Output;
 use crate::program::{PointQuantity, Quantity};
@@ -15,30 +16,26 @@ use crate::rust_names::{prose, snake_case};
 impl Emitter<'_> {
     /// All methods that do not belong to a contact.
     pub fn methods(&self) -> TokenStream {
-        let methods = self.program.outputs.iter().filter_map(|output| self.method(output));
+        let routines = self.routines();
+        let methods = routines.iter().map(|routine| self.routine(routine));
         let linearise = self.linearise();
         quote! { #(#methods)* #linearise }
     }
 
-    fn method(&self, output: &Output) -> Option<TokenStream> {
-        if output.values.is_empty() {
-            return None;
-        }
-        let (name, docs) = self.describe(output.quantity)?;
-        let (result, value) = self.shaped(output);
-        Some(self.routine(&name, &docs, &[output.quantity], result, value))
+    /// The routines that do not belong to a contact.
+    pub fn routines(&self) -> Vec<Routine> {
+        let described = |output: &Output| {
+            let (name, docs) = self.describe(output.quantity).filter(|_| !output.values.is_empty())?;
+            let (result, value) = self.shaped(output);
+            Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+        };
+        self.program.outputs.iter().filter_map(described).collect()
     }
 
-    /// A routine that answers with the expression `value` of type `result`, made of the values of some quantities.
-    pub fn routine(
-        &self,
-        name: &str,
-        docs: &str,
-        quantities: &[Quantity],
-        result: TokenStream,
-        value: TokenStream,
-    ) -> TokenStream {
+    /// The method of a routine.
+    pub fn routine(&self, routine: &Routine) -> TokenStream {
         let krate = self.krate;
+        let Routine { name, docs, quantities, result, value } = routine;
         let name = crate::rust_names::ident(name);
         let docs = crate::rust_names::docs(docs);
         let signature = self.signature(self.arguments(quantities));

@@ -11,6 +11,7 @@ mod collisions;
 mod conformance;
 mod construct;
 mod contacts;
+mod evaluate;
 mod groups;
 mod homes;
 mod lanes;
@@ -37,6 +38,7 @@ use crate::rust_names;
 use record::Record;
 
 pub use conformance::fits;
+pub use evaluate::{Set, mistakes};
 pub use stub::stub;
 
 /// How a module is emitted.
@@ -48,6 +50,8 @@ pub struct Options {
     pub module: String,
     /// expressions of type `&'static str`, each the path of a file that the module depends on
     pub tracked: Vec<TokenStream>,
+    /// sets of quantities that get a method each; [`mistakes`] finds what is wrong with them
+    pub sets: Vec<Set>,
 }
 
 /// The module of a mechanism. The error says why the program is not one of this mechanism.
@@ -64,6 +68,9 @@ fn module_in_parts(
 ) -> Result<TokenStream, String> {
     conformance::fits(mechanism, program)?;
     let emitter = Emitter { longest, ..Emitter::new(mechanism, program, &options.krate) };
+    if let Some((_, mistake)) = emitter.mistakes_of(&options.sets).into_iter().next() {
+        return Err(mistake);
+    }
     let krate = &options.krate;
     let module = rust_names::ident(&options.module);
     let tracked = &options.tracked;
@@ -80,6 +87,7 @@ fn module_in_parts(
     let linearisation = emitter.linearisation_record();
     let derivatives = emitter.derivatives_record();
     let traits = emitter.traits();
+    let (of_sets, sets) = emitter.sets(&options.sets);
     let name = &emitter.name;
     Ok(quote! {
         #docs
@@ -96,10 +104,12 @@ fn module_in_parts(
             #derivative
             #linearisation
             #derivatives
+            #of_sets
 
             impl<T: #krate::Scalar> #name<T> {
                 #methods
                 #contacts
+                #sets
             }
 
             #traits

@@ -13,6 +13,20 @@ use crate::program::Quantity;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 
+/// A method that computes quantities and answers with an expression made of their values.
+pub struct Routine {
+    /// its name in the module
+    pub name: String,
+    /// what it gives
+    pub docs: String,
+    /// what it computes
+    pub quantities: Vec<Quantity>,
+    /// the type of its answer
+    pub result: TokenStream,
+    /// its answer, from the local variables of the values
+    pub value: TokenStream,
+}
+
 impl Emitter<'_> {
     /// The statements that compute quantities and check them; their values are local variables afterwards.
     pub fn compute(&self, quantities: &[Quantity]) -> TokenStream {
@@ -34,12 +48,12 @@ impl Emitter<'_> {
         let checked = late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
         let looked_at: BTreeSet<Value> = checked.collect();
         let wanted: BTreeSet<Value> = results.union(&looked_at).copied().collect();
-        let lanes: Vec<Lanes> = match quantities {
-            [quantity] if quantity.is_solved_by_columns() => {
-                slice.outputs.iter().flat_map(|output| self.lanes(output, &order, &looked_at)).collect()
-            }
-            _ => Vec::new(),
-        };
+        let solved = slice.outputs.iter().find(|output| output.quantity.is_solved_by_columns());
+        let lanes: Vec<Lanes> = solved.map_or_else(Vec::new, |solved| {
+            let others = slice.outputs.iter().filter(|output| output.quantity != solved.quantity);
+            let others = others.flat_map(|output| output.values.iter().copied());
+            self.lanes(solved, &order, &looked_at.iter().copied().chain(others).collect())
+        });
         let in_lanes: BTreeSet<Value> = lanes.iter().flat_map(Lanes::computed).collect();
         let order: Vec<Value> = order.into_iter().filter(|value| !in_lanes.contains(value)).collect();
         let statements = self.statements(&order, &wanted, &lanes::homes(&lanes));

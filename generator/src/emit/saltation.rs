@@ -4,6 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
+use super::routine::Routine;
 use super::values::local;
 use crate::program::{ContactQuantity, Quantity};
 use crate::rust_names::{docs, ident};
@@ -61,18 +62,24 @@ impl Emitter<'_> {
 
     /// `contact_tangent_..`, `collide_.._derivative` and `saltation_..` of a contact.
     pub fn derivatives(&self, contact: usize) -> TokenStream {
-        let tangent = self.contact_output(contact, ContactQuantity::Tangent).map(|output| {
+        let tangent = self.contact_tangent(contact).map(|tangent| self.routine(&tangent));
+        let derivative = self.collide_derivative(contact);
+        let saltation = self.saltation(contact);
+        quote! { #tangent #derivative #saltation }
+    }
+
+    /// The routine of the derivative of a contact along a direction.
+    pub fn contact_tangent(&self, contact: usize) -> Option<Routine> {
+        self.contact_output(contact, ContactQuantity::Tangent).map(|output| {
             let (result, value) = self.shaped(output);
             let docs = format!(
                 "Directional derivative of velocity (3 numbers), reduced matrix (6: nn, nt, ns, tt, ts, ss) and response M^-1 V^T (by rows){} at {}, along the contact basis.",
                 if self.contact_output(contact, ContactQuantity::Gap).is_some() { " and gap" } else { "" },
                 self.contact_words(contact)
             );
-            self.routine(&self.contact_method("contact_tangent", contact), &docs, &[output.quantity], result, value)
-        });
-        let derivative = self.collide_derivative(contact);
-        let saltation = self.saltation(contact);
-        quote! { #tangent #derivative #saltation }
+            let name = self.contact_method("contact_tangent", contact);
+            Routine { name, docs, quantities: vec![output.quantity], result, value }
+        })
     }
 
     fn collide_derivative(&self, contact: usize) -> Option<TokenStream> {

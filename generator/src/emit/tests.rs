@@ -149,7 +149,7 @@ fn derived() -> Derived {
 
 fn emitted() -> String {
     let krate = quote!(::hodograph);
-    let options = Options { krate, module: "pendulum".into(), tracked: vec![] };
+    let options = Options { krate, module: "pendulum".into(), tracked: vec![], sets: vec![] };
     let tokens = module(&mechanism(), &Program::new(&derived()), &options).unwrap();
     prettyplease::unparse(&syn::parse2(tokens).expect("generated code is Rust"))
 }
@@ -174,7 +174,8 @@ fn the_module_is_the_reviewed_one() {
 fn structure_selects_the_closed_form() {
     let call = |structure| {
         let derived = Derived { structures: vec![structure], ..derived() };
-        let options = Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![] };
+        let options =
+            Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], sets: vec![] };
         module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string()
     };
     for (structure, marker) in [
@@ -199,7 +200,8 @@ fn a_guard_is_checked_where_all_of_it_is_known() {
     let coordinate = g.input(Input::Coordinate(0));
     let scale = g.sum([derived.guards[0].value, coordinate]);
     derived.guards[0].scale = Some(scale);
-    let options = Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![] };
+    let options =
+        Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], sets: vec![] };
     let text = module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string();
     let (before, check) = text.split_once("fn check (").expect("a check");
     let (check, after) = check.split_once("impl").expect("more");
@@ -210,7 +212,12 @@ fn a_guard_is_checked_where_all_of_it_is_known() {
 /// The same with at most three operations in a function.
 #[test]
 fn long_routines_come_in_parts() {
-    let options = Options { krate: quote!(::hodograph), module: "pendulum_in_parts".into(), tracked: vec![] };
+    let options = Options {
+        krate: quote!(::hodograph),
+        module: "pendulum_in_parts".into(),
+        tracked: vec![],
+        sets: vec![],
+    };
     let tokens = module_in_parts(&mechanism(), &Program::new(&derived()), &options, 3).unwrap();
     reviewed("pendulum_in_parts.rs", &prettyplease::unparse(&syn::parse2(tokens).expect("parts are Rust")));
 }
@@ -230,7 +237,7 @@ fn the_same_program_gives_the_same_code() {
 fn a_foreign_program_is_refused() {
     let mut mechanism = mechanism();
     mechanism.coordinates.clear();
-    let options = Options { krate: quote!(::hodograph), module: "x".into(), tracked: vec![] };
+    let options = Options { krate: quote!(::hodograph), module: "x".into(), tracked: vec![], sets: vec![] };
     let error = module(&mechanism, &Program::new(&derived()), &options).unwrap_err();
     assert!(error.contains("Coordinate(0)"), "{error}");
 }

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
+use super::emitted::emitted;
+use super::sets::Sets;
 use super::{derivation, report};
 use crate::check::check;
 use crate::compiler;
@@ -75,7 +77,7 @@ fn tracked(text: &str, in_package: bool) -> TokenStream {
 }
 
 /// The module of a model in a file.
-pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStream {
+pub fn expand(path: &ModelPath, sets: &Sets, krate: &TokenStream, package: &Path) -> TokenStream {
     let stem = Path::new(&path.text)
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -84,13 +86,19 @@ pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStr
         Ok(place) => place,
         Err(message) => {
             let error = report::error(path.span, path.span, &message);
-            return if stem.is_empty() { error } else { emit::stub(&module, &stem, &error, &[]) };
+            return if stem.is_empty() {
+                error
+            } else {
+                emit::stub(&module, &stem, &error, &[], &sets.types())
+            };
         }
     };
     let mut tracked_files = vec![tracked(&path.text, place.in_package)];
     let source = Source::read_as(path.text.clone(), &place.path);
     let name = name(&source).unwrap_or(stem);
-    let failed = |error: &TokenStream, tracked: &[TokenStream]| emit::stub(&module, &name, error, tracked);
+    let failed = |error: &TokenStream, tracked: &[TokenStream]| {
+        emit::stub(&module, &name, error, tracked, &sets.types())
+    };
     let checked = check(&source);
     let Some(mechanism) = checked.mechanism else {
         return failed(&report::of_file(&source, &checked.diagnostics, path.span), &tracked_files);
@@ -101,12 +109,16 @@ pub fn expand(path: &ModelPath, krate: &TokenStream, package: &Path) -> TokenStr
     if kept.is_file() {
         tracked_files.push(tracked(&shown, place.in_package));
     }
-    let result = derivation::find(&source, &mechanism, &kept, &shown, &command).and_then(|program| {
-        let options =
-            emit::Options { krate: krate.clone(), module: module.clone(), tracked: tracked_files.clone() };
-        emit::module(&mechanism, &program, &options)
+    let result = emitted(&mechanism, sets, path.span, || {
+        let options = emit::Options {
+            krate: krate.clone(),
+            module: module.clone(),
+            tracked: tracked_files.clone(),
+            sets: sets.sets.clone(),
+        };
+        Ok((derivation::find(&source, &mechanism, &kept, &shown, &command)?, options))
     });
-    result.unwrap_or_else(|message| failed(&report::error(path.span, path.span, &message), &tracked_files))
+    result.unwrap_or_else(|errors| failed(&errors, &tracked_files))
 }
 
 /// The name after the word `mechanism`.

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
+use super::emitted::emitted;
+use super::sets::Sets;
 use super::{derivation, report};
 use crate::check::check;
 use crate::compiler;
@@ -13,7 +15,7 @@ use crate::rust_names;
 use crate::source::Source;
 
 /// The module of an inline model.
-pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenStream {
+pub fn expand(model: TokenStream, sets: &Sets, krate: &TokenStream, package: &Path) -> TokenStream {
     // The tokens are the user's; the call itself stands in the wrapper of the runtime.
     let first = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
     let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
@@ -21,7 +23,7 @@ pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenS
     let checked = check(&source);
     let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let failed = |error: &TokenStream, tracked: &[TokenStream]| match &name {
-        Some(name) => emit::stub(&module, name, error, tracked),
+        Some(name) => emit::stub(&module, name, error, tracked, &sets.types()),
         // what has no name nobody refers to
         None => error.clone(),
     };
@@ -35,12 +37,16 @@ pub fn expand(model: TokenStream, krate: &TokenStream, package: &Path) -> TokenS
     let tracked =
         path.is_file().then(|| quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative)));
     let tracked: Vec<TokenStream> = tracked.into_iter().collect();
-    let result = derivation::find(&source, &mechanism, &path, &shown, &command).and_then(|program| {
-        let options =
-            emit::Options { krate: krate.clone(), module: module.clone(), tracked: tracked.clone() };
-        emit::module(&mechanism, &program, &options)
+    let result = emitted(&mechanism, sets, at, || {
+        let options = emit::Options {
+            krate: krate.clone(),
+            module: module.clone(),
+            tracked: tracked.clone(),
+            sets: sets.sets.clone(),
+        };
+        Ok((derivation::find(&source, &mechanism, &path, &shown, &command)?, options))
     });
-    result.unwrap_or_else(|message| failed(&report::error(at, at, &message), &tracked))
+    result.unwrap_or_else(|errors| failed(&errors, &tracked))
 }
 
 /// The name after `mechanism`, which follows the documentation, and where it stands.

@@ -2,9 +2,11 @@
 //! editors, which run for a long time and expand often, from several threads.
 
 mod derivation;
+mod emitted;
 mod file;
 mod inline;
 mod report;
+mod sets;
 
 use std::path::{Path, PathBuf};
 
@@ -12,6 +14,8 @@ use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use quote::quote;
 
 use crate::syntax::tree::Section;
+
+pub use sets::Sets;
 
 /// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is `($crate)
 /// "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime is `::hodograph`. `package` is
@@ -39,9 +43,11 @@ fn module(input: TokenStream, package: &Path) -> TokenStream {
         }
         _ => quote!(::hodograph),
     };
+    let mut sets = Sets::take(trees);
+    let trees = std::mem::take(&mut sets.rest);
     match file::path(&trees) {
-        Some(path) => file::expand(&path, &krate, package),
-        None if is_model(&trees) => inline::expand(trees.into_iter().collect(), &krate, package),
+        Some(path) => file::expand(&path, &sets, &krate, package),
+        None if is_model(&trees) => inline::expand(trees.into_iter().collect(), &sets, &krate, package),
         None => {
             let first = trees.first().map_or_else(Span::call_site, TokenTree::span);
             let last = trees.last().map_or(first, TokenTree::span);

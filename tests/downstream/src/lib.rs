@@ -16,6 +16,7 @@ contact::mechanism! {
     points { C = O + q1*N.x + q2*N.y; P = C + r*B.x; }
     bodies { Disc { frame: B, centre: C, mass: m, inertia: [m*r^2/4, m*r^2/4, m*r^2/2] } }
     contacts { rim { point: P of Disc, normal: -B.x } }
+    evaluate at_the_rim(mass_matrix, contact_state_rim, velocity_p);
 }
 
 use contact::{CollisionError, Law, Surface};
@@ -79,6 +80,13 @@ mod tests {
         assert!(text.starts_with("{\"speeds\":{\"u1\":") && text.contains("\"path\":"), "{text}");
         assert_eq!(serde_json::from_str::<Speeds<f64>>("{\"u2\":3.5}").unwrap(), Speeds { u1: 0.0, u2: 3.5 });
         assert!(serde_json::from_str::<Speeds<f64>>("{\"u9\":3.5}").is_err());
-        assert!(puck::Puck::<f32>::default().mass_matrix(&puck::Coordinates::default()).is_ok());
+        let (puck, q) = (puck::Puck::<f32>::default(), puck::Coordinates::default());
+        let u = puck::Speeds { u1: 0.5, u2: -0.3, u3: 2.0 };
+        let puck::AtTheRim { mass_matrix, contact_state_rim, velocity_p } = puck.at_the_rim(&q, &u).unwrap();
+        assert_eq!(Ok(mass_matrix), puck.mass_matrix(&q));
+        assert_eq!(
+            (Ok(contact_state_rim), Ok(velocity_p)),
+            (puck.contact_state_rim(&q, &u), puck.velocity_p(&q, &u))
+        );
     }
 }

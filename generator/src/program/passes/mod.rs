@@ -8,6 +8,7 @@ mod collect;
 mod common_subexpressions;
 mod contract;
 mod dead_code;
+mod equal;
 mod factor;
 mod flat_sums;
 mod fold;

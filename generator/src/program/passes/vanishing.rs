@@ -11,7 +11,8 @@ use crate::program::straight_line::Program;
 
 /// The program without what vanishes.
 pub fn drop(program: &Program) -> Program {
-    let places: Vec<Vec<Known>> = (0..PLACES).map(|place| evaluated(program, place)).collect();
+    let all = vec![true; program.operations.len()];
+    let places: Vec<Vec<Known>> = (0..PLACES).map(|place| evaluated(program, place, &all)).collect();
     let vanishes = |value: Value| {
         let is_sum = matches!(
             program.operation(value),
@@ -66,10 +67,14 @@ fn rebuilt(builder: &mut Builder, operation: Operation) -> Value {
     }
 }
 
-/// All values at one place.
-fn evaluated(program: &Program, place: usize) -> Vec<Known> {
+/// The values that are needed at one place; in the place of others stands 0. The operands of what is needed are needed too.
+pub fn evaluated(program: &Program, place: usize, needed: &[bool]) -> Vec<Known> {
     let mut numbers: Vec<Known> = Vec::with_capacity(program.operations.len());
     for (index, &operation) in program.operations.iter().enumerate() {
+        if !needed[index] {
+            numbers.push(Known::exact(Reproducible::exactly(0.0)));
+            continue;
+        }
         let of = |value: Value| numbers[value.index()];
         let unknown = || arbitrary(1 << 40 | index as u64, place);
         let one = || Known::exact(Reproducible::exactly(1.0));

@@ -1,0 +1,26 @@
+//! Emits the module of a mechanism with its sets, or tells what is wrong with these.
+
+use proc_macro2::{Span, TokenStream};
+
+use super::report;
+use super::sets::Sets;
+use crate::emit::{self, Options};
+use crate::model::mechanism::Mechanism;
+use crate::program::Program;
+
+/// The module of a mechanism whose program `found` finds, or the errors: those about sets where they stand, others at `at`.
+pub fn emitted(
+    mechanism: &Mechanism,
+    sets: &Sets,
+    at: Span,
+    found: impl FnOnce() -> Result<(Program, Options), String>,
+) -> Result<TokenStream, TokenStream> {
+    if let Some(errors) = sets.errors(&[]) {
+        return Err(errors);
+    }
+    let (program, options) = found().map_err(|message| report::error(at, at, &message))?;
+    if let Some(errors) = sets.errors(&emit::mistakes(mechanism, &program, &sets.sets)) {
+        return Err(errors);
+    }
+    emit::module(mechanism, &program, &options).map_err(|message| report::error(at, at, &message))
+}
