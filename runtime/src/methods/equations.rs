@@ -40,6 +40,13 @@ pub(super) struct Problem {
     phi: f64,
 }
 
+/// The length of a vector; by the library where a square may overflow or lose digits.
+#[inline]
+pub(super) fn length(x: f64, y: f64) -> f64 {
+    let length = (x * x + y * y).sqrt();
+    if length > 1e-140 && length < 1e150 { length } else { x.hypot(y) }
+}
+
 impl Problem {
     /// Checks the input as the exact solver does, and scales it.
     pub fn new(
@@ -53,7 +60,7 @@ impl Problem {
             matrix,
             surface.mu,
             speed,
-            approach.y.hypot(approach.z) / speed,
+            length(approach.y, approach.z) / speed,
             approach.z.atan2(approach.y),
         ))
     }
@@ -125,9 +132,8 @@ impl Problem {
     pub fn terminal(&self) -> Terminal {
         // Eigenvalues and -vectors of T; b in those axes.
         let (half, mean) = ((self.tt - self.ss) / 2.0, (self.tt + self.ss) / 2.0);
-        let radius = half.hypot(self.ts);
-        let axis = if radius > 0.0 { self.ts.atan2(half) / 2.0 } else { 0.0 };
-        let (sin, cos) = axis.sin_cos();
+        let radius = length(half, self.ts);
+        let (sin, cos) = if radius > 0.0 { halved(half / radius, self.ts / radius) } else { (0.0, 1.0) };
         let top = mean + radius;
         // The product of the eigenvalues is the determinant: no cancellation.
         let low = if top > 0.0 { (self.tt * self.ss - self.ts * self.ts) / top } else { 0.0 };
@@ -137,7 +143,7 @@ impl Problem {
         let tiny = 64.0 * f64::EPSILON * top;
         let inverse = |i: usize| if values[i] > tiny { parts[i] / values[i] } else { 0.0 };
         let hold = [inverse(0), inverse(1)];
-        if hold[0].hypot(hold[1]) <= self.mu {
+        if length(hold[0], hold[1]) <= self.mu {
             let rate = 1.0 - parts[0] * hold[0] - parts[1] * hold[1];
             let rate = if rate <= 64.0 * f64::EPSILON { 0.0 } else { rate };
             return Terminal { sticks: true, phi: 0.0, impulse: -back(hold), v_n: rate, s: 0.0 };
@@ -152,7 +158,7 @@ impl Problem {
         let mut gamma = bound(0).max(bound(1)).max(f64::EPSILON * f64::EPSILON * self.b.norm());
         for _ in 0..100 {
             let d = solution(gamma);
-            let size = d[0].hypot(d[1]);
+            let size = length(d[0], d[1]);
             let slope = d[0] * d[0] / (denominators[0] + gamma) + d[1] * d[1] / (denominators[1] + gamma);
             let step = size * size * (size - 1.0) / slope;
             gamma += step;
@@ -163,6 +169,17 @@ impl Problem {
         let d = back(solution(gamma)).normalize();
         let [f, g, _] = self.fgh(d.x, d.y);
         Terminal { sticks: false, phi: d.y.atan2(d.x), impulse: -d * self.mu, v_n: f, s: g }
+    }
+}
+
+/// Sine and cosine of half the angle in (-pi, pi] whose cosine and sine are given.
+fn halved(cos: f64, sin: f64) -> (f64, f64) {
+    if cos >= 0.0 {
+        let half = ((1.0 + cos) * 0.5).sqrt();
+        (0.5 * sin / half, half)
+    } else {
+        let half = ((1.0 - cos) * 0.5).sqrt().copysign(sin);
+        (half, 0.5 * sin / half)
     }
 }
 

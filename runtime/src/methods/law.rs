@@ -54,6 +54,7 @@ impl Ending {
         at
     }
 
+    #[inline]
     fn watched(&self, state: &State) -> f64 {
         match self.law {
             Law::Newton => state[V_N],
@@ -63,6 +64,7 @@ impl Ending {
     }
 
     /// The event between the present state and a later one, if there is any. An `End` may lie before an `Approach`.
+    #[inline]
     pub fn between(&self, to: &State) -> Option<Event> {
         if self.approaching {
             (to[V_N] >= 0.0).then_some(Event::Rest)
@@ -73,7 +75,14 @@ impl Ending {
         }
     }
 
+    /// Whether there is no event between the present state and a later one.
+    #[inline(always)]
+    pub fn is_quiet(&self, to: &State) -> bool {
+        if self.approaching { to[V_N] < 0.0 } else { to[V_N] >= 0.0 && !self.is_over(to) }
+    }
+
     /// Whether the quantity of the law has reached its target.
+    #[inline]
     pub fn is_over(&self, at: &State) -> bool {
         self.watched(at) >= self.target
     }

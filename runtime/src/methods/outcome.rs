@@ -17,6 +17,9 @@ impl Problem {
             self.snapshot(&state, if slides { Motion::Sliding } else { after })
         };
         let Snapshot { impulse, velocity, contact_work, normal_work, .. } = self.snapshot(end, after);
+        let compression_end = ending.first.map(compression);
+        let last_compression_end =
+            if ending.compressions == 1 { compression_end } else { ending.latest.map(compression) };
         Impact {
             impulse,
             velocity,
@@ -25,12 +28,11 @@ impl Problem {
             path,
             compressions: ending.compressions,
             phases: Phases {
-                compression_end: ending.first.map(compression),
-                last_compression_end: ending.latest.map(compression),
-                slip_end: ending.slip_end.map(|state| {
-                    let mut moment = self.snapshot(&state, after);
-                    (moment.velocity.y, moment.velocity.z) = (0.0, 0.0);
-                    moment
+                compression_end,
+                last_compression_end,
+                slip_end: ending.slip_end.map(|mut state| {
+                    state[S] = 0.0;
+                    self.snapshot(&state, after)
                 }),
             },
             sensitivity: Sensitivity::default(),
@@ -38,7 +40,8 @@ impl Problem {
     }
 
     fn snapshot(&self, at: &State, motion: Motion) -> Snapshot<f64> {
-        let (sin, cos) = at[PHI].sin_cos();
+        // Without slip its direction means nothing.
+        let (sin, cos) = if at[S] == 0.0 { (0.0, 0.0) } else { at[PHI].sin_cos() };
         let scale = self.speed / self.nn;
         Snapshot {
             impulse: Vector3::new(at[I_N], at[I_T], at[I_S]) * scale,
