@@ -113,7 +113,8 @@ pub(super) fn slide(
         let turn = h / at[S] * d;
         let phi = at[PHI] + turn;
         let s = if stops { 0.0 } else { at[S] + g * d };
-        (sin, cos) = if turn.abs() <= SMALL { turned(sin, cos, turn) } else { phi.sin_cos() };
+        let small = turn.abs() <= SMALL && !made.is_multiple_of(TURNS);
+        (sin, cos) = if small { turned(sin, cos, turn) } else { phi.sin_cos() };
         let f;
         [f, g, h] = problem.fgh(cos, sin);
         let v_n = at[V_N] + f * d;
@@ -140,21 +141,19 @@ pub(super) fn slide(
 /// The greatest angle that [`turned`] takes, in radians.
 const SMALL: f64 = 0.25;
 
-/// Sine and cosine of an angle, given as such, plus a small one, whose series end with rests below rounding. The sum of the squares stays one.
+/// After so many turns sine and cosine are computed from the angle again, so that roundings of turns do not add up.
+const TURNS: u32 = 256;
+
+/// Sine and cosine of an angle, given as such, plus a small one, whose series end where their rests are below rounding.
 #[inline]
 fn turned(sin: f64, cos: f64, by: f64) -> (f64, f64) {
     let z = by * by;
-    let small = by
-        * (1.0
-            + z * (-1.0 / 6.0
-                + z * (1.0 / 120.0 + z * (-1.0 / 5040.0 + z * (1.0 / 362_880.0 - z / 39_916_800.0)))));
-    let large = 1.0
-        + z * (-0.5
-            + z * (1.0 / 24.0
-                + z * (-1.0 / 720.0 + z * (1.0 / 40_320.0 + z * (-1.0 / 3_628_800.0 + z / 479_001_600.0)))));
-    let (sin, cos) = (sin * large + cos * small, cos * large - sin * small);
-    let length = 1.5 - 0.5 * (sin * sin + cos * cos);
-    (sin * length, cos * length)
+    let (zz, zzz) = (z * z, z * z * z);
+    let odd = (1.0 / 120.0 - z * (1.0 / 5040.0)) + zz * (1.0 / 362_880.0 - z * (1.0 / 39_916_800.0));
+    let even = (-1.0 / 720.0 + z * (1.0 / 40_320.0)) + zz * (-1.0 / 3_628_800.0 + z * (1.0 / 479_001_600.0));
+    let small = by * ((1.0 - z * (1.0 / 6.0)) + zz * odd);
+    let less = z * (-0.5 + z * (1.0 / 24.0)) + zzz * even;
+    (sin + (sin * less + cos * small), cos + (cos * less - sin * small))
 }
 
 fn count(made: &mut u32, problem: &Problem, at: &State) -> Result<(), MethodError> {

@@ -103,21 +103,7 @@ impl<T: Real> EventLocation<'_, T> {
         if !self.panel.spend() {
             return;
         }
-        self.arc.step(&self.from, length, self.panel, to);
-        self.work(to);
-    }
-
-    /// Adds the work along the last `step` to `to`.
-    #[inline]
-    fn work(&mut self, to: &mut ArcPoint<T>) {
-        let from = &self.from;
-        let done = if self.fast {
-            self.arc.direct(from, to, self.panel)
-        } else {
-            self.arc.balance(from, to, self.panel)
-        };
-        to.state.work = from.state.work + done;
-        to.since = from.since + done;
+        self.arc.step(&self.from, length, self.fast, self.panel, to);
     }
 
     /// Sets `to` to the event, where the residual rises (`sign` = 1) or falls (-1) through zero, and returns its length from the beginning; without an
@@ -141,16 +127,10 @@ impl<T: Real> EventLocation<'_, T> {
             if !self.panel.spend() {
                 return None;
             }
-            self.arc.step(&self.from, x, self.panel, to);
-            if works {
-                self.work(to);
-            }
+            self.arc.step(&self.from, x, self.fast, self.panel, to);
             let y = event.at(to);
             if y * sign < T::zero() {
                 if x >= limit {
-                    if !works {
-                        self.work(to);
-                    }
                     return None;
                 }
                 lo = x;
@@ -167,9 +147,6 @@ impl<T: Real> EventLocation<'_, T> {
                     || far <= constant::<T>(0.065) * self.arc.beyond(to))
                 && (!works || far * rates.growth.primal().abs() <= constant(0.3));
             if near || hi - lo <= constant::<T>(4.0) * T::default_epsilon() * hi {
-                if !works {
-                    self.work(to);
-                }
                 // The event does not lie before the beginning.
                 if correction.step < -x {
                     *to = self.from;

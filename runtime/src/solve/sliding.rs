@@ -48,23 +48,24 @@ pub(super) fn arc<T: Real>(
     let stops = arc.last_rate() < T::zero();
     let mut panel = Panel::new(speed, restitution.quadratures);
     for _ in 0..STRETCHES {
-        let rates = arc.rates(&at);
-        let slip = at.sigma * rates.e;
-        let over = slip <= eps * speed * constant(4.0) && rates.growth + rates.shape < T::zero();
-        let settled = at.w > arc.outer && arc.turns_slower(&at, &rates, noise * constant(8.0));
+        let slip = at.sigma * arc.e(at.w);
+        let over = slip <= eps * speed * constant(4.0) && arc.slows(&at);
+        let settled = at.w > arc.outer && arc.turns_slower(&at, noise * constant(8.0));
         if over || settled {
             restitution.since(&at.state, at.since);
             return straight(c, arc.slip(&at) / slip, slip, at.state, restitution);
         }
         let fast = restitution.fast(c, slip);
-        let (rising, turning_point) = arc.turning_point(&at, &rates);
-        if stops && turning_point.is_none() && !fast && arc.settles(&at, slip / speed) {
+        // The series needs no rates, unless v_n may turn.
+        if stops && !fast && arc.settles(&at, slip / speed) && !arc.turns_ahead(&at) {
             let (stop, since) = arc.stop(&at);
             if restitution.passes(&at.state, &stop, c.together(stop.normal)) {
                 restitution.since(&stop, since);
                 return Slide::Stopped(stop);
             }
         }
+        let rates = arc.rates(&at);
+        let (rising, turning_point) = arc.turning_point(&at, &rates);
         let reach = arc.reach(&at, &rates);
         let panel = &mut panel;
         let mut location =

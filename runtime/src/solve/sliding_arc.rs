@@ -154,10 +154,19 @@ impl<T: Real> SlidingArc<T> {
         fma(w + self.middle, w, T::one())
     }
 
+    /// Whether slip falls.
+    #[inline(always)]
+    pub fn slows(&self, point: &ArcPoint<T>) -> bool {
+        let Rates { growth, shape, .. } = self.rates(point);
+        growth + shape < T::zero()
+    }
+
     /// Whether abs(h) is at most `than`.
     #[inline(always)]
-    pub fn turns_slower(&self, point: &ArcPoint<T>, rates: &Rates<T>, than: T) -> bool {
-        self.bend * point.w <= than * rates.inverse * rates.e * rates.e
+    pub fn turns_slower(&self, point: &ArcPoint<T>, than: T) -> bool {
+        let ([q0, q1, q2], w, e) = (self.q, point.w, self.e(point.w));
+        let inverse = T::one() / fma(fma(q2, w, q1), w, q0);
+        self.bend * w <= than * inverse * e * e
     }
 
     /// q / e, without derivatives.

@@ -121,7 +121,7 @@ impl<T: Real> SlidingArc<T> {
 
 /// Computes eight terms from the two before them, which are the first two of `rows`, and adds them to `total`. Prepares `rows`, `sources` and `taps` for the
 /// next block.
-#[inline(never)]
+#[inline(always)]
 fn block<T: Real>(
     rows: &mut [Row<T>; BLOCK + 2],
     sources: &mut [Row<T>; BLOCK],

@@ -6,6 +6,7 @@ mod hostile;
 mod random;
 pub mod modes;
 mod ode;
+pub mod times;
 
 use std::hint::black_box;
 

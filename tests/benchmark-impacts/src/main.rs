@@ -36,6 +36,9 @@ fn run() -> Result<(), String> {
         }
         by_cases(&target)?;
         worst(&target)?;
+        println!("\ntime of the exact solver over that of a method, best turns in one process\n");
+        let times = Command::new(target.join("release/measured")).arg("times").output();
+        print!("{}", String::from_utf8_lossy(&times.map_err(|error| error.to_string())?.stdout));
     }
     let names: Vec<_> = modes::ROWS.iter().map(|row| row.1).collect();
     let counts = counts(&profile(&target, "modes")?, &names);

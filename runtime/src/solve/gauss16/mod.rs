@@ -42,10 +42,9 @@ pub(super) struct Panel<T> {
     grown: Nodes<T>,
     /// The changes of ln(sigma w) from the middle to both ends, each twice to fill the lanes; afterwards their exponentials.
     ends: Lanes<T>,
-    /// w and sigma w in the middle, and the integral of s that the work of friction is formed from.
+    /// w and sigma w in the middle.
     middle: T,
     central: T,
-    rubbed: T,
     /// One more than the quadratures that the budget still allows; zero when one more was asked for.
     left: u32,
 }
@@ -65,7 +64,6 @@ impl<T: Real> Panel<T> {
             ends: [any; 4],
             middle: any,
             central: any,
-            rubbed: any,
             left: quadratures.saturating_add(1),
         }
     }
@@ -125,9 +123,16 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// Sets `to` to the point that lies `length` further in lambda, all but its work, which `balance` or `direct` gives.
+    /// Sets `to` to the point that lies `length` further in lambda. `fast` says whether its work is integrated directly.
     #[inline(never)]
-    pub fn step(&self, from: &ArcPoint<T>, length: T, panel: &mut Panel<T>, to: &mut ArcPoint<T>) {
+    pub fn step(
+        &self,
+        from: &ArcPoint<T>,
+        length: T,
+        fast: bool,
+        panel: &mut Panel<T>,
+        to: &mut ArcPoint<T>,
+    ) {
         let one = T::one();
         // s = tanh(length / 32)
         let y = length * constant(1.0 / 32.0);
@@ -154,16 +159,23 @@ impl<T: Real> SlidingArc<T> {
             [sum(rate.ahead), sum(rate.behind), sum(log.ahead), sum(log.behind)];
         // sigma w in the middle.
         let central = from.sigma * from.w * before;
-        (panel.middle, panel.central, panel.rubbed) = (middle, central, rubbed);
+        (panel.middle, panel.central) = (middle, central);
         to.state = from.state;
         self.add([first * (central * unit), second * central, third * (central * middle)], &mut to.state);
         to.w = last;
         to.sigma = central * after / last;
+        let done = if fast {
+            self.direct(from, to, panel)
+        } else {
+            self.balance(from, to, self.mu * central * central * rubbed)
+        };
+        to.state.work = from.state.work + done;
+        to.since = from.since + done;
     }
 
-    /// The work of the normal impulse along the last `step`, from the balance of energy and the work of friction (theory, 4.16).
-    #[inline]
-    pub fn balance(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &Panel<T>) -> T {
+    /// The work of the normal impulse between two points, from the balance of energy and the loss by friction `rubbed` (theory, 4.16).
+    #[inline(always)]
+    fn balance(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, rubbed: T) -> T {
         let slips = self.slip(from) + self.slip(to);
         let pushed = to.state.tangential - from.state.tangential;
         fma(
@@ -173,13 +185,14 @@ impl<T: Real> SlidingArc<T> {
                 to.state.normal - from.state.normal,
                 dot(slips.x, pushed.x, slips.y, pushed.y),
             ),
-            self.mu * panel.central * panel.central * panel.rubbed,
+            rubbed,
         )
     }
 
     /// The same work by integrating v_n over I_n (theory, 4.17): accurate also where the work is small beside the energies.
+    #[cold]
     #[inline(never)]
-    pub fn direct(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &mut Panel<T>) -> T {
+    fn direct(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &mut Panel<T>) -> T {
         let [f0, f1, f2] = about(self.f, panel.middle, T::one() / panel.middle);
         let Panel { w, inverse, e, grown, rate, log, central, .. } = panel;
         // sigma e / q takes the place of dlambda/dt over q.
@@ -224,32 +237,15 @@ impl<T: Real> SlidingArc<T> {
             }
         }
         let (Nodes { ahead: s0, behind: s1 }, Nodes { ahead: s2, behind: s3 }) = (rate, log);
-        let mut sums = [s0, s1, s2, s3];
-        gather([&w.ahead, &w.behind, &inverse.ahead, &e.ahead], &grown.ahead, &mut sums, |sum, term| {
-            *sum = term
-        });
-        gather([&w.behind, &w.ahead, &inverse.behind, &e.behind], &grown.behind, &mut sums, |sum, term| {
-            *sum += term;
-        });
-    }
-}
-
-/// Adds one half of the nodes to the four sums. The arrays are w at these nodes, w at the opposite nodes, (dlambda/dt) / q, and e.
-#[inline(always)]
-fn gather<T: Real>(
-    [w, opposite, inverse, e]: [&[T; HALF]; 4],
-    grown: &[T; HALF],
-    [s0, s1, s2, s3]: &mut [&mut [T; HALF]; 4],
-    take: impl Fn(&mut T, T),
-) {
-    let known = w.iter().zip(opposite).zip(inverse).zip(e).zip(grown).zip(&WEIGHTS);
-    let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut());
-    for ((((((w, opposite), inverse), e), grown), weight), (((s0, s1), s2), s3)) in known.zip(sums) {
-        let [first, second, third, rubbed] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
-        take(s0, first);
-        take(s1, second);
-        take(s2, third);
-        take(s3, rubbed);
+        let sums = s0.iter_mut().zip(s1.iter_mut()).zip(s2.iter_mut()).zip(s3.iter_mut()).zip(&WEIGHTS);
+        let ahead = w.ahead.iter().zip(&inverse.ahead).zip(&e.ahead).zip(&grown.ahead);
+        let behind = w.behind.iter().zip(&inverse.behind).zip(&e.behind).zip(&grown.behind);
+        for (((((s0, s1), s2), s3), weight), (ahead, behind)) in sums.zip(ahead.zip(behind)) {
+            let ((((w, inverse), e), grown), (((opposite, other), d), shrunk)) = (ahead, behind);
+            let [a0, a1, a2, a3] = terms(*w, *opposite, *inverse, *e, *grown, *weight);
+            let [b0, b1, b2, b3] = terms(*opposite, *w, *other, *d, *shrunk, *weight);
+            (*s0, *s1, *s2, *s3) = (a0 + b0, a1 + b1, a2 + b2, a3 + b3);
+        }
     }
 }
 
