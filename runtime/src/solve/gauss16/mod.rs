@@ -123,8 +123,8 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// Sets `to` to the point that lies `length` further in lambda. `fast` says whether its work is integrated directly.
-    #[inline(never)]
+    /// Sets `to` to the point that lies `length` further in lambda, with its work, which is that of the balance of energy or, if `fast`, integrated directly.
+    #[inline(always)]
     pub fn step(
         &self,
         from: &ArcPoint<T>,
@@ -133,6 +133,18 @@ impl<T: Real> SlidingArc<T> {
         panel: &mut Panel<T>,
         to: &mut ArcPoint<T>,
     ) {
+        self.integrate(from, length, panel, to);
+        // Not within `integrate`: its frame is large where numbers carry derivatives.
+        if fast {
+            let done = self.direct(from, to, panel);
+            to.state.work = from.state.work + done;
+            to.since = from.since + done;
+        }
+    }
+
+    /// [`Self::step`] with the work of the balance of energy.
+    #[inline(never)]
+    fn integrate(&self, from: &ArcPoint<T>, length: T, panel: &mut Panel<T>, to: &mut ArcPoint<T>) {
         let one = T::one();
         // s = tanh(length / 32)
         let y = length * constant(1.0 / 32.0);
@@ -164,11 +176,7 @@ impl<T: Real> SlidingArc<T> {
         self.add([first * (central * unit), second * central, third * (central * middle)], &mut to.state);
         to.w = last;
         to.sigma = central * after / last;
-        let done = if fast {
-            self.direct(from, to, panel)
-        } else {
-            self.balance(from, to, self.mu * central * central * rubbed)
-        };
+        let done = self.balance(from, to, self.mu * central * central * rubbed);
         to.state.work = from.state.work + done;
         to.since = from.since + done;
     }
