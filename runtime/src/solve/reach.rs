@@ -89,11 +89,16 @@ impl<T: Real> SlidingArc<T> {
     /// Whether v_n has a turning point ahead.
     #[inline(always)]
     pub fn turns_ahead(&self, point: &ArcPoint<T>) -> bool {
-        self.may_turn && self.turning_point(point, &self.rates(point)).1.is_some()
+        self.may_turn && self.turns(point)
+    }
+
+    #[inline(never)]
+    fn turns(&self, point: &ArcPoint<T>) -> bool {
+        self.turning_point(point, &self.rates(point)).1.is_some()
     }
 
     /// Whether v_n rises from here, and the length in lambda to the next zero of f, if there is one ahead.
-    #[inline]
+    #[inline(always)]
     pub fn turning_point(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> (bool, Option<T>) {
         if !self.may_turn {
             return (rates.slope > T::zero(), None);
