@@ -224,7 +224,7 @@ async fn in_parts(
     let parts = Parts::open(&directory, count, &sweep.sql, &sweep.setup.models)?;
     let progress = Progress::new(total, sweep.quiet);
     let rows_before = |index: i64| (u128::from(total) * index as u128 / count as u128) as u64;
-    let mut skipped = 0;
+    let (mut skipped, mut told) = (0, 0);
     let mut digest = Digest::default();
     for index in 0..count {
         let rows = rows_before(index + 1) - rows_before(index);
@@ -232,8 +232,9 @@ async fn in_parts(
             skipped += rows;
             continue;
         }
-        if skipped > 0 && !sweep.quiet && !parts.file(index + 1).exists() {
+        if skipped > told && !sweep.quiet {
             eprintln!("{skipped} rows were done before");
+            told = skipped;
         }
         open.rows.see(Some((index, count)));
         let plan = open.plan().await?;

@@ -61,13 +61,17 @@ fn an_interrupted_sweep_goes_on() {
     let arguments = ["run", "--sql", ROW_BY_ROW, "--parts", "4", "--out", "rows"];
     let first = succeeds(home.path(), &arguments);
     assert_eq!(digest(&first), digest(&whole));
-    // as if it had been interrupted in the third part
+    // as if it had been interrupted in the third part, and the last had never been begun
     let kept = home.path().join("rows/part-000000.parquet");
     let before = fs::metadata(&kept).unwrap().modified().unwrap();
     fs::remove_file(home.path().join("rows/part-000002.parquet")).unwrap();
     fs::write(home.path().join("rows/part-000002.parquet.partial"), "half").unwrap();
+    fs::remove_file(home.path().join("rows/part-000003.parquet")).unwrap();
     let second = run(home.path(), &arguments);
     assert!(second.status.success());
+    let said = String::from_utf8_lossy(&second.stderr);
+    assert_eq!(said.matches("10000 rows were done before").count(), 1, "{said}");
+    assert_eq!(said.matches("were done before").count(), 1, "{said}");
     assert_eq!(digest(&String::from_utf8_lossy(&second.stdout)), digest(&whole));
     assert_eq!(fs::metadata(&kept).unwrap().modified().unwrap(), before);
     // another query does not take its parts
