@@ -137,6 +137,8 @@ impl Method<'_> {
             "<[f64; 6]>::from(value).to_vec()"
         } else if holds("Coordinates") || holds("Speeds") {
             "<[_; _]>::from(value).to_vec()"
+        } else if holds("ContactDerivatives") {
+            "contact_beside!(value)"
         } else if holds("Derivatives") {
             "beside!(value)"
         } else if holds("Linearisation") {

@@ -22,6 +22,7 @@ pub const RECORDS: &[&str] = &[
     "Collision",
     "CollisionDerivative",
     "ClosedContact",
+    "ContactDerivatives",
     "Derivatives",
     "Linearisation",
 ];

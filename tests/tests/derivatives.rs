@@ -6,7 +6,8 @@ mod common;
 use common::emitted::{Emitted, emitted};
 use common::random::samples;
 use common::{Model, root};
-use hodograph_generator::program::{Inputs, Quantity as Q};
+use hodograph_generator::program::{ContactQuantity as C, Inputs, Quantity as Q};
+use hodograph_generator::rust_names::snake_case;
 use nalgebra::{DMatrix, DVector};
 
 /// The states of each model.
@@ -139,5 +140,85 @@ fn the_derivative_along_a_direction_is_a_sum_of_columns() {
             let off = off(&[expected], &[found]);
             assert!(off <= BOUND, "{name} off by {off:e}");
         }
+    }
+}
+
+/// Of every contact: each column of its derivatives is its derivative along one direction, and the first column is the value.
+#[test]
+fn derivatives_of_contacts_are_their_derivatives_along_each_direction() {
+    let (mut contacts, mut worst) = (0, 0.0_f64);
+    let simulated = ["../simulation/models/biped", "../simulation/models/tumbling_box"].map(Model::load);
+    for model in common::models().into_iter().chain(simulated) {
+        let m = &model.mechanism;
+        let count = m.independent_states() + m.inputs.len();
+        for contact in 0..m.contacts.len() as u32 {
+            let of = |quantity| Q::Contact(contact, quantity);
+            assert_eq!(
+                model.program.output(of(C::Tangent)).is_some(),
+                model.program.output(of(C::Derivatives)).is_some()
+            );
+            if model.program.output(of(C::Derivatives)).is_none() {
+                continue;
+            }
+            contacts += 1;
+            for sample in samples(&model, 2) {
+                let found = model.get(&sample.inputs, of(C::Derivatives));
+                let found = columns(&found.values, 1 + count);
+                let value = [C::Velocity, C::Reduced, C::Response, C::Gap]
+                    .map(|quantity| model.get(&sample.inputs, of(quantity)).values);
+                let along = (0..count).map(|direction| {
+                    let mut at = sample.inputs.clone();
+                    at.tangent = vec![0.0; count];
+                    at.tangent[direction] = 1.0;
+                    model.get(&at, of(C::Tangent)).values
+                });
+                let off_value = off(&[value.concat()], &found[..1]);
+                let off_columns = off(&along.collect::<Vec<_>>(), &found[1..]);
+                worst = worst.max(off_value).max(off_columns);
+                assert!(
+                    off_value < BOUND && off_columns < BOUND,
+                    "{} {off_value:e} {off_columns:e}",
+                    model.name
+                );
+            }
+        }
+    }
+    println!("{contacts} contacts, off by at most {worst:e}");
+    assert!(contacts > 30, "{contacts}");
+}
+
+/// The method of a module gives them in its record.
+#[test]
+fn the_record_of_a_contact_holds_its_derivatives() {
+    use hodograph_models::planar_double_pendulum::{Coordinates, PlanarDoublePendulum, Speeds};
+    let pendulum = PlanarDoublePendulum::<f64>::default();
+    let (q, u) = (Coordinates::from([0.3, -0.5]), Speeds::from([0.7, 1.1]));
+    let model = Model::load("planar_double_pendulum");
+    let contact = snake_case(&model.mechanism.contacts[0].name);
+    assert_eq!(contact, "tip_wall");
+    let all = pendulum.contact_derivatives_tip_wall(&q, &u).expect("a regular state");
+    let state = pendulum.contact_state_tip_wall(&q, &u).expect("a regular state");
+    assert!((all.velocity - state.velocity).amax() < 1e-14);
+    let (ours, its): ([f64; 6], [f64; 6]) = (all.reduced.into(), state.reduced.into());
+    assert!(off(&[its.to_vec()], &[ours.to_vec()]) < BOUND);
+    assert_eq!(all.gap.is_some(), state.gap.is_some());
+    for direction in 0..4 {
+        let mut tangent = [0.0; 4];
+        tangent[direction] = 1.0;
+        let along = pendulum.contact_tangent_tip_wall(&q, &u, &tangent).expect("a regular state");
+        let velocity = if direction < 2 {
+            all.velocity_by_coordinates.column(direction)
+        } else {
+            all.velocity_by_speeds.column(direction - 2)
+        };
+        let mut column: Vec<f64> = velocity.iter().copied().collect();
+        if direction < 2 {
+            column.extend(all.reduced_by_coordinates.column(direction).iter());
+            column.extend(all.response_by_coordinates[direction].transpose().iter());
+            column.extend(all.gap_by_coordinates.map(|by| by[direction]));
+        } else {
+            column.resize(along.len(), 0.0);
+        }
+        assert!(off(&[along.as_slice().to_vec()], &[column]) < BOUND, "{direction}");
     }
 }

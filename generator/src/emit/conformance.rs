@@ -84,6 +84,11 @@ pub fn shape(mechanism: &Mechanism, quantity: Quantity) -> Option<(usize, usize)
                     let gap = mechanism.contacts.get(index as usize)?.gap.is_some();
                     (9 + 3 * p + usize::from(gap), 1)
                 }
+                ContactQuantity::Derivatives => {
+                    let gap = mechanism.contacts.get(index as usize)?.gap.is_some();
+                    let columns = 1 + mechanism.independent_states() + mechanism.inputs.len();
+                    (9 + 3 * p + usize::from(gap), columns)
+                }
                 _ => (3, 1),
             }
         }

@@ -56,6 +56,7 @@ impl Emitter<'_> {
         for contact in 0..self.mechanism.contacts.len() {
             routines.extend(self.contact_routines(contact));
             routines.extend(self.contact_tangent(contact).filter(|_| self.collides(contact)));
+            routines.extend(self.contact_derivatives(contact));
         }
         routines
     }

@@ -29,7 +29,25 @@ impl Emitter<'_> {
             let (result, value) = self.shaped(output);
             Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
         };
-        self.program.outputs.iter().filter_map(described).collect()
+        let described = self.program.outputs.iter().filter_map(described);
+        described.chain(self.all_accelerations()).collect()
+    }
+
+    /// Rates of independent and dependent speeds at once: the second follow from the first.
+    fn all_accelerations(&self) -> Option<Routine> {
+        let output = |quantity| self.program.output(quantity).filter(|output| !output.values.is_empty());
+        let own = output(Quantity::Accelerations)?;
+        let dependent = output(Quantity::DependentAccelerations)?;
+        let [(of_own, own_value), (of_dependent, dependent_value)] =
+            [own, dependent].map(|output| self.shaped(output));
+        Some(Routine {
+            name: "all_accelerations".to_string(),
+            docs: "Rates of the independent and of the dependent speeds without contact forces in one call: those of `accelerations` and `dependent_accelerations`."
+                .to_string(),
+            quantities: vec![own.quantity, dependent.quantity],
+            result: quote!((#of_own, #of_dependent)),
+            value: quote!((#own_value, #dependent_value)),
+        })
     }
 
     /// The method of a routine.

@@ -10,6 +10,7 @@ mod closed;
 mod collisions;
 mod conformance;
 mod construct;
+mod contact_derivatives;
 mod contacts;
 mod evaluate;
 mod groups;
@@ -86,6 +87,7 @@ fn module_in_parts(
     let contacts = emitter.contacts();
     let linearisation = emitter.linearisation_record();
     let derivatives = emitter.derivatives_record();
+    let contact_derivatives = emitter.contact_derivatives_record();
     let traits = emitter.traits();
     let (of_sets, sets) = emitter.sets(&options.sets);
     let name = &emitter.name;
@@ -104,6 +106,7 @@ fn module_in_parts(
             #derivative
             #linearisation
             #derivatives
+            #contact_derivatives
             #of_sets
 
             impl<T: #krate::Scalar> #name<T> {

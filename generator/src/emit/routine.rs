@@ -159,7 +159,7 @@ impl Emitter<'_> {
             | Q::ConfigurationResidual
             | Q::ConfigurationJacobian
             | Q::Orientation(_) => false,
-            Q::Contact(_, C::Velocity | C::FreeAcceleration | C::Tangent) => true,
+            Q::Contact(_, C::Velocity | C::FreeAcceleration | C::Tangent | C::Derivatives) => true,
             Q::Contact(..) => false,
             Q::Point(_, P::Velocity | P::Acceleration) => true,
             Q::Point(..) => false,

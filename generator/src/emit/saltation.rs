@@ -63,9 +63,10 @@ impl Emitter<'_> {
     /// `contact_tangent_..`, `collide_.._derivative` and `saltation_..` of a contact.
     pub fn derivatives(&self, contact: usize) -> TokenStream {
         let tangent = self.contact_tangent(contact).map(|tangent| self.routine(&tangent));
+        let whole = self.contact_derivatives(contact).map(|routine| self.routine(&routine));
         let derivative = self.collide_derivative(contact);
         let saltation = self.saltation(contact);
-        quote! { #tangent #derivative #saltation }
+        quote! { #tangent #whole #derivative #saltation }
     }
 
     /// The routine of the derivative of a contact along a direction.
@@ -190,6 +191,41 @@ impl Emitter<'_> {
             self.contact_words(contact),
             states.join(", ")
         ));
+        let changes = match self.contact_derivatives(contact) {
+            Some(routine) => {
+                let routine = ident(&routine.name);
+                quote! {
+                    let changes = self.#routine(#to_tangent)?;
+                    let gaps = changes.gap_by_coordinates.unwrap_or(#krate::nalgebra::SVector::zeros());
+                    for column in 0..#c {
+                        let gap = #krate::generated::by_coordinates(
+                            &mut reset,
+                            column,
+                            outcome,
+                            &response,
+                            (&changes.velocity_by_coordinates, &changes.reduced_by_coordinates, &changes.response_by_coordinates, &gaps),
+                        );
+                        if let ::core::option::Option::Some(entry) = gradient.as_mut_slice().get_mut(column) {
+                            *entry = gap;
+                        }
+                    }
+                }
+            }
+            None => quote! {
+                for column in 0..#c {
+                    let mut direction = [T::zero(); #directions];
+                    if let ::core::option::Option::Some(entry) = direction.get_mut(column) {
+                        *entry = T::one();
+                    }
+                    let change = self.#tangent_routine(#to_tangent &direction)?;
+                    let gap =
+                        #krate::generated::by_coordinate(&mut reset, column, outcome, &response, change.as_slice());
+                    if let ::core::option::Option::Some(entry) = gradient.as_mut_slice().get_mut(column) {
+                        *entry = gap;
+                    }
+                }
+            },
+        };
         Some(quote! {
             #docs
             pub fn #name(
@@ -209,18 +245,7 @@ impl Emitter<'_> {
                 let after = #krate::generated::state::<T, _, #c, #p, #n>(&later, &independent, &then);
                 let mut reset = #krate::generated::reset::<T, #p, #n>(&derivative.speeds);
                 let mut gradient = #krate::nalgebra::SVector::<T, #n>::zeros();
-                for column in 0..#c {
-                    let mut direction = [T::zero(); #directions];
-                    if let ::core::option::Option::Some(entry) = direction.get_mut(column) {
-                        *entry = T::one();
-                    }
-                    let change = self.#tangent_routine(#to_tangent &direction)?;
-                    let gap =
-                        #krate::generated::by_coordinate(&mut reset, column, outcome, &response, change.as_slice());
-                    if let ::core::option::Option::Some(entry) = gradient.as_mut_slice().get_mut(column) {
-                        *entry = gap;
-                    }
-                }
+                #changes
                 #krate::generated::salted(&reset, &before, &after, &gradient, outcome)
             }
         })

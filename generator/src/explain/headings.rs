@@ -81,6 +81,7 @@ fn contact(quantity: ContactQuantity) -> Heading {
         Gap => ("gap", "d", "m"),
         PrescribedWork => ("work of prescribed motion per unit impulse", "w", "m/s"),
         Tangent => ("derivatives of velocity, reduced matrix, response and gap", "l", ""),
+        Derivatives => ("velocity, reduced matrix, response and gap (rows) with their derivatives", "l", ""),
     };
     Heading { group: String::new(), title, symbol, unit }
 }

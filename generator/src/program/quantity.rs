@@ -83,6 +83,8 @@ pub enum ContactQuantity {
     /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is one) along a direction
     /// (inputs `Tangent`), where none of them depends on time by itself
     Tangent,
+    /// the same quantities (rows) with their derivatives; columns: the value, then one per independent coordinate, independent speed and named input
+    Derivatives,
 }
 
 /// Quantities of a point.
@@ -134,7 +136,7 @@ const WHOLE: [(Quantity, &str); 16] = [
 ];
 
 /// Quantities of a contact.
-const CONTACT: [(ContactQuantity, &str); 13] = [
+const CONTACT: [(ContactQuantity, &str); 14] = [
     (ContactQuantity::Normal, "normal"),
     (ContactQuantity::First, "first"),
     (ContactQuantity::Second, "second"),
@@ -148,6 +150,7 @@ const CONTACT: [(ContactQuantity, &str); 13] = [
     (ContactQuantity::Gap, "gap"),
     (ContactQuantity::PrescribedWork, "prescribed_work"),
     (ContactQuantity::Tangent, "tangent"),
+    (ContactQuantity::Derivatives, "derivatives"),
 ];
 
 /// Quantities of a point.

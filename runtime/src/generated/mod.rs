@@ -26,7 +26,7 @@ pub use checks::*;
 pub use closed::{closed_contact, kept_contact, slip_noise};
 pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured, resolve_without_collision};
 #[doc(hidden)]
-pub use saltation::{by_coordinate, reset, salted, state};
+pub use saltation::{by_coordinate, by_coordinates, reset, salted, state};
 #[doc(hidden)]
 pub use slices::{Description, normalize_quaternions, write_array, write_rows};
 

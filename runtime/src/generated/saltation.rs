@@ -58,6 +58,33 @@ pub fn by_coordinate<T: Scalar, const P: usize, const N: usize>(
     at(9 + 3 * P)
 }
 
+/// The derivatives of velocity, reduced matrix, response and gap of a contact with respect to all coordinates.
+pub type ByCoordinates<'a, T, const P: usize, const C: usize> =
+    (&'a SMatrix<T, 3, C>, &'a SMatrix<T, 6, C>, &'a [SMatrix<T, P, 3>; C], &'a SVector<T, C>);
+
+/// The same as [`by_coordinate`], of one coordinate out of the derivatives with respect to all.
+#[inline]
+pub fn by_coordinates<T: Scalar, const P: usize, const C: usize, const N: usize>(
+    reset: &mut SMatrix<T, N, N>,
+    column: usize,
+    outcome: &ImpactDerivative<T>,
+    response: &SMatrix<T, P, 3>,
+    (velocity, matrix, of_response, gap): ByCoordinates<'_, T, P, C>,
+) -> T {
+    let velocity = Vector3::from_fn(|i, _| velocity.get((i, column)).copied().unwrap_or(T::zero()));
+    let matrix = Vector6::from_fn(|i, _| matrix.get((i, column)).copied().unwrap_or(T::zero()));
+    let of_response = of_response.get(column).copied().unwrap_or(SMatrix::zeros());
+    let impulse = outcome.impulse_by_approach() * velocity + outcome.impulse_by_matrix() * matrix;
+    let speeds = response * impulse + of_response * outcome.impact.impulse;
+    let first = N.saturating_sub(P);
+    for (row, speed) in speeds.iter().enumerate() {
+        if let Some(entry) = reset.get_mut((first + row, column)) {
+            *entry = *speed;
+        }
+    }
+    gap.get(column).copied().unwrap_or(T::zero())
+}
+
 /// The saltation matrix; an error where the gap opens.
 ///
 /// # Errors

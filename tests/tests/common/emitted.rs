@@ -60,6 +60,7 @@ pub fn routine(mechanism: &Mechanism, quantity: Quantity) -> Option<String> {
                 ContactQuantity::Remainder => "remainder_velocity",
                 ContactQuantity::Reduced => "reduced_matrix",
                 ContactQuantity::Tangent => "contact_tangent",
+                ContactQuantity::Derivatives => "contact_derivatives",
                 _ => return None,
             };
             return Some(format!("{prefix}_{}", snake_case(&mechanism.contacts[index as usize].name)));
@@ -136,6 +137,38 @@ macro_rules! beside {
             [vec![found.value[row]], derivatives, inputs].concat()
         };
         (0..rows).flat_map(row).collect()
+    }};
+}
+
+/// What a collision at a contact is made of, with its derivatives, as one matrix by rows. Reduced matrix, response and gap do not change with speeds and inputs.
+macro_rules! contact_beside {
+    ($derivatives:expr) => {{
+        let d = $derivatives;
+        let still = d.velocity_by_speeds.ncols() + d.velocity_by_inputs.ncols();
+        let mut all: Vec<f64> = Vec::new();
+        for row in 0..3 {
+            all.push(d.velocity[row]);
+            all.extend(d.velocity_by_coordinates.row(row).iter());
+            all.extend(d.velocity_by_speeds.row(row).iter());
+            all.extend(d.velocity_by_inputs.row(row).iter());
+        }
+        let reduced: [f64; 6] = d.reduced.into();
+        for (row, entry) in reduced.into_iter().enumerate() {
+            all.push(entry);
+            all.extend(d.reduced_by_coordinates.row(row).iter());
+            all.extend(std::iter::repeat_n(0.0, still));
+        }
+        for (speed, axis) in (0..d.response.nrows()).flat_map(|speed| (0..3).map(move |axis| (speed, axis))) {
+            all.push(d.response[(speed, axis)]);
+            all.extend(d.response_by_coordinates.iter().map(|by| by[(speed, axis)]));
+            all.extend(std::iter::repeat_n(0.0, still));
+        }
+        if let (Some(gap), Some(by)) = (d.gap, d.gap_by_coordinates) {
+            all.push(gap);
+            all.extend(by.iter());
+            all.extend(std::iter::repeat_n(0.0, still));
+        }
+        all
     }};
 }
 

@@ -11,12 +11,14 @@ use crate::program::jacobian::{Direction, Jacobian, ORDERS, jacobian};
 use crate::program::ldl::factorise;
 use crate::program::passes::simplified;
 use crate::program::solve::Solve;
-use crate::program::{Derived, Guard, Inputs, Output, Program, Quantity};
+use crate::program::{ContactQuantity, Derived, Guard, Inputs, Output, Program, Quantity};
 
 /// Up to this work every order of elimination goes through the passes, and the one with the fewest operations after them is taken.
 const COMPARED: usize = 2000;
 /// Solves that take more operations are no straight line any more: a dense mass matrix of 25 speeds with all columns.
 const LONGEST: usize = 50_000;
+/// Derivatives of a contact whose elimination takes more operations in all orders are left out.
+const LONGEST_OF_CONTACT: usize = 50_000;
 
 /// What is differentiated, as nodes of a graph that is simplified already.
 struct Pieces {
@@ -61,24 +63,62 @@ impl Writer<'_, '_> {
             let system = derived(graph, &guards, Quantity::AccelerationsDerivatives, rows);
             all.push(Derived { solve: Some(solve), ..system });
         }
+        all.extend(self.contact_derivatives(samples));
         all
     }
 
-    /// Everything that is needed, sent through the passes on the graph together; `None` where a mechanism has no dynamics.
-    fn pieces(&mut self) -> Option<Pieces> {
+    /// What a collision is made of, of every contact that has a derivative along a direction, with its derivatives.
+    fn contact_derivatives(&mut self, samples: &[Inputs]) -> Vec<Derived> {
         let directions = self.directions();
-        let of = |quantity| self.outputs.iter().find(|output| output.quantity == quantity);
-        let rates = of(Quantity::CoordinateRates)?.values.iter().zip(&self.k.mechanism.coordinates);
-        let rates = rates.filter(|(_, coordinate)| !coordinate.dependent).map(|(&node, _)| node).collect();
-        let slopes = directions.iter().flatten().map(|&(_, slope)| slope).collect();
-        let parts: [Vec<Node>; 6] = [
-            rates,
-            of(Quantity::InverseDynamics)?.values.clone(),
-            of(Quantity::Forcing)?.values.clone(),
-            of(Quantity::MassMatrix)?.values.clone(),
-            self.largest.clone(),
-            slopes,
-        ];
+        let slopes: Vec<Node> = directions.iter().flatten().map(|&(_, slope)| slope).collect();
+        let mut all = Vec::new();
+        for number in 0..self.k.mechanism.contacts.len() as u32 {
+            let of = |quantity| {
+                let quantity = Quantity::Contact(number, quantity);
+                self.outputs
+                    .iter()
+                    .find(|output| output.quantity == quantity)
+                    .map(|output| output.values.clone())
+            };
+            if of(ContactQuantity::Tangent).is_none() {
+                continue;
+            }
+            let parts = [
+                ContactQuantity::Velocity,
+                ContactQuantity::Reduced,
+                ContactQuantity::Response,
+                ContactQuantity::Gap,
+            ];
+            let nodes = parts.map(|quantity| of(quantity).unwrap_or_default()).concat();
+            let (graph, guards, [nodes, slopes]) = self.simplified_parts([nodes, slopes.clone()]);
+            let mut slopes = slopes.into_iter();
+            let directions = directions.iter().map(|direction| {
+                direction.iter().zip(&mut slopes).map(|(&(input, _), slope)| (input, slope)).collect()
+            });
+            let directions: Vec<Direction> = directions.collect();
+            let Some((graph, rows)) = best(&graph, &nodes, &directions, LONGEST_OF_CONTACT) else { continue };
+            let rows = beside(&nodes, &rows);
+            let quantity = Quantity::Contact(number, ContactQuantity::Derivatives);
+            let columns = 1 + directions.len();
+            let output = Output { quantity, rows: rows.len(), columns, values: rows.concat() };
+            all.push(Derived {
+                graph,
+                outputs: vec![output],
+                guards,
+                structures: vec![],
+                samples: samples.to_vec(),
+                apart: vec![],
+                solve: None,
+            });
+        }
+        all
+    }
+
+    /// Lists of nodes after the passes on the graph, which they go through together.
+    fn simplified_parts<const N: usize>(
+        &self,
+        parts: [Vec<Node>; N],
+    ) -> (Graph, Vec<Guard<Node>>, [Vec<Node>; N]) {
         // The name does not matter: it is never a program.
         let output = |values: Vec<Node>| Output {
             quantity: Quantity::Forcing,
@@ -96,15 +136,33 @@ impl Writer<'_, '_> {
             solve: None,
         });
         let mut parts = derived.outputs.into_iter().map(|output| output.values);
-        let mut next = || parts.next().unwrap_or_default();
-        let [rates, inverse, forcing, matrix, largest] = [next(), next(), next(), next(), next()];
-        let mut slopes = next().into_iter();
+        (derived.graph, derived.guards, std::array::from_fn(|_| parts.next().unwrap_or_default()))
+    }
+
+    /// Everything that is needed, sent through the passes on the graph together; `None` where a mechanism has no dynamics.
+    fn pieces(&mut self) -> Option<Pieces> {
+        let directions = self.directions();
+        let of = |quantity| self.outputs.iter().find(|output| output.quantity == quantity);
+        let rates = of(Quantity::CoordinateRates)?.values.iter().zip(&self.k.mechanism.coordinates);
+        let rates = rates.filter(|(_, coordinate)| !coordinate.dependent).map(|(&node, _)| node).collect();
+        let slopes = directions.iter().flatten().map(|&(_, slope)| slope).collect();
+        let parts: [Vec<Node>; 6] = [
+            rates,
+            of(Quantity::InverseDynamics)?.values.clone(),
+            of(Quantity::Forcing)?.values.clone(),
+            of(Quantity::MassMatrix)?.values.clone(),
+            self.largest.clone(),
+            slopes,
+        ];
+        let (graph, guards, [rates, inverse, forcing, matrix, largest, slopes]) =
+            self.simplified_parts(parts);
+        let mut slopes = slopes.into_iter();
         let renamed = |direction: Direction| {
             direction.into_iter().zip(&mut slopes).map(|((input, _), slope)| (input, slope)).collect()
         };
         Some(Pieces {
-            graph: derived.graph,
-            guards: derived.guards,
+            graph,
+            guards,
             rates,
             matrix: matrix.chunks(inverse.len()).map(<[Node]>::to_vec).collect(),
             inverse,
@@ -165,16 +223,26 @@ impl Writer<'_, '_> {
 impl Pieces {
     /// The Jacobian of some nodes, in its graph, by the best of the orders of elimination.
     fn best(&self, nodes: &[Node]) -> (Graph, Vec<Vec<Node>>) {
-        let found = ORDERS.map(|order| {
-            let mut graph = self.graph.clone();
-            let found = jacobian(&mut graph, nodes, &self.directions, order);
-            (graph, found)
-        });
-        let compare = found.iter().all(|(_, found)| found.work <= COMPARED);
-        let cost = |(graph, found): &(Graph, Jacobian)| if compare { cost(graph, found) } else { found.work };
-        let best = found.into_iter().min_by_key(cost);
-        best.map_or_else(Default::default, |(graph, found)| (graph, found.rows))
+        best(&self.graph, nodes, &self.directions, usize::MAX).unwrap_or_default()
     }
+}
+
+/// The Jacobian of some nodes, in a graph that has it, by the best of the orders of elimination; `None` where it takes more work than `most`.
+fn best(
+    graph: &Graph,
+    nodes: &[Node],
+    directions: &[Direction],
+    most: usize,
+) -> Option<(Graph, Vec<Vec<Node>>)> {
+    let found = ORDERS.map(|order| {
+        let mut graph = graph.clone();
+        let found = jacobian(&mut graph, nodes, directions, order);
+        (graph, found)
+    });
+    let compare = found.iter().all(|(_, found)| found.work <= COMPARED);
+    let cost = |(graph, found): &(Graph, Jacobian)| if compare { cost(graph, found) } else { found.work };
+    let best = found.into_iter().min_by_key(cost).filter(|(_, found)| found.work <= most);
+    best.map(|(graph, found)| (graph, found.rows))
 }
 
 /// Operations per evaluation of a Jacobian after all passes; fused ones count once.

@@ -1,4 +1,5 @@
-//! Removes operations whose result is identically 0, as partial sums may be after reassociation.
+//! Removes operations whose result is identically 0, 1 or -1, as partial sums may be after reassociation: terms that cancel, or the squares of a sine and a
+//! cosine.
 //!
 //! It tests operations as [`super::identities`] tests nodes. The computed rounding error of a sum of angles is 0 in exact arithmetic; it is kept.
 
@@ -9,30 +10,37 @@ use crate::program::build::Builder;
 use crate::program::operation::{Operation, Value};
 use crate::program::straight_line::Program;
 
-/// The program without what vanishes.
+/// What an operation may be identically.
+const NUMBERS: [f64; 3] = [0.0, 1.0, -1.0];
+
+/// The program without what vanishes or is identically 1 or -1.
 pub fn drop(program: &Program) -> Program {
     let all = vec![true; program.operations.len()];
     let places: Vec<Vec<Known>> = (0..PLACES).map(|place| evaluated(program, place, &all)).collect();
-    let vanishes = |value: Value| {
-        let is_sum = matches!(
+    let number = |value: Value| {
+        let is_made = matches!(
             program.operation(value),
             Operation::Add(..)
                 | Operation::Sub(..)
+                | Operation::Mul(..)
+                | Operation::Div(..)
+                | Operation::Recip(_)
                 | Operation::MulAdd(..)
                 | Operation::MulSub(..)
                 | Operation::NegMulAdd(..)
         );
-        is_sum && places.iter().all(|known| known[value.index()].is(0.0))
+        let is = |number: &f64| places.iter().all(|known| known[value.index()].is(*number));
+        NUMBERS.into_iter().filter(|_| is_made).find(is)
     };
-    if !(0..program.operations.len()).any(|index| vanishes(Value(index as u32))) {
+    if (0..program.operations.len()).all(|index| number(Value(index as u32)).is_none()) {
         return program.clone();
     }
     let mut builder = Builder::default();
     let mut renamed: Vec<Value> = Vec::with_capacity(program.operations.len());
     for (index, &operation) in program.operations.iter().enumerate() {
-        let new = match vanishes(Value(index as u32)) {
-            true => builder.constant(0.0),
-            false => rebuilt(&mut builder, operation.map(|value| renamed[value.index()])),
+        let new = match number(Value(index as u32)) {
+            Some(number) => builder.constant(number),
+            None => rebuilt(&mut builder, operation.map(|value| renamed[value.index()])),
         };
         renamed.push(new);
     }
@@ -46,10 +54,25 @@ pub fn drop(program: &Program) -> Program {
     new
 }
 
-/// An operation on new operands, shorter where one of them is 0.
+/// An operation on new operands, shorter where one of them is 0, 1 or -1.
 fn rebuilt(builder: &mut Builder, operation: Operation) -> Value {
     let is_zero = |builder: &Builder, value: Value| builder.number(value) == Some(0.0);
+    let is_unit = |builder: &Builder, value: Value| builder.number(value).is_some_and(|x| x.abs() == 1.0);
     match operation {
+        Operation::Div(a, b) if is_unit(builder, b) || builder.number(a) == Some(1.0) => builder.div(a, b),
+        Operation::Recip(a) if is_unit(builder, a) => builder.recip(a),
+        Operation::MulAdd(a, b, c) if is_unit(builder, a) || is_unit(builder, b) => {
+            let product = builder.mul(a, b);
+            builder.add(product, c)
+        }
+        Operation::MulSub(a, b, c) if is_unit(builder, a) || is_unit(builder, b) => {
+            let product = builder.mul(a, b);
+            builder.sub(product, c)
+        }
+        Operation::NegMulAdd(a, b, c) if is_unit(builder, a) || is_unit(builder, b) => {
+            let product = builder.mul(a, b);
+            builder.sub(c, product)
+        }
         Operation::Neg(a) => builder.neg(a),
         Operation::Add(a, b) => builder.add(a, b),
         Operation::Sub(a, b) => builder.sub(a, b),
@@ -178,6 +201,27 @@ mod tests {
         agree(&fused, &dropped, "fused");
         let left = operations(&dropped);
         assert!(left.iter().all(|kind| kind == "Neg" || kind == "Mul"), "{left:?}");
+    }
+
+    #[test]
+    fn what_is_identically_one_is_no_factor_any_more() {
+        let derived = small(|graph| {
+            let [x, y, z, w] = speeds(graph);
+            let [sine, cosine] = [Function::Sin, Function::Cos].map(|function| graph.call(function, vec![x]));
+            let squares = [graph.power(sine, 2), graph.power(cosine, 2)];
+            let one = graph.sum(squares);
+            let quotient = graph.div(y, one);
+            let (product, scaled) = (graph.product([one, z]), graph.product([one, w, z]));
+            let sum = graph.sum([product, w]);
+            vec![quotient, sum, graph.div(one, w), scaled]
+        });
+        for program in [lower(&derived), super::super::contract::contract(&lower(&derived))] {
+            let dropped = super::super::dead_code::remove(&drop(&program));
+            agree(&program, &dropped, "ones");
+            let mut left = operations(&dropped);
+            left.sort();
+            assert_eq!(left, ["Add", "Mul", "Recip"]);
+        }
     }
 
     #[test]
