@@ -279,6 +279,17 @@ impl Lanes {
         self.made.iter().flat_map(|&step| &self.steps[step]).copied()
     }
 
+    /// How many rows the array of the results has.
+    pub fn made_rows(&self) -> usize {
+        self.made.len()
+    }
+
+    /// The rows of the results with one of these values.
+    pub fn rows_with(&self, values: &BTreeSet<Value>) -> Vec<usize> {
+        let has = |step: usize| self.steps[step].iter().any(|value| values.contains(value));
+        self.made.iter().enumerate().filter(|&(_, &step)| has(step)).map(|(row, _)| row).collect()
+    }
+
     /// The results as local variables.
     pub fn fetch(&self, number: usize) -> TokenStream {
         let made = Self::made_array(number);

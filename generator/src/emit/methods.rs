@@ -10,7 +10,7 @@ use super::record::Record;
 use super::routine::Routine;
 use super::values::local;
 use crate::program::Output;
-use crate::program::{PointQuantity, Quantity};
+use crate::program::{ContactQuantity, PointQuantity, Quantity};
 use crate::rust_names::{prose, snake_case};
 
 impl Emitter<'_> {
@@ -57,15 +57,46 @@ impl Emitter<'_> {
         let name = crate::rust_names::ident(name);
         let docs = crate::rust_names::docs(docs);
         let signature = self.signature(self.arguments(quantities));
-        let body = self.compute(quantities);
+        let (statements, wrong) = self.computed(quantities);
+        let right = quote!(::core::result::Result::Ok(#value));
+        let not_finite = quote!(::core::result::Result::Err(#krate::StateError::NotFinite));
+        let answer = match wrong {
+            None => right,
+            Some(wrong) if self.answers_in_place(quantities) => quote! {
+                let mut answer = #right;
+                if #wrong {
+                    answer = #not_finite;
+                }
+                answer
+            },
+            Some(wrong) => quote! {
+                if #wrong {
+                    return #not_finite;
+                }
+                #right
+            },
+        };
         quote! {
             #docs
             #[inline]
             pub fn #name(#signature) -> ::core::result::Result<#result, #krate::StateError> {
-                #body
-                ::core::result::Result::Ok(#value)
+                #statements
+                #answer
             }
         }
+    }
+
+    /// Whether the answer of a routine is made before it is checked: each number is then stored once, where the caller wants it. Short answers stay in registers
+    /// until they are checked.
+    pub fn answers_in_place(&self, quantities: &[Quantity]) -> bool {
+        /// More numbers than there are registers.
+        const MANY: usize = 16;
+        let outputs = quantities.iter().filter_map(|&quantity| self.program.output(quantity));
+        let count: usize = outputs.map(|output| output.values.len()).sum();
+        // The response is mostly written into a slice by `Contacts`.
+        let written =
+            |quantity: &Quantity| matches!(quantity, Quantity::Contact(_, ContactQuantity::Response));
+        count > MANY && !quantities.iter().all(written)
     }
 
     /// The type and the expression of an output.

@@ -13,6 +13,7 @@ mod construct;
 mod contact_derivatives;
 mod contacts;
 mod evaluate;
+mod finite;
 mod groups;
 mod homes;
 mod lanes;

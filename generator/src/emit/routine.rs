@@ -30,6 +30,20 @@ pub struct Routine {
 impl Emitter<'_> {
     /// The statements that compute quantities and check them; their values are local variables afterwards.
     pub fn compute(&self, quantities: &[Quantity]) -> TokenStream {
+        let krate = self.krate;
+        let (statements, wrong) = self.computed(quantities);
+        let check = wrong.map(|wrong| {
+            quote! {
+                if #wrong {
+                    return ::core::result::Result::Err(#krate::StateError::NotFinite.into());
+                }
+            }
+        });
+        quote! { #statements #check }
+    }
+
+    /// The statements that compute quantities and check what must not vanish, and the expression that tells whether a result is not finite.
+    pub fn computed(&self, quantities: &[Quantity]) -> (TokenStream, Option<TokenStream>) {
         let slice = self.program.slice(quantities);
         let needed = self.needed(
             &slice.outputs.iter().flat_map(|output| output.values.clone()).collect::<Vec<_>>(),
@@ -58,11 +72,10 @@ impl Emitter<'_> {
         let order: Vec<Value> = order.into_iter().filter(|value| !in_lanes.contains(value)).collect();
         let statements = self.statements(&order, &wanted, &lanes::homes(&lanes));
         let loops = lanes::loops(&lanes, self);
-        let made: BTreeSet<Value> = lanes.iter().flat_map(Lanes::results).collect();
-        let finite = self.finite(results.difference(&made).copied(), lanes.len());
-        // Results are fetched last: fetched before the checks, they would be stored and fetched again.
+        let wrong = self.not_finite(&results, &lanes);
         let fetch = lanes.iter().zip(0..).map(|(lanes, number)| lanes.fetch(number));
-        quote! { #statements #loops #(#guards)* #finite #(#fetch)* }
+        // What loops give is fetched last: fetched before the checks, it would be stored and fetched again.
+        (quote! { #statements #loops #(#guards)* #(#fetch)* }, wrong)
     }
 
     /// The values that a method computes: what depends on parameters alone is only fetched.
@@ -100,27 +113,6 @@ impl Emitter<'_> {
                     return ::core::result::Result::Err(#krate::generated::singular(#value, #value, #message).into());
                 }
             },
-        }
-    }
-
-    /// The statement that checks that results are finite, those of loops too; constants are.
-    fn finite(&self, results: impl Iterator<Item = Value>, loops: usize) -> TokenStream {
-        let krate = self.krate;
-        let results: Vec<_> =
-            results.filter(|&value| self.stage(value) > Stage::Parameter).map(local).collect();
-        let single = (!results.is_empty()).then(|| quote!(#krate::generated::all_finite([#(#results),*])));
-        let arrays = (0..loops).map(Lanes::made_array);
-        let arrays = arrays.map(|made| quote!(#krate::generated::all_rows_finite(&#made)));
-        let checks: Vec<TokenStream> = single.into_iter().chain(arrays).collect();
-        let wrong = match &checks[..] {
-            [] => return quote!(),
-            [check] => quote!(!#check),
-            _ => quote!(!(#(#checks)&&*)),
-        };
-        quote! {
-            if #wrong {
-                return ::core::result::Result::Err(#krate::StateError::NotFinite.into());
-            }
         }
     }
 

@@ -106,6 +106,17 @@ impl Emitter<'_> {
             };
         };
         let (unpack, call) = self.own(method, &[quantity]);
+        if quantity == Quantity::MassMatrix && self.answers_in_place(&[quantity]) {
+            // Computed here: the method's answer would be stored in one place and then in the other.
+            let (compute, (_, value)) = (self.compute(&[quantity]), self.shaped(output));
+            let (rows, columns) =
+                (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(output.columns));
+            return quote! {
+                #unpack
+                #compute
+                #krate::generated::write_rows::<T, #rows, #columns>(#slice, &#value, #what)
+            };
+        }
         let write = match self.record_of(quantity) {
             Some(record) => {
                 let size = Literal::usize_unsuffixed(record.len());

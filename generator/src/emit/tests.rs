@@ -209,6 +209,37 @@ fn a_guard_is_checked_where_all_of_it_is_known() {
     assert!(after.contains("vanishes_beside"));
 }
 
+/// A result that is a factor of another need not be looked at: the product is not finite either. Its reciprocal may be.
+#[test]
+fn only_results_that_no_other_depends_on_are_checked() {
+    let mut derived = derived();
+    let g = &mut derived.graph;
+    let (q, u) = (g.input(Input::Coordinate(0)), g.input(Input::Speed(0)));
+    let first = g.product([q, u]);
+    let second = {
+        let product = g.product([first, u]);
+        g.sum([product, q])
+    };
+    let third = g.power(second, -1);
+    derived.outputs.push(Output {
+        quantity: Q::Point(1, PointQuantity::Velocity),
+        rows: 3,
+        columns: 1,
+        values: vec![first, second, third],
+    });
+    let options = Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![] };
+    let text = module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string();
+    let (_, method) = text.split_once("pub fn velocity_p (").expect("the method");
+    let (_, check) = method.split_once("all_finite ([").expect("a check");
+    let (checked, after) = check.split_once("])").expect("its end");
+    assert_eq!(checked.split(',').count(), 2, "{checked}");
+    let checked: Vec<&str> = checked.split(',').map(str::trim).collect();
+    let answer =
+        method.split_once("from ([[").and_then(|(_, rest)| rest.split_once(']')).expect("an answer").0;
+    let answer: Vec<&str> = answer.split(',').map(str::trim).collect();
+    assert_eq!(checked, answer[1..], "{after}");
+}
+
 /// The same with at most three operations in a function.
 #[test]
 fn long_routines_come_in_parts() {

@@ -24,28 +24,57 @@ pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; 
         return one_by_one(angles);
     }
     let angles = angles.map(|angle| angle.to_subset_unchecked());
+    let angle = |lane: usize| angles[lane.min(N - 1)];
     let (sines, cosines) = match N {
         0 | 1 => one_by_one(angles),
-        2 => filled::<N, 2>(angles),
-        3 | 4 => filled::<N, 4>(angles),
-        5..=8 => filled::<N, 8>(angles),
+        2 => first(of_two(angle(0), angle(1))),
+        3 | 4 => first(of_four(angle(0), angle(1), angle(2), angle(3))),
+        5..=8 => {
+            first(of_eight(angle(0), angle(1), angle(2), angle(3), angle(4), angle(5), angle(6), angle(7)))
+        }
         _ => one_by_one(angles),
     };
     (sines.map(convert), cosines.map(convert))
 }
 
-/// `N` angles in `LANES` lanes (at least `N`); the last angle fills the lanes that are left over.
+/// The first `N` of `LANES` sines and cosines.
 #[inline(always)]
-fn filled<const N: usize, const LANES: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
-    let (sines, cosines) = of_doubles::<LANES>(from_fn(|lane| angles[lane.min(N - 1)]));
+fn first<const N: usize, const LANES: usize>(
+    (sines, cosines): ([f64; LANES], [f64; LANES]),
+) -> ([f64; N], [f64; N]) {
     (from_fn(|lane| sines[lane.min(LANES - 1)]), from_fn(|lane| cosines[lane.min(LANES - 1)]))
 }
 
-/// A function of its own: inside a long function, compilers do not vectorise all of the loops.
+// The angles are arguments of their own, which come in registers. In an array the caller would store one after the other, and a processor cannot load
+// a vector from several stores before all of them, and everything in front of them, are done.
+
 #[inline(never)]
+fn of_two(a: f64, b: f64) -> ([f64; 2], [f64; 2]) {
+    of_doubles([a, b])
+}
+
+#[inline(never)]
+fn of_four(a: f64, b: f64, c: f64, d: f64) -> ([f64; 4], [f64; 4]) {
+    of_doubles([a, b, c, d])
+}
+
+#[inline(never)]
+#[allow(clippy::too_many_arguments, reason = "as many as there are registers")]
+fn of_eight(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64) -> ([f64; 8], [f64; 8]) {
+    of_doubles([a, b, c, d, e, f, g, h])
+}
+
+/// Part of functions of their own: inside a long function, compilers do not vectorise all of the loops.
+#[inline(always)]
 fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
-    if !angles.iter().fold(true, |within, &angle| within & is_within(angle)) {
-        return beyond(angles);
+    // Of two angles the sum is looked at: one comparison.
+    let within = match angles[..] {
+        [a, b] => is_within(a.abs() + b.abs()),
+        _ => angles.iter().fold(true, |within, &angle| within & is_within(angle)),
+    };
+    if !within {
+        // A copy: what is only in registers otherwise need not be stored.
+        return beyond(black_box(angles));
     }
     let (mut sines, mut cosines) = ([0.0; N], [0.0; N]);
     if N > UNROLLED {

@@ -23,6 +23,17 @@ pub type Counts = BTreeMap<&'static str, f64>;
 
 /// Counts instructions per evaluation, the mean over the states.
 pub fn instructions(folders: &Folders, built: &Built) -> Result<Counts, Failure> {
+    let functions: Vec<(&str, &str)> =
+        ROUTINES.into_iter().chain(DERIVATIVES).chain([(CONSTRUCTION, ">::hoist")]).collect();
+    of_functions(folders, built, &functions)
+}
+
+/// Counts instructions per call of functions: what each is called here, and a part of its name in the program.
+pub fn of_functions<'a>(
+    folders: &Folders,
+    built: &Built,
+    functions: &[(&'a str, &str)],
+) -> Result<BTreeMap<&'a str, f64>, Failure> {
     let file = folders.work.join(format!("{}.callgrind", built.package));
     output(
         Command::new("valgrind")
@@ -34,18 +45,18 @@ pub fn instructions(folders: &Folders, built: &Built) -> Result<Counts, Failure>
     .map_err(|failure| {
         Failure::new(format!("instructions are counted with valgrind, which failed: {failure}"))
     })?;
-    Ok(parse(&std::fs::read_to_string(&file)?))
+    Ok(parse(&std::fs::read_to_string(&file)?, functions))
 }
 
 /// Reads a profile: a line `cfn=` names the callee, `calls=` says how often, the next line ends with the inclusive cost.
-fn parse(profile: &str) -> Counts {
-    let mut totals: BTreeMap<&'static str, (u64, u64)> = BTreeMap::new();
+fn parse<'a>(profile: &str, functions: &[(&'a str, &str)]) -> BTreeMap<&'a str, f64> {
+    let mut totals: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
     let mut callee = None;
     let mut lines = profile.lines();
     while let Some(line) = lines.next() {
         if let Some(name) = line.strip_prefix("cfn=") {
-            let mut routines = ROUTINES.into_iter().chain(DERIVATIVES).chain([(CONSTRUCTION, ">::hoist")]);
-            callee = routines.find(|(_, function)| name.contains(function)).map(|(routine, _)| routine);
+            let mut routines = functions.iter();
+            callee = routines.find(|(_, function)| name.contains(function)).map(|&(routine, _)| routine);
         } else if let (Some(calls), Some(routine)) = (line.strip_prefix("calls="), callee.take()) {
             let number =
                 |text: &str, at: usize| text.split_whitespace().nth(at).and_then(|word| word.parse().ok());

@@ -56,7 +56,7 @@ pub fn prepare(folders: &Folders, derivations: &[Derivation<'_>]) -> Result<(), 
 }
 
 /// Writes a source file of a package, and its manifest.
-fn write(folders: &Folders, package: &str, file: &str, text: &str) -> Result<(), Failure> {
+pub fn write(folders: &Folders, package: &str, file: &str, text: &str) -> Result<(), Failure> {
     let folder = folders.work.join("crates").join(package);
     std::fs::create_dir_all(folder.join("src"))?;
     let runtime = folders.root.join("runtime").display().to_string();
@@ -260,7 +260,8 @@ fn answer([q, u, a, i]: [usize; 4]) -> String {
     )
 }
 
-fn state(state: &State, inputs: bool) -> String {
+/// A state as Rust expressions: coordinates, speeds, their rates, inputs.
+pub fn state(state: &State, inputs: bool) -> String {
     let record = |name: &str, values: &Named| {
         let fields: Vec<String> = values.iter().map(|(name, value)| format!("{name}: {value:?}")).collect();
         format!("{name} {{ {} }}", fields.join(", "))

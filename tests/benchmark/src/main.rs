@@ -16,6 +16,7 @@ mod rounding;
 mod slopes;
 mod states;
 mod table;
+mod times;
 mod tools;
 mod whole;
 
@@ -34,12 +35,13 @@ struct Arguments {
     tool: Option<PathBuf>,
     /// fetch public robots and compare them, instead of measuring
     robots: bool,
+    /// fetch CasADi and compare times with its code, instead of measuring
+    times: bool,
     /// fetch a peer and measure its rounding anew
     peers: bool,
 }
 
-const USAGE: &str =
-    "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH] [--robots] [--peers]";
+const USAGE: &str = "usage: hodograph-benchmark [--only NAME,NAME..] [--tool PATH-OF-HODOGRAPH] [--robots] [--times] [--peers]";
 
 fn main() -> ExitCode {
     match arguments().and_then(|arguments| run(&arguments)) {
@@ -52,7 +54,7 @@ fn main() -> ExitCode {
 }
 
 fn arguments() -> Result<Arguments, Failure> {
-    let mut arguments = Arguments { only: Vec::new(), tool: None, robots: false, peers: false };
+    let mut arguments = Arguments { only: Vec::new(), tool: None, robots: false, times: false, peers: false };
     let mut words = std::env::args().skip(1);
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| Failure::new(USAGE));
@@ -61,6 +63,7 @@ fn arguments() -> Result<Arguments, Failure> {
             "--tool" => arguments.tool = Some(PathBuf::from(value()?)),
             "--peers" => arguments.peers = true,
             "--robots" => arguments.robots = true,
+            "--times" => arguments.times = true,
             _ => return Err(Failure::new(USAGE)),
         }
     }
@@ -72,6 +75,9 @@ fn run(arguments: &Arguments) -> Result<(), Failure> {
     let tool = tools::tool(&folders, arguments.tool.as_deref())?;
     if arguments.robots {
         return robots::compare(&folders, &tool);
+    }
+    if arguments.times {
+        return times::run(&folders, &tool, &arguments.only);
     }
     let wanted = |case: &Case| arguments.only.is_empty() || arguments.only.contains(&case.name);
     let cases: Vec<Case> = cases::all().into_iter().filter(wanted).collect();

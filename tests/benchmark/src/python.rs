@@ -1,4 +1,4 @@
-//! A Python of the benchmark's own, with Pinocchio.
+//! A Python of the benchmark's own, with Pinocchio and CasADi.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -7,6 +7,9 @@ use crate::tools::{Failure, Folders, output};
 
 /// The program that others are compared with.
 const PINOCCHIO: &str = "pin==4.1.0";
+
+/// What writes the code that ours is timed against.
+const CASADI: &str = "casadi==3.8.2";
 
 /// Fetches Pinocchio into the benchmark's own folder, if it is not there yet; the interpreter.
 pub fn with_pinocchio(folders: &Folders) -> Result<PathBuf, Failure> {
@@ -17,5 +20,12 @@ pub fn with_pinocchio(folders: &Folders) -> Result<PathBuf, Failure> {
         output(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
     }
     output(Command::new(&python).args(["-m", "pip", "--quiet", "install", PINOCCHIO]))?;
+    Ok(python)
+}
+
+/// The same with CasADi.
+pub fn with_casadi(folders: &Folders) -> Result<PathBuf, Failure> {
+    let python = with_pinocchio(folders)?;
+    output(Command::new(&python).args(["-m", "pip", "--quiet", "install", CASADI]))?;
     Ok(python)
 }
