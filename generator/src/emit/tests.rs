@@ -227,7 +227,8 @@ fn only_results_that_no_other_depends_on_are_checked() {
         columns: 1,
         values: vec![first, second, third],
     });
-    let options = Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![] };
+    let options =
+        Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], sets: vec![] };
     let text = module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string();
     let (_, method) = text.split_once("pub fn velocity_p (").expect("the method");
     let (_, check) = method.split_once("all_finite ([").expect("a check");

@@ -435,11 +435,10 @@ pub mod pendulum {
             u: &Speeds<T>,
         ) -> ::core::result::Result<Coordinates<T>, ::hodograph::StateError> {
             let v4 = u.u1;
-            let mut answer = ::core::result::Result::Ok(Coordinates { q1: v4 });
             if !::hodograph::generated::all_finite([v4]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(Coordinates { q1: v4 })
         }
         /// Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.
         #[inline]
@@ -470,13 +469,10 @@ pub mod pendulum {
             let v14 = self.hoisted[1];
             let v5 = inputs.tau;
             let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v15]]),
-            );
             if !::hodograph::generated::all_finite([v15]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(::hodograph::nalgebra::SMatrix::from([[v15]]))
         }
         /// Rates u' of the independent speeds without contact forces, in the units of the speeds per second.
         #[inline]
@@ -494,11 +490,10 @@ pub mod pendulum {
             let v15 = ::hodograph::generated::neg_mul_add(v7, v14, v5);
             let v16 = self.hoisted[2];
             let v17 = v15 * v16;
-            let mut answer = ::core::result::Result::Ok(Speeds { u1: v17 });
             if !::hodograph::generated::all_finite([v17]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(Speeds { u1: v17 })
         }
         /// Kinetic energy of the motion relative to N, in J.
         #[inline]
@@ -511,11 +506,10 @@ pub mod pendulum {
             let v20 = self.hoisted[3];
             let v21 = v4 * v20;
             let v22 = v4 * v21;
-            let mut answer = ::core::result::Result::Ok(v22);
             if !::hodograph::generated::all_finite([v22]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(v22)
         }
         /// Position of `P` from O along N.x, N.y, N.z, in m.
         #[inline]
@@ -535,13 +529,12 @@ pub mod pendulum {
             let v24 = v1 * v8;
             let v37 = -v24;
             let v9 = ::hodograph::generated::number::<T>(0f64);
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v23, v37, v9]]),
-            );
             if !::hodograph::generated::all_finite([v23, v37]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::nalgebra::SMatrix::from([[v23, v37, v9]]),
+            )
         }
         /// Velocity of the striking point relative to what is struck, along the contact basis (rows: normal, first, second), in m/s, at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -564,13 +557,12 @@ pub mod pendulum {
             let v7 = v6;
             let v26 = v7 * v25;
             let v9 = ::hodograph::generated::number::<T>(0f64);
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v39, v26, v9]]),
-            );
             if !::hodograph::generated::all_finite([v26, v39]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::nalgebra::SMatrix::from([[v39, v26, v9]]),
+            )
         }
         /// Response M^-1 V^T: change of the independent speeds (rows) per N s of impulse along the contact basis (columns), or of their rates per N of force, at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -590,13 +582,12 @@ pub mod pendulum {
             let v7 = v6;
             let v36 = v7 * v34;
             let v9 = ::hodograph::generated::number::<T>(0f64);
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v41], [v36], [v9]]),
-            );
             if !::hodograph::generated::all_finite([v36, v41]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::nalgebra::SMatrix::from([[v41], [v36], [v9]]),
+            )
         }
         /// Contact basis (columns: normal, first, second) along N.x, N.y, N.z at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -639,13 +630,12 @@ pub mod pendulum {
             let v40 = -v32;
             let v9 = ::hodograph::generated::number::<T>(0f64);
             let v33 = v7 * v31;
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
-            );
             if !::hodograph::generated::all_finite([v30, v33, v40]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
+            )
         }
         /// Gap, contact basis, velocity and reduced mass matrix at `TipWall` (the bob strikes the wall) in one call.
         #[inline]

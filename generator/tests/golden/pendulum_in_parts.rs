@@ -435,11 +435,10 @@ pub mod pendulum_in_parts {
             u: &Speeds<T>,
         ) -> ::core::result::Result<Coordinates<T>, ::hodograph::StateError> {
             let v4 = u.u1;
-            let mut answer = ::core::result::Result::Ok(Coordinates { q1: v4 });
             if !::hodograph::generated::all_finite([v4]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(Coordinates { q1: v4 })
         }
         /// Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.
         #[inline]
@@ -502,13 +501,10 @@ pub mod pendulum_in_parts {
             let mut of_part_2 = [T::one(); 1];
             part_2(&[v14, v5], &of_part_1, &mut of_part_2);
             let v15 = of_part_2[0];
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v15]]),
-            );
             if !::hodograph::generated::all_finite([v15]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(::hodograph::nalgebra::SMatrix::from([[v15]]))
         }
         /// Rates u' of the independent speeds without contact forces, in the units of the speeds per second.
         #[inline]
@@ -570,11 +566,10 @@ pub mod pendulum_in_parts {
             let mut of_part_3 = [T::one(); 1];
             part_3(&[v16], &of_part_2, &mut of_part_3);
             let v17 = of_part_3[0];
-            let mut answer = ::core::result::Result::Ok(Speeds { u1: v17 });
             if !::hodograph::generated::all_finite([v17]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(Speeds { u1: v17 })
         }
         /// Kinetic energy of the motion relative to N, in J.
         #[inline]
@@ -608,11 +603,10 @@ pub mod pendulum_in_parts {
             let mut of_part_1 = [T::one(); 1];
             part_1(&[v4], &of_part_0, &mut of_part_1);
             let v22 = of_part_1[0];
-            let mut answer = ::core::result::Result::Ok(v22);
             if !::hodograph::generated::all_finite([v22]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(v22)
         }
         /// Position of `P` from O along N.x, N.y, N.z, in m.
         #[inline]
@@ -699,13 +693,12 @@ pub mod pendulum_in_parts {
             part_5(&[], &of_part_4, &mut of_part_5);
             let v23 = of_part_2[0];
             let v37 = of_part_5[0];
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v23, v37, v9]]),
-            );
             if !::hodograph::generated::all_finite([v23, v37]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::nalgebra::SMatrix::from([[v23, v37, v9]]),
+            )
         }
         /// Velocity of the striking point relative to what is struck, along the contact basis (rows: normal, first, second), in m/s, at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -805,13 +798,12 @@ pub mod pendulum_in_parts {
             part_6(&[], &of_part_2, &of_part_5, &mut of_part_6);
             let v26 = of_part_6[0];
             let v39 = of_part_4[0];
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v39, v26, v9]]),
-            );
             if !::hodograph::generated::all_finite([v26, v39]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::nalgebra::SMatrix::from([[v39, v26, v9]]),
+            )
         }
         /// Response M^-1 V^T: change of the independent speeds (rows) per N s of impulse along the contact basis (columns), or of their rates per N of force, at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -898,13 +890,12 @@ pub mod pendulum_in_parts {
             part_5(&[v34], &of_part_4, &mut of_part_5);
             let v36 = of_part_5[0];
             let v41 = of_part_3[0];
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::nalgebra::SMatrix::from([[v41], [v36], [v9]]),
-            );
             if !::hodograph::generated::all_finite([v36, v41]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::nalgebra::SMatrix::from([[v41], [v36], [v9]]),
+            )
         }
         /// Contact basis (columns: normal, first, second) along N.x, N.y, N.z at `TipWall` (the bob strikes the wall).
         #[inline]
@@ -1054,13 +1045,12 @@ pub mod pendulum_in_parts {
             let v30 = of_part_3[0];
             let v33 = of_part_8[0];
             let v40 = of_part_7[0];
-            let mut answer = ::core::result::Result::Ok(
-                ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
-            );
             if !::hodograph::generated::all_finite([v30, v33, v40]) {
-                answer = ::core::result::Result::Err(::hodograph::StateError::NotFinite);
+                return ::core::result::Result::Err(::hodograph::StateError::NotFinite);
             }
-            answer
+            ::core::result::Result::Ok(
+                ::hodograph::ReducedMatrix::new(v30, v40, v9, v33, v9, v9),
+            )
         }
         /// Gap, contact basis, velocity and reduced mass matrix at `TipWall` (the bob strikes the wall) in one call.
         #[inline]

@@ -12,8 +12,8 @@ use crate::tools::{Failure, Folders, output};
 /// How often each routine is evaluated at each state.
 const REPEATS: u64 = 50;
 
-/// The runtime's function for sines and cosines of several angles.
-const ANGLES: &str = "angles::of_doubles";
+/// The runtime's functions for sines and cosines of several angles.
+const ANGLES: &str = "angles::of_";
 
 /// What stands for the routine that computes what depends on parameters alone.
 pub const CONSTRUCTION: &str = "construction";
