@@ -23,7 +23,7 @@ BEGIN {
     # BLOCKS of solve/stop_series.rs, terms of a block, nodes of half a quadrature
     limits["::stop$"] = 12
     limits["stop_series::block$"] = 8
-    limits["SlidingArc<T>>?::step$"] = 8
+    limits["SlidingArc<T>>?::integrate$"] = 8
     limits["SlidingArc<T>>?::direct$"] = 8
     # the last steps of an event's size
     limits["Correction<T>>?::new$"] = 2
@@ -128,14 +128,14 @@ END {
     arc = called("^hodograph::solve::sliding::arc$", 1)
     called("after_slip$", 1)
     find = called("EventLocation<T>>?::find$", 1)
-    step = called("SlidingArc<T>>?::step$", 1)
+    step = called("SlidingArc<T>>?::integrate$", 1)
     searches = "::(find|falling|whole)$"
     fixed = work(solver, searches "|range::rescaled$") + size[called("range::rescaled$", 1)]
     in_stretch = 1
     stretch = work(arc, searches "|perturbed|straight|deviation") + work(called("::falling$", 0), searches)
     # A trial with its quadrature; what a search does once; one of its short steps.
     trial = pass(find, step, "")
-    once = work(find, "SlidingArc<T>>?::(step|short_step)$")
+    once = work(find, "SlidingArc<T>>?::(integrate|short_step)$")
     short = pass(find, called("SlidingArc<T>>?::short_step$", 1), "")
     count = split(budgets, budget, " ")
     for (k = 1; k <= count; k++) {

@@ -121,7 +121,9 @@ impl<T: Real> SlidingArc<T> {
 
 /// Computes eight terms from the two before them, which are the first two of `rows`, and adds them to `total`. Prepares `rows`, `sources` and `taps` for the
 /// next block.
-#[inline(always)]
+///
+/// A function of its own: the bound of a collision's instructions (`tests/firmware/work.awk`) counts its calls.
+#[inline(never)]
 fn block<T: Real>(
     rows: &mut [Row<T>; BLOCK + 2],
     sources: &mut [Row<T>; BLOCK],
@@ -131,13 +133,15 @@ fn block<T: Real>(
     let [p, q, r] = taps.base;
     let [dp, dq, dr] = taps.slope;
     let cells = Cell::from_mut(rows.as_mut_slice()).as_slice_of_cells();
-    for ((window, source), n) in cells.windows(3).zip(sources.iter()).zip(NUMBERS) {
+    let one = [T::one(); 4];
+    let mut n = [T::zero(); 4];
+    for (window, source) in cells.windows(3).zip(sources.iter()) {
         let [before, last, out] = window else { return };
-        let n = [constant::<T>(n); 4];
         let sum = mul_add(mul_add(n, dq, q), last.get(), *source);
         let [a, b, c, d] = mul_add(mul_add(n, dr, r), before.get(), sum);
         let [p, q, r, s] = mul_add(n, dp, p);
         out.set([a / p, b / q, c / r, d / s]);
+        n = added(n, one);
     }
     let [_, _, terms @ ..] = rows;
     for term in terms.iter() {
@@ -160,10 +164,12 @@ fn block<T: Real>(
     *r = mul_add(length, dr, *r);
 }
 
-/// The numbers of the terms of a block.
-const NUMBERS: [f64; BLOCK] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-
 #[inline(always)]
 fn mul_add<T: Real>([a0, a1, a2, a3]: Row<T>, [b0, b1, b2, b3]: Row<T>, [c0, c1, c2, c3]: Row<T>) -> Row<T> {
     [fma(a0, b0, c0), fma(a1, b1, c1), fma(a2, b2, c2), fma(a3, b3, c3)]
+}
+
+#[inline(always)]
+fn added<T: Real>([a0, a1, a2, a3]: Row<T>, [b0, b1, b2, b3]: Row<T>) -> Row<T> {
+    [a0 + b0, a1 + b1, a2 + b2, a3 + b3]
 }
