@@ -86,7 +86,7 @@ macro_rules! models {
         })*
 
         /// What can be measured, each in a run of its own: a name and what it runs.
-        const SUBJECTS: &[(&str, fn())] = &[$(($feature, $module::run),)* ("solver", solver::run)];
+        const SUBJECTS: &[(&str, fn())] = &[$(($feature, $module::run),)* ("sets", sets::run), ("solver", solver::run)];
     };
 }
 
@@ -117,6 +117,48 @@ mod solver {
     pub fn run() {
         hodograph_benchmark_impacts::set("nine").iter().for_each(solve_nine);
         hodograph_benchmark_impacts::set("random").iter().for_each(solve_random);
+    }
+}
+
+/// What a controller asks for, in one call and in one call each: for the arm and the bicycle, at their initial states.
+mod sets {
+    use super::black_box;
+
+    macro_rules! sets {
+        ($($module:ident $type:ident $file:literal $contact:ident $together:ident $separately:ident,)*) => {
+            $(
+                hodograph::mechanism!($file, evaluate control(mass_matrix, forcing, accelerations, $contact));
+
+                #[inline(never)]
+                fn $together(m: &$module::$type<f64>, q: &$module::Coordinates<f64>, u: &$module::Speeds<f64>) {
+                    black_box((module_path!(), stringify!($together)));
+                    let _ = black_box(m.control(q, u));
+                }
+
+                #[inline(never)]
+                fn $separately(m: &$module::$type<f64>, q: &$module::Coordinates<f64>, u: &$module::Speeds<f64>) {
+                    black_box((module_path!(), stringify!($separately)));
+                    let _ = black_box(m.mass_matrix(q));
+                    let _ = black_box(m.forcing(q, u));
+                    let _ = black_box(m.accelerations(q, u));
+                    let _ = black_box(m.$contact(q));
+                }
+            )*
+
+            pub fn run() {
+                $(
+                    let (m, q, u) = black_box((<$module::$type<f64>>::default(), $module::Coordinates::default(), $module::Speeds::default()));
+                    $together(&m, &q, &u);
+                    $separately(&m, &q, &u);
+                )*
+            }
+        };
+    }
+
+    sets! {
+        arm_7dof Arm7dof "../../../models/arm_7dof.mech" contact_matrices_tool_plane arm_7dof_together arm_7dof_separately,
+        four_bar FourBar "../../../models/four_bar.mech" contact_matrices_coupler_wall four_bar_together four_bar_separately,
+        whipple_bicycle WhippleBicycle "../../../models/whipple_bicycle.mech" contact_matrices_kerb whipple_bicycle_together whipple_bicycle_separately,
     }
 }
 
