@@ -2,8 +2,8 @@
 
 mod common;
 
+use common::Model;
 use common::random::samples;
-use common::{Model, models};
 use hodograph::nalgebra::SMatrix;
 use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::program::{ContactQuantity as C, Inputs, Quantity as Q};
@@ -131,35 +131,6 @@ fn array<const N: usize>(numbers: &[f64]) -> [f64; N] {
     numbers.try_into().expect("as many as the record has")
 }
 
-/// Of every shipped model: all quantities in one routine, with equal values computed once, agree with each quantity alone, and take less work than in
-/// the program as it is.
-#[test]
-fn equal_values_are_shared_in_all_models() {
-    let (mut before, mut after) = (0, 0);
-    for model in models() {
-        let all = model.program.quantities();
-        let shared = model.program.with_equal_values_shared(&all);
-        let work = |program: &hodograph_generator::program::Program| program.cost(&all).evaluation().total();
-        assert!(work(&shared) <= work(&model.program), "{}", model.name);
-        (before, after) = (before + work(&model.program), after + work(&shared));
-        let (one, other) = (Evaluator::new(&model.program), Evaluator::new(&shared));
-        let states = model.mechanism.independent_states() + model.mechanism.inputs.len();
-        for sample in samples(&model, 2) {
-            let accelerations = (0..model.freedom()).map(|i| (1.3 * i as f64).cos()).collect();
-            let tangent = (0..states).map(|i| (0.7 + i as f64).sin()).collect();
-            let at = Inputs { accelerations, tangent, ..sample.inputs };
-            let together = other.evaluate(&at, &all).expect("a regular state");
-            for (quantity, array) in all.iter().zip(together) {
-                let alone = one.evaluate(&at, &[*quantity]).expect("a regular state").remove(0).values;
-                let difference = differ(&alone, &array.values);
-                assert!(difference < 1e-10, "{} {quantity}: {difference:e}", model.name);
-            }
-        }
-    }
-    println!("operations of all quantities of all models: {before}, shared {after}");
-    assert!(10 * after < 9 * before, "{before} {after}");
-}
-
 /// What a controller asks for costs less in one call than in several.
 #[test]
 fn a_set_takes_fewer_operations_than_its_methods() {
@@ -172,8 +143,7 @@ fn a_set_takes_fewer_operations_than_its_methods() {
             Q::Contact(0, C::PartialVelocities),
             Q::Contact(0, C::Reduced),
         ];
-        let shared = model.program.with_equal_values_shared(&set);
-        let together = shared.cost(&set).evaluation().total();
+        let together = model.program.cost(&set).evaluation().total();
         let alone: usize = set.iter().map(|&one| model.program.cost(&[one]).evaluation().total()).sum();
         println!("{name}: {together} operations together, {alone} one by one");
         assert!(together < alone, "{name}: {together} {alone}");

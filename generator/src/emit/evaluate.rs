@@ -1,7 +1,6 @@
 //! Emits one method for a set of quantities that the user chooses: what they have in common is computed once.
 //!
-//! A set names routines of the module. Equal operations of their quantities are one value of the program already. Values that are equal in another
-//! form, as those of quantities that went through the passes on their own, become one here (`program/passes/equal.rs`).
+//! A set names routines of the module. Equal operations of their quantities are one value of the program, so that one routine for all of them computes it once.
 
 use std::collections::BTreeSet;
 
@@ -77,16 +76,7 @@ impl Emitter<'_> {
                 quantities.push(quantity);
             }
         }
-        let shared = self.program.with_equal_values_shared(&quantities);
-        let emitter = Emitter {
-            hoisted: self.hoisted.clone(),
-            stages: self.stages.clone(),
-            uses_time: self.uses_time,
-            kinematic_inputs: self.kinematic_inputs,
-            longest: self.longest,
-            ..Emitter::new(self.mechanism, &shared, krate)
-        };
-        let routines = named(emitter.all_routines());
+        let routines = named(self.all_routines());
         let (name, of_type) = (&set.name, format_ident!("{}", set.type_name()));
         let fields: Vec<Ident> =
             routines.iter().map(|routine| crate::rust_names::ident(&routine.name)).collect();
@@ -97,11 +87,11 @@ impl Emitter<'_> {
         let about = format!(" What [`{machine}::{name}`] gives: quantities of one state.");
         let listed: Vec<String> = fields.iter().map(|field| format!("`{field}`")).collect();
         let of_method = format!(
-            " {} of one state in one call. What they have in common is computed once; each is the answer of the method of its name, up to rounding.",
+            " {} of one state in one call. What they have in common is computed once; each is the answer of the method of its name.",
             listed.join(", ")
         );
         let signature = self.signature(self.arguments(&quantities));
-        let body = emitter.compute(&quantities);
+        let body = self.compute(&quantities);
         let record = quote! {
             #[doc = #about]
             #[derive(Clone, Copy, Debug, PartialEq)]
