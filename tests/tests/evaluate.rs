@@ -6,7 +6,7 @@ use common::Model;
 use common::random::samples;
 use hodograph::nalgebra::SMatrix;
 use hodograph_generator::interpret::Evaluator;
-use hodograph_generator::program::{ContactQuantity as C, Inputs, Quantity as Q};
+use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 
 hodograph::mechanism!(
     "../models/four_bar.mech",
