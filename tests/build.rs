@@ -143,6 +143,8 @@ impl Method<'_> {
             "beside!(value)"
         } else if holds("Linearisation") {
             "[by_rows(value.a), by_rows(value.b)].concat()"
+        } else if holds("Result < [T") {
+            "value.to_vec()"
         } else if holds("Result < T ,") {
             "vec![value]"
         } else {

@@ -52,6 +52,25 @@ fn the_same_bits_as_the_interpreter() {
     }
 }
 
+/// `mass_matrix_lower` has the bits of one triangle of `mass_matrix`; where that has one entry only, there is no such method.
+#[test]
+fn one_triangle_of_the_mass_matrix() {
+    let mut tried = 0;
+    for (module, model) in &pairs() {
+        let p = model.freedom();
+        for sample in samples(model, 3) {
+            let lower = module.call("mass_matrix_lower", &sample.inputs);
+            assert_eq!(lower.is_some(), p > 1, "{}", module.name());
+            let Some(lower) = lower else { continue };
+            let whole = model.get(&sample.inputs, Q::MassMatrix).values;
+            let of_row = |row: usize| whole[row * p..=row * p + row].iter().copied();
+            assert_eq!(lower, Ok((0..p).flat_map(of_row).collect()), "{}", module.name());
+            tried += 1;
+        }
+    }
+    assert!(tried > 50, "{tried}");
+}
+
 /// Every quantity that a derivation delivers has a routine, but for those that only collisions use.
 #[test]
 fn every_quantity_has_a_routine() {

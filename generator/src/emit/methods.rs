@@ -30,7 +30,26 @@ impl Emitter<'_> {
             Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
         };
         let described = self.program.outputs.iter().filter_map(described);
-        described.chain(self.all_accelerations()).collect()
+        described.chain(self.all_accelerations()).chain(self.mass_matrix_lower()).collect()
+    }
+
+    /// One triangle of the mass matrix.
+    fn mass_matrix_lower(&self) -> Option<Routine> {
+        let output = self.program.output(Quantity::MassMatrix).filter(|output| output.rows > 1)?;
+        let lower =
+            (0..output.rows).flat_map(|row| (0..=row).map(move |column| row * output.columns + column));
+        let values = lower.map(|place| output.values.get(place).map(|&value| local(value)));
+        let values = values.collect::<Option<Vec<_>>>()?;
+        let count = Literal::usize_unsuffixed(values.len());
+        Some(Routine {
+            name: "mass_matrix_lower".to_string(),
+            docs: "The lower triangle of the mass matrix, row by row: entry (i, j) with j <= i stands at i (i + 1) / 2 + j. LAPACK calls this layout the packed upper triangle. \
+                   The values are those of `mass_matrix`, with fewer numbers to store."
+                .to_string(),
+            quantities: vec![output.quantity],
+            result: quote!([T; #count]),
+            value: quote!([#(#values),*]),
+        })
     }
 
     /// Rates of independent and dependent speeds at once: the second follow from the first.

@@ -2,7 +2,7 @@
 
 The recursions of Featherstone's *Rigid Body Dynamics Algorithms* (2008), in axes of the bodies: composite bodies for the mass matrix, Newton-Euler for
 inverse dynamics, articulated bodies and the factor of the mass matrix for forward dynamics (both are written; the caller counts), the factor for contact
-matrices. For planar chains the mass matrix is also written with absolute angles. All parameters are numbers; `casadi.cse` shares what is common.
+matrices. Derivatives are those of the inverse dynamics, solved with the factor. For planar chains the mass matrix is also written with absolute angles. All parameters are numbers; `casadi.cse` shares what is common.
 
 Arguments: URDF, `fixed` or `floating`, folder. Each routine becomes a function of (q, sines, cosines, u, x), where x is the forces or accelerations;
 coordinates and speeds in Pinocchio's order and conventions.
@@ -12,8 +12,8 @@ import sys
 
 import numpy as np
 import pinocchio
-from casadi import SX
-from vectors import add, apply, cholesky, clean, cross, dense, dot, product, reciprocal, skew, sub, symmetric, times, transposed, vector, write
+from casadi import SX, horzcat, jacobian, substitute, vertcat
+from vectors import add, apply, cholesky, clean, cross, dense, dot, lower, product, reciprocal, skew, sub, symmetric, times, transposed, vector, write
 
 GRAVITY = 9.80665
 
@@ -286,7 +286,11 @@ class Robot:
     def by_factor(self):
         """Accelerations by the mass matrix and its factor."""
         factor, inverse, above = self.factor(self.mass_matrix())
-        x = sub([self.x[k] for k in range(self.count)], self.newton_euler([SX(0)] * self.count))
+        return self.solve(factor, inverse, above, sub([self.x[k] for k in range(self.count)], self.newton_euler([SX(0)] * self.count)))
+
+    def solve(self, factor, inverse, above, x):
+        """M^-1 x"""
+        x = list(x)
         for k in reversed(range(self.count)):
             i = above[k]
             while i >= 0:
@@ -299,6 +303,21 @@ class Robot:
                 x[k] = x[k] - factor[k][i] * x[i]
                 i = above[i]
         return x
+
+    def derivatives(self):
+        """Accelerations, then their derivatives by all coordinates and by all speeds (by columns): those of the inverse dynamics, solved with the factor."""
+        a = self.by_factor()
+        found = vertcat(*self.newton_euler([self.x[k] for k in range(self.count)]))
+        by_q, by_u = jacobian(found, self.q), jacobian(found, self.u)
+        by_sine, by_cosine = jacobian(found, self.sines), jacobian(found, self.cosines)
+        for place, coordinate in enumerate(self.angles):
+            by_q[:, coordinate] += by_sine[:, place] * self.cosines[place] - by_cosine[:, place] * self.sines[place]
+        columns = substitute(horzcat(by_q, by_u), self.x, vertcat(*a))
+        factor, inverse, above = self.factor(self.mass_matrix())
+        entries = list(a)
+        for column in range(columns.shape[1]):
+            entries += self.solve(factor, inverse, above, [-columns[k, column] for k in range(self.count)])
+        return entries
 
     def by_articulated_bodies(self):
         """Accelerations by articulated bodies: inertia [[I, H], [H^T, M]], bias force (couple, force)."""
@@ -514,10 +533,13 @@ def main(path, kind, folder):
         "cm_up": lambda: robot.contact(robot.jacobian()),
         "cm_down": lambda: robot.contact(robot.jacobian_downwards()),
         "m": lambda: dense(robot.mass_matrix()),
+        "ml": lambda: lower(robot.mass_matrix()),
+        "dfd": robot.derivatives,
     }
     planar = robot.planar()
     if planar is not None:
         routines["m_absolute"] = lambda: dense(planar)
+        routines["ml_absolute"] = lambda: lower(planar)
 
     def angles(name):
         each = [f"q[{coordinate}]" for coordinate in robot.angles]

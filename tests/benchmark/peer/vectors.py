@@ -90,6 +90,11 @@ def dense(matrix):
     return [entry for row in zip(*matrix) for entry in row]
 
 
+def lower(matrix):
+    """One triangle of a symmetric matrix, row by row."""
+    return [entry for row, entries in enumerate(matrix) for entry in entries[: row + 1]]
+
+
 def write(folder, inputs, routines, angles):
     """Each routine as `<name>.c` with a function of the inputs (the second and third are sines and cosines); `routines.json` lists them.
 

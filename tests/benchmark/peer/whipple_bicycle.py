@@ -8,7 +8,7 @@ import sys
 from math import cos, pi, sin
 
 from casadi import SX, sqrt
-from vectors import add, apply, cross, dense, dot, product, reciprocal, sub, times, transposed, vector, write
+from vectors import add, apply, cross, dense, lower, dot, product, reciprocal, sub, times, transposed, vector, write
 
 ANGLE = 2 * pi / 5
 
@@ -100,7 +100,7 @@ def main(folder):
     sines, cosines = SX.sym("s", 3), SX.sym("c", 3)
     s, c = ([symbols[k] for k in range(3)] for symbols in (sines, cosines))
     angles = ["q[1]", f"q[2] + {ANGLE!r}", "q[3]"]
-    write(folder, [q, sines, cosines, u, x], {"m": lambda: dense(mass_matrix(s, c))}, lambda _: angles)
+    write(folder, [q, sines, cosines, u, x], {"m": lambda: dense(mass_matrix(s, c)), "ml": lambda: lower(mass_matrix(s, c))}, lambda _: angles)
 
 
 main(*sys.argv[1:])

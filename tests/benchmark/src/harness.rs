@@ -73,6 +73,16 @@ pub fn write_library(folders: &Folders, package: &str, text: &str, module: &str)
 
 /// Compiles a package.
 pub fn cargo(folders: &Folders, package: &str) -> Result<Built, Failure> {
+    compiled(folders, package, "")
+}
+
+/// Compiles a package without dividing it into units, which gives somewhat other code.
+pub fn as_one_unit(folders: &Folders, package: &str) -> Result<Built, Failure> {
+    compiled(folders, package, " -C codegen-units=1")
+}
+
+/// Compiles a package with more flags.
+fn compiled(folders: &Folders, package: &str, flags: &str) -> Result<Built, Failure> {
     let target = folders.work.join("target");
     let mut command = Command::new("cargo");
     command
@@ -81,7 +91,7 @@ pub fn cargo(folders: &Folders, package: &str) -> Result<Built, Failure> {
         .current_dir(folders.work.join("crates"))
         // A cache of compiled crates would hide what compiling takes.
         .env_remove("RUSTC_WRAPPER")
-        .env("RUSTFLAGS", format!("-C target-cpu={TARGET}"));
+        .env("RUSTFLAGS", format!("-C target-cpu={TARGET}{flags}"));
     let taken = effort(&mut command, &folders.work.join("effort"))?;
     let program = target.join("release").join(package);
     Ok(Built { program, package: package.to_owned(), seconds: taken.seconds })

@@ -16,10 +16,13 @@ use crate::tools::{Failure, Folders, output};
 const BOUND: f64 = 1e-11;
 
 /// What the columns of a model's matrices belong to.
-struct Names {
-    coordinates: Vec<String>,
-    speeds: Vec<String>,
-    inputs: Vec<String>,
+pub struct Names {
+    /// coordinates
+    pub coordinates: Vec<String>,
+    /// independent speeds
+    pub speeds: Vec<String>,
+    /// named inputs
+    pub inputs: Vec<String>,
 }
 
 /// The largest difference over all matrices and states; `None` for mechanisms that have no reference.
@@ -60,7 +63,8 @@ pub fn difference(
     Ok(Some(worst))
 }
 
-fn names(derivation: &Derivation<'_>) -> Result<Names, Failure> {
+/// The names in a model.
+pub fn names(derivation: &Derivation<'_>) -> Result<Names, Failure> {
     let mechanism = check(&Source::read(&derivation.path)).mechanism;
     let mechanism = mechanism.ok_or_else(|| Failure::new("a model that was derived is not accepted"))?;
     Ok(Names {
@@ -104,7 +108,7 @@ fn off(found: &[f64], names: &Names, state: &State, expected: &Value, kind: &str
 }
 
 /// What a column of the reference is in the model's columns: that of a speed, an input, or the small motion that a speed stands for.
-fn column(names: &Names, state: &State, speed: &str, by: &str) -> Vec<(usize, f64)> {
+pub fn column(names: &Names, state: &State, speed: &str, by: &str) -> Vec<(usize, f64)> {
     let bare = speed.trim_start_matches("u_");
     let place = |list: &[String], name: String| list.iter().position(|other| *other == name);
     match by {

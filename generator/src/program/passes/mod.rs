@@ -8,12 +8,13 @@ mod collect;
 mod common_subexpressions;
 mod contract;
 mod dead_code;
+mod equal;
 mod factor;
 mod flat_sums;
 mod fold;
 mod frequent_pairs;
 mod identities;
-mod known;
+mod modular;
 mod prune;
 mod reassociate;
 mod rewrite;
@@ -46,7 +47,7 @@ enum Work {
 }
 
 /// The passes in their order.
-pub const PASSES: [Pass; 12] = [
+pub const PASSES: [Pass; 13] = [
     Pass { name: "prune", work: Work::Graph(prune::prune) },
     Pass { name: "fold", work: Work::Graph(fold::fold) },
     Pass { name: "identities", work: Work::Graph(identities::replace) },
@@ -58,6 +59,7 @@ pub const PASSES: [Pass; 12] = [
     Pass { name: "dead code", work: Work::Operations(dead_code::remove) },
     Pass { name: "reassociate", work: Work::Weighed(reassociate::reassociate) },
     Pass { name: "vanishing", work: Work::Operations(vanishing::drop) },
+    Pass { name: "equal values", work: Work::Operations(equal::share) },
     Pass { name: "dead code again", work: Work::Operations(dead_code::remove) },
 ];
 

@@ -1,22 +1,16 @@
 //! Removes operations whose result is identically 0, 1 or -1, as partial sums may be after reassociation: terms that cancel, or the squares of a sine and a
 //! cosine.
 //!
-//! It tests operations as [`super::identities`] tests nodes. The computed rounding error of a sum of angles is 0 in exact arithmetic; it is kept.
+//! Operations are evaluated modulo a prime ([`super::modular`]). The computed rounding error of a sum of angles is 0 in exact arithmetic; it is kept.
 
-use super::known::{Known, PLACES, analytic, arbitrary, seed_of};
-use crate::arithmetic::reproducible::Reproducible;
-use crate::arithmetic::{Arithmetic, Function};
+use super::modular::multiple_of;
 use crate::program::build::Builder;
 use crate::program::operation::{Operation, Value};
 use crate::program::straight_line::Program;
 
-/// What an operation may be identically.
-const NUMBERS: [f64; 3] = [0.0, 1.0, -1.0];
-
 /// The program without what vanishes or is identically 1 or -1.
 pub fn drop(program: &Program) -> Program {
-    let all = vec![true; program.operations.len()];
-    let places: Vec<Vec<Known>> = (0..PLACES).map(|place| evaluated(program, place, &all)).collect();
+    let residues = program.residues();
     let number = |value: Value| {
         let is_made = matches!(
             program.operation(value),
@@ -29,8 +23,8 @@ pub fn drop(program: &Program) -> Program {
                 | Operation::MulSub(..)
                 | Operation::NegMulAdd(..)
         );
-        let is = |number: &f64| places.iter().all(|known| known[value.index()].is(*number));
-        NUMBERS.into_iter().filter(|_| is_made).find(is)
+        let residues = residues[value.index()].filter(|_| is_made)?;
+        multiple_of(&residues, 1, 1).map(|number| number as f64)
     };
     if (0..program.operations.len()).all(|index| number(Value(index as u32)).is_none()) {
         return program.clone();
@@ -90,65 +84,12 @@ fn rebuilt(builder: &mut Builder, operation: Operation) -> Value {
     }
 }
 
-/// The values that are needed at one place; in the place of others stands 0. The operands of what is needed are needed too.
-pub fn evaluated(program: &Program, place: usize, needed: &[bool]) -> Vec<Known> {
-    let mut numbers: Vec<Known> = Vec::with_capacity(program.operations.len());
-    for (index, &operation) in program.operations.iter().enumerate() {
-        if !needed[index] {
-            numbers.push(Known::exact(Reproducible::exactly(0.0)));
-            continue;
-        }
-        let of = |value: Value| numbers[value.index()];
-        let unknown = || arbitrary(1 << 40 | index as u64, place);
-        let one = || Known::exact(Reproducible::exactly(1.0));
-        let function = |function, a| analytic(function, of(a)).unwrap_or_else(unknown);
-        let number = match operation {
-            _ if is_rounding(program, operation) => unknown(),
-            Operation::Constant(bits) => Known::exact(Reproducible::exactly(bits.get())),
-            Operation::Input(input) => arbitrary(seed_of(input), place),
-            Operation::Neg(a) => of(a).opposite(),
-            Operation::Add(a, b) => Known::sum([of(a), of(b)].into_iter()),
-            Operation::Sub(a, b) => Known::sum([of(a), of(b).opposite()].into_iter()),
-            Operation::Mul(a, b) => of(a).times(of(b)),
-            Operation::Div(a, b) => of(a).times(of(b).reciprocal()),
-            Operation::Recip(a) => one().times(of(a).reciprocal()),
-            Operation::MulAdd(a, b, c) => Known::sum([of(a).times(of(b)), of(c)].into_iter()),
-            Operation::MulSub(a, b, c) => Known::sum([of(a).times(of(b)), of(c).opposite()].into_iter()),
-            Operation::NegMulAdd(a, b, c) => Known::sum([of(a).times(of(b)).opposite(), of(c)].into_iter()),
-            // the angle: sine and cosine are taken out of it below
-            Operation::SinCos(a) => of(a),
-            Operation::Sine(pair) => function(Function::Sin, pair),
-            Operation::Cosine(pair) => function(Function::Cos, pair),
-            Operation::Call(name, a) => function(name, a),
-            Operation::Call2(..) => unknown(),
-        };
-        numbers.push(number);
-    }
-    numbers
-}
-
-/// Whether it is a part of what rounding takes from a sum, `a - (t - (t - a))` where t is a sum with a, however its operations are fused.
-fn is_rounding(program: &Program, operation: Operation) -> bool {
-    let (first, second) = match operation {
-        Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),
-        Operation::MulAdd(_, _, c) | Operation::MulSub(_, _, c) | Operation::NegMulAdd(_, _, c) => (c, c),
-        _ => return false,
-    };
-    let returns = |term: Value, part: Value| match program.operation(part) {
-        Operation::Sub(total, other) => {
-            let mut parts = program.operation(total).operands();
-            let again = matches!(program.operation(other), Operation::Sub(t, _) if t == total);
-            again || parts.any(|part| part == term || part == other)
-        }
-        _ => false,
-    };
-    returns(first, second) || returns(second, first)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::testing::{agree, operations, random, small, speeds};
     use super::*;
+    use crate::arithmetic::Function;
+    use crate::program::graph::NodeKind;
     use crate::program::lower::lower;
 
     #[test]
@@ -201,6 +142,21 @@ mod tests {
         agree(&fused, &dropped, "fused");
         let left = operations(&dropped);
         assert!(left.iter().all(|kind| kind == "Neg" || kind == "Mul"), "{left:?}");
+    }
+
+    #[test]
+    fn what_is_only_very_small_stays() {
+        let derived = small(|graph| {
+            let [x, y, ..] = speeds(graph);
+            let tiny =
+                graph.number(crate::number::Number(num_rational::BigRational::from_float(1e-60).unwrap()));
+            let (little, minus) = (graph.product([tiny, y]), graph.integer(-1));
+            let opposite = graph.product([minus, x]);
+            let inner = graph.intern(NodeKind::Sum(vec![x, little]));
+            vec![graph.intern(NodeKind::Sum(vec![inner, opposite]))]
+        });
+        let program = lower(&derived);
+        assert_eq!(drop(&program), program);
     }
 
     #[test]

@@ -13,15 +13,22 @@ use serde_json::Value;
 use crate::cases::{self, Case, Origin};
 use crate::count;
 use crate::derive::{self, Derivation};
-use crate::harness::{self, Built, ROUTINES, TARGET};
+use crate::harness::{self, Built, DERIVATIVES, ROUTINES, TARGET};
 use crate::peers;
 use crate::python;
-use crate::states::{self, Named};
+use crate::slopes::{self, Names};
+use crate::states::{self, Named, State};
 use crate::tools::{Failure, Folders, output};
 use program::Peer;
 
 /// Mechanisms that are timed.
 const TIMED: [&str; 6] = ["dpend", "cart5", "panda", "anymal", "whipple_bicycle", "chain20"];
+
+/// What is timed: short name, and our function in the program.
+fn routines() -> impl Iterator<Item = (&'static str, &'static str)> {
+    let [derivatives, ..] = DERIVATIVES;
+    ROUTINES.into_iter().chain([("M, one triangle", "measured_ml"), derivatives])
+}
 
 /// Numbers must agree to this, as a part of the largest.
 const AGREEMENT: f64 = 1e-10;
@@ -55,7 +62,7 @@ pub fn run(folders: &Folders, tool: &Path, only: &[String]) -> Result<(), Failur
         let peers = peer(folders, &python, fixed)?;
         let slow = measure(folders, run_time, &peers)?;
         let fast = measure(folders, fixed, &peers)?;
-        for (routine, function) in ROUTINES {
+        for (routine, function) in routines() {
             let alternatives: Vec<&Peer> = peers.iter().filter(|peer| peer.routine == routine).collect();
             if alternatives.is_empty() {
                 continue;
@@ -128,7 +135,11 @@ fn peer(folders: &Folders, python: &Path, derivation: &Derivation<'_>) -> Result
 }
 
 fn of_json(name: &str, value: &Value) -> Peer {
-    let routine = name.split('_').next().unwrap_or("").to_uppercase();
+    let routine = match name.split('_').next().unwrap_or("") {
+        "ml" => "M, one triangle".to_owned(),
+        "dfd" => "dFD".to_owned(),
+        other => other.to_uppercase(),
+    };
     let angle =
         |entry: &Value| (entry[0].as_u64().unwrap_or(0), entry[1].as_str().unwrap_or_default().to_owned());
     Peer {
@@ -150,9 +161,8 @@ fn measure(folders: &Folders, derivation: &Derivation<'_>, peers: &[Peer]) -> Re
     std::fs::write(build, program::build(&library))?;
     let built = harness::cargo(folders, &package)?;
     agree(&built, derivation, peers)?;
-    let names: Vec<String> = ROUTINES
-        .iter()
-        .map(|(_, function)| (*function).to_owned())
+    let names: Vec<String> = routines()
+        .map(|(_, function)| function.to_owned())
         .chain(peers.iter().flat_map(|peer| [format!("own_{}", peer.name), format!("shared_{}", peer.name)]))
         .collect();
     let functions: Vec<(&str, &str)> = names.iter().map(|name| (name.as_str(), name.as_str())).collect();
@@ -169,20 +179,28 @@ fn measure(folders: &Folders, derivation: &Derivation<'_>, peers: &[Peer]) -> Re
 /// Holds the numbers of the peer to ours.
 fn agree(built: &Built, derivation: &Derivation<'_>, peers: &[Peer]) -> Result<(), Failure> {
     let answers = output(Command::new(&built.program).arg("numbers"))?;
+    let names = slopes::names(derivation)?;
     let mut lines = answers.lines();
     let mut next = || -> Vec<f64> {
         lines.next().unwrap_or("").split_whitespace().filter_map(|word| word.parse().ok()).collect()
     };
     for state in &derivation.states {
-        let ours: Vec<Vec<f64>> = ROUTINES.iter().map(|_| next()).collect();
+        let ours: Vec<Vec<f64>> = routines().map(|_| next()).collect();
         for peer in peers {
-            let Some(at) = ROUTINES.iter().position(|(routine, _)| *routine == peer.routine) else {
+            let Some(at) = routines().position(|(routine, _)| routine == peer.routine) else {
                 continue;
             };
             for trigonometry in ["own", "shared"] {
-                let found = next();
+                let mut found = next();
+                let mut ours = ours[at].clone();
+                if peer.routine == "dFD" {
+                    let of = |list: &Named| list.iter().map(|(name, _)| name.clone()).collect();
+                    let theirs =
+                        Names { coordinates: of(&state.q), speeds: of(&state.u), inputs: Vec::new() };
+                    (found, ours) = (of_motions(&found, &theirs, state), of_motions(&ours, &names, state));
+                }
                 let off = |turn: usize| {
-                    let expected = reordered(&ours[at], &peer.routine, &derivation.speeds, &state.u, turn);
+                    let expected = reordered(&ours, &peer.routine, &derivation.speeds, &state.u, turn);
                     let largest = expected.iter().fold(0.0f64, |largest, value| largest.max(value.abs()));
                     let errors = found.iter().zip(&expected).map(|(a, b)| (a - b).abs());
                     let error = errors.fold(0.0, f64::max) / largest;
@@ -207,6 +225,27 @@ const TURNS: [([usize; 3], [f64; 3]); 4] = [
     ([0, 2, 1], [1.0, -1.0, -1.0]),
 ];
 
+/// Values and their derivatives (by columns) with respect to all motions and all speeds, in the order of the speeds of the state. A motion is what a speed does.
+fn of_motions(numbers: &[f64], names: &Names, state: &State) -> Vec<f64> {
+    let rows = names.speeds.len();
+    let column = |at: usize| -> Vec<f64> {
+        let column = numbers.get(rows * at..rows * (at + 1)).unwrap_or_default();
+        let place = |name: &String| names.speeds.iter().position(|other| other == name);
+        state.u.iter().map(|(name, _)| place(name).map_or(f64::NAN, |row| column[row])).collect()
+    };
+    let mut all = column(0);
+    for (by, before) in [("q", 1), ("v", 1 + names.coordinates.len())] {
+        for (speed, _) in &state.u {
+            let mut sum = vec![0.0; rows];
+            for (at, part) in slopes::column(names, state, speed, by) {
+                sum.iter_mut().zip(column(before + at)).for_each(|(sum, entry)| *sum += part * entry);
+            }
+            all.extend(sum);
+        }
+    }
+    all
+}
+
 /// Our numbers in the peer's order of the speeds; `turn` is how our contact basis lies.
 fn reordered(ours: &[f64], routine: &str, speeds: &[String], peers: &Named, turn: usize) -> Vec<f64> {
     let place = |name: &String| speeds.iter().position(|other| other == name).unwrap_or(usize::MAX);
@@ -215,6 +254,13 @@ fn reordered(ours: &[f64], routine: &str, speeds: &[String], peers: &Named, turn
     let count = order.len();
     match routine {
         "FD" | "ID" => order.iter().map(|&at| entry(at)).collect(),
+        // in this order already
+        "dFD" => ours.to_vec(),
+        "M, one triangle" => {
+            let lower = |a: usize, b: usize| entry(a.max(b) * (a.max(b) + 1) / 2 + a.min(b));
+            let of_row = |row: usize| order[..=row].iter().map(|&column| lower(order[row], column)).collect();
+            (0..count).flat_map(|row| -> Vec<f64> { of_row(row) }).collect()
+        }
         "M" => (0..count * count).map(|at| entry(order[at / count] * count + order[at % count])).collect(),
         _ => {
             // The peer's rows are along z, y, x; our second and third axis are those but for a quarter turn.

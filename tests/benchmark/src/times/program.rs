@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::derive::Derivation;
 use crate::harness;
+use crate::times::routines;
 
 /// A routine of the peer.
 pub struct Peer {
@@ -105,6 +106,10 @@ fn measured_id({given}) -> Result<SMatrix<f64, {p}, 1>, StateError> {{ m.inverse
 fn measured_cm({given}) -> Result<(SMatrix<f64, 3, {p}>, ReducedMatrix<f64>), StateError> {{ m.contact_matrices_{contact}(q) }}
 #[inline(never)]
 fn measured_m({given}) -> Result<SMatrix<f64, {p}, {p}>, StateError> {{ m.mass_matrix(q) }}
+#[inline(never)]
+fn measured_ml({given}) -> Result<[f64; {lower}], StateError> {{ m.mass_matrix_lower(q) }}
+#[inline(never)]
+fn measured_dfd({given}) -> Result<Derivatives<f64>, StateError> {{ m.accelerations_derivatives(q, u{inputs}) }}
 
 struct State {{ q: Coordinates, u: Speeds, a: Speeds, i: {record}, none: {record}, peer_q: Vec<f64>, peer_u: Vec<f64>, peer_a: Vec<f64>, peer_x: Vec<f64> }}
 type Foreign = unsafe extern \"C\" fn(*const f64, *const f64, *const f64, *mut f64);
@@ -141,6 +146,7 @@ fn least(calls: &mut [(&str, &mut dyn FnMut(usize))]) {{
 }}
 ",
         p = derivation.speeds.len(),
+        lower = derivation.speeds.len() * (derivation.speeds.len() + 1) / 2,
         contact = case.contact,
     );
     text += &sines();
@@ -206,12 +212,15 @@ fn calls(derivation: &Derivation<'_>, peers: &[Peer]) -> String {
             "black_box({name}(black_box(&m), black_box(&s.q), black_box(&s.u), black_box(&s.a), black_box(&s.{inputs})))"
         )
     };
-    for (routine, name) in harness::ROUTINES {
+    for (routine, name) in routines() {
         let call = ours(name);
         let shown = match routine {
             "FD" => format!("<[f64; {speeds}]>::from(r)"),
             "ID" => "r.as_slice()".to_owned(),
             "M" => "r.transpose().as_slice()".to_owned(),
+            "M, one triangle" => "r".to_owned(),
+            "dFD" => "[r.value.as_slice(), r.by_coordinates.as_slice(), r.by_speeds.as_slice()].concat()"
+                .to_owned(),
             _ => "[r.0.transpose().as_slice(), &<[f64; 6]>::from(r.1)].concat()".to_owned(),
         };
         let shown = if matches!(routine, "M" | "ID") { shown } else { format!("&{shown}") };
@@ -238,9 +247,8 @@ fn calls(derivation: &Derivation<'_>, peers: &[Peer]) -> String {
         }
     }
     let longest = peers.iter().map(|peer| peer.length).max().unwrap_or(1);
-    let names = harness::ROUTINES
-        .iter()
-        .map(|(_, name)| (*name).to_owned())
+    let names = routines()
+        .map(|(_, name)| name.to_owned())
         .chain(peers.iter().flat_map(|peer| [format!("own_{}", peer.name), format!("shared_{}", peer.name)]));
     let listed: Vec<String> = names.map(|name| format!("(\"{name}\", &mut {name}_)")).collect();
     format!(
