@@ -13,14 +13,15 @@ pub fn emitted(
     mechanism: &Mechanism,
     sets: &Sets,
     at: Span,
-    found: impl FnOnce() -> Result<(Program, Options), String>,
+    options: &Options,
+    found: impl FnOnce() -> Result<Program, String>,
 ) -> Result<TokenStream, TokenStream> {
     if let Some(errors) = sets.errors(&[]) {
         return Err(errors);
     }
-    let (program, options) = found().map_err(|message| report::error(at, at, &message))?;
+    let program = found().map_err(|message| report::error(at, at, &message))?;
     if let Some(errors) = sets.errors(&emit::mistakes(mechanism, &program, &sets.sets)) {
         return Err(errors);
     }
-    emit::module(mechanism, &program, &options).map_err(|message| report::error(at, at, &message))
+    emit::module(mechanism, &program, options).map_err(|message| report::error(at, at, &message))
 }

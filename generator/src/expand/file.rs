@@ -109,15 +109,10 @@ pub fn expand(path: &ModelPath, sets: &Sets, krate: &TokenStream, package: &Path
     if kept.is_file() {
         tracked_files.push(tracked(&shown, place.in_package));
     }
-    let result = emitted(&mechanism, sets, path.span, || {
-        let options = emit::Options {
-            krate: krate.clone(),
-            module: module.clone(),
-            tracked: tracked_files.clone(),
-            sets: sets.sets.clone(),
-        };
-        Ok((derivation::find(&source, &mechanism, &kept, &shown, &command)?, options))
-    });
+    let (krate, files, sets_asked) = (krate.clone(), tracked_files.clone(), sets.sets.clone());
+    let options = emit::Options { krate, module: module.clone(), tracked: files, sets: sets_asked };
+    let found = || derivation::find(&source, &mechanism, &kept, &shown, &command);
+    let result = emitted(&mechanism, sets, path.span, &options, found);
     result.unwrap_or_else(|errors| failed(&errors, &tracked_files))
 }
 

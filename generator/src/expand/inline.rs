@@ -37,15 +37,10 @@ pub fn expand(model: TokenStream, sets: &Sets, krate: &TokenStream, package: &Pa
     let tracked =
         path.is_file().then(|| quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative)));
     let tracked: Vec<TokenStream> = tracked.into_iter().collect();
-    let result = emitted(&mechanism, sets, at, || {
-        let options = emit::Options {
-            krate: krate.clone(),
-            module: module.clone(),
-            tracked: tracked.clone(),
-            sets: sets.sets.clone(),
-        };
-        Ok((derivation::find(&source, &mechanism, &path, &shown, &command)?, options))
-    });
+    let (krate, files, sets_asked) = (krate.clone(), tracked.clone(), sets.sets.clone());
+    let options = emit::Options { krate, module: module.clone(), tracked: files, sets: sets_asked };
+    let found = || derivation::find(&source, &mechanism, &path, &shown, &command);
+    let result = emitted(&mechanism, sets, at, &options, found);
     result.unwrap_or_else(|errors| failed(&errors, &tracked))
 }
 

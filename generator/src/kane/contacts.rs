@@ -7,6 +7,7 @@ use crate::algebra::Expr;
 use crate::arithmetic::Function;
 use crate::kinematics::axes::{AxesId, AxesTree, unit};
 use crate::kinematics::linear_forms::{self, LinearVector, Triple};
+use crate::kinematics::partial_velocities::Along;
 use crate::kinematics::{Kinematics, vectors};
 use crate::model::mechanism::{Against, Body, BodyId, Contact, FrameId, PointId, Vector};
 
@@ -26,26 +27,26 @@ pub struct ContactForms {
     pub forces: Option<[Wrenches; 3]>,
 }
 
-/// The forms of a contact.
-pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact) -> ContactForms {
+/// The forms of a contact, its partial velocities found along these axes.
+pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact, along: Along) -> ContactForms {
     let normal = k.vector(&contact.normal);
     let axes = match normal.len() {
         1 => normal.keys().next().copied().unwrap_or(AxesTree::N),
         _ => k.meeting(normal.keys().copied(), std::iter::empty()),
     };
     let normal = k.express(&normal, axes);
-    let relative = relative_velocity(k, contact, axes);
+    let relative = relative_velocity(k, contact, axes, along);
     let relative = without_dependent(k, &relative);
     let (first, second) = tangents(k, &normal, &relative);
-    let along: [Triple; 3] = [normal, first, second];
+    let basis: [Triple; 3] = [normal, first, second];
     let partials: [BTreeMap<usize, Expr>; 3] = std::array::from_fn(|i| {
-        let form = relative.dot(&along[i]).map(|c| k.z.simplify(c));
+        let form = relative.dot(&basis[i]).map(|c| k.z.simplify(c));
         form.terms.into_iter().map(|(slot, c)| (slot, k.z.name(c))).collect()
     });
-    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear_forms::dot(&relative.rest, &along[i])));
+    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear_forms::dot(&relative.rest, &basis[i])));
     let planar = partials[2].is_empty() && remainder[2].is_zero();
-    let forces = unit_forces(k, contact, axes, &along);
-    let basis = along.map(|v| {
+    let forces = unit_forces(k, contact, axes, &basis);
+    let basis = basis.map(|v| {
         let v = linear_forms::name(&mut k.z, v);
         k.tree.convert(&mut k.z, &v, axes, AxesTree::N)
     });
@@ -88,24 +89,24 @@ fn movers<'m>(k: &Kinematics<'m>, contact: &'m Contact) -> (Mover<'m>, Option<Mo
 }
 
 /// v^R of (3), of all speeds, along given axes.
-fn relative_velocity(k: &mut Kinematics<'_>, contact: &Contact, axes: AxesId) -> LinearVector {
+fn relative_velocity(k: &mut Kinematics<'_>, contact: &Contact, axes: AxesId, along: Along) -> LinearVector {
     let (striking, struck) = movers(k, contact);
     let difference = match struck {
-        None => velocity(k, &striking, axes),
+        None => velocity(k, &striking, axes, along),
         Some(struck) => {
-            let of_point = velocity(k, &striking, axes);
-            let of_struck = velocity(k, &struck, axes);
+            let of_point = velocity(k, &striking, axes, along);
+            let of_struck = velocity(k, &struck, axes, along);
             of_point.add(&of_struck.map(|p| linear_forms::scale(&Expr::integer(-1), p)))
         }
     };
     difference.map(|p| linear_forms::name(&mut k.z, p.clone()))
 }
 
-fn velocity(k: &mut Kinematics<'_>, of: &Mover<'_>, axes: AxesId) -> LinearVector {
+fn velocity(k: &mut Kinematics<'_>, of: &Mover<'_>, axes: AxesId, along: Along) -> LinearVector {
     match *of {
-        Mover::Point(point) => k.partial_velocities(point, axes),
+        Mover::Point(point) => k.partial_velocities(point, axes, along),
         Mover::Material(point, frame, centre) => {
-            k.partial_velocities_of_material_point(point, centre, frame, axes)
+            k.partial_velocities_of_material_point(point, centre, frame, axes, along)
         }
         Mover::Surface(velocity) => {
             let velocity = k.linear_vector(velocity);
@@ -180,7 +181,7 @@ fn tangents(k: &mut Kinematics<'_>, normal: &Triple, relative: &LinearVector) ->
 }
 
 /// Partial velocities of a point along N, in independent speeds, by slot, and the remainder.
-pub fn point_jacobian(k: &mut Kinematics<'_>, point: PointId) -> LinearVector {
-    let form = k.partial_velocities(point, AxesTree::N);
+pub fn point_jacobian(k: &mut Kinematics<'_>, point: PointId, along: Along) -> LinearVector {
+    let form = k.partial_velocities(point, AxesTree::N, along);
     without_dependent(k, &form)
 }

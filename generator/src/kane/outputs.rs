@@ -16,6 +16,7 @@ use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
 use crate::kinematics::axes::{AxesTree, unit};
 use crate::kinematics::linear_forms::LinearScalar;
+use crate::kinematics::partial_velocities::Along;
 use crate::kinematics::solve::Solver;
 use crate::model::mechanism::{FrameId, Place, PointId};
 use crate::program::differentiate::differentiate;
@@ -447,16 +448,23 @@ impl Writer<'_, '_> {
             let velocity = self.k.tree.convert(&mut self.k.z, &velocity, axes, AxesTree::N);
             let nodes = self.nodes(&velocity);
             self.put(of(PointQuantity::Velocity), 3, 1, nodes);
-            let form = point_jacobian(self.k, point);
-            let mut entries = Vec::new();
-            for i in 0..3 {
-                for slot in &self.independent {
-                    entries.push(form.terms.get(slot).map_or_else(Expr::zero, |partial| partial[i].clone()));
-                }
-            }
-            let nodes = self.nodes(&entries);
+            let nodes = self.point_jacobian(point);
             self.put(of(PointQuantity::Jacobian), 3, self.independent.len(), nodes);
         }
+    }
+
+    /// The partial velocities of a point along N, row by row, found in the way that takes fewer operations.
+    fn point_jacobian(&mut self, point: PointId) -> Vec<Node> {
+        let [usual, other] = [Along::Result, Along::Home].map(|along| {
+            let form = point_jacobian(self.k, point, along);
+            let places = (0..3).flat_map(|i| self.independent.iter().map(move |slot| (i, slot)));
+            let entry = |(i, slot): (usize, &usize)| {
+                form.terms.get(slot).map_or_else(Expr::zero, |partial| partial[i].clone())
+            };
+            let entries: Vec<Expr> = places.map(entry).collect();
+            self.nodes(&entries)
+        });
+        if self.graph.cost(&other) < self.graph.cost(&usual) { other } else { usual }
     }
 
     fn orientations(&mut self) {

@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use super::Kinematics;
 use super::axes::{AxesId, AxesTree};
 use super::linear_forms::{LinearScalar, LinearVector};
+use super::partial_velocities::Along;
 use crate::algebra::{Expr, Intermediates, Sample};
 use crate::model::mechanism::{DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Vector};
 use crate::numeric;
@@ -100,7 +101,7 @@ impl Kinematics<'_> {
                 terms.iter().fold(LinearVector::zero(), |sum, term| sum.add(&self.vector_along(term, axes)))
             }
             Vector::Neg(inner) => self.vector_along(inner, axes).scale(&Expr::integer(-1)),
-            Vector::Velocity(point) if self.solved => self.partial_velocities(*point, axes),
+            Vector::Velocity(point) if self.solved => self.partial_velocities(*point, axes, Along::Result),
             Vector::Definition(id) => {
                 let mechanism = self.mechanism;
                 match &mechanism.definitions[id.0].value {

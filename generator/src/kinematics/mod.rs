@@ -13,6 +13,7 @@ pub mod evaluate;
 pub mod frames;
 pub mod linear_forms;
 pub mod motion;
+pub mod partial_velocities;
 pub mod points;
 pub mod rates;
 pub mod solve;

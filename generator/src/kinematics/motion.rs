@@ -1,9 +1,8 @@
 //! Builds the graph of velocities, one relation per frame and per point, and computes velocities and partial velocities from it.
 
-use std::collections::BTreeMap;
-
 use super::axes::{AxesId, AxesTree, Turn};
 use super::linear_forms::{self, LinearVector, Triple};
+use super::partial_velocities::Along;
 use super::vectors::{add_linear, scale_linear};
 use super::{Arm, DeriveError, FrameMotion, Kinematics, MixedLinear, PointMotion};
 use crate::algebra::Expr;
@@ -193,87 +192,8 @@ impl Kinematics<'_> {
             return self.derived_velocity(point);
         }
         let home = self.points[point.0].home;
-        let form = self.partial_velocities(point, home);
+        let form = self.partial_velocities(point, home, Along::Result);
         if form.is_zero() { MixedLinear::new() } else { [(home, form)].into() }
-    }
-
-    /// Partial velocities and remainder of a point, along given axes: each frame that turns contributes its partial
-    /// angular velocities crossed with the whole arm that it carries.
-    pub fn partial_velocities(&mut self, point: PointId, axes: AxesId) -> LinearVector {
-        let mut carried: BTreeMap<FrameId, Triple> = BTreeMap::new();
-        let mut sum = LinearVector::zero();
-        let mut at = Some(point);
-        while let Some(id) = at {
-            let motion = self.points[id.0].clone();
-            for arm in &motion.arms {
-                let turned = self.tree.convert_far(&mut self.z, &arm.arm, arm.axes, axes);
-                let total = carried
-                    .get(&arm.frame)
-                    .map_or_else(|| turned.clone(), |have| linear_forms::add(have, &turned));
-                carried.insert(arm.frame, total);
-            }
-            for (from, relative) in &motion.relative {
-                let part = relative.map(|p| self.tree.convert_far(&mut self.z, p, *from, axes));
-                sum = sum.add(&part);
-            }
-            at = motion.base;
-        }
-        let turning = self.turning_parts(carried, axes);
-        self.tidy(&sum.add(&turning))
-    }
-
-    /// The form with its components simplified and named.
-    fn tidy(&mut self, form: &LinearVector) -> LinearVector {
-        form.map(|p| {
-            let simple = p.clone().map(|c| self.z.simplify(&c));
-            linear_forms::name(&mut self.z, simple)
-        })
-    }
-
-    /// `sum over frames of (angular velocity x arm)` as a form, from the arms that each frame carries.
-    fn turning_parts(&mut self, mut carried: BTreeMap<FrameId, Triple>, axes: AxesId) -> LinearVector {
-        let mut sum = LinearVector::zero();
-        // Deepest frames first: what a frame carries, its base carries too.
-        let mut open: Vec<FrameId> = carried.keys().copied().collect();
-        while !open.is_empty() {
-            let deepest =
-                (0..open.len()).max_by_key(|&i| (self.ancestry(open[i]).len(), open[i])).unwrap_or(0);
-            let frame = open.swap_remove(deepest);
-            let Some(arm) = carried.remove(&frame) else { continue };
-            let arm = linear_forms::name(&mut self.z, arm);
-            let motion = self.frames[frame.0].clone();
-            let relative = motion.relative.map(|p| self.tree.convert_far(&mut self.z, p, motion.home, axes));
-            sum = sum.add(&relative.map(|w| linear_forms::cross(w, &arm)));
-            if motion.base != FrameId::N {
-                let total = carried
-                    .get(&motion.base)
-                    .map_or_else(|| arm.clone(), |have| linear_forms::add(have, &arm));
-                carried.insert(motion.base, total);
-                if !open.contains(&motion.base) {
-                    open.push(motion.base);
-                }
-            }
-        }
-        sum
-    }
-
-    /// Partial velocities of the material point of `frame` that coincides with `point`.
-    pub fn partial_velocities_of_material_point(
-        &mut self,
-        point: PointId,
-        centre: PointId,
-        frame: FrameId,
-        axes: AxesId,
-    ) -> LinearVector {
-        let base = self.partial_velocities(centre, axes);
-        let arm = self.position(point, centre);
-        let arm = self.express(&arm, axes);
-        let turning = self.turning(frame);
-        if turning == FrameId::N || linear_forms::is_zero(&arm) {
-            return base;
-        }
-        let part = self.turning_parts([(turning, arm)].into(), axes);
-        self.tidy(&base.add(&part))
     }
 
     /// Value of a frame's angular velocity in N, in its home axes.

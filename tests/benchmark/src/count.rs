@@ -69,8 +69,9 @@ fn parse<'a>(profile: &str, functions: &[(&'a str, &str)]) -> BTreeMap<&'a str, 
     let mut lines = profile.lines();
     while let Some(line) = lines.next() {
         if let Some(name) = line.strip_prefix("cfn=") {
-            let mut routines = functions.iter();
-            callee = routines.find(|(_, function)| name.contains(function)).map(|&(routine, _)| routine);
+            // `measured_ml` contains `measured_m`: the longest name is meant.
+            let named = functions.iter().filter(|(_, function)| name.contains(function));
+            callee = named.max_by_key(|(_, function)| function.len()).map(|&(routine, _)| routine);
         } else if let (Some(calls), Some(routine)) = (line.strip_prefix("calls="), callee.take()) {
             let number =
                 |text: &str, at: usize| text.split_whitespace().nth(at).and_then(|word| word.parse().ok());

@@ -7,6 +7,7 @@ use crate::algebra::Expr;
 use crate::kane::articulated::Articulated;
 use crate::kane::contacts::{ContactForms, contact_forms};
 use crate::kane::forces::Wrenches;
+use crate::kinematics::partial_velocities::Along;
 use crate::model::mechanism::Contact;
 use crate::program::differentiate::differentiate;
 use crate::program::graph::{Graph, Input, Node};
@@ -25,14 +26,27 @@ struct Responses {
 }
 
 impl Writer<'_, '_> {
-    /// The forms of all contacts.
+    /// The forms of all contacts, found in the way that takes fewer operations.
     pub(super) fn contact_forms(&mut self) -> Vec<ContactForms> {
         let mechanism = self.k.mechanism;
-        let forms = |contact: &Contact| {
+        mechanism.contacts.iter().map(|contact| self.cheaper_forms(contact)).collect()
+    }
+
+    fn cheaper_forms(&mut self, contact: &Contact) -> ContactForms {
+        let [(cost, usual), (other_cost, other)] = [Along::Result, Along::Home].map(|along| {
             let place = format!("contact `{}`", contact.name);
-            self.k.within(place, |k| contact_forms(k, contact))
+            let forms = self.k.within(place, |k| contact_forms(k, contact, along));
+            let partials = forms.partials.iter().flat_map(|row| row.values());
+            let nodes = self.nodes(partials.chain(&forms.gap));
+            (self.graph.cost(&nodes), forms)
+        });
+        // What is seen to vanish decides on the basis and on closed forms.
+        let vanishes = |forms: &ContactForms, row: usize, slot: usize| {
+            forms.partials[row].get(&slot).is_none_or(Expr::is_zero)
         };
-        mechanism.contacts.iter().map(forms).collect()
+        let mut all = (0..self.k.speeds.len()).flat_map(|slot| (0..3).map(move |row| (row, slot)));
+        let sees_as_much = all.all(|(row, slot)| !vanishes(&usual, row, slot) || vanishes(&other, row, slot));
+        if other_cost < cost && sees_as_much && usual.basis == other.basis { other } else { usual }
     }
 
     /// Everything about all contacts but its derivatives; the structures of their reduced matrices.
