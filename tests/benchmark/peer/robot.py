@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 import pinocchio
-from casadi import SX, horzcat, jacobian, substitute, vertcat
+from casadi import SX, jtimes, substitute, vertcat
 from vectors import add, apply, cholesky, clean, cross, dense, dot, lower, product, reciprocal, skew, sub, symmetric, times, transposed, vector, write
 
 GRAVITY = 9.80665
@@ -304,15 +304,29 @@ class Robot:
                 i = above[i]
         return x
 
-    def derivatives(self):
-        """Accelerations, then their derivatives by all coordinates and by all speeds (by columns): those of the inverse dynamics, solved with the factor."""
+    def derivatives(self, backward):
+        """Accelerations, then their derivatives by all coordinates and by all speeds (by columns): those of the inverse dynamics, solved with the factor.
+
+        They are found forward, one sweep for each column, or backward, one for each row.
+        """
         a = self.by_factor()
         found = vertcat(*self.newton_euler([self.x[k] for k in range(self.count)]))
-        by_q, by_u = jacobian(found, self.q), jacobian(found, self.u)
-        by_sine, by_cosine = jacobian(found, self.sines), jacobian(found, self.cosines)
+        given = vertcat(self.q, self.sines, self.cosines, self.u)
+        size, places = self.q.numel(), self.sines.numel()
+        # how what is given changes with coordinates and speeds
+        along = SX(given.numel(), size + self.count)
+        for k in range(size):
+            along[k, k] = 1
         for place, coordinate in enumerate(self.angles):
-            by_q[:, coordinate] += by_sine[:, place] * self.cosines[place] - by_cosine[:, place] * self.sines[place]
-        columns = substitute(horzcat(by_q, by_u), self.x, vertcat(*a))
+            along[size + place, coordinate] = self.cosines[place]
+            along[size + places + place, coordinate] = -self.sines[place]
+        for k in range(self.count):
+            along[size + 2 * places + k, size + k] = 1
+        if backward:
+            columns = jtimes(found, given, SX.eye(self.count), True).T @ along
+        else:
+            columns = jtimes(found, given, along)
+        columns = substitute(columns, self.x, vertcat(*a))
         factor, inverse, above = self.factor(self.mass_matrix())
         entries = list(a)
         for column in range(columns.shape[1]):
@@ -534,7 +548,8 @@ def main(path, kind, folder):
         "cm_down": lambda: robot.contact(robot.jacobian_downwards()),
         "m": lambda: dense(robot.mass_matrix()),
         "ml": lambda: lower(robot.mass_matrix()),
-        "dfd": robot.derivatives,
+        "dfd_forward": lambda: robot.derivatives(False),
+        "dfd_backward": lambda: robot.derivatives(True),
     }
     planar = robot.planar()
     if planar is not None:
