@@ -1,5 +1,6 @@
-//! Generates calls of all routines of the modules of `hodograph-models`: one `impl Emitted` per file in `models/`, from what the generator emits for it.
-//! So the tests call every routine of every model, and a new model needs no entry anywhere.
+//! Generates calls of all routines of the modules of `hodograph-models`: one `impl Emitted` per file in
+//! `models/`, from what the generator emits for it. So the tests call every routine of every model, and a new
+//! model needs no entry anywhere.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -123,8 +124,8 @@ impl Method<'_> {
         format!("Self::dual_machine(at).{}({})", self.name, passed.join(", "))
     }
 
-    /// What makes a list of numbers of its `value`; nothing for a method that is no routine or that collisions and
-    /// `mechanisms_by_slices.rs` call.
+    /// What makes a list of numbers of its `value`; nothing for a method that is no routine or that
+    /// collisions and `mechanisms_by_slices.rs` call.
     fn flat(&self) -> Option<&'static str> {
         let (result, _) = self.rest.split_once("StateError")?;
         let holds = |name: &str| result.contains(name);

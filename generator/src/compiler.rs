@@ -1,4 +1,5 @@
-//! File, line and column of the tokens of a macro's input, from the compiler that runs the macro; unknown outside of a compiler.
+//! File, line and column of the tokens of a macro's input, from the compiler that runs the macro; unknown
+//! outside of a compiler.
 
 extern crate proc_macro;
 

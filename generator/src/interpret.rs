@@ -1,6 +1,7 @@
 //! Interprets programs in doubles: the reference for what a program computes.
 //!
-//! Generated code consists of the same operations and computes the same bits with the same implementation of floating-point functions.
+//! Generated code consists of the same operations and computes the same bits with the same implementation of
+//! floating-point functions.
 
 pub mod columns;
 mod prepared;
@@ -113,8 +114,8 @@ impl<'a> Evaluator<'a> {
         Ok(arrays)
     }
 
-    /// Every value of the slice; of a sine-cosine pair both, else the second is 0. What depends on parameters alone is computed in
-    /// twice the digits and rounded for the rest.
+    /// Every value of the slice; of a sine-cosine pair both, else the second is 0. What depends on parameters
+    /// alone is computed in twice the digits and rounded for the rest.
     fn numbers(&self, inputs: &Inputs, slice: &Slice<'_>) -> Vec<(f64, f64)> {
         let (none, nothing) = ((0.0, 0.0), DoubleDouble::new(0.0));
         let mut numbers = vec![none; self.program.operations.len()];

@@ -1,4 +1,5 @@
-//! Reads files up to a maximum size. Pipes, devices and larger files are refused, so that reading always ends.
+//! Reads files up to a maximum size. Pipes, devices and larger files are refused, so that reading always
+//! ends.
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
@@ -8,7 +9,8 @@ use std::path::Path;
 ///
 /// # Errors
 ///
-/// There is no such file, it may not be read, it is no file, or it is too large: its kind is [`ErrorKind::FileTooLarge`] then.
+/// There is no such file, it may not be read, it is no file, or it is too large: its kind is
+/// [`ErrorKind::FileTooLarge`] then.
 pub fn bytes(path: &Path, most: usize) -> io::Result<Vec<u8>> {
     let refused = |why: &str| Err(io::Error::new(ErrorKind::InvalidInput, why));
     let data = std::fs::metadata(path).map_err(plain)?;

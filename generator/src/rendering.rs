@@ -15,7 +15,8 @@ const MAX_LINE: usize = 2000;
 /// Places further apart than this are not shown together.
 const MAX_DISTANCE: usize = 20_000;
 
-/// All messages, each with its place, its line and a caret; without colours. Ends with a newline unless empty.
+/// All messages, each with its place, its line and a caret; without colours. Ends with a newline unless
+/// empty.
 pub fn render(diagnostics: &[Diagnostic], source: &Source) -> String {
     let mut out = String::new();
     for diagnostic in diagnostics.iter().take(MAX_SHOWN) {
@@ -45,7 +46,8 @@ pub fn render(diagnostics: &[Diagnostic], source: &Source) -> String {
 }
 
 impl Diagnostic {
-    /// The message with its place, its line and a caret; without colours. An inline model has no text to show.
+    /// The message with its place, its line and a caret; without colours. An inline model has no text to
+    /// show.
     pub fn render(&self, source: &Source) -> String {
         let level = match self.severity {
             Severity::Error => Level::ERROR,
@@ -102,8 +104,8 @@ impl Diagnostic {
         format!("{place}: {severity}[{}]: {}{help}", self.code, self.message)
     }
 
-    /// The message as the text of a compile error. For a file: one line with the place, then the line and a caret. For an inline
-    /// model, whose tokens the compiler underlines: what is wrong and what to do.
+    /// The message as the text of a compile error. For a file: one line with the place, then the line and a
+    /// caret. For an inline model, whose tokens the compiler underlines: what is wrong and what to do.
     pub fn compiler_text(&self, source: &Source) -> String {
         if source.text().is_none() && !source.is_inline() {
             return self.one_line(source);

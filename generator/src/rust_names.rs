@@ -101,8 +101,8 @@ pub fn docs(text: &str) -> TokenStream {
     quote! { #(#[doc = #lines])* }
 }
 
-/// An author's words as rustdoc is to show them. What is indented, or fenced without a language, is no Rust: left as it is, `cargo test`
-/// would compile it as an example.
+/// An author's words as rustdoc is to show them. What is indented, or fenced without a language, is no Rust:
+/// left as it is, `cargo test` would compile it as an example.
 pub fn prose(text: &str) -> String {
     let mut fenced = false;
     let line = |line: &str| {

@@ -27,8 +27,8 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .map(|(_, candidate)| candidate)
 }
 
-/// The distance of two words by optimal string alignment: how many letters must be put in, taken out, exchanged with their neighbour or replaced. At most
-/// 64 letters of each are looked at.
+/// The distance of two words by optimal string alignment: how many letters must be put in, taken out,
+/// exchanged with their neighbour or replaced. At most 64 letters of each are looked at.
 pub fn distance(a: &str, b: &str) -> usize {
     let letters = |word: &str| word.chars().take(64).collect::<Vec<char>>();
     between(&letters(a), &letters(b))

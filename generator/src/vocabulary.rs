@@ -1,5 +1,5 @@
-//! Words that authors know from other modelling languages and textbooks, with the words of this language. Suggestions are sought here first, since the name with
-//! the nearest spelling often means something else.
+//! Words that authors know from other modelling languages and textbooks, with the words of this language.
+//! Suggestions are sought here first, since the name with the nearest spelling often means something else.
 
 /// What a table says of a word.
 fn look(table: &[(&str, &'static str)], word: &str) -> Option<&'static str> {
@@ -215,7 +215,8 @@ pub fn name(word: &str) -> Option<&'static str> {
     look(&[("t", "time"), ("T", "time"), ("PI", "pi"), ("Pi", "pi"), ("π", "pi"), ("M_PI", "pi")], word)
 }
 
-/// The name whose rate is meant by `q1_dot`, `q1dot`, `dq1`, `qd1`, `qdot1`, `q1d`, `q1_d`, if it is declared.
+/// The name whose rate is meant by `q1_dot`, `q1dot`, `dq1`, `qd1`, `qdot1`, `q1d`, `q1_d`, if it is
+/// declared.
 pub fn rate_of(word: &str, declared: impl Fn(&str) -> bool) -> Option<String> {
     let mut candidates: Vec<String> = Vec::new();
     for mark in ["_dot", "dot", "_d", "_p", "d", "p"] {

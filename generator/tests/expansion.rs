@@ -1,7 +1,9 @@
-//! `mechanism!` as an editor's macro server runs it: many expansions in one process, from several threads at once.
+//! `mechanism!` as an editor's macro server runs it: many expansions in one process, from several threads at
+//! once.
 //!
-//! Outside of a compiler `proc_macro2` stands in for its tokens, so `expand` can be called here. In the tests of the whole workspace the
-//! feature `derive` is on, and then models without a derivation go through the algebra engine.
+//! Outside of a compiler `proc_macro2` stands in for its tokens, so `expand` can be called here. In the tests
+//! of the whole workspace the feature `derive` is on, and then models without a derivation go through the
+//! algebra engine.
 
 use std::path::Path;
 use std::process::Command;
@@ -18,7 +20,8 @@ fn inline(i: usize) -> String {
     )
 }
 
-/// Inputs of all kinds: files with a derivation, a file that is not there, models without a derivation, malformed ones.
+/// Inputs of all kinds: files with a derivation, a file that is not there, models without a derivation,
+/// malformed ones.
 fn inputs() -> Vec<String> {
     let file = |path: &str| format!("(::hodograph) \"{path}\"");
     let mut inputs = vec![
@@ -82,7 +85,8 @@ fn many_threads_get_the_same_code() {
 
 const CHILD: &str = "HODOGRAPH_TEST_EXPANDS";
 
-/// Run by the test below, in a process of its own: expands everything and ends before the test harness says more.
+/// Run by the test below, in a process of its own: expands everything and ends before the test harness says
+/// more.
 #[test]
 fn expands_in_a_process_of_its_own() {
     if std::env::var_os(CHILD).is_some() {

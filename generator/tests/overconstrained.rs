@@ -1,5 +1,6 @@
-//! Loops with more constraints than they need: accepted where all agree wherever the loop is closed, whatever the parameters; refused
-//! otherwise. `generator/cli/tests/unusual.rs` compares their numbers with the numeric evaluation that uses all constraints.
+//! Loops with more constraints than they need: accepted where all agree wherever the loop is closed, whatever
+//! the parameters; refused otherwise. `generator/cli/tests/unusual.rs` compares their numbers with the
+//! numeric evaluation that uses all constraints.
 
 use std::path::Path;
 

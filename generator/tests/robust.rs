@@ -8,7 +8,8 @@ use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
 use proptest::prelude::*;
 
-/// Checks a text that must be refused with this code. The bound on the time is wide, so that it holds on every machine: work that grows without bound is beyond it.
+/// Checks a text that must be refused with this code. The bound on the time is wide, so that it holds on
+/// every machine: work that grows without bound is beyond it.
 fn refused(what: &str, text: String, code: hodograph_generator::diagnostics::Code) {
     let begun = Instant::now();
     let source = Source::file("big.mech", text);
@@ -141,7 +142,8 @@ fn chain(links: usize, inertia: &str) -> String {
     )
 }
 
-/// The largest mechanism that can be derived is looked at in numbers too; a larger one is refused here already.
+/// The largest mechanism that can be derived is looked at in numbers too; a larger one is refused here
+/// already.
 #[test]
 fn the_largest_mechanism() {
     let begun = Instant::now();

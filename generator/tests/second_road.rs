@@ -1,4 +1,5 @@
-//! The numeric evaluation of models reproduces numbers that were computed outside this project, for every shipped mechanism.
+//! The numeric evaluation of models reproduces numbers that were computed outside this project, for every
+//! shipped mechanism.
 
 use std::path::{Path, PathBuf};
 

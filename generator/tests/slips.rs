@@ -1,4 +1,5 @@
-//! Common slips in otherwise correct models (`tests/slips`): each is reported at its place with the right code.
+//! Common slips in otherwise correct models (`tests/slips`): each is reported at its place with the right
+//! code.
 
 use std::path::Path;
 

@@ -1,4 +1,5 @@
-//! Imports go one way: a module imports what stands before it in the lists of ARCHITECTURE.md, and no files import each other in a circle.
+//! Imports go one way: a module imports what stands before it in the lists of ARCHITECTURE.md, and no files
+//! import each other in a circle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

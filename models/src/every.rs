@@ -1,9 +1,9 @@
 //! The list of all mechanisms of the package, for programs that do the same with each.
 
-/// Gives all mechanisms of this package to a macro of the caller: `every_mechanism!(mine)` becomes `mine! { "arm_7dof" arm_7dof Arm7dof, .. }`, with the name
-/// of the feature, the module and the type of each. The list does not depend on the features that are on. What follows the macro's name is put
-/// before the list: `every_mechanism!(mine, f64;)` becomes `mine! { f64; "arm_7dof" arm_7dof Arm7dof, .. }`.
-///
+/// Gives all mechanisms of this package to a macro of the caller: `every_mechanism!(mine)` becomes `mine! {
+/// "arm_7dof" arm_7dof Arm7dof, .. }`, with the name of the feature, the module and the type of each. The
+/// list does not depend on the features that are on. What follows the macro's name is put before the list:
+/// `every_mechanism!(mine, f64;)` becomes `mine! { f64; "arm_7dof" arm_7dof Arm7dof, .. }`.
 #[cfg_attr(feature = "all", doc = "```")]
 #[cfg_attr(not(feature = "all"), doc = "```ignore")]
 /// use hodograph::{Kind, Mechanism};

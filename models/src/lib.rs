@@ -1,14 +1,16 @@
-//! Ready-made mechanisms: one module per model file, with the equations of motion and the collisions of the contacts.
+//! Ready-made mechanisms: one module per model file, with the equations of motion and the collisions of the
+//! contacts.
 //!
-//! The documentation of a module comes from the comments of its model, `models/<module>.mech`; `docs/gallery.md` shows all mechanisms. Their equations
-//! have been derived and checked in, so that this package builds without the algebra engine. It is `no_std` without the default feature `std`.
+//! The documentation of a module comes from the comments of its model, `models/<module>.mech`;
+//! `docs/gallery.md` shows all mechanisms. Their equations have been derived and checked in, so that this
+//! package builds without the algebra engine. It is `no_std` without the default feature `std`.
 //!
-//! Each module has a feature of its name; the default feature `all` has all of them. A program that uses one builds one:
+//! Each module has a feature of its name; the default feature `all` has all of them. A program that uses one
+//! builds one:
 //!
 //! ```toml
 //! hodograph-models = { version = "0.1", default-features = false, features = ["two_sleds"] }
 //! ```
-//!
 #![cfg_attr(feature = "two_sleds", doc = "```")]
 #![cfg_attr(not(feature = "two_sleds"), doc = "```ignore")]
 //! use hodograph::{Law, Surface};

@@ -1,4 +1,5 @@
-//! Reads collisions as JSON lines and writes their outcomes, as `hodograph solve` does, so that the solver can be measured without the command line tool.
+//! Reads collisions as JSON lines and writes their outcomes, as `hodograph solve` does, so that the solver
+//! can be measured without the command line tool.
 
 use std::io::{BufRead, Write};
 

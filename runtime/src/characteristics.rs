@@ -1,4 +1,5 @@
-//! Characteristic quantities of a contact (section 3 of the paper): mu_c, phi_c, mu_s, the rates while sticking, and renewed sliding.
+//! Characteristic quantities of a contact (section 3 of the paper): mu_c, phi_c, mu_s, the rates while
+//! sticking, and renewed sliding.
 //!
 //! Theory: docs/theory.md, section 12.
 
@@ -6,22 +7,26 @@ use nalgebra::{Vector2, Vector3};
 
 use crate::{ReducedMatrix, Scalar, solve::Contact};
 
-/// The paper's mu_c, phi_c, mu_s, c_n, c_t, c_s, phi_hat, f_hat and g_hat, for one contact and one coefficient of friction.
+/// The paper's mu_c, phi_c, mu_s, c_n, c_t, c_s, phi_hat, f_hat and g_hat, for one contact and one
+/// coefficient of friction.
 ///
-/// They depend on the reduced matrix and mu, not on the velocity of approach. Angles are in radians from t towards s.
+/// They depend on the reduced matrix and mu, not on the velocity of approach. Angles are in radians from t
+/// towards s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Characteristics<T> {
-    /// The critical coefficient of friction (43): the least with which the contact sticks after slip has stopped. Where the tangential part of the matrix is
-    /// singular its pseudo-inverse is used.
+    /// The critical coefficient of friction (43): the least with which the contact sticks after slip has
+    /// stopped. Where the tangential part of the matrix is singular its pseudo-inverse is used.
     pub mu_c: T,
-    /// The direction phi_c (43): while the contact sticks, friction acts in the opposite direction. Zero if mu_c is zero.
+    /// The direction phi_c (43): while the contact sticks, friction acts in the opposite direction. Zero if
+    /// mu_c is zero.
     pub phi_c: T,
     /// m_ns / m_ts, the friction at which slip along t stays along t; `None` if m_ts is zero.
     pub mu_s: Option<T>,
-    /// dI_n / dv_n, dI_t / dv_n, dI_s / dv_n while sticking (41); `None` if the contact cannot move along n while it sticks.
+    /// dI_n / dv_n, dI_t / dv_n, dI_s / dv_n while sticking (41); `None` if the contact cannot move along n
+    /// while it sticks.
     pub sticking: Option<[T; 3]>,
     /// Renewed sliding, if mu < mu_c.
     pub renewal: Option<Renewal<T>>,

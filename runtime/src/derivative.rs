@@ -1,4 +1,5 @@
-//! The derivative of the outcome of a collision with respect to its input: velocity of approach, reduced matrix, mu and e.
+//! The derivative of the outcome of a collision with respect to its input: velocity of approach, reduced
+//! matrix, mu and e.
 //!
 //! Theory: docs/theory.md, section 13.
 
@@ -15,34 +16,38 @@ use crate::{
 /// Inputs: approach velocity (3), reduced matrix (6), mu, e.
 const INPUTS: usize = 11;
 
-/// Why an outcome is not differentiable at an input. The derivative returned is then one-sided: it holds for changes of the input that keep the path of the
-/// collision.
+/// Why an outcome is not differentiable at an input. The derivative returned is then one-sided: it holds for
+/// changes of the input that keep the path of the collision.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum NonSmoothness {
-    /// There is no slip at the start. The outcome is continuous there, but the effect of a little slip depends on its direction: the columns of v_t and v_s are
-    /// set to zero and have no meaning. The other columns hold for changes without slip.
+    /// There is no slip at the start. The outcome is continuous there, but the effect of a little slip
+    /// depends on its direction: the columns of v_t and v_s are set to zero and have no meaning. The
+    /// other columns hold for changes without slip.
     NoSlip,
-    /// mu = mu_c: after slip has stopped the contact sticks for a greater mu and slides on for a smaller one. The derivative is the one for the path that the
-    /// solver took.
+    /// mu = mu_c: after slip has stopped the contact sticks for a greater mu and slides on for a smaller one.
+    /// The derivative is the one for the path that the solver took.
     CriticalFriction,
-    /// Slip stops just when the collision ends: a change of the input to one side removes the terminal phase. The derivative is the one for the path that the
-    /// solver took.
+    /// Slip stops just when the collision ends: a change of the input to one side removes the terminal phase.
+    /// The derivative is the one for the path that the solver took.
     PathChange,
-    /// Slip keeps its direction from the start (h = 0) while v_n depends on that direction (b.d' is not zero): the derivative of v_n is the one for changes that
-    /// keep the direction of slip constant. Planar systems, in which symmetry keeps it, are not affected.
+    /// Slip keeps its direction from the start (h = 0) while v_n depends on that direction (b.d' is not
+    /// zero): the derivative of v_n is the one for changes that keep the direction of slip constant.
+    /// Planar systems, in which symmetry keeps it, are not affected.
     Straight,
-    /// The outcome jumps at this input: v_n has a turning point just where the law ends the collision, or just where the bodies would approach a second time.
-    /// The derivative is the one on this side of the jump.
+    /// The outcome jumps at this input: v_n has a turning point just where the law ends the collision, or
+    /// just where the bodies would approach a second time. The derivative is the one on this side of the
+    /// jump.
     Grazing,
 }
 
 /// The outcome of a collision and its derivative.
 ///
-/// The columns of both matrices are derivatives with respect to v_n1, v_t1, v_s1 (approach), m_nn, m_nt, m_ns, m_tt, m_ts, m_ss, mu, e, in this order. An
-/// off-diagonal entry of the reduced matrix is one input, which stands twice in the matrix.
+/// The columns of both matrices are derivatives with respect to v_n1, v_t1, v_s1 (approach), m_nn, m_nt,
+/// m_ns, m_tt, m_ts, m_ss, mu, e, in this order. An off-diagonal entry of the reduced matrix is one input,
+/// which stands twice in the matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[non_exhaustive]
@@ -55,7 +60,8 @@ pub struct ImpactDerivative<T: nalgebra::Scalar> {
     pub velocity: SMatrix<T, 3, 11>,
     /// Why the derivative is one-sided only, if it is.
     ///
-    /// At mu = 0, e = 0 and e = 1, where the range of an input ends, the column of that input is one-sided by itself and nothing is reported.
+    /// At mu = 0, e = 0 and e = 1, where the range of an input ends, the column of that input is one-sided
+    /// by itself and nothing is reported.
     pub non_smoothness: Option<NonSmoothness>,
 }
 
@@ -72,13 +78,15 @@ impl<T: Scalar> ImpactDerivative<T> {
         self.velocity.fixed_columns::<3>(0).into_owned()
     }
 
-    /// Derivative of the impulse with respect to the entries nn, nt, ns, tt, ts, ss of the reduced matrix, N s kg.
+    /// Derivative of the impulse with respect to the entries nn, nt, ns, tt, ts, ss of the reduced matrix, N
+    /// s kg.
     #[inline]
     pub fn impulse_by_matrix(&self) -> SMatrix<T, 3, 6> {
         self.impulse.fixed_columns::<6>(3).into_owned()
     }
 
-    /// Derivative of the velocity of separation with respect to the entries nn, nt, ns, tt, ts, ss of the reduced matrix, kg m/s.
+    /// Derivative of the velocity of separation with respect to the entries nn, nt, ns, tt, ts, ss of the
+    /// reduced matrix, kg m/s.
     #[inline]
     pub fn velocity_by_matrix(&self) -> SMatrix<T, 3, 6> {
         self.velocity.fixed_columns::<6>(3).into_owned()
@@ -99,8 +107,9 @@ impl<T: Scalar> ImpactDerivative<T> {
 
 /// Solves a collision and differentiates its outcome.
 ///
-/// [`solve`] runs on dual numbers, so that there is no step size and no truncation error. It allocates nothing and does not panic; it needs about 62 kB of
-/// stack (`f64` on x86-64), thirteen times that of [`solve`].
+/// [`solve`] runs on dual numbers, so that there is no step size and no truncation error. It allocates
+/// nothing and does not panic; it needs about 62 kB of stack (`f64` on x86-64), thirteen times that of
+/// [`solve`].
 ///
 /// ```
 /// # use hodograph::{Law, ReducedMatrix, Surface, derivative, solve};
@@ -209,7 +218,8 @@ fn differentiate<T: Scalar>(
     Ok(result)
 }
 
-/// The column of e at e = 0, where the collision ends with compression: a small e adds a short piece of the last phase (theory, 13.2).
+/// The column of e at e = 0, where the collision ends with compression: a small e adds a short piece of the
+/// last phase (theory, 13.2).
 fn plastic<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
@@ -243,7 +253,8 @@ fn plastic<T: Scalar>(
     }
 }
 
-/// Why there is no derivative at this input, if there is none: nearby inputs have another path, another number of compressions, or an outcome that jumps.
+/// Why there is no derivative at this input, if there is none: nearby inputs have another path, another
+/// number of compressions, or an outcome that jumps.
 fn non_smoothness<T: Scalar>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,

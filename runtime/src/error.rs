@@ -12,7 +12,8 @@ use crate::Law;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ImpactError<T> {
-    /// An input is infinite or not a number, or the outcome is beyond the range of the number type: too large, or a normal impulse too small.
+    /// An input is infinite or not a number, or the outcome is beyond the range of the number type: too
+    /// large, or a normal impulse too small.
     NotFinite {
         /// The value found.
         value: T,
@@ -34,7 +35,8 @@ pub enum ImpactError<T> {
     },
     /// The reduced matrix is not positive semidefinite, so it belongs to no mechanism.
     NotPositiveSemidefinite {
-        /// The principal minor found negative: an entry, or a 2 x 2 or 3 x 3 determinant divided by the product of its diagonal.
+        /// The principal minor found negative: an entry, or a 2 x 2 or 3 x 3 determinant divided by the
+        /// product of its diagonal.
         minor: T,
     },
     /// m_nn is zero: no impulse along the normal can move the contact.
@@ -42,22 +44,25 @@ pub enum ImpactError<T> {
         /// The m_nn given, in 1/kg.
         nn: T,
     },
-    /// An impact without collision was asked for (v_n1 = 0) where slip brings none: f (31) is not negative, or there is no slip.
+    /// An impact without collision was asked for (v_n1 = 0) where slip brings none: f (31) is not negative,
+    /// or there is no slip.
     NoImpact {
         /// f in the direction of slip, or m_nn without slip, in 1/kg.
         rate: T,
     },
-    /// The outcome found violates a law of impact by more than rounding explains: numbers of this precision do not determine the outcome.
+    /// The outcome found violates a law of impact by more than rounding explains: numbers of this precision
+    /// do not determine the outcome.
     ///
-    /// It takes a contact that is nearly wedged (mu close to mu_c of a singular matrix), or a singular contact with friction above the inverse of the rounding
-    /// unit.
+    /// It takes a contact that is nearly wedged (mu close to mu_c of a singular matrix), or a singular
+    /// contact with friction above the inverse of the rounding unit.
     Inaccurate {
         /// The law that is violated.
         violated: Violation,
         /// By how much, relative to the speeds or works of the impact.
         residual: T,
     },
-    /// The bodies wedge: the law never ends the collision, because the normal velocity stops changing, while the contact sticks or slides.
+    /// The bodies wedge: the law never ends the collision, because the normal velocity stops changing, while
+    /// the contact sticks or slides.
     Wedged {
         /// The normal velocity at which it stops changing, in m/s.
         normal_velocity: T,

@@ -8,8 +8,9 @@ use crate::{
     solve::{Contact, Restitution, Slide, State, Terminal, Units, checked, collide, slide, slips},
 };
 
-/// A solved collision that can be evaluated at any normal impulse: the curve of v_s over v_t that the paper calls hodograph, with the normal velocity, the
-/// impulses and the works along it. Every point is computed to machine precision, not interpolated.
+/// A solved collision that can be evaluated at any normal impulse: the curve of v_s over v_t that the paper
+/// calls hodograph, with the normal velocity, the impulses and the works along it. Every point is computed to
+/// machine precision, not interpolated.
 ///
 /// ```
 /// # use hodograph::{Hodograph, Law, ReducedMatrix, Surface};
@@ -24,8 +25,9 @@ use crate::{
 /// # Ok::<(), hodograph::ImpactError<f64>>(())
 /// ```
 ///
-/// Cost: [`Hodograph::new`] is one [`crate::solve`] that always locates the end of compression. A point of the sliding arc is computed from the start of the
-/// collision and costs no more than a solve. A point after slip has stopped costs some twenty operations. Nothing is allocated.
+/// Cost: [`Hodograph::new`] is one [`crate::solve`] that always locates the end of compression. A point of
+/// the sliding arc is computed from the start of the collision and costs no more than a solve. A point after
+/// slip has stopped costs some twenty operations. Nothing is allocated.
 #[derive(Clone, Copy, Debug)]
 #[must_use]
 pub struct Hodograph<T: nalgebra::Scalar> {
@@ -70,7 +72,8 @@ impl<T: Scalar> Hodograph<T> {
         self.impact.impulse.x
     }
 
-    /// All quantities at the normal impulse `normal_impulse`, in N s: at 0 and below the approach, at I_n2 and above the outcome.
+    /// All quantities at the normal impulse `normal_impulse`, in N s: at 0 and below the approach, at I_n2
+    /// and above the outcome.
     #[inline]
     pub fn at(&self, normal_impulse: T) -> Snapshot<T> {
         let zero = T::zero();
@@ -118,7 +121,8 @@ impl<T: Scalar> Hodograph<T> {
         units.snapshot(&state, &(gain * impulse), after)
     }
 
-    /// `count` snapshots at equal steps of the normal impulse, from the approach to the outcome; if `count` is one, the outcome.
+    /// `count` snapshots at equal steps of the normal impulse, from the approach to the outcome; if `count`
+    /// is one, the outcome.
     #[inline]
     pub fn points(
         &self,

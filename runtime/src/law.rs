@@ -1,6 +1,7 @@
 //! The laws (hypotheses) of restitution.
 
-/// The hypothesis of restitution: what the coefficient e means, and so where the collision ends (section 4 of the paper).
+/// The hypothesis of restitution: what the coefficient e means, and so where the collision ends (section 4 of
+/// the paper).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]

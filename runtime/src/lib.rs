@@ -1,7 +1,8 @@
 //! Equations of motion of mechanisms, and their frictional impacts and contacts in three dimensions.
 //!
-//! A *model file* describes a mechanism: bodies, joints, constraints, loads and contacts. [`mechanism!`] makes a Rust module of it at
-//! compile time, generic over the scalar, which allocates nothing and does not panic:
+//! A *model file* describes a mechanism: bodies, joints, constraints, loads and contacts. [`mechanism!`]
+//! makes a Rust module of it at compile time, generic over the scalar, which allocates nothing and does not
+//! panic:
 //!
 //! ```ignore
 //! hodograph::mechanism!("models/pendulum.mech");
@@ -26,8 +27,9 @@
 //! | differentiate a collision | [`derivative`], [`derivative_without_collision`], [`saltation`] |
 //! | find mode and force of a lasting contact | [`contact_mode`], [`contact_force`] |
 //!
-//! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse and the velocity of separation in three
-//! dimensions, under Coulomb's law of friction and Newton's, Poisson's or Stronge's hypothesis of restitution:
+//! [`solve`] takes the reduced mass matrix of a contact and the velocity of approach, and returns the impulse
+//! and the velocity of separation in three dimensions, under Coulomb's law of friction and Newton's,
+//! Poisson's or Stronge's hypothesis of restitution:
 //!
 //! ```
 //! use hodograph::nalgebra::Vector3;
@@ -40,13 +42,15 @@
 //! # Ok::<(), hodograph::ImpactError<f64>>(())
 //! ```
 //!
-//! Equation numbers such as (34) in these pages are those of Djerassi, *Three-dimensional, one-point collision with friction* (2012), "the paper".
+//! Equation numbers such as (34) in these pages are those of Djerassi, *Three-dimensional, one-point
+//! collision with friction* (2012), "the paper".
 //!
 //! # What may change
 //!
-//! [`nalgebra`] is re-exported because its types stand in signatures: use `hodograph::nalgebra` and its version always fits; a new
-//! incompatible version of it is a new incompatible version of this crate. The module `generated` is hidden: it serves code that [`mechanism!`] makes, and its
-//! contents may change in any version; generated code names the format it needs, and does not compile with a runtime of another one.
+//! [`nalgebra`] is re-exported because its types stand in signatures: use `hodograph::nalgebra` and its
+//! version always fits; a new incompatible version of it is a new incompatible version of this crate. The
+//! module `generated` is hidden: it serves code that [`mechanism!`] makes, and its contents may change in any
+//! version; generated code names the format it needs, and does not compile with a runtime of another one.
 #![no_std]
 #[cfg(feature = "std")]
 extern crate std;
@@ -107,9 +111,10 @@ pub use hodograph_macros::mechanism as __mechanism;
 
 /// Makes a module of a model: `mechanism!("models/two_sleds.mech")`, or the model itself between braces.
 ///
-/// The path is relative to the invoking crate's Cargo.toml; if nothing is there, to the invoking source file. The file's stem is
-/// the module's name (for an inline model the snake_case of the mechanism's name). The derivation beside the model, written by
-/// `hodograph derive` and checked in, is read; without it, the feature `derive` derives while compiling.
+/// The path is relative to the invoking crate's Cargo.toml; if nothing is there, to the invoking source file.
+/// The file's stem is the module's name (for an inline model the snake_case of the mechanism's name). The
+/// derivation beside the model, written by `hodograph derive` and checked in, is read; without it, the
+/// feature `derive` derives while compiling.
 #[macro_export]
 macro_rules! mechanism {
     ($($model:tt)*) => {

@@ -1,7 +1,9 @@
-//! The traits of all mechanisms, with slices in place of named fields: one integrator, controller or plot written for them serves every mechanism.
+//! The traits of all mechanisms, with slices in place of named fields: one integrator, controller or plot
+//! written for them serves every mechanism.
 //!
-//! Every generated module implements [`Mechanism`] and [`Contacts`], and so does the interpreter of derivations. Both traits can be used as
-//! trait objects (`&dyn Contacts`). Nothing here allocates: the caller brings the slices.
+//! Every generated module implements [`Mechanism`] and [`Contacts`], and so does the interpreter of
+//! derivations. Both traits can be used as trait objects (`&dyn Contacts`). Nothing here allocates: the
+//! caller brings the slices.
 
 mod closed;
 mod contacts;
@@ -35,13 +37,14 @@ pub struct State<'a, T = f64> {
     pub inputs: &'a [T],
 }
 
-/// The equations of motion of a mechanism, with slices in place of the named fields that the methods of its own type have.
+/// The equations of motion of a mechanism, with slices in place of the named fields that the methods of its
+/// own type have.
 ///
-/// In the shapes below `n` is the number of coordinates, `p` that of independent and `d` that of dependent speeds, `c` that of dependent
-/// coordinates; [`Mechanism::count`] tells them. Matrices are written by rows.
+/// In the shapes below `n` is the number of coordinates, `p` that of independent and `d` that of dependent
+/// speeds, `c` that of dependent coordinates; [`Mechanism::count`] tells them. Matrices are written by rows.
 ///
-/// The type of a generated module has methods of the same names with named fields; Rust prefers these. To call the methods of the trait,
-/// use the mechanism as `&dyn Mechanism` or in a generic function:
+/// The type of a generated module has methods of the same names with named fields; Rust prefers these. To
+/// call the methods of the trait, use the mechanism as `&dyn Mechanism` or in a generic function:
 ///
 /// ```
 /// use hodograph::{Kind, Mechanism, State, StateError};
@@ -61,8 +64,8 @@ pub struct State<'a, T = f64> {
 ///
 /// # Errors
 ///
-/// Every routine answers [`StateError`] where a slice has not the length asked for, the state is singular, or a result is not finite. What
-/// it wrote into the slices then has no meaning.
+/// Every routine answers [`StateError`] where a slice has not the length asked for, the state is singular, or
+/// a result is not finite. What it wrote into the slices then has no meaning.
 pub trait Mechanism<T: Scalar = f64> {
     /// The name of the mechanism in the model.
     fn name(&self) -> &str;
@@ -75,24 +78,24 @@ pub trait Mechanism<T: Scalar = f64> {
         (0..self.count(kind))
             .find(|&index| self.component(kind, index).is_some_and(|found| found.name == name))
     }
-    /// The number among the coordinates of the dependent coordinate with this number; `None` past the last. The configuration equations
-    /// of closed loops determine dependent coordinates.
+    /// The number among the coordinates of the dependent coordinate with this number; `None` past the last.
+    /// The configuration equations of closed loops determine dependent coordinates.
     fn dependent_coordinate(&self, index: usize) -> Option<usize>;
 
     /// The parameters in use, in the order of [`Kind::Parameter`].
     fn parameters(&self, parameters: &mut [T]) -> Result<(), StateError>;
     /// Changes the parameters. Where they are refused, the mechanism stays as it is.
     fn set_parameters(&mut self, parameters: &[T]) -> Result<(), ParameterError>;
-    /// The coordinates (`n`), speeds (`p`) and inputs that the model states; 0 where it states none, and the identity for a quaternion.
-    /// Dependent coordinates are the model's guess.
+    /// The coordinates (`n`), speeds (`p`) and inputs that the model states; 0 where it states none, and the
+    /// identity for a quaternion. Dependent coordinates are the model's guess.
     fn initial_state(
         &self,
         coordinates: &mut [T],
         speeds: &mut [T],
         inputs: &mut [T],
     ) -> Result<(), StateError>;
-    /// Divides every quaternion among the coordinates (`n`) by its length: integration lets it drift from 1. A quaternion of length 0
-    /// stays as it is.
+    /// Divides every quaternion among the coordinates (`n`) by its length: integration lets it drift from 1.
+    /// A quaternion of length 0 stays as it is.
     fn normalize(&self, coordinates: &mut [T]) -> Result<(), StateError>;
 
     /// Rates q' of the coordinates (`n`), per second.
@@ -114,7 +117,8 @@ pub trait Mechanism<T: Scalar = f64> {
     /// Forcing (`p`): M u' = forcing.
     fn forcing(&self, state: &State<'_, T>, forcing: &mut [T]) -> Result<(), StateError>;
     #[doc(alias = "RNEA")]
-    /// Generalized forces (`p`) that must be added to the loads for the independent speeds to have the rates `accelerations` (`p`).
+    /// Generalized forces (`p`) that must be added to the loads for the independent speeds to have the rates
+    /// `accelerations` (`p`).
     fn inverse_dynamics(
         &self,
         state: &State<'_, T>,
@@ -125,8 +129,8 @@ pub trait Mechanism<T: Scalar = f64> {
     fn kinetic_energy(&self, state: &State<'_, T>) -> Result<T, StateError>;
     /// Potential energy of gravity and springs, J; `None` where the model has neither.
     fn potential_energy(&self, state: &State<'_, T>) -> Result<Option<T>, StateError>;
-    /// The configuration equations of closed loops: their residual (`c`), zero where the loops are closed, and its derivatives (`c` x `c`)
-    /// with respect to the dependent coordinates.
+    /// The configuration equations of closed loops: their residual (`c`), zero where the loops are closed,
+    /// and its derivatives (`c` x `c`) with respect to the dependent coordinates.
     fn configuration(
         &self,
         state: &State<'_, T>,
@@ -134,12 +138,13 @@ pub trait Mechanism<T: Scalar = f64> {
         jacobian: &mut [T],
     ) -> Result<(), StateError>;
 
-    /// Position of a point from O along N.x, N.y, N.z, m. [`StateError::Undefined`] for a point of which the model knows the velocity only.
+    /// Position of a point from O along N.x, N.y, N.z, m. [`StateError::Undefined`] for a point of which the
+    /// model knows the velocity only.
     fn position(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
     /// Velocity of a point in N along N.x, N.y, N.z, m/s.
     fn velocity(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
-    /// Acceleration of a point in N along N.x, N.y, N.z, m/s^2, while the independent speeds have the rates `accelerations` (`p`): those of
-    /// [`Mechanism::accelerations`], or with contact forces.
+    /// Acceleration of a point in N along N.x, N.y, N.z, m/s^2, while the independent speeds have the rates
+    /// `accelerations` (`p`): those of [`Mechanism::accelerations`], or with contact forces.
     fn acceleration(
         &self,
         point: usize,
@@ -149,9 +154,10 @@ pub trait Mechanism<T: Scalar = f64> {
         let _ = (point, state, accelerations);
         Err(StateError::Undefined { what: "acceleration of this point" })
     }
-    /// Partial velocities of a point (3 x `p`) along N.x, N.y, N.z (rows) for the independent speeds (columns).
+    /// Partial velocities of a point (3 x `p`) along N.x, N.y, N.z (rows) for the independent speeds
+    /// (columns).
     fn jacobian(&self, point: usize, state: &State<'_, T>, jacobian: &mut [T]) -> Result<(), StateError>;
-    /// Axes of a frame: the columns are its x, y, z along N.x, N.y, N.z. [`StateError::Undefined`] for a frame of which the model knows the
-    /// angular velocity only.
+    /// Axes of a frame: the columns are its x, y, z along N.x, N.y, N.z. [`StateError::Undefined`] for a
+    /// frame of which the model knows the angular velocity only.
     fn orientation(&self, frame: usize, state: &State<'_, T>) -> Result<Matrix3<T>, StateError>;
 }

@@ -1,4 +1,5 @@
-//! Snapshots of a collision: all quantities at one normal impulse, and the snapshots at which phases begin or end.
+//! Snapshots of a collision: all quantities at one normal impulse, and the snapshots at which phases begin or
+//! end.
 
 use nalgebra::Vector3;
 
@@ -71,10 +72,11 @@ impl<T: Scalar> Snapshot<T> {
 pub struct Phases<T: nalgebra::Scalar> {
     /// The end of the first compression: v_n = 0 (index C in the paper).
     ///
-    /// Under Newton's hypothesis the outcome does not depend on it while slip lasts: [`crate::solve`] then does not locate it and leaves `None`;
-    /// [`crate::Hodograph`] always locates it.
+    /// Under Newton's hypothesis the outcome does not depend on it while slip lasts: [`crate::solve`] then
+    /// does not locate it and leaves `None`; [`crate::Hodograph`] always locates it.
     pub compression_end: Option<Snapshot<T>>,
-    /// The end of the latest compression, the one the law counts from; the same as the first unless the bodies approached again.
+    /// The end of the latest compression, the one the law counts from; the same as the first unless the
+    /// bodies approached again.
     pub last_compression_end: Option<Snapshot<T>>,
     /// Where slip stopped (index S in the paper); `None` if it never did, or there was none at the start.
     pub slip_end: Option<Snapshot<T>>,

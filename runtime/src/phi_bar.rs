@@ -6,13 +6,14 @@ use nalgebra::Vector2;
 
 use crate::{Characteristics, ReducedMatrix, Scalar, rates, scalar::constant, solve::Contact};
 
-/// phi_bar: the direction in which slip that now has the direction `phi` will be when it stops, in radians from t towards s, within a turn of `phi`.
+/// phi_bar: the direction in which slip that now has the direction `phi` will be when it stops, in radians
+/// from t towards s, within a turn of `phi`.
 ///
-/// It is the first zero of h in the direction in which h turns the slip (34a), or `phi` itself if h is zero there. `None` if slip
-/// never stops by itself (g >= 0 there; then that direction is phi_hat).
+/// It is the first zero of h in the direction in which h turns the slip (34a), or `phi` itself if h is zero
+/// there. `None` if slip never stops by itself (g >= 0 there; then that direction is phi_hat).
 ///
-/// It takes at most some 10 000 operations: h is a polynomial of degree four in the tangent of half the angle, whose zeros are found by bisection between
-/// those of its derivatives.
+/// It takes at most some 10 000 operations: h is a polynomial of degree four in the tangent of half the
+/// angle, whose zeros are found by bisection between those of its derivatives.
 pub fn phi_bar<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, phi: T) -> Option<T> {
     let c = Contact::new(matrix, mu);
     let noise = constant::<T>(4.0) * T::default_epsilon() * c.slip_size();
@@ -66,7 +67,8 @@ fn polynomial<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, base: T, side: T) -> 
 
 /// The first zero in (0, 1] of a polynomial that is not negative at 0.
 fn first_zero<T: Scalar>(p: &[T; 5]) -> Option<T> {
-    // Zeros of the fourth to the first derivative, and of the polynomial itself, in order; one is the end of the range.
+    // Zeros of the fourth to the first derivative, and of the polynomial itself, in order; one is the end of
+    // the range.
     let mut ends = [T::one(); 5];
     let mut count = 0;
     for order in (0..4_usize).rev() {

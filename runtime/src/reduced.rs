@@ -7,8 +7,9 @@ use crate::Scalar;
 /// The symmetric 3 x 3 matrix of the reduced equations of motion (20)-(22), along n, t, s, in 1/kg.
 ///
 /// It maps a contact impulse (n, t, s) to the change of the relative velocity at the contact (n, t, s). It is
-/// positive semidefinite; singular ones are ordinary (a planar system, a joint or a rolling contact at the body struck).
-/// t and s may be any orthonormal pair in the contact plane: nothing needs t to lie along the slip.
+/// positive semidefinite; singular ones are ordinary (a planar system, a joint or a rolling contact at the
+/// body struck). t and s may be any orthonormal pair in the contact plane: nothing needs t to lie along the
+/// slip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -47,7 +48,8 @@ impl<T: Scalar> ReducedMatrix<T> {
         )
     }
 
-    /// The same contact in tangential axes turned by an angle about n: new t = cos t + sin s, new s = cos s - sin t.
+    /// The same contact in tangential axes turned by an angle about n: new t = cos t + sin s, new s = cos s -
+    /// sin t.
     ///
     /// `cos` and `sin` are those of the angle; their squares must add up to one.
     #[inline]

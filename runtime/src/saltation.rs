@@ -15,12 +15,14 @@ pub struct Saltation<T, const N: usize> {
     pub non_smoothness: Option<NonSmoothness>,
 }
 
-/// Derivative of the speeds after a collision with respect to those before, at the same configuration: 1 + R (dI/dv) V.
+/// Derivative of the speeds after a collision with respect to those before, at the same configuration: 1 + R
+/// (dI/dv) V.
 ///
-/// `partial_velocities` are V (rows along the contact basis, columns the `P` independent speeds) and `response` is R = M^-1 V^T, change of speeds per
-/// unit impulse, both in the axes in which the derivative was taken; [`crate::derivative`] takes any tangential axes, so that
-/// those of `partial_velocities_<contact>` and `reduced_matrix_<contact>` of a generated module do. Without prescribed motion V u is the
-/// approach velocity; with it V is still its derivative.
+/// `partial_velocities` are V (rows along the contact basis, columns the `P` independent speeds) and
+/// `response` is R = M^-1 V^T, change of speeds per unit impulse, both in the axes in which the derivative
+/// was taken; [`crate::derivative`] takes any tangential axes, so that
+/// those of `partial_velocities_<contact>` and `reduced_matrix_<contact>` of a generated module do. Without
+/// prescribed motion V u is the approach velocity; with it V is still its derivative.
 #[inline]
 pub fn speed_derivative<T: Scalar, const P: usize>(
     derivative: &ImpactDerivative<T>,
@@ -33,14 +35,15 @@ pub fn speed_derivative<T: Scalar, const P: usize>(
 
 /// The saltation matrix: to first order, deviation after = matrix * deviation before, at the same time.
 ///
-/// A trajectory with a small deviation also meets the surface a little earlier or later. With the state x = (q, u), the rates
-/// x' = f, the gap g(x) = 0 and the jump x+ = r(x-) it is
+/// A trajectory with a small deviation also meets the surface a little earlier or later. With the state x =
+/// (q, u), the rates x' = f, the gap g(x) = 0 and the jump x+ = r(x-) it is
 ///
 /// D r + (f(x+) - D r f(x-)) D g / (D g f(x-)).
 ///
-/// `reset` is D r: the block of the speeds is [`speed_derivative`], that of the configurations is the identity, and the lower
-/// left one is the derivative of the speeds after with respect to the configuration. `before` and `after` are f(x-) and f(x+). For an explicit time
-/// add its part to D g f(x-) through a state whose rate is one. `None` if the gap does not close: D g f(x-) >= 0.
+/// `reset` is D r: the block of the speeds is [`speed_derivative`], that of the configurations is the
+/// identity, and the lower left one is the derivative of the speeds after with respect to the configuration.
+/// `before` and `after` are f(x-) and f(x+). For an explicit time add its part to D g f(x-) through a state
+/// whose rate is one. `None` if the gap does not close: D g f(x-) >= 0.
 #[inline]
 pub fn saltation<T: Scalar, const N: usize>(
     reset: &SMatrix<T, N, N>,

@@ -20,8 +20,8 @@ pub trait Scalar: RealField + Copy {}
 
 impl<T: RealField + Copy> Scalar for T {}
 
-/// The little that the solver itself asks of a number: all of [`Scalar`], and the crate's own dual numbers, which cannot have nalgebra's
-/// [`RealField`] because one of its parents has unsafe methods.
+/// The little that the solver itself asks of a number: all of [`Scalar`], and the crate's own dual numbers,
+/// which cannot have nalgebra's [`RealField`] because one of its parents has unsafe methods.
 pub(crate) trait Real:
     Copy
     + PartialOrd
@@ -111,7 +111,8 @@ impl<T: RealField + Copy> Real for T {
     }
 }
 
-/// A function of doubles or singles that does not depend on the system, or that of other numbers: which, is known while compiling.
+/// A function of doubles or singles that does not depend on the system, or that of other numbers: which, is
+/// known while compiling.
 #[inline(always)]
 fn same_everywhere<T: Scalar>(a: T, double: fn(f64) -> f64, single: fn(f32) -> f32, other: fn(T) -> T) -> T {
     let this = TypeId::of::<T>();
@@ -130,7 +131,8 @@ pub(crate) fn constant<T: Real>(value: f64) -> T {
     T::constant(value)
 }
 
-/// `a * b + c`, fused only with the feature of that name and where the target has the instruction: else every target computes the same bits.
+/// `a * b + c`, fused only with the feature of that name and where the target has the instruction: else every
+/// target computes the same bits.
 #[inline(always)]
 pub(crate) fn fma<T: Real>(a: T, b: T, c: T) -> T {
     if cfg!(all(feature = "fused", target_feature = "fma")) { a.mul_add(b, c) } else { a * b + c }

@@ -1,24 +1,29 @@
-//! Flags for situations in which a small change of the input changes the outcome of a collision, its path or its derivatives by much.
+//! Flags for situations in which a small change of the input changes the outcome of a collision, its path or
+//! its derivatives by much.
 //!
 //! Theory: docs/theory.md, section 14.
 
-/// Why an outcome is sensitive to its input. None of these is an error: the outcome is right for the input given.
+/// Why an outcome is sensitive to its input. None of these is an error: the outcome is right for the input
+/// given.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Sensitivity {
-    /// Slip stopped (or there was none), and mu is within 0.1 % of mu_c: the outcome is continuous there, but its derivatives and its path are not.
+    /// Slip stopped (or there was none), and mu is within 0.1 % of mu_c: the outcome is continuous there,
+    /// but its derivatives and its path are not.
     pub near_mu_c: bool,
-    /// v_n turned, or was about to, within 0.1 % of the speed of approach from where compression ends, begins again, or the law ends the
-    /// collision: beyond that the outcome jumps.
+    /// v_n turned, or was about to, within 0.1 % of the speed of approach from where compression ends,
+    /// begins again, or the law ends the collision: beyond that the outcome jumps.
     pub grazing: bool,
-    /// The slip of approach lies within 0.001 rad of a direction from which it turns away to either side (h = 0, h' > 0).
+    /// The slip of approach lies within 0.001 rad of a direction from which it turns away to either side (h
+    /// = 0, h' > 0).
     pub unstable_direction: bool,
-    /// There was no slip at the start, or so little (below the root of the rounding unit, over the speed of approach) that its direction means
-    /// nothing.
+    /// There was no slip at the start, or so little (below the root of the rounding unit, over the speed of
+    /// approach) that its direction means nothing.
     pub no_slip: bool,
-    /// An impact without collision began where f is zero but for rounding: dynamic jam. With a little more of f nothing happens.
+    /// An impact without collision began where f is zero but for rounding: dynamic jam. With a little more
+    /// of f nothing happens.
     pub jam: bool,
 }
 

@@ -2,7 +2,8 @@
 
 use crate::Law;
 
-/// The pair of surfaces in contact: one coefficient of friction, one of restitution, and what the latter means.
+/// The pair of surfaces in contact: one coefficient of friction, one of restitution, and what the latter
+/// means.
 ///
 /// The fields are plain numbers; [`crate::solve`] checks them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +19,8 @@ pub struct Surface<T> {
 }
 
 impl<T> Surface<T> {
-    /// The same surface with a budget: the solver stops with [`crate::ImpactError::BudgetExceeded`] before it makes more than this many quadratures.
+    /// The same surface with a budget: the solver stops with [`crate::ImpactError::BudgetExceeded`] before it
+    /// makes more than this many quadratures.
     ///
     /// ```
     /// # use hodograph::{ImpactError, Law, ReducedMatrix, Surface, nalgebra::Vector3, solve};
@@ -39,11 +41,14 @@ impl<T> Surface<T> {
     }
 }
 
-/// A surface and the greatest number of quadratures that one collision may take there: for loops that must keep a deadline.
+/// A surface and the greatest number of quadratures that one collision may take there: for loops that must
+/// keep a deadline.
 ///
-/// A quadrature integrates one stretch of the sliding arc with 16 nodes. It is the only part of the solver whose number depends on the input; all else is done
-/// at most a fixed number of times per quadrature or per collision. An outcome within the budget has the bits of the outcome without one. Contacts of a known
-/// [`structure`](crate::structure) are solved in closed form and take quadratures only where that form does not apply.
+/// A quadrature integrates one stretch of the sliding arc with 16 nodes. It is the only part of the solver
+/// whose number depends on the input; all else is done at most a fixed number of times per quadrature or per
+/// collision. An outcome within the budget has the bits of the outcome without one. Contacts of a known
+/// [`structure`](crate::structure) are solved in closed form and take quadratures only where that form does
+/// not apply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

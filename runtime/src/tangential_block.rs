@@ -1,5 +1,5 @@
-//! The tangential block T of a reduced matrix in units where m_nn = 1: a symmetric positive semidefinite 2x2 matrix, which rounding and contacts that
-//! cannot move in some direction make singular.
+//! The tangential block T of a reduced matrix in units where m_nn = 1: a symmetric positive semidefinite 2x2
+//! matrix, which rounding and contacts that cannot move in some direction make singular.
 //!
 //! Theory: docs/theory.md, section 10.
 
@@ -21,7 +21,8 @@ pub(crate) struct TangentialBlock<T: Real> {
     pub ss: T,
 }
 
-/// T x = rhs after elimination from the larger pivot p: x = (first / p - l y, y) with pivot y = left, in the order of the pivots.
+/// T x = rhs after elimination from the larger pivot p: x = (first / p - l y, y) with pivot y = left, in the
+/// order of the pivots.
 pub(crate) struct Elimination<T: Real> {
     swapped: bool,
     /// the larger pivot
@@ -57,11 +58,12 @@ impl<T: Real> TangentialBlock<T> {
         Some(Elimination { swapped, p, l, first, second, pivot, left })
     }
 
-    /// dv_n / dI_n of a contact with the coupling b = (m_nt, m_ns) while the tangential impulse -`hold` per I_n keeps it from slipping; zero where it
-    /// cannot move along n without slip.
+    /// dv_n / dI_n of a contact with the coupling b = (m_nt, m_ns) while the tangential impulse -`hold` per
+    /// I_n keeps it from slipping; zero where it cannot move along n without slip.
     ///
-    /// The formula is such that an error of `hold` enters by its square. What remains is the rounding of the matrix entries, which counts much where
-    /// `hold` is large. A rate below that error is taken for zero; it would depend on the choice of axes.
+    /// The formula is such that an error of `hold` enters by its square. What remains is the rounding of the
+    /// matrix entries, which counts much where `hold` is large. A rate below that error is taken for
+    /// zero; it would depend on the choice of axes.
     #[inline]
     pub fn held_rate(&self, b: &Vector2<T>, hold: &Vector2<T>) -> T {
         let left = b + b - self.times(hold);
@@ -94,7 +96,8 @@ impl<T: Real> Elimination<T> {
         self.in_order(scale, self.l * scale)
     }
 
-    /// The length of the part of the right side that T does not reach, where the smaller pivot counts as zero.
+    /// The length of the part of the right side that T does not reach, where the smaller pivot counts as
+    /// zero.
     #[inline]
     pub fn residual(&self) -> T {
         self.left.abs() / (T::one() + self.l * self.l).sqrt()

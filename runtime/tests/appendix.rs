@@ -1,4 +1,5 @@
-//! Appendix B: the ellipse g = 0 and the hyperbola h = 0 in the plane of u = mu cos phi and v = mu sin phi, and the run mu = mu_s of section 5.
+//! Appendix B: the ellipse g = 0 and the hyperbola h = 0 in the plane of u = mu cos phi and v = mu sin phi,
+//! and the run mu = mu_s of section 5.
 
 mod common;
 
@@ -134,7 +135,8 @@ proptest! {
     }
 }
 
-/// The run mu = mu_s of the example: phi = 0 throughout, then renewal in the direction phi_hat, since mu_s < mu_c.
+/// The run mu = mu_s of the example: phi = 0 throughout, then renewal in the direction phi_hat, since mu_s <
+/// mu_c.
 #[test]
 fn at_mu_s_the_sleds_slip_straight_and_then_in_another_direction() {
     for &law in Law::ALL {

@@ -1,4 +1,5 @@
-//! A budget of quadratures changes no bit of an answer, and is kept: the least budget that suffices is found by trying, and every smaller one is refused.
+//! A budget of quadratures changes no bit of an answer, and is kept: the least budget that suffices is found
+//! by trying, and every smaller one is refused.
 
 mod common;
 
@@ -23,7 +24,8 @@ fn contact(random: &mut Random) -> (ReducedMatrix<f64>, Vector3<f64>, Surface<f6
     (ReducedMatrix::from(b * b.transpose()), approach, Surface { mu, ..surface })
 }
 
-/// The least budget that suffices, having checked that it and larger ones give the bits of the answer without one, and that smaller ones are refused.
+/// The least budget that suffices, having checked that it and larger ones give the bits of the answer without
+/// one, and that smaller ones are refused.
 fn least<T: Scalar>(solve: impl Fn(&Budgeted<T>) -> Answer<T>, free: &Answer<T>, surface: Surface<T>) -> u32 {
     let bits = |answer: &Answer<T>| format!("{answer:?}");
     let exceeds = |quadratures: u32| match solve(&surface.within(quadratures)) {
@@ -136,8 +138,9 @@ fn a_reference_to_a_surface_is_a_surface() {
     );
 }
 
-/// Slip that falls to 1e-14 of what it was, far from all other directions in which slip keeps its direction, and slip that hardly stops before v_n is zero: few
-/// quadratures suffice, since stretches grow with the distance from the zeros of q, and no trials are made where the end of the stretch lies before the event.
+/// Slip that falls to 1e-14 of what it was, far from all other directions in which slip keeps its direction,
+/// and slip that hardly stops before v_n is zero: few quadratures suffice, since stretches grow with the
+/// distance from the zeros of q, and no trials are made where the end of the stretch lies before the event.
 #[test]
 fn slip_that_nearly_stops_takes_few_quadratures() {
     let cases: [([f64; 6], [f64; 3], f64, Law); 3] = [
@@ -191,7 +194,8 @@ fn slip_that_nearly_stops_takes_few_quadratures() {
     }
 }
 
-/// Slip that stops where v_n vanishes, up to rounding: the end of compression is not sought before the end of slip, which trials would approach without end.
+/// Slip that stops where v_n vanishes, up to rounding: the end of compression is not sought before the end of
+/// slip, which trials would approach without end.
 #[test]
 fn slip_that_stops_with_compression_takes_few_quadratures() {
     let cases = [

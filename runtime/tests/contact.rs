@@ -65,7 +65,8 @@ fn wrong(
     worst
 }
 
-/// 100 000 random states of all ranks, with and without slip: each has an answer or a reason, and each answer obeys mechanics.
+/// 100 000 random states of all ranks, with and without slip: each has an answer or a reason, and each answer
+/// obeys mechanics.
 #[test]
 fn every_state_has_an_answer_or_a_reason() {
     let mut random = Random(1);
@@ -107,7 +108,8 @@ fn every_state_has_an_answer_or_a_reason() {
     assert!(reasons[0] > 500 && reasons[1] == 0, "{reasons:?}");
 }
 
-/// How many modes fit, by enumeration with a fine search for the direction in which slip begins: a second road.
+/// How many modes fit, by enumeration with a fine search for the direction in which slip begins: a second
+/// road.
 fn fitting(m: &Matrix3<f64>, beta: &Vector3<f64>, mu: f64) -> usize {
     let mut count = usize::from(beta.x > 0.0);
     let t = m.fixed_view::<2, 2>(1, 1).into_owned();
@@ -133,8 +135,8 @@ fn fitting(m: &Matrix3<f64>, beta: &Vector3<f64>, mu: f64) -> usize {
     count
 }
 
-/// Random contacts without slip (theory, section 17.3): where mu |b| < m_nn one mode fits, but for rare contacts near that bound, of which none is drawn
-/// here; elsewhere at least one fits, and rarely several.
+/// Random contacts without slip (theory, section 17.3): where mu |b| < m_nn one mode fits, but for rare
+/// contacts near that bound, of which none is drawn here; elsewhere at least one fits, and rarely several.
 #[test]
 fn one_mode_fits_where_friction_is_moderate() {
     let mut random = Random(7);
@@ -262,7 +264,8 @@ fn a_block_sticks_up_to_the_angle_of_friction() {
     }
 }
 
-/// Contacts of rank 1, as the tip of a pendulum on a wall: they stick or separate; where wedged the least force in the cone is given.
+/// Contacts of rank 1, as the tip of a pendulum on a wall: they stick or separate; where wedged the least
+/// force in the cone is given.
 #[test]
 fn contacts_with_one_freedom_stick() {
     let mut random = Random(5);

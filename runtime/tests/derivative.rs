@@ -170,7 +170,8 @@ fn straight_hodographs_are_not_smooth() {
     }
 }
 
-/// Where restitution ends just before the bodies approach again, or just after: the outcome jumps between the two.
+/// Where restitution ends just before the bodies approach again, or just after: the outcome jumps between the
+/// two.
 #[test]
 fn grazing_is_not_smooth() {
     let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);

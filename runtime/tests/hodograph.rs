@@ -1,4 +1,5 @@
-//! The moments where phases begin, the course between them, and the flags that say where an outcome is sensitive.
+//! The moments where phases begin, the course between them, and the flags that say where an outcome is
+//! sensitive.
 
 mod common;
 
@@ -145,7 +146,8 @@ fn the_course_obeys_the_differential_equations() {
     }
 }
 
-/// Another road to the middle of a collision: integration (55) of the same collision that Poisson's law ends there.
+/// Another road to the middle of a collision: integration (55) of the same collision that Poisson's law ends
+/// there.
 #[cfg(feature = "std")]
 #[test]
 fn integration_meets_the_course_on_its_way() {
@@ -267,8 +269,8 @@ fn flags_fire_where_an_outcome_is_sensitive() {
     assert!(!flags(&ball, &Vector3::new(-1.0, 0.3, 0.4), 0.1, 0.5, Law::Stronge).any());
 }
 
-/// v_n rises, falls and rises again: where the law's end passes the maximum, or the minimum passes zero, the outcome jumps, and the flag is
-/// up on both sides of the jump.
+/// v_n rises, falls and rises again: where the law's end passes the maximum, or the minimum passes zero, the
+/// outcome jumps, and the flag is up on both sides of the jump.
 #[test]
 fn grazing_is_flagged_where_the_outcome_jumps() {
     let m = ReducedMatrix::new(2.1, -2.1, -1.35, 2.3, 1.15, 4.3);

@@ -1,5 +1,6 @@
-//! No outcome violates a law of impact, for random contacts chosen to be difficult: friction from 0 to 1e308, ranks 1 to 3, entries that are rounding
-//! noise, anisotropy, and numbers near both ends of the range, in single and double precision.
+//! No outcome violates a law of impact, for random contacts chosen to be difficult: friction from 0 to 1e308,
+//! ranks 1 to 3, entries that are rounding noise, anisotropy, and numbers near both ends of the range, in
+//! single and double precision.
 //!
 //! The laws are evaluated in numbers of twice the digits, independently of the solver's own verification.
 
@@ -31,7 +32,8 @@ struct Case {
     tame: bool,
 }
 
-/// The greatest relative residual of each law: momentum, friction, separation, law of restitution, friction's work, Stronge's energy.
+/// The greatest relative residual of each law: momentum, friction, separation, law of restitution, friction's
+/// work, Stronge's energy.
 fn residuals(case: &Case, hit: &Impact<f64>) -> [f64; 6] {
     let d = |x: f64| Double::from(x);
     let [nn, nt, ns, tt, ts, ss] = case.m.map(d);
@@ -139,7 +141,8 @@ impl Tally {
     }
 }
 
-/// A contact of a rank, with all that hurts; `epsilon` is the rounding unit of the numbers, `range` the exponent of the largest.
+/// A contact of a rank, with all that hurts; `epsilon` is the rounding unit of the numbers, `range` the
+/// exponent of the largest.
 fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
     let rank = 1 + random.pick(3);
     let bound = |x: f64| x.clamp(10.0_f64.powf(-range), 10.0_f64.powf(range));
@@ -319,8 +322,9 @@ fn closed_forms() {
     }
 }
 
-/// A contact that sticks with hardly any mobility along n takes an impulse of the inverse of that mobility: its balance of momentum consists of
-/// terms of that size, each with its rounding, and is met as well as they allow. Such an answer is right, and leaves.
+/// A contact that sticks with hardly any mobility along n takes an impulse of the inverse of that mobility:
+/// its balance of momentum consists of terms of that size, each with its rounding, and is met as well as they
+/// allow. Such an answer is right, and leaves.
 ///
 /// Outcomes in numbers of 32 digits (`common::second_road`): I_n and v_n2.
 #[test]
@@ -377,7 +381,8 @@ fn great_impulses_are_no_error() {
     }
 }
 
-/// Friction up to the largest number: the limit is that of friction that stops slip at once, in every structure and for every rank.
+/// Friction up to the largest number: the limit is that of friction that stops slip at once, in every
+/// structure and for every rank.
 #[test]
 fn friction_to_the_end_of_the_range() {
     let mut random = Random(24);
@@ -476,7 +481,8 @@ fn friction_to_the_end_of_the_range() {
     }
 }
 
-/// What was wrong once: a singular contact close to mu_c that gained energy, friction beyond 1e71, spurious refusals of tiny numbers.
+/// What was wrong once: a singular contact close to mu_c that gained energy, friction beyond 1e71, spurious
+/// refusals of tiny numbers.
 #[test]
 fn wrong_once() {
     let m = [

@@ -1,4 +1,5 @@
-//! The paper's methods against the exact solver: integration to its tolerance, the threshold eps_s, and the error of summation.
+//! The paper's methods against the exact solver: integration to its tolerance, the threshold eps_s, and the
+//! error of summation.
 #![cfg(feature = "std")]
 
 mod common;
@@ -83,7 +84,8 @@ fn the_threshold_does_not_matter() {
         }
         let literal = |eps_s| error(&at(eps_s, Switch::AtThreshold), &exact, &v);
         if exact.path == Path::Sliding {
-            // Slip passes the origin at a distance between 0.05 and 0.1 m/s: a threshold below that is never met.
+            // Slip passes the origin at a distance between 0.05 and 0.1 m/s: a threshold below that is never
+            // met.
             println!("{} {:?}: {:?}", surface.mu, surface.law, [0.1, 0.05, 0.02, 0.01].map(literal));
             assert!(literal(0.01) < 1e-9);
         } else {

@@ -137,7 +137,8 @@ fn bad_input_is_named() {
     assert!((normal_velocity + 0.3226).abs() < 1e-4);
 }
 
-/// Minors and diagonal entries may be negative by what rounding explains, in any units, and by no more (theory, 18.1).
+/// Minors and diagonal entries may be negative by what rounding explains, in any units, and by no more
+/// (theory, 18.1).
 #[test]
 fn matrices_of_no_mechanism_are_refused_from_half_the_digits_on() {
     let (v, s) = (Vector3::new(-1.0, 0.5, 0.25), Surface { mu: 0.5, e: 0.5, law: Law::Poisson });
@@ -173,7 +174,8 @@ fn matrices_of_no_mechanism_are_refused_from_half_the_digits_on() {
     }
 }
 
-/// Entries are uncertain by rounding of the largest diagonal entry, however small they are: a singular matrix with such noise is one of a mechanism.
+/// Entries are uncertain by rounding of the largest diagonal entry, however small they are: a singular matrix
+/// with such noise is one of a mechanism.
 #[test]
 fn noise_of_small_entries_is_no_reason_to_refuse() {
     let (v, s) = (Vector3::new(-1.0, 0.5, 0.25), Surface { mu: 0.5, e: 0.5, law: Law::Poisson });
@@ -210,8 +212,8 @@ fn bodies_may_approach_twice() {
     }
 }
 
-/// Steep friction on ill-conditioned contacts: where f changes sign it is known to mu |b| times the rounding only, and the arc must
-/// pass on all the same. The velocities are those of the integration (55).
+/// Steep friction on ill-conditioned contacts: where f changes sign it is known to mu |b| times the rounding
+/// only, and the arc must pass on all the same. The velocities are those of the integration (55).
 #[test]
 fn steep_friction_does_not_stop_the_arc_where_v_n_turns() {
     let cases = [
@@ -249,8 +251,9 @@ fn steep_friction_does_not_stop_the_arc_where_v_n_turns() {
     }
 }
 
-/// A rank of two to rounding, and friction so great that it holds what hardly resists: what the rounding of the entries leaves of the
-/// mobility along n means nothing, and depends on the axes. Poisson's and Stronge's laws end before slip stops.
+/// A rank of two to rounding, and friction so great that it holds what hardly resists: what the rounding of
+/// the entries leaves of the mobility along n means nothing, and depends on the axes. Poisson's and Stronge's
+/// laws end before slip stops.
 #[test]
 fn mobility_below_rounding_is_none_in_any_axes() {
     let m = ReducedMatrix::new(
@@ -275,7 +278,8 @@ fn mobility_below_rounding_is_none_in_any_axes() {
     }
 }
 
-/// Whatever has an outcome in the range of the numbers is solved, denormal or huge; what leaves the range is said to be not finite.
+/// Whatever has an outcome in the range of the numbers is solved, denormal or huge; what leaves the range is
+/// said to be not finite.
 #[test]
 fn magnitudes_do_not_matter() {
     let of = |mass: f64, speed: f64| {

@@ -1,4 +1,5 @@
-//! Every reference collision, to max(1e-12, 32 x condition x 2.2e-16), with the right path and number of compressions.
+//! Every reference collision, to max(1e-12, 32 x condition x 2.2e-16), with the right path and number of
+//! compressions.
 
 mod common;
 

@@ -41,7 +41,8 @@ fn dual_numbers_give_the_derivative_by_friction() {
     }
 }
 
-/// Slip that stops just before compression ends: what is left of v_n is no rounding in single precision either.
+/// Slip that stops just before compression ends: what is left of v_n is no rounding in single precision
+/// either.
 #[test]
 fn slip_that_stops_before_compression_ends_in_single_precision() {
     let m = [0.7980910561809162, 0.0, 0.0, 1.5008655574994163, -0.3919651410907144, 0.4638920694939901];

@@ -1,5 +1,5 @@
-//! Compares outcomes with an independent solution in numbers of twice the digits (`common/second_road.rs`): ill-conditioned, singular and nearly
-//! straight contacts, in any axes and units.
+//! Compares outcomes with an independent solution in numbers of twice the digits (`common/second_road.rs`):
+//! ill-conditioned, singular and nearly straight contacts, in any axes and units.
 
 mod common;
 
@@ -89,8 +89,9 @@ fn every_rank() {
     }
 }
 
-/// Contacts that can move in one direction only, in turned axes, in which rounding makes their matrices regular: slip and normal velocity vanish
-/// together, and what rounding leaves of them must not be taken for a wedge.
+/// Contacts that can move in one direction only, in turned axes, in which rounding makes their matrices
+/// regular: slip and normal velocity vanish together, and what rounding leaves of them must not be taken for
+/// a wedge.
 #[test]
 fn one_direction_in_turned_axes() {
     let mut random = Random(7);
@@ -116,7 +117,8 @@ fn one_direction_in_turned_axes() {
     assert!(solved > 1000 && wedged > 100, "{solved} solved, {wedged} wedged");
 }
 
-/// Conditions to 1e8, in axes turned all round and reflected, and in units from micro to mega: each is right by itself.
+/// Conditions to 1e8, in axes turned all round and reflected, and in units from micro to mega: each is right
+/// by itself.
 #[test]
 fn ill_conditioned_in_all_axes_and_units() {
     let mut random = Random(2);
@@ -185,7 +187,8 @@ fn nearly_straight() {
     tally.report("nearly straight", 60);
 }
 
-/// Two neighbouring zeros of h merge in a direction: slip begins there, or within rounding of it, or a little to the side.
+/// Two neighbouring zeros of h merge in a direction: slip begins there, or within rounding of it, or a little
+/// to the side.
 #[test]
 fn merging_zeros() {
     let mut random = Random(12);
@@ -214,7 +217,8 @@ fn merging_zeros() {
         let v = Vector3::new(-0.2 - random.next().abs(), speed * cos / long, speed * sin / long);
         tally.compare(&m, &v, &surface);
     }
-    // Farther from them, where each was a weakness once: a direction left half exact, slip that falls ever faster, terms that rise before they fall.
+    // Farther from them, where each was a weakness once: a direction left half exact, slip that falls ever
+    // faster, terms that rise before they fall.
     let surface = |mu, e, law| Surface { mu, e, law };
     tally.compare(
         &ReducedMatrix::new(
@@ -255,7 +259,8 @@ fn merging_zeros() {
     tally.report("merging zeros", 200);
 }
 
-/// A direction of hardly any mobility that still moves with the normal: slip along it is renewed, and known as far as rounding of T leaves it.
+/// A direction of hardly any mobility that still moves with the normal: slip along it is renewed, and known
+/// as far as rounding of T leaves it.
 #[test]
 fn hardly_any_mobility_across() {
     let mut random = Random(13);
@@ -429,7 +434,8 @@ fn friction_opposes_slip() {
     assert!(count > 300, "{count}");
 }
 
-/// Where f stays the same to the end, the three laws agree: straight hodographs that do not stop, without friction, balanced.
+/// Where f stays the same to the end, the three laws agree: straight hodographs that do not stop, without
+/// friction, balanced.
 #[test]
 fn laws_agree_where_f_is_constant() {
     let mut random = Random(9);
@@ -452,8 +458,8 @@ fn laws_agree_where_f_is_constant() {
     assert!(count > 50, "{count}");
 }
 
-/// Restitution of a thousandth and less, where the work that is wanted is a millionth of what compression took; and a stable zero of h where g / h' = -1/2, at
-/// which series for the work would resonate.
+/// Restitution of a thousandth and less, where the work that is wanted is a millionth of what compression
+/// took; and a stable zero of h where g / h' = -1/2, at which series for the work would resonate.
 #[test]
 fn collisions_that_lost_digits_once() {
     let mut tally = Tally::default();
@@ -484,7 +490,8 @@ fn collisions_that_lost_digits_once() {
     tally.report("once lost", 8);
 }
 
-/// Stronge's law with so little restitution that its work, e^2 of that of compression, is a difference of nearly equal works; slip stops on the way.
+/// Stronge's law with so little restitution that its work, e^2 of that of compression, is a difference of
+/// nearly equal works; slip stops on the way.
 #[test]
 fn little_restitution_in_which_slip_stops() {
     let mut random = Random(12);

@@ -1,4 +1,5 @@
-//! Random contacts of rank 1 to 3: the exact solver against integration, Coulomb's law along the arc, and the geometry of section 3 and Appendix B.
+//! Random contacts of rank 1 to 3: the exact solver against integration, Coulomb's law along the arc, and the
+//! geometry of section 3 and Appendix B.
 #![cfg(feature = "std")]
 
 use hodograph::{

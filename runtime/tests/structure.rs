@@ -46,8 +46,9 @@ fn agree<S: Structure>(shape: impl Fn(&mut ReducedMatrix<f64>, &mut Vector3<f64>
         let e = [0.0, 1.0, 0.5 + 0.5 * random.next()][(n / 3) % 3];
         let law = Law::ALL[(n / 9) % Law::ALL.len()];
         let mut surface = Surface { mu: 3.0 * random.next().abs().powi(2), e, law };
-        // Slip that is fast, hardly there, or nearly along an axis; a contact plane that resists nearly alike in all directions, or half as
-        // much in one (where the series of the balanced form would resonate).
+        // Slip that is fast, hardly there, or nearly along an axis; a contact plane that resists nearly alike
+        // in all directions, or half as much in one (where the series of the balanced form would
+        // resonate).
         match n % 11 {
             1 => (v.y, v.z) = (v.y * 1e4, v.z * 1e4),
             2 => (v.y, v.z) = (v.y * 1e-5, v.z * 1e-5),

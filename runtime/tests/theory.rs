@@ -63,7 +63,8 @@ fn the_complex_form_is_that_of_the_paper() {
     }
 }
 
-/// 3.3: h has no constant term and no harmonic above the second, so at most 240 degrees lie between neighbouring zeros.
+/// 3.3: h has no constant term and no harmonic above the second, so at most 240 degrees lie between
+/// neighbouring zeros.
 #[test]
 fn neighbouring_zeros_are_at_most_240_degrees_apart() {
     let third = core::f64::consts::TAU / 3.0;
@@ -71,7 +72,8 @@ fn neighbouring_zeros_are_at_most_240_degrees_apart() {
     let step = 2.0 * third / 960.0;
     for stretch in [1.02, 1.1, 0.3, 0.0] {
         for turn in 0..60 {
-            // The second harmonic alone has zeros 90 degrees apart, the first alone 180; together they come near the bound.
+            // The second harmonic alone has zeros 90 degrees apart, the first alone 180; together they come
+            // near the bound.
             let (sin, cos) = (0.11 * f64::from(turn)).sin_cos();
             let m = ReducedMatrix::new(4.0, 0.25 * stretch * cos, 0.25 * stretch * sin, 1.0, 0.0, 0.5);
             let h = |phi: f64| rates(&m, 1.0, phi).z;

@@ -98,7 +98,8 @@ fn scales_with_slip_and_mass() {
     }
 }
 
-/// It is the limit of a collision whose speed of approach vanishes, under Poisson's and Stronge's hypotheses; and under Newton's with e = 0.
+/// It is the limit of a collision whose speed of approach vanishes, under Poisson's and Stronge's hypotheses;
+/// and under Newton's with e = 0.
 #[test]
 fn limit_of_collisions() {
     let mut count = 0;
@@ -176,7 +177,8 @@ fn nothing_happens_without_painleve() {
     assert_eq!(kind([1.0, 0.0], &Surface { mu: 5.0, ..surface }), None);
 }
 
-/// The derivative against differences of fourth order, and against numbers of another crate that carry derivatives.
+/// The derivative against differences of fourth order, and against numbers of another crate that carry
+/// derivatives.
 #[test]
 fn derivatives_are_those_of_differences() {
     use num_dual::Dual64;

@@ -29,8 +29,8 @@ fn command(time: f64) -> f64 {
     }
 }
 
-/// After M. H. Raibert: the leg is made longer when the body is lowest. By how much follows from the height that is asked for, from what the last
-/// one lacked and from what all so far lacked.
+/// After M. H. Raibert: the leg is made longer when the body is lowest. By how much follows from the height
+/// that is asked for, from what the last one lacked and from what all so far lacked.
 #[derive(Clone, Default)]
 struct Control {
     /// by how much the leg is made longer, m

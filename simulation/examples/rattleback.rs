@@ -1,4 +1,5 @@
-//! A rattleback that is spun against its preferred sense on a floor it could slip on and leave: it rattles, and turns back.
+//! A rattleback that is spun against its preferred sense on a floor it could slip on and leave: it rattles,
+//! and turns back.
 //!
 //!   cargo run --release -p hodograph-simulation --example rattleback -- --svg rattleback.svg
 
@@ -22,7 +23,8 @@ pub fn tell() -> Told {
     let celt = RattlebackOnFloor::<f64>::default();
     let mut start = Start::of(&celt)?;
     start.speeds[2] = -2.0;
-    // On the floor, and rolling: the height closes the gap, the velocity of the mass centre stops the lowest point.
+    // On the floor, and rolling: the height closes the gap, the velocity of the mass centre stops the lowest
+    // point.
     start.coordinates[5] -= Contacts::gap(&celt, 0, &start.state())?.unwrap_or(0.0);
     let here = Contacts::contact_state(&celt, 0, &start.state())?;
     let slip = here.normal * here.velocity.x + here.first * here.velocity.y + here.second * here.velocity.z;

@@ -1,9 +1,11 @@
-//! Evaluates all closed contacts of a mechanism in a state together: the matrix W, the free accelerations beta and the velocities.
+//! Evaluates all closed contacts of a mechanism in a state together: the matrix W, the free accelerations
+//! beta and the velocities.
 
 use hodograph::{Contacts, Kind, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
-/// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact basis.
+/// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact
+/// basis.
 #[derive(Clone, Debug)]
 pub(crate) struct ClosedContacts {
     /// Numbers of the contacts in the mechanism.
@@ -103,8 +105,8 @@ impl ClosedContacts {
     }
 }
 
-/// beta of a contact. Of a mechanism that does not give it, it is the derivative of the contact's velocity along the motion by differences of order
-/// six, good to some twelve digits.
+/// beta of a contact. Of a mechanism that does not give it, it is the derivative of the contact's velocity
+/// along the motion by differences of order six, good to some twelve digits.
 pub(crate) fn free_acceleration(
     mechanism: &dyn Contacts<f64>,
     contact: usize,
@@ -135,8 +137,9 @@ pub(crate) fn free_acceleration(
 /// Step of the differences, s.
 const DIFFERENCE: f64 = 1e-3;
 
-/// Below this ratio to the greatest one a pivot counts as zero. Within a step the contacts of an overdetermined support lie in their plane but
-/// for the errors of the step, and the pivots that vanish in the plane must count as zero there too.
+/// Below this ratio to the greatest one a pivot counts as zero. Within a step the contacts of an
+/// overdetermined support lie in their plane but for the errors of the step, and the pivots that vanish in
+/// the plane must count as zero there too.
 const SINGULAR: f64 = 1e-7;
 
 /// The least x with A x = b as nearly as possible.
@@ -171,8 +174,9 @@ pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64
     (x + more, unique)
 }
 
-/// The least x that solves the equations of a singular matrix as far as its rank goes: A P = Q R with pivots, and the least solution of R' x = Q' b
-/// where R' are the rows of R up to the rank. (A singular value decomposition by shifts may lose half the digits next to a zero.)
+/// The least x that solves the equations of a singular matrix as far as its rank goes: A P = Q R with pivots,
+/// and the least solution of R' x = Q' b where R' are the rows of R up to the rank. (A singular value
+/// decomposition by shifts may lose half the digits next to a zero.)
 fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     let n = matrix.ncols();
     let qr = matrix.clone().col_piv_qr();
@@ -184,7 +188,8 @@ fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     }
     let rows = r.rows(0, rank).into_owned();
     let projected = (qr.q().transpose() * right).rows(0, rank).into_owned();
-    // The least solution of rows x = projected lies in the span of the rows: rows^T = Q2 R2, x = Q2 R2^-T projected.
+    // The least solution of rows x = projected lies in the span of the rows: rows^T = Q2 R2, x = Q2 R2^-T
+    // projected.
     let second = rows.transpose().qr();
     let mut x = match second.r().transpose().solve_lower_triangular(&projected) {
         Some(inner) => second.q() * inner,
@@ -194,7 +199,8 @@ fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     (x, rank == n)
 }
 
-/// A basis of the x with A x = 0, in columns: A P = Q R with pivots, and the x whose last entries, behind the rank, are those of a unit matrix.
+/// A basis of the x with A x = 0, in columns: A P = Q R with pivots, and the x whose last entries, behind the
+/// rank, are those of a unit matrix.
 pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let n = matrix.ncols();
     if n == 0 || matrix.nrows() == 0 {
@@ -219,7 +225,8 @@ pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     basis
 }
 
-/// Below this ratio to the greatest one a pivot of a null space counts as zero: forces along it leave accelerations of that ratio.
+/// Below this ratio to the greatest one a pivot of a null space counts as zero: forces along it leave
+/// accelerations of that ratio.
 const NULL: f64 = 1e-10;
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! Corrects the drift of the integration after each step: lengths of quaternions, closed loops, gaps and velocities of closed contacts.
+//! Corrects the drift of the integration after each step: lengths of quaternions, closed loops, gaps and
+//! velocities of closed contacts.
 
 use hodograph::{Contacts, Kind, State, StateError};
 use nalgebra::{DMatrix, DVector};
@@ -38,7 +39,8 @@ pub(crate) fn close_loops(
     Ok(())
 }
 
-/// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the mass matrix.
+/// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the
+/// mass matrix.
 pub(crate) fn close_gaps(
     mechanism: &dyn Contacts<f64>,
     time: f64,
@@ -85,7 +87,8 @@ pub(crate) fn close_gaps(
     Ok(())
 }
 
-/// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least change of kinetic energy.
+/// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least
+/// change of kinetic energy.
 pub(crate) fn hold_velocities(
     mechanism: &dyn Contacts<f64>,
     time: f64,

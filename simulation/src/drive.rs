@@ -6,7 +6,8 @@ use std::sync::Arc;
 /// A function that writes the inputs for a time, coordinates and speeds.
 pub type InputFunction = Arc<dyn Fn(f64, &[f64], &[f64], &mut [f64]) + Send + Sync>;
 
-/// A controller: computes inputs at its sampling times, and may keep a state. Every cloneable closure with this signature is one.
+/// A controller: computes inputs at its sampling times, and may keep a state. Every cloneable closure with
+/// this signature is one.
 pub trait Controller: Send {
     /// Writes the inputs for a time, coordinates and speeds; the slice holds the inputs so far.
     fn control(&mut self, time: f64, coordinates: &[f64], speeds: &[f64], inputs: &mut [f64]);

@@ -1,7 +1,8 @@
-//! The energy account of a motion: kinetic and potential energy, and the works of friction, impacts and inputs.
+//! The energy account of a motion: kinetic and potential energy, and the works of friction, impacts and
+//! inputs.
 
-/// The energies at one time and the works since the start, J. The sum of kinetic and potential energy changes by the sum of the works, and by the works of
-/// prescribed motion and of loads without potential.
+/// The energies at one time and the works since the start, J. The sum of kinetic and potential energy changes
+/// by the sum of the works, and by the works of prescribed motion and of loads without potential.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct EnergyAccount {
     /// kinetic energy

@@ -37,7 +37,8 @@ pub enum Reason {
     EventsWithoutEnd(usize),
     /// Several contacts were struck together and the option says to stop.
     Together(Vec<String>),
-    /// Several contacts were struck together, and the impact is not one that can be solved as the option says: why, and what to do.
+    /// Several contacts were struck together, and the impact is not one that can be solved as the option
+    /// says: why, and what to do.
     Lzb(String),
     /// The forces at several contacts could not be found.
     Forces(String),

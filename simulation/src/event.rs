@@ -84,8 +84,8 @@ pub struct Struck {
     pub speeds_before: Vec<f64>,
     /// whether it was solved with e = 0 because the next bounce would be lower than the tolerance
     pub last_bounce: bool,
-    /// for the first of several contacts struck together: the greatest difference of a speed after all collisions between the orders in which
-    /// they may be solved; zero if the order does not matter
+    /// for the first of several contacts struck together: the greatest difference of a speed after all
+    /// collisions between the orders in which they may be solved; zero if the order does not matter
     pub spread: Option<f64>,
 }
 

@@ -1,4 +1,5 @@
-//! The functions of a step whose zeros are events: gaps, normal forces, cones of friction, functions of the user.
+//! The functions of a step whose zeros are events: gaps, normal forces, cones of friction, functions of the
+//! user.
 
 use hodograph::{Kind, State};
 
@@ -12,7 +13,8 @@ use crate::stepper::Step;
 
 /// A contact that lifts off is apart where its gap is above this, m.
 const LIFTED: f64 = 1e-11;
-/// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other body: it is zero but for rounding.
+/// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other
+/// body: it is zero but for rounding.
 const STILL: f64 = 2e-11;
 
 /// Places and weights of Gauss's rule on [0, 1].
@@ -118,7 +120,8 @@ impl Simulation<'_> {
                 Watched::Gap(contact) => {
                     match self.phases[contact] {
                         Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
-                        // Its gap by integration of its rate, over the time where it was zero at the front; less what its acceleration is rounded to.
+                        // Its gap by integration of its rate, over the time where it was zero at the front;
+                        // less what its acceleration is rounded to.
                         Phase::Open(Leaving::Lifted { risen, rounding }) => {
                             let mean = self.mean_rate(contact, after, at)? + 0.5 * rounding * after;
                             Ok(if risen > 0.0 { risen + after * mean } else { mean })
@@ -134,8 +137,9 @@ impl Simulation<'_> {
             .collect()
     }
 
-    /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the gap's rounding, which a short time would
-    /// magnify, and does not vanish at the front. By Gauss's five points.
+    /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the
+    /// gap's rounding, which a short time would magnify, and does not vanish at the front. By Gauss's
+    /// five points.
     fn mean_rate(
         &self,
         contact: usize,

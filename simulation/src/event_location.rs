@@ -1,9 +1,10 @@
 //! Locates events: finds the first point of a step at which one of several functions falls below zero.
 //!
-//! Each function is interpolated at Chebyshev points; their number is increased, or the step divided, until the last coefficients are negligible. Between its
-//! points the polynomial p is bounded: on an interval of half width r about m it is at least p(m) - |p'(m)| r - P r^2 / 2, where P bounds |p''|. Intervals in
-//! which this excludes a zero are skipped, on intervals in which p' cannot vanish the ends are compared, and all others are halved. So no extremum is
-//! missed.
+//! Each function is interpolated at Chebyshev points; their number is increased, or the step divided, until
+//! the last coefficients are negligible. Between its points the polynomial p is bounded: on an interval of
+//! half width r about m it is at least p(m) - |p'(m)| r - P r^2 / 2, where P bounds |p''|. Intervals in which
+//! this excludes a zero are skipped, on intervals in which p' cannot vanish the ends are compared, and all
+//! others are halved. So no extremum is missed.
 
 /// Degrees tried, each twice the one before: points are used again.
 const DEGREES: [usize; 3] = [8, 16, 32];
@@ -15,7 +16,8 @@ const MOST: usize = 20_000;
 /// A step in so many halves, at least, before what seems to be rounding is taken for it.
 const HALVED: usize = 3;
 
-/// The functions have no values somewhere in the step, or it is too long for what they do: a shorter one must be looked at.
+/// The functions have no values somewhere in the step, or it is too long for what they do: a shorter one must
+/// be looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Unresolved;
 
@@ -60,7 +62,8 @@ impl Chebyshev {
         });
         let bend = bend.sum();
         let last = coefficients.iter().rev().take(3).map(|c| c.abs()).fold(0.0, f64::max);
-        // The coefficients are sums of the values: rounding leaves an error even where the last of them vanish.
+        // The coefficients are sums of the values: rounding leaves an error even where the last of them
+        // vanish.
         let size: f64 = coefficients.iter().map(|c| c.abs()).sum();
         Self { coefficients, bend, error: 2.0 * last + 4.0 * f64::EPSILON * size }
     }
@@ -120,8 +123,8 @@ impl Chebyshev {
     }
 }
 
-/// The first crossing of `count` functions over the fractions [0, 1] of a step. `values` gives all functions at a fraction, or nothing where they
-/// cannot be evaluated; `noise` is what rounding may do to each.
+/// The first crossing of `count` functions over the fractions [0, 1] of a step. `values` gives all functions
+/// at a fraction, or nothing where they cannot be evaluated; `noise` is what rounding may do to each.
 ///
 /// # Errors
 ///
@@ -271,7 +274,8 @@ mod tests {
         assert!(first(|x: f64| (x - 0.3).powi(2)).is_none());
     }
 
-    /// Rounding that no polynomial resolves, and functions without values, cost a bounded number of evaluations.
+    /// Rounding that no polynomial resolves, and functions without values, cost a bounded number of
+    /// evaluations.
     #[test]
     fn the_work_is_bounded() {
         let mut count = 0;
@@ -296,7 +300,8 @@ mod tests {
         assert!(count <= MOST, "{count}");
     }
 
-    /// A force that is zero as long as the contact lasts, exactly or but for rounding, neither crosses nor costs more than a few halvings.
+    /// A force that is zero as long as the contact lasts, exactly or but for rounding, neither crosses nor
+    /// costs more than a few halvings.
     #[test]
     fn functions_that_stay_zero_are_not_halved_for_ever() {
         assert!(first(|_| 0.0).is_none());

@@ -1,4 +1,5 @@
-//! Refines the time of an event, which the dense output of a step gives to its own accuracy, to rounding: the motion is integrated to each trial anew.
+//! Refines the time of an event, which the dense output of a step gives to its own accuracy, to rounding: the
+//! motion is integrated to each trial anew.
 
 use crate::SimulationError;
 use crate::event_functions::Watched;
@@ -62,7 +63,8 @@ impl Simulation<'_> {
         Ok(step)
     }
 
-    /// Another function falls through zero: secants, kept between a time at which it is positive and one at which it is negative once these are known.
+    /// Another function falls through zero: secants, kept between a time at which it is positive and one at
+    /// which it is negative once these are known.
     fn at_zero(&self, closed: &[Closed], whole: &Step, watched: Watched, mut after: f64) -> Step {
         let trial = |after: f64| {
             let mut step = self.part(closed, after)?;
@@ -112,7 +114,8 @@ impl Simulation<'_> {
     }
 }
 
-/// Whether two times since the front are the same but for rounding: the state is as exact as they are, however late it is.
+/// Whether two times since the front are the same but for rounding: the state is as exact as they are,
+/// however late it is.
 fn settled(next: f64, after: f64) -> bool {
     (next - after).abs() <= 2.0 * f64::EPSILON * after
 }

@@ -51,8 +51,9 @@ pub(crate) enum Lacking {
     Together,
 }
 
-/// Forces under which sticking contacts do not accelerate and sliding ones do not part. Where the support is overdetermined they are shared so
-/// that the sum of lambda^2 over the `weights` of the contacts is least: weights are normal forces, so that all contacts use their friction alike.
+/// Forces under which sticking contacts do not accelerate and sliding ones do not part. Where the support is
+/// overdetermined they are shared so that the sum of lambda^2 over the `weights` of the contacts is least:
+/// weights are normal forces, so that all contacts use their friction alike.
 pub(crate) fn forces(
     support: &ClosedContacts,
     holds: &[Hold],
@@ -98,8 +99,9 @@ pub(crate) fn forces(
     Ok(Forces { lambda, acceleration, unique, f: 1.0 })
 }
 
-/// Shares the friction of sticking contacts anew among those that can take it from each other, as the heel and the toe of a foot can, in proportion to what each may
-/// have: the sum of friction^2 / (mu lambda_n) is least. Normal forces and accelerations stay the same.
+/// Shares the friction of sticking contacts anew among those that can take it from each other, as the heel
+/// and the toe of a foot can, in proportion to what each may have: the sum of friction^2 / (mu lambda_n) is
+/// least. Normal forces and accelerations stay the same.
 fn share_friction(
     support: &ClosedContacts,
     columns: &[(usize, usize)],
@@ -132,8 +134,9 @@ fn share_friction(
 /// Below this ratio to the greatest a share of friction counts as this.
 const LEAST_SHARE: f64 = 1e-10;
 
-/// The forces of an overdetermined support with nearly their own normal forces as weights, so that all contacts use their friction alike, and the weights
-/// with which they were found; `weights` are a first guess.
+/// The forces of an overdetermined support with nearly their own normal forces as weights, so that all
+/// contacts use their friction alike, and the weights with which they were found; `weights` are a first
+/// guess.
 pub(crate) fn shared(
     support: &ClosedContacts,
     holds: &[Hold],
@@ -190,7 +193,8 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
 /// Relative slack of the conditions that end a mode, so that rounding on an edge does not.
 const SLACK: f64 = 2e-12;
 
-/// What must stay positive while the modes last: per contact lambda_n, and (mu lambda_n)^2 - lambda_tan^2 of one that sticks (else 1).
+/// What must stay positive while the modes last: per contact lambda_n, and (mu lambda_n)^2 - lambda_tan^2 of
+/// one that sticks (else 1).
 pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 2]> {
     let size = forces.lambda.amax();
     holds
@@ -220,8 +224,9 @@ pub(crate) fn hold_good(forces: &Forces, holds: &[Hold], mu: &[f64]) -> bool {
 mod tests {
     use super::*;
 
-    /// A foot in a plane that stands on its toe, with hardly a force at its heel: both use their friction alike. Where the heel was given a thousandth of the toe's
-    /// weight, its friction was used up when that of the foot was not, and it seemed to slip.
+    /// A foot in a plane that stands on its toe, with hardly a force at its heel: both use their friction
+    /// alike. Where the heel was given a thousandth of the toe's weight, its friction was used up when
+    /// that of the foot was not, and it seemed to slip.
     #[test]
     fn heel_and_toe_use_their_friction_alike() {
         let point = |x: f64, z: f64| [[0.0, 1.0, -x], [1.0, 0.0, z], [0.0, 0.0, 0.0]];

@@ -12,7 +12,8 @@ use crate::phase::{Leaving, Phase};
 use crate::simulation::Simulation;
 use crate::{EventKind, Reason, SimulationError, Struck, Together};
 
-/// Touching contacts approach where their normal velocity, relative to the first approach, is below minus this.
+/// Touching contacts approach where their normal velocity, relative to the first approach, is below minus
+/// this.
 const APPROACH: f64 = 1e-12;
 /// Approaches slower than this, relative to the first, end without restitution.
 const FADED: f64 = 1e-9;
@@ -167,7 +168,8 @@ impl Simulation<'_> {
         Ok(list)
     }
 
-    /// One impact after the other until nothing approaches: the fastest approach first, or in an order of preference.
+    /// One impact after the other until nothing approaches: the fastest approach first, or in an order of
+    /// preference.
     fn sequence(
         &self,
         touching: &[usize],
@@ -212,7 +214,8 @@ impl Simulation<'_> {
         let plastic = Surface { e: 0.0, ..surface };
         let (outcome, after) = solve(if faded { &plastic } else { &surface })?;
         let mut hit = Hit { contact, outcome, before: speeds.to_vec(), after, bounces: None };
-        // The rule of chatter (theory, 17.7): the next bounce is lower than the tolerance, and the contact is pressed together.
+        // The rule of chatter (theory, 17.7): the next bounce is lower than the tolerance, and the contact is
+        // pressed together.
         let (before, rebound) = (-hit.outcome.approach.x, hit.outcome.impact.velocity.x);
         if faded || rebound <= 0.0 || rebound >= before {
             return Ok(hit);
@@ -226,7 +229,8 @@ impl Simulation<'_> {
         Ok(hit)
     }
 
-    /// The normal acceleration of a contact without its own force, while the others that last keep their modes.
+    /// The normal acceleration of a contact without its own force, while the others that last keep their
+    /// modes.
     fn pull(&self, contact: usize, speeds: &[f64]) -> Result<f64, SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
         let mut y = self.y.clone();
@@ -273,7 +277,8 @@ impl Simulation<'_> {
         Ok(Some(spread))
     }
 
-    /// A sliding contact that no finite force holds suffers an impact with zero speed of approach; all that touch answer.
+    /// A sliding contact that no finite force holds suffers an impact with zero speed of approach; all that
+    /// touch answer.
     pub(crate) fn impact_without_collision(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.phases.clone();
         self.crowd.0 += 1;
@@ -398,8 +403,9 @@ fn permutations(list: &[usize]) -> Vec<Vec<usize>> {
     all
 }
 
-/// The surface of an impact without collision, t along the slip: where f = m_nn - mu m_nt is not yet zero, but so small that the contact jams, with the
-/// friction that makes it as small and negative. It is larger by less than `2 JAM` times m_nn / m_nt.
+/// The surface of an impact without collision, t along the slip: where f = m_nn - mu m_nt is not yet zero,
+/// but so small that the contact jams, with the friction that makes it as small and negative. It is larger by
+/// less than `2 JAM` times m_nn / m_nt.
 fn jammed(reduced: &ReducedMatrix<f64>, surface: Surface<f64>) -> Surface<f64> {
     let f = reduced.nn - surface.mu * reduced.nt;
     let least = JAM * reduced.nn;

@@ -1,10 +1,12 @@
 //! Simulates the motion of mechanisms with impacts and lasting contact.
 //!
-//! [`Simulation`] follows a motion from event to event. Between events it integrates the equations of motion with the forces of the closed contacts, which
-//! follow exactly from their modes (stick, slide). Impacts are solved exactly. There is no penalty stiffness, and a sticking contact does not creep; where
-//! rigid bodies do not determine an outcome, the event says so. See `docs/contact.md`.
+//! [`Simulation`] follows a motion from event to event. Between events it integrates the equations of motion
+//! with the forces of the closed contacts, which follow exactly from their modes (stick, slide). Impacts are
+//! solved exactly. There is no penalty stiffness, and a sticking contact does not creep; where rigid bodies
+//! do not determine an outcome, the event says so. See `docs/contact.md`.
 //!
-//! It works for everything that implements [`hodograph::Contacts`]: generated modules, and models that the package `hodograph-interpreter` reads at run time.
+//! It works for everything that implements [`hodograph::Contacts`]: generated modules, and models that the
+//! package `hodograph-interpreter` reads at run time.
 //!
 //! ```
 //! use hodograph::{Law, State, Surface};

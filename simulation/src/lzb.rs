@@ -1,12 +1,16 @@
-//! Solves an impact of several contacts without friction that are struck together, after Liu, Zhao and Brogliato (2008).
+//! Solves an impact of several contacts without friction that are struck together, after Liu, Zhao and
+//! Brogliato (2008).
 //!
-//! Each contact is a spring of given stiffness that is so stiff that nothing moves while it acts: its compression c_i changes by c_i' = -v_i and its force
-//! k_i c_i changes the normal velocities by v' = W_nn (k c). For the energies E_i = k_i c_i^2 / 2 and the impulses I_i this is the distributing law
-//! dI_i / dI_j = (k_i / k_j)^(1/2) (E_i / E_j)^(1/2), that of springs with a linear law (eta = 1). Only the ratios of the k_i matter. While a contact expands
-//! it loses energy: c_i' = -v_i / e_i^2, which is the energetic coefficient of restitution (Stronge) of that contact alone.
+//! Each contact is a spring of given stiffness that is so stiff that nothing moves while it acts: its
+//! compression c_i changes by c_i' = -v_i and its force k_i c_i changes the normal velocities by v' = W_nn (k
+//! c). For the energies E_i = k_i c_i^2 / 2 and the impulses I_i this is the distributing law dI_i / dI_j =
+//! (k_i / k_j)^(1/2) (E_i / E_j)^(1/2), that of springs with a linear law (eta = 1). Only the ratios of the
+//! k_i matter. While a contact expands it loses energy: c_i' = -v_i / e_i^2, which is the energetic
+//! coefficient of restitution (Stronge) of that contact alone.
 //!
-//! While every contact keeps compressing, expanding or not touching, x_i = c_i (k_i / d_i)^(1/2), d_i = 1 or 1 / e_i^2, obeys x'' = -S x with S symmetric: its
-//! eigenvectors give the motion in closed form, and only the instants at which a contact changes are found numerically.
+//! While every contact keeps compressing, expanding or not touching, x_i = c_i (k_i / d_i)^(1/2), d_i = 1 or
+//! 1 / e_i^2, obeys x'' = -S x with S symmetric: its eigenvectors give the motion in closed form, and only
+//! the instants at which a contact changes are found numerically.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -337,8 +341,8 @@ mod tests {
         panic!("the balls do not part");
     }
 
-    /// Three equal balls, two equal springs: c1, c2 = sin(t) / 2 +- sin(3^(1/2) t) / (2 3^(1/2)) until the first two part; then the last two swing
-    /// with the rate 2^(1/2) alone.
+    /// Three equal balls, two equal springs: c1, c2 = sin(t) / 2 +- sin(3^(1/2) t) / (2 3^(1/2)) until the
+    /// first two part; then the last two swing with the rate 2^(1/2) alone.
     #[test]
     fn three_equal_balls_have_the_closed_answer() {
         let (mut low, mut high) = (1.5_f64, 3.0_f64);

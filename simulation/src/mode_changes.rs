@@ -15,7 +15,8 @@ use crate::{EventKind, Reason, SimulationError};
 const NO_SLIP: f64 = 1e-11;
 /// The first step of a slip that begins, s.
 const FIRST: f64 = 1e-7;
-/// After this many events at one time a contact changes its mode even if another distribution of the forces might keep it.
+/// After this many events at one time a contact changes its mode even if another distribution of the forces
+/// might keep it.
 const PATIENCE: usize = 40;
 
 impl Simulation<'_> {
@@ -132,7 +133,8 @@ impl Simulation<'_> {
         })
     }
 
-    /// Decides the modes of contacts whose gaps are closed and which do not approach or part; `was` are the phases before.
+    /// Decides the modes of contacts whose gaps are closed and which do not approach or part; `was` are the
+    /// phases before.
     pub(crate) fn decide(&mut self, candidates: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
         if candidates.is_empty() {
             return Ok(());

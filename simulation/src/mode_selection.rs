@@ -1,8 +1,10 @@
 //! Chooses the modes of several closed contacts at an event.
 //!
-//! For given forces at the other contacts the runtime gives the exact mode and force of one contact. Repeating this for all contacts in turn until nothing
-//! changes (block Gauss-Seidel, as Jean and Moreau's method of contact dynamics does for time steps) gives the modes; one linear system then gives the
-//! forces to rounding. Where the iteration does not converge and there are few contacts, all combinations of modes are tried.
+//! For given forces at the other contacts the runtime gives the exact mode and force of one contact.
+//! Repeating this for all contacts in turn until nothing changes (block Gauss-Seidel, as Jean and Moreau's
+//! method of contact dynamics does for time steps) gives the modes; one linear system then gives the
+//! forces to rounding. Where the iteration does not converge and there are few contacts, all combinations of
+//! modes are tried.
 
 use hodograph::{ContactError, ContactMode, Selection, contact_mode, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2};
@@ -35,7 +37,8 @@ pub(crate) struct Choice {
     pub unique: bool,
 }
 
-/// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not slip.
+/// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not
+/// slip.
 pub(crate) fn choose(
     support: &ClosedContacts,
     slips: &[Option<Vector2<f64>>],
@@ -241,8 +244,9 @@ fn polished(
     })
 }
 
-/// Turns the directions in which slip begins until the acceleration across each is that given, 0 where it is along it: Newton's method for the angles.
-/// `begin` are these contacts, by their place in the forces and in the directions.
+/// Turns the directions in which slip begins until the acceleration across each is that given, 0 where it is
+/// along it: Newton's method for the angles. `begin` are these contacts, by their place in the forces and in
+/// the directions.
 pub(crate) fn begin_along(
     begin: &[(usize, usize)],
     directions: &mut [Option<Vector2<f64>>],

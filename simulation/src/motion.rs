@@ -1,4 +1,5 @@
-//! The right-hand side of the integration: the rates of the state while the modes of all contacts stay the same.
+//! The right-hand side of the integration: the rates of the state while the modes of all contacts stay the
+//! same.
 
 use hodograph::{ContactError, Contacts, Kind, State, StateError};
 use nalgebra::Vector2;
@@ -9,7 +10,8 @@ use crate::forces::{Forces, Hold, Lacking, forces, shared};
 use crate::phase::Closed;
 use crate::slip_direction::settle_directions;
 
-/// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it began.
+/// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it
+/// began.
 pub(crate) const DIRECTION: f64 = 1e-10;
 
 /// Why the rates cannot be evaluated.
@@ -111,7 +113,8 @@ impl Motion<'_> {
                 Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
                 Lacking::Together => Failure::Together,
             };
-            // Where something slides its share of the normal forces decides how it is slowed down, and must not change between two decisions.
+            // Where something slides its share of the normal forces decides how it is slowed down, and must
+            // not change between two decisions.
             let solve = |holds: &[Hold]| forces(&support, holds, &mu, Some(&weights));
             settle_directions(&support, self.closed, &mut holds, &solve);
             let answer = if holds.iter().all(|hold| *hold == Hold::Stick) {

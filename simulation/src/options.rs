@@ -16,7 +16,8 @@ pub enum Together {
     /// One after the other, the fastest approach first, until nothing approaches.
     #[default]
     Sequential,
-    /// All at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction only.
+    /// All at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction
+    /// only.
     Lzb,
     /// The simulation ends with an error.
     Stop,
@@ -27,11 +28,13 @@ pub enum Together {
 pub struct Options {
     /// relative tolerance of the integration
     pub relative_tolerance: f64,
-    /// absolute tolerance of the integration, in the units of coordinates and speeds; bounces lower than this end in contact
+    /// absolute tolerance of the integration, in the units of coordinates and speeds; bounces lower than
+    /// this end in contact
     pub absolute_tolerance: f64,
     /// greatest step of the integration, s
     pub max_step: f64,
-    /// times at which inputs or their rates jump, rising, s: no step of the integration goes beyond the next of them, so that none is stepped over
+    /// times at which inputs or their rates jump, rising, s: no step of the integration goes beyond the next
+    /// of them, so that none is stepped over
     pub breaks: Vec<f64>,
     /// the surfaces of the contacts that have one of their own, by number
     pub surfaces: Vec<(usize, Surface<f64>)>,
@@ -41,7 +44,8 @@ pub struct Options {
     pub drive: Drive,
     /// what happens where several contacts are struck together
     pub together: Together,
-    /// of [`Together::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts that are not named have 1
+    /// of [`Together::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts
+    /// that are not named have 1
     pub stiffness: Vec<(usize, f64)>,
     /// whether all orders of up to four contacts struck together are compared
     pub compare_orders: bool,

@@ -9,8 +9,8 @@ pub(crate) enum Leaving {
     Apart,
     /// It separated with a speed now; its gap is zero but for rounding.
     Bounced,
-    /// It lifted off: rate and gap begin at zero. `risen` is its gap at the front by integration of its rate, which has no rounding of a gap; `rounding` that of
-    /// its acceleration.
+    /// It lifted off: rate and gap begin at zero. `risen` is its gap at the front by integration of its rate,
+    /// which has no rounding of a gap; `rounding` that of its acceleration.
     Lifted { risen: f64, rounding: f64 },
 }
 
@@ -52,7 +52,8 @@ pub(crate) struct Closed {
     pub mu: f64,
     /// its weight where forces are not unique, as found when its mode was decided
     pub weight: f64,
-    /// none while it sticks; else the direction in which slip began, for as long as slip is too small to have one
+    /// none while it sticks; else the direction in which slip began, for as long as slip is too small to
+    /// have one
     pub slides: Option<Vector2<f64>>,
     /// rate at which its direction of slip turns, rad/s, where that follows from the state
     pub omega: Option<f64>,

@@ -1,9 +1,11 @@
 //! Ends rattling: several contacts of a body that strike in turn, faster and faster and lower and lower.
 //!
-//! A block that rocks, or a box that falls flat on its corners, strikes the ground infinitely often in a finite time T, even with e = 0; speeds and heights
-//! tend to zero. To first order in the remaining speeds v, the impulses p of the whole sequence satisfy W p = -v - beta T, with friction along one direction:
-//! p = p0 + lambda T, where the impulses p0 make the velocities zero at once and lambda are the forces of lasting contact. Rule: if the heights are below the
-//! tolerance and all forces of lasting contact press, apply the impulses p0 and continue in contact. For one contact it is the rule of docs/theory.md,
+//! A block that rocks, or a box that falls flat on its corners, strikes the ground infinitely often in a
+//! finite time T, even with e = 0; speeds and heights tend to zero. To first order in the remaining speeds v,
+//! the impulses p of the whole sequence satisfy W p = -v - beta T, with friction along one direction:
+//! p = p0 + lambda T, where the impulses p0 make the velocities zero at once and lambda are the forces of
+//! lasting contact. Rule: if the heights are below the tolerance and all forces of lasting contact press,
+//! apply the impulses p0 and continue in contact. For one contact it is the rule of docs/theory.md,
 //! section 17.7.
 
 use hodograph::{Kind, State};
@@ -20,7 +22,8 @@ use crate::simulation::Simulation;
 const NEAR: f64 = 8.0;
 
 impl Simulation<'_> {
-    /// A contact has closed: whether it and others near it now stay, because they would rattle below the tolerance only.
+    /// A contact has closed: whether it and others near it now stay, because they would rattle below the
+    /// tolerance only.
     pub(crate) fn comes_to_lie(&mut self, first: usize) -> Result<bool, SimulationError> {
         let mut near = self.near(first)?;
         if near.len() < 2 || !self.quiet(&near)? {

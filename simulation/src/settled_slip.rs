@@ -1,4 +1,5 @@
-//! Finds the sliding contacts whose small slip has settled in a direction that follows from the state ([`crate::slip_direction`]).
+//! Finds the sliding contacts whose small slip has settled in a direction that follows from the state
+//! ([`crate::slip_direction`]).
 
 use hodograph::State;
 use nalgebra::Vector2;

@@ -10,9 +10,11 @@ use crate::phase::{Closed, ContactPhase, Leaving, Modes, Phase};
 use crate::stepper::Step;
 use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
 
-/// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same results.
+/// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same
+/// results.
 ///
-/// Steps of the integration and times of events do not depend on the times to which the simulation is advanced.
+/// Steps of the integration and times of events do not depend on the times to which the simulation is
+/// advanced.
 #[derive(Clone)]
 pub struct Simulation<'m> {
     pub(crate) mechanism: &'m dyn Contacts<f64>,
@@ -76,12 +78,14 @@ pub enum Progress {
 }
 
 impl<'m> Simulation<'m> {
-    /// A simulation that begins in this state. Bodies that touch and approach there collide at once; bodies that touch and do not approach are in contact.
+    /// A simulation that begins in this state. Bodies that touch and approach there collide at once; bodies
+    /// that touch and do not approach are in contact.
     ///
     /// # Errors
     ///
-    /// An option or the state is wrong: a surface is missing or impossible, a contact begins with a negative gap, the mechanism cannot be evaluated in the
-    /// state, or the first sample of the inputs is not finite.
+    /// An option or the state is wrong: a surface is missing or impossible, a contact begins with a negative
+    /// gap, the mechanism cannot be evaluated in the state, or the first sample of the inputs is not
+    /// finite.
     pub fn new(
         mechanism: &'m dyn Contacts<f64>,
         state: &State<'_>,
@@ -135,8 +139,9 @@ impl<'m> Simulation<'m> {
     ///
     /// # Errors
     ///
-    /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and events remain available: advance to an earlier
-    /// time. A time that is not finite is refused, and nothing changes.
+    /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and
+    /// events remain available: advance to an earlier time. A time that is not finite is refused, and
+    /// nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
         if until.is_nan() || until == f64::INFINITY {
             return Err(
@@ -170,7 +175,8 @@ impl<'m> Simulation<'m> {
     ///
     /// # Errors
     ///
-    /// As [`Simulation::advance`]. The events before the error are lost; use [`Simulation::advance`] to keep them.
+    /// As [`Simulation::advance`]. The events before the error are lost; use [`Simulation::advance`] to keep
+    /// them.
     pub fn advance_to(&mut self, time: f64) -> Result<Vec<Event>, SimulationError> {
         let mut events = Vec::new();
         loop {
@@ -221,7 +227,8 @@ impl<'m> Simulation<'m> {
         &self.held
     }
 
-    /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`], by less than a step of the integration.
+    /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`],
+    /// by less than a step of the integration.
     pub fn phase(&self, contact: usize) -> Option<ContactPhase> {
         self.phases.get(contact).map(|phase| match phase {
             Phase::Open(_) => ContactPhase::Open,
@@ -230,7 +237,8 @@ impl<'m> Simulation<'m> {
         })
     }
 
-    /// Forces of the closed contacts at [`Simulation::time`], along n, t, s of their contact bases, N, and whether these forces are unique.
+    /// Forces of the closed contacts at [`Simulation::time`], along n, t, s of their contact bases, N, and
+    /// whether these forces are unique.
     ///
     /// # Errors
     ///

@@ -9,11 +9,13 @@ use crate::motion::Failure;
 use crate::simulation::Simulation;
 use crate::{EventKind, Reason, Share, SimulationError, StruckTogether};
 
-/// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not touch each other.
+/// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not
+/// touch each other.
 const COUPLED: f64 = 1e-12;
 
 impl Simulation<'_> {
-    /// Solves the impact of the touching contacts that `first` is coupled with, and says so; the speeds after. `None` where it is coupled with none.
+    /// Solves the impact of the touching contacts that `first` is coupled with, and says so; the speeds
+    /// after. `None` where it is coupled with none.
     pub(crate) fn strike_together(
         &mut self,
         touching: &[usize],

@@ -1,8 +1,10 @@
 //! The direction of very small slip, computed from the state instead of by integration.
 //!
-//! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration across the slip. While s is small the direction
-//! settles within the time s / |dh/dphi|, and an explicit integration would need steps of that length. A settled direction follows from the state:
-//! h(phi) = s omega, where omega is the rate at which the settled direction turns. The error is of second order in omega s / |dh/dphi|.
+//! Near the end or the beginning of slip its direction phi obeys s phi' = h(phi), where h is the acceleration
+//! across the slip. While s is small the direction settles within the time s / |dh/dphi|, and an explicit
+//! integration would need steps of that length. A settled direction follows from the state: h(phi) = s omega,
+//! where omega is the rate at which the settled direction turns. The error is of second order in omega s /
+//! |dh/dphi|.
 
 use nalgebra::Vector2;
 

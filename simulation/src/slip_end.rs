@@ -1,8 +1,9 @@
-//! The end of slip. In three dimensions no smooth function changes its sign there (docs/theory.md, section 17.5).
+//! The end of slip. In three dimensions no smooth function changes its sign there (docs/theory.md, section
+//! 17.5).
 //!
-//! Close to the end only the slip changes: with dt = s dtau, phi' = h(phi) and (ln s)' = g(phi), where g and h are the tangential accelerations along and across
-//! the slip. If phi tends to a direction with g < 0, slip ends, after a time that these equations give; if g becomes positive, slip grows again and passes zero
-//! by.
+//! Close to the end only the slip changes: with dt = s dtau, phi' = h(phi) and (ln s)' = g(phi), where g and
+//! h are the tangential accelerations along and across the slip. If phi tends to a direction with g < 0, slip
+//! ends, after a time that these equations give; if g becomes positive, slip grows again and passes zero by.
 
 use nalgebra::Vector2;
 
@@ -26,7 +27,8 @@ const STEPS: usize = 4000;
 const TURN: f64 = 1e-5;
 /// So often a tenth of it is tried.
 const LESS: usize = 5;
-/// So near its limit the direction counts as settled, rad: what is left of the time of slip is less than 1 ns, and its error of first order in this.
+/// So near its limit the direction counts as settled, rad: what is left of the time of slip is less than 1
+/// ns, and its error of first order in this.
 const SETTLED: f64 = 1e-6;
 
 /// Follows slip of the contact with this place to its end, all else unchanged.
@@ -58,7 +60,8 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
         if size > 0.7 {
             return Fate::PassesBy;
         }
-        // Runge and Kutta's method of order 4, in steps short beside all rates: it is not stable in longer ones where the direction settles fast.
+        // Runge and Kutta's method of order 4, in steps short beside all rates: it is not stable in longer
+        // ones where the direction settles fast.
         let d = 0.1 / (g.abs() + h.abs() + slope.abs()).max(f64::MIN_POSITIVE);
         let Some(b) = rates(phi + 0.5 * d * h) else { return Fate::PassesBy };
         let Some(c) = rates(phi + 0.5 * d * b.1) else { return Fate::PassesBy };
@@ -72,8 +75,8 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
     Fate::PassesBy
 }
 
-/// Slip that has just begun starts with an acceleration of zero but for rounding: so much of what makes it up, or less, is zero. Where inputs are steep, the rounding of
-/// the time of the event is in it too.
+/// Slip that has just begun starts with an acceleration of zero but for rounding: so much of what makes it
+/// up, or less, is zero. Where inputs are steep, the rounding of the time of the event is in it too.
 const BEGINS: f64 = 1e-7;
 
 /// The time after which slip would end if its rate stayed; `None` where it grows or has just begun.
@@ -97,8 +100,9 @@ pub(crate) fn time_of_slip(here: &Evaluation, place: usize) -> Option<f64> {
     (along < 0.0).then(|| slip / -along)
 }
 
-/// Whether slip that has a direction is so small that its rate could end it within [`ENDING`], were it against the slip. A slip of 1e-10 m/s has the direction that the
-/// errors of the steps before leave it: it may seem to grow while it turns, and ends nevertheless. `speeds` are the generalized speeds.
+/// Whether slip that has a direction is so small that its rate could end it within [`ENDING`], were it
+/// against the slip. A slip of 1e-10 m/s has the direction that the errors of the steps before leave it: it
+/// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalized speeds.
 pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64]) -> bool {
     let Some(forces) = here.forces.as_ref() else { return false };
     let rate = forces.acceleration[3 * place + 1].hypot(forces.acceleration[3 * place + 2]);
@@ -112,7 +116,8 @@ mod tests {
 
     use super::*;
 
-    /// A contact of an arm whose direction of slip settles 85 times as fast as its speed falls: long steps of tau lose the limit, and slip seemed to pass by.
+    /// A contact of an arm whose direction of slip settles 85 times as fast as its speed falls: long steps of
+    /// tau lose the limit, and slip seemed to pass by.
     #[test]
     fn slip_ends_where_its_direction_settles_fast() {
         let matrix = Matrix3::new(
@@ -142,7 +147,8 @@ mod tests {
                 ]),
             };
             let holds = [Hold::Slide(Vector2::new(cos, sin))];
-            // The limit is 200.95 degrees, where slip falls at 2.1 m/s^2; from the sides the first part of the way is a little faster or slower.
+            // The limit is 200.95 degrees, where slip falls at 2.1 m/s^2; from the sides the first part of
+            // the way is a little faster or slower.
             match fate(&support, &holds, &[mu], 0) {
                 Fate::Ends(time) => assert!((time * 2.13 / speed - 1.0).abs() < 0.05, "{start}: {time}"),
                 Fate::PassesBy => panic!("{start}: slip does not end"),
@@ -150,8 +156,9 @@ mod tests {
         }
     }
 
-    /// A contact whose slip ends while it nearly jams: f / m_nn is 1.8e-6, and 1e-5 rad beside the slip there are no forces. The end of its slip, 0.1 ps away, was not
-    /// seen, and the steps of the integration became too small.
+    /// A contact whose slip ends while it nearly jams: f / m_nn is 1.8e-6, and 1e-5 rad beside the slip there
+    /// are no forces. The end of its slip, 0.1 ps away, was not seen, and the steps of the integration
+    /// became too small.
     #[test]
     fn slip_ends_where_the_contact_nearly_jams() {
         let matrix = [

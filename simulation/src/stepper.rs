@@ -1,7 +1,8 @@
 //! Makes one step of the integration, with dense output.
 //!
-//! Dormand and Prince's method of order 8 of the crate `differential-equations`. Only its steps, its step size control and its dense output are
-//! used; time is local to the step, so that short steps late in a motion lose no digits.
+//! Dormand and Prince's method of order 8 of the crate `differential-equations`. Only its steps, its step
+//! size control and its dense output are used; time is local to the step, so that short steps late in a
+//! motion lose no digits.
 
 use differential_equations::error::Error;
 use differential_equations::interpolate::Interpolation;
@@ -82,8 +83,8 @@ pub(crate) struct Tolerances {
     pub absolute: f64,
 }
 
-/// A step from (t, y) of at most `h`, whose error is within the tolerances. `None` if there is none: the rates are not finite, or the step
-/// became too small. Rates that are not finite make a step be refused.
+/// A step from (t, y) of at most `h`, whose error is within the tolerances. `None` if there is none: the
+/// rates are not finite, or the step became too small. Rates that are not finite make a step be refused.
 pub(crate) fn step(
     rates: &impl Fn(f64, &[f64], &mut [f64]),
     t: f64,
@@ -123,8 +124,9 @@ pub(crate) fn step(
     None
 }
 
-/// Takes the trapezoidal rule where it agrees with the step but for rounding (constant acceleration), for it has fewer roundings and no bias:
-/// over 1e4 bounces that of the method's twelve weights would be seen in the energy.
+/// Takes the trapezoidal rule where it agrees with the step but for rounding (constant acceleration), for it
+/// has fewer roundings and no bias: over 1e4 bounces that of the method's twelve weights would be seen in the
+/// energy.
 fn unrounded<F: Fn(f64, &[f64], &mut [f64])>(system: &System<'_, F>, h: f64, start: &[f64], end: &mut [f64]) {
     let (mut first, mut last) = (vec![0.0; start.len()], vec![0.0; start.len()]);
     (system.rates)(system.t, start, &mut first);

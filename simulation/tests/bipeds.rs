@@ -1,6 +1,8 @@
-//! Bipeds land on heels and toes from random postures: up to four points strike, slide and stick at a time, and the forces of a foot that stands are not unique.
+//! Bipeds land on heels and toes from random postures: up to four points strike, slide and stick at a time,
+//! and the forces of a foot that stands are not unique.
 //!
-//! All starts: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test bipeds -- --nocapture`
+//! All starts: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test bipeds --
+//! --nocapture`
 
 mod common;
 

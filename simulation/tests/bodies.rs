@@ -1,4 +1,5 @@
-//! Bodies in three dimensions on real contacts: a cube on its edge, three balls in a row, a rattleback that reverses.
+//! Bodies in three dimensions on real contacts: a cube on its edge, three balls in a row, a rattleback that
+//! reverses.
 
 mod common;
 
@@ -29,8 +30,9 @@ fn on_edge(a: f64, angle: f64) -> Vec<f64> {
     vec![0.0, 0.0, height, (0.5 * angle).cos(), 0.0, (0.5 * angle).sin(), 0.0]
 }
 
-/// A cube that falls from its edge without slip meets the ground with w^2 = 3 g (cos d - cos 45) / (2 R), R = a sqrt 2. What two corners that strike at once do
-/// next is not determined by rigid bodies; it comes to rest, and its energy is accounted for.
+/// A cube that falls from its edge without slip meets the ground with w^2 = 3 g (cos d - cos 45) / (2 R), R =
+/// a sqrt 2. What two corners that strike at once do next is not determined by rigid bodies; it comes to
+/// rest, and its energy is accounted for.
 #[test]
 fn a_cube_falls_from_its_edge() {
     let a = 0.2;
@@ -92,7 +94,8 @@ fn row(masses: [f64; 3], e: f64, speeds: [f64; 3]) -> [f64; 3] {
     u
 }
 
-/// Newton's cradle: three balls, two of which touch. Elastic and equal, the last goes off with all the momentum.
+/// Newton's cradle: three balls, two of which touch. Elastic and equal, the last goes off with all the
+/// momentum.
 #[test]
 fn three_balls_in_a_row() {
     let mut body = Cradle::<f64>::default();
@@ -119,7 +122,8 @@ fn three_balls_in_a_row() {
     }
 }
 
-/// The rattleback on a real contact reverses its spin as the constrained model does, whose motion it shares while it sticks.
+/// The rattleback on a real contact reverses its spin as the constrained model does, whose motion it shares
+/// while it sticks.
 #[test]
 fn a_rattleback_reverses_on_a_real_contact() {
     let rolling = rattleback::Rattleback::<f64>::default();

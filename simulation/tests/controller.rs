@@ -21,7 +21,8 @@ fn sampled(
     Drive::Sampled { period, controller: Box::new(controller) }
 }
 
-/// A controller that returns NaN, or infinity: the error has the time and the input's name, and what came before can be had.
+/// A controller that returns NaN, or infinity: the error has the time and the input's name, and what came
+/// before can be had.
 #[test]
 fn an_input_that_is_no_number_is_an_error() {
     for bad in [f64::NAN, f64::INFINITY] {
@@ -58,7 +59,8 @@ fn an_input_that_is_no_number_is_an_error() {
     assert_eq!((error.time, error.reason.kind()), (0.0, "bad_input"));
 }
 
-/// The controller is called at k T exactly, with the state then, once each, however the motion is looked at; inputs are held in between.
+/// The controller is called at k T exactly, with the state then, once each, however the motion is looked at;
+/// inputs are held in between.
 #[test]
 fn samples_are_taken_at_their_times() {
     let period = 0.1;

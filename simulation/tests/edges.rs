@@ -57,7 +57,8 @@ fn starts_that_touch() {
     assert_eq!((error.reason.kind(), error.contact.as_deref()), ("overlap", Some("c0")));
 }
 
-/// Without weight nothing presses: a body that touches stays or slides on without force, and one that is pulled leaves at once.
+/// Without weight nothing presses: a body that touches stays or slides on without force, and one that is
+/// pulled leaves at once.
 #[test]
 fn contact_without_weight() {
     let mut body = particle();
@@ -106,7 +107,8 @@ fn touches_that_graze() {
         let v = (2.0 * G * (1.0 + off)).sqrt();
         let mut simulation = start(&body, &[0.0; 3], &[0.0, v, 0.0], surface(0.0, 1.0, Law::Newton));
         let events = run(&mut simulation, v / G * 2.0);
-        // Struck or not, an elastic graze comes back with the same speed, sooner by the time it would have been above.
+        // Struck or not, an elastic graze comes back with the same speed, sooner by the time it would have
+        // been above.
         let above = if off > 0.0 { 2.0 * (2.0 * off / G).sqrt() } else { 0.0 };
         let z = simulation.coordinates()[1];
         assert!((z + v * above).abs() < 2e-6 * v, "{off:e}: {z:e} {:?}", names(&events));
@@ -164,10 +166,12 @@ fn sizes_and_masses_of_all_kinds() {
     }
 }
 
-/// Perfectly elastic and perfectly plastic impacts with and without friction, and a ball at rest that is pulled away and let go by a continuous input.
+/// Perfectly elastic and perfectly plastic impacts with and without friction, and a ball at rest that is
+/// pulled away and let go by a continuous input.
 #[test]
 fn a_body_is_lifted_and_let_go() {
-    // Its line is a wall, and the input pulls it off and pushes it back: F = sin t, positive is away from the wall x = 0.
+    // Its line is a wall, and the input pulls it off and pushes it back: F = sin t, positive is away from the
+    // wall x = 0.
     let mut body = particle();
     body.gravity = [0.0, 0.0];
     body.lines[0].tilt = std::f64::consts::FRAC_PI_2;
@@ -177,7 +181,8 @@ fn a_body_is_lifted_and_let_go() {
     let options = Options { drive, max_step: 0.5, ..surface(0.0, 0.0, Law::Newton) };
     let mut simulation = start(&body, &[0.0; 3], &[0.0; 3], options);
     let events = run(&mut simulation, 8.0);
-    // -cos t presses until pi / 2; then x' = 1 - sin t, x = t - pi/2 + cos t until it comes back, never: x' >= 0.
+    // -cos t presses until pi / 2; then x' = 1 - sin t, x = t - pi/2 + cos t until it comes back, never: x'
+    // >= 0.
     let off = first(&events, "lift_off");
     assert!((off.time - std::f64::consts::FRAC_PI_2).abs() < 1e-9, "{}", off.time);
     assert!(collisions(&events).is_empty(), "{:?}", names(&events));
@@ -211,7 +216,8 @@ fn surfaces_at_their_limits() {
     }
 }
 
-/// A push of a millisecond acts in full although no step is bounded: its times are told. Times that do not rise are refused.
+/// A push of a millisecond acts in full although no step is bounded: its times are told. Times that do not
+/// rise are refused.
 #[test]
 fn pushes_whose_times_are_told_are_not_stepped_over() {
     let mut body = particle();
@@ -237,7 +243,8 @@ fn pushes_whose_times_are_told_are_not_stepped_over() {
     }
 }
 
-/// A pull that rises from t = 0.5 on, slowly or steeply, drags a resting particle when it exceeds friction: then v = k (t - t1)^2 / (2 m).
+/// A pull that rises from t = 0.5 on, slowly or steeply, drags a resting particle when it exceeds friction:
+/// then v = k (t - t1)^2 / (2 m).
 #[test]
 fn a_steep_pull_begins_to_slip_once() {
     let mut body = particle();

@@ -1,4 +1,5 @@
-//! More answers in closed form: the end of slip in three dimensions, momentum over a chatter, a belt, gaps that are curved or move.
+//! More answers in closed form: the end of slip in three dimensions, momentum over a chatter, a belt, gaps
+//! that are curved or move.
 
 mod common;
 
@@ -15,8 +16,9 @@ hodograph::mechanism!("tests/models/puck_on_incline.mech");
 
 const G: f64 = 9.81;
 
-/// A puck thrown across an incline that holds it: its path bends until it points downhill, where slip ends (codimension two). With phi from downhill and r = mu / tan
-/// alpha the speed is v = C tan(phi / 2)^r / sin(phi), and slip ends at v0 / (2 g sin alpha) ((1 + cos phi0) / (r - 1) + (1 - cos phi0) / (r + 1)).
+/// A puck thrown across an incline that holds it: its path bends until it points downhill, where slip ends
+/// (codimension two). With phi from downhill and r = mu / tan alpha the speed is v = C tan(phi / 2)^r /
+/// sin(phi), and slip ends at v0 / (2 g sin alpha) ((1 + cos phi0) / (r - 1) + (1 - cos phi0) / (r + 1)).
 #[test]
 fn slip_ends_in_three_dimensions() {
     let body = PuckOnIncline::<f64>::default();
@@ -45,7 +47,8 @@ fn slip_ends_in_three_dimensions() {
     println!("the end of slip in three dimensions: {worst:.1e} of its time");
 }
 
-/// Where friction is that of the slope (r = 1), the puck ends straight downhill with v0 (1 + cos phi0) / 2: v + v_down is constant.
+/// Where friction is that of the slope (r = 1), the puck ends straight downhill with v0 (1 + cos phi0) / 2: v + v_down
+/// is constant.
 #[test]
 fn slip_does_not_end_where_friction_equals_the_slope() {
     let body = PuckOnIncline::<f64>::default();
@@ -60,7 +63,8 @@ fn slip_does_not_end_where_friction_equals_the_slope() {
     }
 }
 
-/// All the bounces of a body that slides: the impulse of friction is mu times the normal one, which is known from the first approach and the weight.
+/// All the bounces of a body that slides: the impulse of friction is mu times the normal one, which is known
+/// from the first approach and the weight.
 #[test]
 fn momentum_over_a_chatter() {
     let (m, r, mu) = (0.4, 0.11, 0.15);
@@ -86,8 +90,9 @@ fn momentum_over_a_chatter() {
     }
 }
 
-/// A block on a belt and a spring, from rest: it is dragged, sticks when it is as fast as the belt, and slips when the spring pulls with mu m g; from then on it
-/// swings about that place, and touches the speed of the belt once in each closed cycle.
+/// A block on a belt and a spring, from rest: it is dragged, sticks when it is as fast as the belt, and slips
+/// when the spring pulls with mu m g; from then on it swings about that place, and touches the speed of the
+/// belt once in each closed cycle.
 #[test]
 fn a_block_on_a_belt_sticks_and_slips_at_the_times_known() {
     let (m, k, v, mu) = (2.0, 50.0, 0.3, 0.4);
@@ -110,7 +115,8 @@ fn a_block_on_a_belt_sticks_and_slips_at_the_times_known() {
     }
 }
 
-/// A bead that slides on a smooth sphere leaves it where its height above the centre is two thirds of the radius, plus v0^2 / (3 g).
+/// A bead that slides on a smooth sphere leaves it where its height above the centre is two thirds of the
+/// radius, plus v0^2 / (3 g).
 #[test]
 fn a_bead_leaves_a_sphere() {
     let body = BeadOnSphere::<f64>::default();
@@ -184,7 +190,8 @@ fn elastic_bounces_down_an_incline() {
     }
 }
 
-/// Thrown up an incline that does not hold it, a block stops, turns, and slides down with the speed that is known.
+/// Thrown up an incline that does not hold it, a block stops, turns, and slides down with the speed that is
+/// known.
 #[test]
 fn slip_turns_round_on_a_steep_incline() {
     let body = PuckOnIncline::<f64>::default();
@@ -202,7 +209,8 @@ fn slip_turns_round_on_a_steep_incline() {
     }
 }
 
-/// Two contacts with different friction: the moment of the forces decides how the weight is shared, and so the deceleration.
+/// Two contacts with different friction: the moment of the forces decides how the weight is shared, and so
+/// the deceleration.
 #[test]
 fn a_block_slides_on_two_surfaces() {
     let (half, b, m) = (0.3, 0.1, 2.0);
@@ -212,7 +220,8 @@ fn a_block_slides_on_two_surfaces() {
     let of = |mu| hodograph::Surface { mu, e: 0.5, law: Law::Newton };
     let options = Options { surfaces: vec![(0, of(0.2)), (1, of(0.7))], ..Options::default() };
     let mut simulation = start(&body, &[0.0, b, 0.0], &[1.5, 0.0, 0.0], options);
-    // N0 + N1 = m g; half (N1 - N0) = b (0.2 N0 + 0.7 N1), for friction is below the mass centre and against +x.
+    // N0 + N1 = m g; half (N1 - N0) = b (0.2 N0 + 0.7 N1), for friction is below the mass centre and against
+    // +x.
     let n0 = m * G * (half - 0.7 * b) / (2.0 * half + (0.2 - 0.7) * b);
     let n1 = m * G - n0;
     let a = (0.2 * n0 + 0.7 * n1) / m;

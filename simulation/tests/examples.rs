@@ -114,7 +114,8 @@ fn the_juggler_reaches_the_heights_that_are_asked_for() {
     let tops = tops(&story.events);
     assert!(tops.len() > 16, "{}", story.text);
     for [time, height, beside] in tops {
-        // From the third bounce on it knows the restitution; the first top after another height is asked for belongs to the one before.
+        // From the third bounce on it knows the restitution; the first top after another height is asked for
+        // belongs to the one before.
         if time > 2.0 && (time % 4.0) > 0.85 {
             let asked = juggling::trial::command(time);
             assert!((height - asked).abs() < 0.05 * asked && beside < 1e-3, "{time} {height} {beside}");

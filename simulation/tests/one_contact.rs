@@ -93,7 +93,8 @@ fn a_sliding_block_stops() {
     }
 }
 
-/// On an incline: sticks exactly if tan alpha <= mu, without any creep in 1e5 s; else it slides with g (sin alpha - mu cos alpha).
+/// On an incline: sticks exactly if tan alpha <= mu, without any creep in 1e5 s; else it slides with g (sin
+/// alpha - mu cos alpha).
 #[test]
 fn a_block_on_an_incline_sticks_or_slides() {
     for mu in [0.2_f64, 0.7, 1.5] {

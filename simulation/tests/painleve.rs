@@ -1,8 +1,11 @@
-//! Painleve's rod: no finite force holds it while it slides. The impact without collision is compared with a stiff compliant contact.
+//! Painleve's rod: no finite force holds it while it slides. The impact without collision is compared with a
+//! stiff compliant contact.
 //!
-//! The floor is a spring of stiffness k (with k / e^2 on the way out, so that e^2 of the work comes back: Stronge's law) and dry friction. With eps = k^-1/2, time
-//! tau = t / eps and z = penetration / eps the compliant motion is a regular perturbation in eps: its final speeds are a power series in eps. They are integrated
-//! for a sequence of stiffnesses, eps halved each time, and extrapolated to eps = 0 (Richardson); that the differences fall by two each time is asserted.
+//! The floor is a spring of stiffness k (with k / e^2 on the way out, so that e^2 of the work comes back:
+//! Stronge's law) and dry friction. With eps = k^-1/2, time tau = t / eps and z = penetration / eps the
+//! compliant motion is a regular perturbation in eps: its final speeds are a power series in eps. They are
+//! integrated for a sequence of stiffnesses, eps halved each time, and extrapolated to eps = 0 (Richardson);
+//! that the differences fall by two each time is asserted.
 
 mod common;
 
@@ -66,7 +69,8 @@ fn stepped(y: &Compliant, h: f64, f: &dyn Fn(&Compliant) -> Compliant) -> Compli
 
 /// The speeds with which the tip leaves a floor of stiffness eps^-2.
 fn compliant(body: &Body, q: [f64; 3], u: [f64; 3], e: f64, eps: f64) -> [f64; 3] {
-    // Weightless: what sets it off is a speed of approach of 1e-9, whose square is its share of the outcome's energy.
+    // Weightless: what sets it off is a speed of approach of 1e-9, whose square is its share of the outcome's
+    // energy.
     let mut body = body.clone();
     body.gravity = [0.0, 0.0];
     let mut y: Compliant = [q[0], q[1], q[2], u[0], u[1] - 1e-9, u[2], 0.0];
@@ -123,7 +127,8 @@ fn contact_velocity(body: &Body, y: &Compliant) -> (f64, f64) {
     (velocity.x, velocity.y)
 }
 
-/// The limit of a sequence whose terms are power series in eps, halved each time, and how fast the first differences fall.
+/// The limit of a sequence whose terms are power series in eps, halved each time, and how fast the first
+/// differences fall.
 fn extrapolated(mut terms: Vec<f64>) -> (f64, f64) {
     let n = terms.len();
     let falls = (terms[n - 3] - terms[n - 2]) / (terms[n - 2] - terms[n - 1]);

@@ -15,7 +15,8 @@ fn block(half: f64, height: f64) -> Body {
     Body::new(2.0, inertia, &[Line::floor(Part::Point(-a, -b)), Line::floor(Part::Point(a, -b))])
 }
 
-/// A block falls flat, bounces on two corners, and comes to rest; the forces at its corners are half its weight each.
+/// A block falls flat, bounces on two corners, and comes to rest; the forces at its corners are half its
+/// weight each.
 #[test]
 fn a_block_falls_flat_and_comes_to_rest() {
     let body = block(0.3, 0.2);
@@ -60,7 +61,8 @@ fn a_block_slides_on_two_corners() {
 fn a_ladder_leaves_the_wall_at_two_thirds() {
     let l = 2.0;
     let mut body = Body::new(3.0, 3.0 * l * l / 12.0, &[]);
-    // The ladder lies along the body's x; its foot on the floor z = 0 and its top on the wall x = 0, whose normal is +x.
+    // The ladder lies along the body's x; its foot on the floor z = 0 and its top on the wall x = 0, whose
+    // normal is +x.
     let wall =
         Line { part: Part::Point(-l / 2.0, 0.0), tilt: std::f64::consts::FRAC_PI_2, offset: 0.0, belt: 0.0 };
     body.lines = vec![Line::floor(Part::Point(l / 2.0, 0.0)), wall];
@@ -78,7 +80,8 @@ fn a_ladder_leaves_the_wall_at_two_thirds() {
     }
 }
 
-/// A block on a belt, held by a spring: it sticks while the spring stretches, slips, and sticks again: a closed cycle.
+/// A block on a belt, held by a spring: it sticks while the spring stretches, slips, and sticks again: a
+/// closed cycle.
 #[test]
 fn stick_slip_on_a_belt_is_periodic() {
     let (m, k, v, mu) = (2.0, 50.0, 0.3, 0.4);
@@ -91,8 +94,9 @@ fn stick_slip_on_a_belt_is_periodic() {
     let slips: Vec<f64> =
         events.iter().filter(|event| event.kind.name() == "slip").map(|event| event.time).collect();
     assert!((slips[0] - mu * m * G / (k * v)).abs() < 1e-9, "{} {:?}", slips[0], names(&events));
-    // One coefficient of friction: when slip begins the force is continuous, and the block moves on with the belt's speed; its slip then is that of a
-    // free oscillation about mu m g / k which begins there with speed v: half a turn, and it would stick again. It swings for ever.
+    // One coefficient of friction: when slip begins the force is continuous, and the block moves on with the
+    // belt's speed; its slip then is that of a free oscillation about mu m g / k which begins there with
+    // speed v: half a turn, and it would stick again. It swings for ever.
     let omega = (k / m).sqrt();
     let about = mu * m * G / k;
     let state = (simulation.coordinates()[0] - about, simulation.speeds()[0]);
@@ -100,10 +104,12 @@ fn stick_slip_on_a_belt_is_periodic() {
     assert!((amplitude - v / omega).abs() < 1e-9, "{amplitude} {} {:?}", v / omega, names(&events));
 }
 
-/// A block that rocks without slip loses at each impact what the textbook says: w2 = w1 (1 - 3/2 sin^2 a) for a slender block (Housner).
+/// A block that rocks without slip loses at each impact what the textbook says: w2 = w1 (1 - 3/2 sin^2 a) for
+/// a slender block (Housner).
 #[test]
 fn a_rocking_block_loses_what_housner_says() {
-    // The last is a cube's section, which keeps a quarter of its angular velocity when it falls from its edge on a face.
+    // The last is a cube's section, which keeps a quarter of its angular velocity when it falls from its edge
+    // on a face.
     for (b, h, tilt) in [(0.1_f64, 0.4_f64, 0.1_f64), (0.2, 0.3, 0.3), (0.2, 0.2, 0.7)] {
         let body = block(b, 2.0 * h);
         let radius = b.hypot(h);
@@ -128,7 +134,8 @@ fn a_rocking_block_loses_what_housner_says() {
     }
 }
 
-/// Pushed by a force that grows, a block begins to slip when the force exceeds friction, with the force continuous.
+/// Pushed by a force that grows, a block begins to slip when the force exceeds friction, with the force
+/// continuous.
 #[test]
 fn a_pushed_block_begins_to_slip() {
     let body = block(0.3, 0.2);
@@ -175,7 +182,8 @@ fn struck_cradle(stiffness: [f64; 2], surface: Options) -> Vec<hodograph_simulat
     events
 }
 
-/// Springs between the balls share the impact: the answer depends on the ratio of stiffnesses, and tends to one order as that grows.
+/// Springs between the balls share the impact: the answer depends on the ratio of stiffnesses, and tends to
+/// one order as that grows.
 #[test]
 fn a_cradle_answers_by_its_stiffnesses() {
     let mut last = Vec::new();
@@ -189,7 +197,8 @@ fn a_cradle_answers_by_its_stiffnesses() {
         assert!(struck.energy_change.abs() < 1e-12, "{struck:?}");
         last.push(impact.speeds.clone());
     }
-    // What the closed form in the tests of `lzb` gives for equal balls, to two digits; only the ratio matters.
+    // What the closed form in the tests of `lzb` gives for equal balls, to two digits; only the ratio
+    // matters.
     for (speed, known) in last[0].iter().zip([-0.13, 0.15, 0.98]) {
         assert!((speed - known).abs() < 0.006, "{last:?}");
     }

@@ -1,6 +1,7 @@
 //! Every shipped model with a gap runs for ten seconds from random starts.
 //!
-//! 300 starts of each: `HODOGRAPH_STARTS=300 cargo test --release -p hodograph-simulation --test shipped -- --nocapture`
+//! 300 starts of each: `HODOGRAPH_STARTS=300 cargo test --release -p hodograph-simulation --test shipped --
+//! --nocapture`
 
 mod common;
 
@@ -54,8 +55,9 @@ fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<
 
 /// Runs one start.
 ///
-/// A ball that rolls on a table and meets a wall with mu >= 1 has no outcome: to roll on it must slip up the wall, which friction forbids, and sticking it cannot
-/// move away from the wall (mu_c = 1, and the reduced matrix of the wall is singular in that direction).
+/// A ball that rolls on a table and meets a wall with mu >= 1 has no outcome: to roll on it must slip up the
+/// wall, which friction forbids, and sticking it cannot move away from the wall (mu_c = 1, and the reduced
+/// matrix of the wall is singular in that direction).
 fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> End {
     let mut random = Random(seed);
     let (q, u) = open_start(model, &mut random);
@@ -147,8 +149,8 @@ fn shipped_models_run_from_random_starts() {
     assert!(failed.is_empty(), "{} starts:\n{}", failed.len(), failed.join("\n"));
 }
 
-/// The slip of this arm's hand ends where its direction, at 1e-10 m/s, has turned so far that it seems to grow: its end was passed by, and the motion stopped with an
-/// error that made no sense of it.
+/// The slip of this arm's hand ends where its direction, at 1e-10 m/s, has turned so far that it seems to
+/// grow: its end was passed by, and the motion stopped with an error that made no sense of it.
 #[test]
 fn slip_that_turns_at_its_end_ends() {
     let arm = hodograph_models::stanford_arm::StanfordArm::<f64>::default();

@@ -18,7 +18,8 @@ fn placed(height: f64, about_x: f64, about_y: f64) -> Vec<f64> {
     vec![0.0, 0.0, height, cx * cy, sx * cy, cx * sy, sx * sy]
 }
 
-/// How many contacts are in this phase. All others are open without a gap: they touch and carry nothing, for fewer than sixteen are enough.
+/// How many contacts are in this phase. All others are open without a gap: they touch and carry nothing, for
+/// fewer than sixteen are enough.
 fn touching(simulation: &Simulation<'_>, phase: ContactPhase) -> usize {
     let phases: Vec<_> = (0..16).map(|contact| simulation.phase(contact)).collect();
     let state = State {
@@ -37,7 +38,8 @@ fn touching(simulation: &Simulation<'_>, phase: ContactPhase) -> usize {
     phases.iter().filter(|found| **found == Some(phase)).count()
 }
 
-/// Sixteen sliding corners stop the table after v^2 / (2 mu g), all at the same time; nothing tilts and nothing turns.
+/// Sixteen sliding corners stop the table after v^2 / (2 mu g), all at the same time; nothing tilts and
+/// nothing turns.
 #[test]
 fn it_slides_on_all_corners_and_stops() {
     let body = Table::<f64>::default();
@@ -61,7 +63,8 @@ fn it_slides_on_all_corners_and_stops() {
     assert!((q[2] - 0.7).abs() < 1e-12 && (q[3] - 1.0).abs() < 1e-12, "{q:?}");
 }
 
-/// Dropped flat or tilted, with and without bounces, it ends at rest on all four feet, and its energy is accounted for.
+/// Dropped flat or tilted, with and without bounces, it ends at rest on all four feet, and its energy is
+/// accounted for.
 #[test]
 fn it_comes_to_rest_on_its_feet() {
     let body = Table::<f64>::default();

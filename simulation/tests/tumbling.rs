@@ -1,6 +1,7 @@
 //! A box that falls on its corners comes to rest on a face, and no event gives it energy.
 //!
-//! All 200 starts: `HODOGRAPH_STARTS=200 cargo test --release -p hodograph-simulation --test tumbling -- --nocapture`
+//! All 200 starts: `HODOGRAPH_STARTS=200 cargo test --release -p hodograph-simulation --test tumbling --
+//! --nocapture`
 
 mod common;
 
@@ -50,9 +51,10 @@ fn a_tumbling_box_comes_to_rest_on_a_face() {
     assert!(failures.is_empty(), "{}", failures.join("\n"));
 }
 
-/// Slow bounces in short steps of the corners of an edge that slides: where the return of a corner that had just lifted off was found 1e-11 m too late, again and again, the
-/// box gained 4e-9 of its energy (72, 18, 127) or rattled for ever on what it gained (161); corners moved by each other's correction struck without end (81). At rest not even
-/// the last bit of the quaternion changes (80).
+/// Slow bounces in short steps of the corners of an edge that slides: where the return of a corner that had
+/// just lifted off was found 1e-11 m too late, again and again, the box gained 4e-9 of its energy (72, 18, 127)
+/// or rattled for ever on what it gained (161); corners moved by each other's correction struck without
+/// end (81). At rest not even the last bit of the quaternion changes (80).
 #[test]
 fn corners_that_rattle_while_they_slide_keep_the_account() {
     for seed in [18, 72, 80, 81, 127, 161] {

@@ -82,7 +82,8 @@ pub struct Run {
     /// the query itself
     #[arg(long, conflicts_with = "query", allow_hyphen_values = true)]
     sql: Option<String>,
-    /// short form: the model, by its name in models/ or as a file; with a query: a file whose functions it calls
+    /// short form: the model, by its name in models/ or as a file; with a query: a file whose functions it
+    /// calls
     #[arg(long, value_name = "NAME or FILE.mech")]
     model: Vec<String>,
     /// short form: a grid of values of a field, both ends included
@@ -91,7 +92,8 @@ pub struct Run {
     /// short form: a field that is drawn for each collision; default: the independent speeds, from -1 to 1
     #[arg(long, value_name = "NAME=LOW:HIGH", allow_hyphen_values = true)]
     draw: Vec<Draw>,
-    /// short form: a field that is the same for all collisions; default: mu=0.5, e=0.5, law=stronge and the model's initial state
+    /// short form: a field that is the same for all collisions; default: mu=0.5, e=0.5, law=stronge and the
+    /// model's initial state
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Set>,
     /// short form: how many collisions, as 1e9
@@ -118,10 +120,12 @@ pub struct Run {
     /// memory for sorts, groups and joins before they spill to disk, as 2G
     #[arg(long, default_value = "2G", value_parser = bytes)]
     memory: usize,
-    /// compute the rows of rows(n) in so many parts, each kept in a file; the same command goes on after an interruption
+    /// compute the rows of rows(n) in so many parts, each kept in a file; the same command goes on after an
+    /// interruption
     #[arg(long, value_name = "COUNT")]
     parts: Option<i64>,
-    /// file with the query that makes the answer of the table `parts`; default: the parts follow each other in the directory --out
+    /// file with the query that makes the answer of the table `parts`; default: the parts follow each other
+    /// in the directory --out
     #[arg(long, value_name = "FILE.sql")]
     merge: Option<PathBuf>,
     /// write the answer to this file, .parquet or .csv

@@ -1,5 +1,6 @@
-//! How `rows(n)` and models travel to the processes of a cluster: a table of rows as two numbers, a shipped model as its digest, a user's model as its
-//! two texts. So every process computes with the same model, or says that it has another one.
+//! How `rows(n)` and models travel to the processes of a cluster: a table of rows as two numbers, a shipped
+//! model as its digest, a user's model as its two texts. So every process computes with the same model, or
+//! says that it has another one.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};

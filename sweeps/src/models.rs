@@ -1,5 +1,5 @@
-//! The models whose functions queries may call: the shipped ones, compiled in as text, and the user's own. A model is checked and its derivation
-//! decoded when a query first names it.
+//! The models whose functions queries may call: the shipped ones, compiled in as text, and the user's own. A
+//! model is checked and its derivation decoded when a query first names it.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};

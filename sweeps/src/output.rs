@@ -1,5 +1,5 @@
-//! Results as files. A file is written beside its place under another name and takes its place when it is whole, so that nothing half-written is ever
-//! found there; and it knows its digest.
+//! Results as files. A file is written beside its place under another name and takes its place when it is
+//! whole, so that nothing half-written is ever found there; and it knows its digest.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -88,7 +88,8 @@ fn beside(path: &Path, end: &str) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Whether a result can be put there: as `.parquet` or `.csv`, in a directory that exists, where nothing else is.
+/// Whether a result can be put there: as `.parquet` or `.csv`, in a directory that exists, where nothing else
+/// is.
 ///
 /// # Errors
 ///
@@ -232,7 +233,8 @@ pub fn text(path: &Path, text: &str) -> Result<(), Failure> {
     })
 }
 
-/// The rows with the fields of structs as columns of their own, `c_kind` for the field `kind` of `c`; lists as text.
+/// The rows with the fields of structs as columns of their own, `c_kind` for the field `kind` of `c`; lists
+/// as text.
 ///
 /// # Errors
 ///

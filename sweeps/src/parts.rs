@@ -1,4 +1,5 @@
-//! A sweep in parts: each part of the rows is a file of its own, so that a sweep that was interrupted goes on where it stopped.
+//! A sweep in parts: each part of the rows is a file of its own, so that a sweep that was interrupted goes on
+//! where it stopped.
 
 use std::path::{Path, PathBuf};
 

@@ -51,7 +51,8 @@ impl Progress {
         write_line(&line);
     }
 
-    /// Reports from time to time what this process counts, until it is dropped. `before` rows were counted before.
+    /// Reports from time to time what this process counts, until it is dropped. `before` rows were counted
+    /// before.
     pub async fn watch(self, before: u64) {
         loop {
             tokio::time::sleep(pause()).await;
@@ -59,8 +60,8 @@ impl Progress {
         }
     }
 
-    /// Reports from time to time, until it is dropped, for how long other processes have been at work: how many of the rows they have done is known
-    /// between parts only.
+    /// Reports from time to time, until it is dropped, for how long other processes have been at work: how
+    /// many of the rows they have done is known between parts only.
     pub async fn wait(self) {
         loop {
             tokio::time::sleep(pause()).await;

@@ -1,4 +1,5 @@
-//! `rows(n)`: the table of the row numbers 0 to n - 1 in the column `i`. Nothing is stored: every partition counts for itself, batch by batch.
+//! `rows(n)`: the table of the row numbers 0 to n - 1 in the column `i`. Nothing is stored: every partition
+//! counts for itself, batch by batch.
 
 use std::fmt;
 use std::sync::atomic::{AtomicI64, AtomicU64, AtomicUsize, Ordering};
@@ -124,8 +125,8 @@ impl TableProvider for RowsTable {
     }
 }
 
-/// The ranges of the partitions, which depend on the rows alone, as a plan with one row in each partition. A scheduler knows how to give each task its
-/// own partitions of such a plan.
+/// The ranges of the partitions, which depend on the rows alone, as a plan with one row in each partition. A
+/// scheduler knows how to give each task its own partitions of such a plan.
 fn ranges(all: Range) -> Result<Arc<dyn ExecutionPlan>> {
     let field = |name| Field::new(name, DataType::Int64, false);
     let schema = Arc::new(Schema::new(vec![field("first"), field("end")]));

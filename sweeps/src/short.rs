@@ -1,5 +1,5 @@
-//! The short form of a sweep, `--model two_sleds --vary mu=0:2:100 --sample 1e9`, as SQL: the collisions of a model counted by what becomes of them, for
-//! every point of a grid.
+//! The short form of a sweep, `--model two_sleds --vary mu=0:2:100 --sample 1e9`, as SQL: the collisions of a
+//! model counted by what becomes of them, for every point of a grid.
 
 use std::fmt::Write;
 

@@ -1,5 +1,5 @@
-//! The same query on the three engines: embedded, Ballista in one process, and a scheduler with two executors as processes of their own, of which one is
-//! killed half-way.
+//! The same query on the three engines: embedded, Ballista in one process, and a scheduler with two executors
+//! as processes of their own, of which one is killed half-way.
 
 mod common;
 

@@ -14,7 +14,8 @@ use sql::{numbers, query, texts};
 hodograph::mechanism!("../models/two_sleds.mech");
 use two_sleds::{Coordinates, Parameters, Speeds, TwoSleds};
 
-/// Every number of a collision has the bits of the generated module, with the parameters of the file and with others, for all laws.
+/// Every number of a collision has the bits of the generated module, with the parameters of the file and with
+/// others, for all laws.
 #[tokio::test]
 async fn collisions_have_the_bits_of_generated_code() {
     let state = "'u1', u1, 'u4', u4, 'q3', q3, 'mu', mu, 'e', 0.7, 'law', law";

@@ -31,7 +31,8 @@ struct Given {
 }
 
 impl Given {
-    /// Random speeds; in every second row also random coordinates near the model's own, where all of them are independent.
+    /// Random speeds; in every second row also random coordinates near the model's own, where all of them are
+    /// independent.
     fn new(mechanism: &dyn Contacts) -> Self {
         let count = |kind| mechanism.count(kind);
         let names = [Kind::Coordinate, Kind::Speed].map(|kind| {

@@ -163,8 +163,8 @@ fn a_full_disk_leaves_nothing() {
     }
 }
 
-/// A disk that is full: a file system of 64 kB in memory. Where the system lets nobody mount one, the test says so. Of a sweep in parts the note stays
-/// that says which sweep it is.
+/// A disk that is full: a file system of 64 kB in memory. Where the system lets nobody mount one, the test
+/// says so. Of a sweep in parts the note stays that says which sweep it is.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_file_system_leaves_nothing() {

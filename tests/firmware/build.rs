@@ -1,4 +1,5 @@
-//! The reference collisions and the states that `run worst` chose, as Rust, and the memory of the emulated boards.
+//! The reference collisions and the states that `run worst` chose, as Rust, and the memory of the emulated
+//! boards.
 
 use std::fmt::Write;
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! No start files, no libraries. The arguments are those of a linker for Linux: other targets' have neither to leave out.
+//! No start files, no libraries. The arguments are those of a linker for Linux: other targets' have neither
+//! to leave out.
 fn main() {
     if std::env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("linux") {
         return;

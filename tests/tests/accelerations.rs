@@ -1,5 +1,5 @@
-//! Accelerations of points and free accelerations of contacts, each computed in three ways: by the derived program, by numbers that carry derivatives,
-//! and by differences along the motion.
+//! Accelerations of points and free accelerations of contacts, each computed in three ways: by the derived
+//! program, by numbers that carry derivatives, and by differences along the motion.
 
 mod common;
 
@@ -21,7 +21,8 @@ fn moved(at: &Inputs, rates: &[f64], accelerations: &[f64], h: f64) -> Inputs {
     at
 }
 
-/// The derivative of a quantity along the motion, by central differences of two widths, so that the error is of fourth order.
+/// The derivative of a quantity along the motion, by central differences of two widths, so that the error is
+/// of fourth order.
 fn difference(model: &Model, at: &Inputs, accelerations: &[f64], quantity: Q) -> Vec<f64> {
     let rates = model.get(at, Q::CoordinateRates).values;
     let fastest = rates.iter().chain(accelerations).fold(1.0_f64, |top, x| top.max(x.abs()));
@@ -76,8 +77,9 @@ fn contacts(model: &Model, sample: &Sample) -> Vec<String> {
     for (index, contact) in model.mechanism.contacts.iter().enumerate() {
         let of = |quantity| Q::Contact(index as u32, quantity);
         let beta = model.get(at, of(C::FreeAcceleration)).values;
-        // The numbers know the normal and the relative velocity as vectors; the tangential axes are the program's own. What does not depend
-        // on these axes: the normal component, and the rate of the square of the slip.
+        // The numbers know the normal and the relative velocity as vectors; the tangential axes are the
+        // program's own. What does not depend on these axes: the normal component, and the rate of
+        // the square of the slip.
         let known = &sample.numeric.contacts[index];
         let [n, n_rate, v] = [known.normal, known.normal_rate, known.velocity].map(|v| vector(&v));
         let partials = known.partial_velocities.iter().zip(&accelerations);

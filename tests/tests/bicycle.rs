@@ -1,5 +1,6 @@
-//! The Whipple bicycle against the benchmark: J. P. Meijaard, J. M. Papadopoulos, A. Ruina and A. L. Schwab, "Linearized dynamics
-//! equations for the balance and steer of a bicycle: a benchmark and review", Proc. R. Soc. A 463 (2007), 1955-1982.
+//! The Whipple bicycle against the benchmark: J. P. Meijaard, J. M. Papadopoulos, A. Ruina and A. L. Schwab,
+//! "Linearized dynamics equations for the balance and steer of a bicycle: a benchmark and review", Proc. R.
+//! Soc. A 463 (2007), 1955-1982.
 //!
 //! There M x'' + v C1 x' + (g K0 + v^2 K2) x = 0 with x = (lean, steer).
 

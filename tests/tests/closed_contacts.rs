@@ -1,7 +1,8 @@
-//! Mode and force of closed contacts of all shipped models in random states: every state gives a result or an error, and every result satisfies the
-//! laws of mechanics.
+//! Mode and force of closed contacts of all shipped models in random states: every state gives a result or an
+//! error, and every result satisfies the laws of mechanics.
 //!
-//! `HODOGRAPH_STATES=100000 cargo test --workspace --test closed_contacts -- --nocapture` tries so many states.
+//! `HODOGRAPH_STATES=100000 cargo test --workspace --test closed_contacts -- --nocapture` tries so many
+//! states.
 
 mod common;
 
@@ -88,7 +89,8 @@ fn newton(m: &dyn Contacts, contact: usize, state: &State<'_>, rates: &[f64], fo
     left.amax() / terms.max(f64::MIN_POSITIVE)
 }
 
-/// The same with the numbers of the numeric evaluation, which shares nothing with the derivation but the meaning of the model.
+/// The same with the numbers of the numeric evaluation, which shares nothing with the derivation but the
+/// meaning of the model.
 fn second_road(
     model: &Model,
     sample: &Sample,

@@ -1,5 +1,5 @@
-//! Many states at once: generated modules, the interpreter and columns answer with the same bits, whatever the size of the batch, and a state without
-//! an answer fails alone.
+//! Many states at once: generated modules, the interpreter and columns answer with the same bits, whatever
+//! the size of the batch, and a state without an answer fails alone.
 
 mod common;
 

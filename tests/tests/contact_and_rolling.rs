@@ -1,6 +1,7 @@
 //! A ball, a disc and a celt on a contact that sticks move as those that are constrained to roll.
 //!
-//! The models of `models/` roll by constraints; those of `tests/models` are free bodies with a contact, whose force is found by its mode.
+//! The models of `models/` roll by constraints; those of `tests/models` are free bodies with a contact, whose
+//! force is found by its mode.
 
 mod common;
 
@@ -30,7 +31,8 @@ fn holds(margins: &Margins<f64>) -> bool {
     margins.lambda_n.is_some_and(|force| force > 0.0) && margins.cone.is_some_and(|margin| margin > 0.0)
 }
 
-/// Counts the states in which the contact holds by itself, and those in which it is held by more force than it has.
+/// Counts the states in which the contact holds by itself, and those in which it is held by more force than
+/// it has.
 #[derive(Debug, Default)]
 struct Met {
     holds: usize,
@@ -150,7 +152,8 @@ fn a_rattleback_rolls_on_a_contact() {
     assert!(met.worst < 1e-10 && met.holds > 100, "{met:?}");
 }
 
-/// Mode and force in single precision, and with derivatives by the lean of the disc: against differences of fourth order.
+/// Mode and force in single precision, and with derivatives by the lean of the disc: against differences of
+/// fourth order.
 #[test]
 fn the_force_is_as_generic_as_the_module() {
     use num_dual::Dual64;

@@ -7,7 +7,8 @@ use hodograph_generator::arithmetic::Function;
 use hodograph_generator::program::Quantity;
 use hodograph_generator::program::operation::{Operation, Stage};
 
-/// Inverse dynamics of the Stanford arm took Kane and Levinson 646 multiplications and 394 additions (1983, by hand).
+/// Inverse dynamics of the Stanford arm took Kane and Levinson 646 multiplications and 394 additions (1983,
+/// by hand).
 #[test]
 fn inverse_dynamics_of_the_stanford_arm() {
     let model = Model::load("stanford_arm");

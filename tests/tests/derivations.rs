@@ -1,4 +1,5 @@
-//! The derivation files beside the models: reading and writing gives the same bytes, and every guard belongs to a value that is used.
+//! The derivation files beside the models: reading and writing gives the same bytes, and every guard belongs
+//! to a value that is used.
 
 use std::path::Path;
 

@@ -1,5 +1,6 @@
-//! Derivatives of the dynamics, each computed in several ways: by the matrices of the emitted modules, by running these modules on numbers that carry
-//! derivatives, and by the directional derivative of the accelerations.
+//! Derivatives of the dynamics, each computed in several ways: by the matrices of the emitted modules, by
+//! running these modules on numbers that carry derivatives, and by the directional derivative of the
+//! accelerations.
 
 mod common;
 
@@ -16,7 +17,8 @@ const STATES: usize = 4;
 /// Off by at most this part of the largest entry.
 const BOUND: f64 = 1e-12;
 
-/// The directions of the derivatives: independent coordinates, with what follows, independent speeds, named inputs.
+/// The directions of the derivatives: independent coordinates, with what follows, independent speeds, named
+/// inputs.
 fn directions(module: &dyn Emitted, model: &Model, at: &Inputs) -> Vec<Inputs> {
     let m = &model.mechanism;
     let none = || Inputs {
@@ -118,7 +120,8 @@ fn matrices_are_what_numbers_with_derivatives_say() {
     assert!(worst[0].0 <= BOUND, "{}", worst[0].1);
 }
 
-/// The same by the interpreter for models with fixed parameters, which have no module here: dual numbers of the derivation itself.
+/// The same by the interpreter for models with fixed parameters, which have no module here: dual numbers of
+/// the derivation itself.
 #[test]
 fn the_derivative_along_a_direction_is_a_sum_of_columns() {
     for name in ["dpend", "panda"] {
@@ -143,7 +146,8 @@ fn the_derivative_along_a_direction_is_a_sum_of_columns() {
     }
 }
 
-/// Of every contact: each column of its derivatives is its derivative along one direction, and the first column is the value.
+/// Of every contact: each column of its derivatives is its derivative along one direction, and the first
+/// column is the value.
 #[test]
 fn derivatives_of_contacts_are_their_derivatives_along_each_direction() {
     let (mut contacts, mut worst) = (0, 0.0_f64);

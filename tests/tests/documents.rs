@@ -6,7 +6,8 @@ use common::root;
 use hodograph_generator::check::check;
 use hodograph_generator::source::Source;
 
-/// The code blocks of a page that are whole models, with the line each begins at. Blocks may be indented (in lists).
+/// The code blocks of a page that are whole models, with the line each begins at. Blocks may be indented (in
+/// lists).
 fn shown(page: &str) -> Vec<(usize, String)> {
     let mut models = Vec::new();
     let mut block: Option<(usize, String)> = None;

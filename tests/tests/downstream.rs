@@ -1,9 +1,11 @@
-//! Packages outside of the workspace, built by a child cargo as a user would: features are not unified with the workspace's.
+//! Packages outside of the workspace, built by a child cargo as a user would: features are not unified with
+//! the workspace's.
 //!
-//! * `downstream`: a crate with its own models, `no_std`, the dependency renamed, every warning an error, without the algebra engine;
+//! * `downstream`: a crate with its own models, `no_std`, the dependency renamed, every warning an error,
+//!   without the algebra engine;
 //! * `parallel`: a workspace of three crates with models, which cargo builds at the same time;
-//! * `freestanding`: a program without operating system, libc and allocator. It links only if nothing in a generated collision
-//!   can panic.
+//! * `freestanding`: a program without operating system, libc and allocator. It links only if nothing in a
+//!   generated collision can panic.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -73,8 +75,8 @@ fn one_ready_made_model_is_built() {
     assert!(lists > 0, "no list of what hodograph-models was built of");
 }
 
-/// `cargo build` of three crates with models, and beside it `cargo check`, as an editor runs it: nothing waits for ever, nothing aborts, and
-/// standard output stays JSON.
+/// `cargo build` of three crates with models, and beside it `cargo check`, as an editor runs it: nothing
+/// waits for ever, nothing aborts, and standard output stays JSON.
 #[test]
 fn three_crates_with_models_build_at_once() {
     build_at_once("parallel", &[]);
@@ -106,8 +108,8 @@ fn build_at_once(name: &str, features: &[&str]) {
     });
 }
 
-/// Comments of a model become documentation, whatever is drawn in them: none of it is taken for an example, and rustdoc has nothing
-/// to say of it.
+/// Comments of a model become documentation, whatever is drawn in them: none of it is taken for an example,
+/// and rustdoc has nothing to say of it.
 #[test]
 fn comments_of_a_model_are_no_examples() {
     succeeds("parallel", &["test", "-p", "puck", "--doc"]);
@@ -116,7 +118,8 @@ fn comments_of_a_model_are_no_examples() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The command that repairs it names the file in which the user wrote the model, and the place is the user's own.
+/// The command that repairs it names the file in which the user wrote the model, and the place is the user's
+/// own.
 #[test]
 fn an_inline_model_without_derivation_names_its_own_file() {
     let output = cargo("parallel", &["check", "-p", "robot", "--features", "absent"]);

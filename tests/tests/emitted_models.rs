@@ -1,4 +1,5 @@
-//! The emitted modules of all shipped models compute the same bits as the interpreter, and their collisions satisfy the laws of mechanics.
+//! The emitted modules of all shipped models compute the same bits as the interpreter, and their collisions
+//! satisfy the laws of mechanics.
 
 mod common;
 
@@ -52,7 +53,8 @@ fn the_same_bits_as_the_interpreter() {
     }
 }
 
-/// `mass_matrix_lower` has the bits of one triangle of `mass_matrix`; where that has one entry only, there is no such method.
+/// `mass_matrix_lower` has the bits of one triangle of `mass_matrix`; where that has one entry only, there is
+/// no such method.
 #[test]
 fn one_triangle_of_the_mass_matrix() {
     let mut tried = 0;
@@ -91,7 +93,8 @@ fn every_quantity_has_a_routine() {
     }
 }
 
-/// A column of the linearised equations is the directional derivative of the accelerations that the program delivers, but for rounding.
+/// A column of the linearised equations is the directional derivative of the accelerations that the program
+/// delivers, but for rounding.
 #[test]
 fn linearisation_is_made_of_tangents() {
     for (module, model) in &pairs() {
@@ -130,7 +133,8 @@ fn collisions_obey_mechanics() {
     assert!(solved > 500, "{solved} collisions");
 }
 
-/// Collides at a state, turned round if the bodies separate there; the number of collisions that have an outcome.
+/// Collides at a state, turned round if the bodies separate there; the number of collisions that have an
+/// outcome.
 fn collide(module: &dyn Emitted, model: &Model, contact: usize, at: &Inputs) -> usize {
     let mut at = at.clone();
     if approach(module, model, contact, &at) > 0.0 {

@@ -1,4 +1,5 @@
-//! Sets of quantities, `evaluate control(mass_matrix, ..)`: their answers are those of the separate methods and of the interpreter, for less work.
+//! Sets of quantities, `evaluate control(mass_matrix, ..)`: their answers are those of the separate methods
+//! and of the interpreter, for less work.
 
 mod common;
 

@@ -113,7 +113,8 @@ fn rank(model: &Model, contact: u32, samples: &[Sample]) -> usize {
     samples.iter().map(of).max().unwrap_or(0)
 }
 
-/// Largest difference between the derived program and the numeric evaluation, over the largest entry of each quantity.
+/// Largest difference between the derived program and the numeric evaluation, over the largest entry of each
+/// quantity.
 fn agreement(model: &Model, samples: &[Sample]) -> f64 {
     let mut worst = 0.0_f64;
     for sample in samples {

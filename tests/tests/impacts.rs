@@ -1,4 +1,5 @@
-//! Collisions of emitted modules agree with outcomes computed elsewhere (see `tests/data/README.md`), those of the paper among them.
+//! Collisions of emitted modules agree with outcomes computed elsewhere (see `tests/data/README.md`), those
+//! of the paper among them.
 
 mod common;
 
@@ -72,7 +73,8 @@ fn compare(place: &str, hit: &Hit, expected: &Value, bound: f64) {
     near("normal work", hit.normal_work, number(&expected["E_n"]), impulse.norm() * speed);
 }
 
-/// Table of the two sleds, `docs/assumptions.md`: mu, law, then I_n2, v_n2, v_t2, v_s2 with s = t x n, and dE.
+/// Table of the two sleds, `docs/assumptions.md`: mu, law, then I_n2, v_n2, v_t2, v_s2 with s = t x n, and
+/// dE.
 const NINE: [(f64, Law, [f64; 5], &str); 9] = [
     (0.6, Law::Newton, [8.971948198, 0.7568864176, -0.3248973871, -0.3281050863, -1.436743011], "sliding"),
     (0.6, Law::Poisson, [6.152383187, 0.403583274, -0.1574039107, -0.161284564, -2.491550657], "sliding"),

@@ -1,4 +1,5 @@
-//! The traits `Mechanism` and `Contacts`: generated modules and the interpreter compute the same bits, and the same as the modules' own methods.
+//! The traits `Mechanism` and `Contacts`: generated modules and the interpreter compute the same bits, and
+//! the same as the modules' own methods.
 
 mod common;
 
@@ -106,7 +107,8 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
             let state = state(at);
             let (a, b) = (everything(&*generated, &state), everything(&*interpreted, &state));
             assert!(a.iter().filter(|(_, numbers)| numbers.is_ok()).count() >= 8, "{}", module.name());
-            // At a regular state only what the model leaves open has no number: positions of points, orientations of frames.
+            // At a regular state only what the model leaves open has no number: positions of points,
+            // orientations of frames.
             for (name, numbers) in &a {
                 let open = name.starts_with("position") || name.starts_with("orientation");
                 assert!(numbers.is_ok() || open, "{} {name}: {numbers:?}", module.name());
@@ -284,7 +286,8 @@ fn wrong_lengths_and_numbers_are_named() {
     }
 }
 
-/// Refused parameters are refused by both, in the same words, and change nothing; good ones change the numbers.
+/// Refused parameters are refused by both, in the same words, and change nothing; good ones change the
+/// numbers.
 #[test]
 fn parameters_change_or_stay() {
     for module in &emitted() {
@@ -313,7 +316,8 @@ fn parameters_change_or_stay() {
     }
 }
 
-/// A unit of impulse at one contact changes the velocity of another as the coupled matrix says; its own block is the reduced matrix.
+/// A unit of impulse at one contact changes the velocity of another as the coupled matrix says; its own block
+/// is the reduced matrix.
 #[test]
 fn the_coupled_matrix_is_what_impulses_do() {
     let mut coupled = 0;

@@ -1,4 +1,5 @@
-//! Imported robots agree with another program (`tests/data/peers/expected.json`), as interpreted programs and as emitted code.
+//! Imported robots agree with another program (`tests/data/peers/expected.json`), as interpreted programs and
+//! as emitted code.
 //!
 //! `tests/models/<robot>.mech` is what `hodograph import tests/data/peers/<robot>.urdf --contact ee` writes.
 
@@ -65,7 +66,8 @@ struct Slopes {
     by_inputs: Vec<f64>,
 }
 
-/// Holds derivatives to the reference numbers, relative to the largest entry of each matrix; the largest difference.
+/// Holds derivatives to the reference numbers, relative to the largest entry of each matrix; the largest
+/// difference.
 fn check_slopes(robot: &str, how: &str, number: usize, [forward, inverse]: [Slopes; 2]) -> f64 {
     let text = include_str!("../data/peers/derivatives.json");
     let all: Value = serde_json::from_str(text).unwrap();
@@ -87,7 +89,8 @@ fn check_slopes(robot: &str, how: &str, number: usize, [forward, inverse]: [Slop
     worst
 }
 
-/// The derivatives that the derived program gives: of the accelerations with inputs, of the inverse dynamics without.
+/// The derivatives that the derived program gives: of the accelerations with inputs, of the inverse dynamics
+/// without.
 fn interpreted_slopes(model: &Model, state: &Value) -> [Slopes; 2] {
     let [q, v, a, tau] = ["q", "v", "a", "tau"].map(|key| numbers(&state[key]));
     let joints = q.len();

@@ -2,9 +2,9 @@
 
 use hodograph_models::ball_on_turntable::{BallOnTurntable, Coordinates, Parameters, Speeds};
 
-/// With F the force of the table, a the acceleration of the centre, n the normal and W the rate of the table: m a = F + m g,
-/// J w' = -r n x F, and where the two points of contact move together a = W' n x p + W n x v + r w' x n. Without F:
-/// (1 + m r^2 / J) a = W' n x p + W n x v + m r^2 / J g, along the plane.
+/// With F the force of the table, a the acceleration of the centre, n the normal and W the rate of the table:
+/// m a = F + m g, J w' = -r n x F, and where the two points of contact move together a = W' n x p + W n x v +
+/// r w' x n. Without F: (1 + m r^2 / J) a = W' n x p + W n x v + m r^2 / J g, along the plane.
 #[test]
 fn the_centre_moves_as_by_hand() {
     for (tilt, w, t) in [(0.0, 0.0, 0.0), (0.2, 3.0, 0.7), (-0.4, 1.3, 2.1)] {

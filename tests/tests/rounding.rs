@@ -12,8 +12,8 @@ use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Quantity;
 use precise::{Precise, evaluate};
 
-/// Largest and mean error of the accelerations relative to the largest of them, at 500 states: angles between -pi and pi, everything else
-/// between -1 and 1.
+/// Largest and mean error of the accelerations relative to the largest of them, at 500 states: angles between
+/// -pi and pi, everything else between -1 and 1.
 fn error(name: &str) -> (f64, f64) {
     const STATES: usize = 500;
     let model = Model::load(name);
@@ -44,8 +44,9 @@ fn error(name: &str) -> (f64, f64) {
 
 #[test]
 fn forward_dynamics_keeps_the_digits_that_doubles_have() {
-    // What the factorised mass matrix makes of the arm is 2e-14 at worst and 8e-16 in the mean, of the chain 3e-14 and 3e-15. With sums in
-    // any order and hoisted values rounded at every step, the means of pendulum and arm were 2.4e-16 and 2.6e-16.
+    // What the factorised mass matrix makes of the arm is 2e-14 at worst and 8e-16 in the mean, of the chain
+    // 3e-14 and 3e-15. With sums in any order and hoisted values rounded at every step, the means of
+    // pendulum and arm were 2.4e-16 and 2.6e-16.
     for (name, worst, mean) in [
         ("../tests/models/dpend", 3e-15, 2.3e-16),
         ("../tests/models/panda", 3e-15, 2.4e-16),

@@ -1,4 +1,5 @@
-//! Derivatives of collisions and saltation matrices of generated modules, against differences of what the modules compute.
+//! Derivatives of collisions and saltation matrices of generated modules, against differences of what the
+//! modules compute.
 
 use hodograph::{Law, NonSmoothness, Surface};
 use nalgebra::{SMatrix, SVector};
@@ -95,8 +96,8 @@ fn speeds_after_by_speeds_before() {
     );
 }
 
-/// Trajectories that start a little off meet the surface a little earlier or later: to where they meet it, through the collision, and
-/// back to the same time.
+/// Trajectories that start a little off meet the surface a little earlier or later: to where they meet it,
+/// through the collision, and back to the same time.
 macro_rules! saltation {
     ($module:ident, $machine:ident, $collide:ident, $gap:ident, $saltation:ident, $c:literal, $p:literal) => {{
         use hodograph_models::$module::{Coordinates, Speeds, $machine};
@@ -185,7 +186,8 @@ fn modules_name_the_non_smoothness() {
     assert_eq!(parting.expect_err("no collision").kind(), "not_approaching");
 }
 
-/// At the same configuration and time, the block of the speeds is the derivative of the jump alone where nothing moves the surface.
+/// At the same configuration and time, the block of the speeds is the derivative of the jump alone where
+/// nothing moves the surface.
 #[test]
 fn saltation_has_the_derivative_of_the_jump() {
     use hodograph_models::free_box_corner::{Coordinates, FreeBoxCorner, Speeds};

@@ -1,5 +1,6 @@
-//! Every shipped model at random states: the derived program against the numeric evaluation of the model, which shares nothing
-//! with the derivation but the meaning of the model, and against identities of mechanics.
+//! Every shipped model at random states: the derived program against the numeric evaluation of the model,
+//! which shares nothing with the derivation but the meaning of the model, and against identities of
+//! mechanics.
 
 mod common;
 

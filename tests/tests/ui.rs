@@ -1,4 +1,5 @@
-//! What the compiler says of malformed models, inline and in files. `TRYBUILD=overwrite` writes the expectations anew.
+//! What the compiler says of malformed models, inline and in files. `TRYBUILD=overwrite` writes the
+//! expectations anew.
 
 #[test]
 fn messages_of_the_compiler() {

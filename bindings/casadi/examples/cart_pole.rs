@@ -1,4 +1,5 @@
-//! A cart-pole as a shared library for CasADi: `casadi.external("cart_pole", ..)` and `casadi.external("cart_pole_inverse_dynamics", ..)`.
+//! A cart-pole as a shared library for CasADi: `casadi.external("cart_pole", ..)` and
+//! `casadi.external("cart_pole_inverse_dynamics", ..)`.
 
 hodograph::mechanism!("examples/cart_pole.mech");
 

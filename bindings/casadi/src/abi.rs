@@ -1,5 +1,5 @@
-//! Where numbers cross from C and to C. All that is `unsafe` here are copies between the caller's memory and one slice of the work vector that the
-//! caller lends; everything else is safe code on that slice.
+//! Where numbers cross from C and to C. All that is `unsafe` here are copies between the caller's memory and
+//! one slice of the work vector that the caller lends; everything else is safe code on that slice.
 
 use std::ffi::{c_int, c_longlong};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,7 +14,8 @@ pub type Int = c_longlong;
 /// The error code of CasADi's functions.
 const FAILED: c_int = 1;
 
-/// Writes how long the arrays of arguments, results, integers and numbers must be that [`evaluate`] is lent; nonzero where there is no such function.
+/// Writes how long the arrays of arguments, results, integers and numbers must be that [`evaluate`] is lent;
+/// nonzero where there is no such function.
 ///
 /// # Safety
 ///
@@ -40,9 +41,11 @@ pub unsafe fn work(layout: &Layout, sizes: [*mut Int; 4]) -> c_int {
 ///
 /// # Safety
 ///
-/// By CasADi's interface of external functions, with the sizes that [`work`] and the sparsities of `layout` tell: `arg` is null or has a pointer for
-/// every input, each null (for zeros) or to as many doubles as the input has entries; `res` likewise for outputs (null: not wanted), to doubles that may be written;
-/// `w` is to as many doubles as [`work`] asks for, which may be written and overlap none of the others. None is in use elsewhere during the call.
+/// By CasADi's interface of external functions, with the sizes that [`work`] and the sparsities of `layout`
+/// tell: `arg` is null or has a pointer for every input, each null (for zeros) or to as many doubles as the
+/// input has entries; `res` likewise for outputs (null: not wanted), to doubles that may be written;
+/// `w` is to as many doubles as [`work`] asks for, which may be written and overlap none of the others. None
+/// is in use elsewhere during the call.
 #[doc(hidden)]
 pub unsafe fn evaluate<F: Function>(
     layout: &Layout,
@@ -54,8 +57,8 @@ pub unsafe fn evaluate<F: Function>(
     if layout.refused.is_some() || w.is_null() || !w.is_aligned() {
         return FAILED;
     }
-    // SAFETY: `w` may be written for `count + results` doubles and overlaps nothing else. They are set before the slice over them is made, so it
-    // holds numbers; nobody else uses them until we return.
+    // SAFETY: `w` may be written for `count + results` doubles and overlaps nothing else. They are set before
+    // the slice over them is made, so it holds numbers; nobody else uses them until we return.
     let numbers = unsafe {
         ptr::write_bytes(w, 0, count + results);
         slice::from_raw_parts_mut(w, count + results)
@@ -68,8 +71,8 @@ pub unsafe fn evaluate<F: Function>(
         if arg.is_null() || block.size == 0 {
             continue;
         }
-        // SAFETY: `arg` is not null, so it has a pointer for every input. That is null or to `block.size` doubles, outside of the slice `to`, which
-        // has this length.
+        // SAFETY: `arg` is not null, so it has a pointer for every input. That is null or to `block.size`
+        // doubles, outside of the slice `to`, which has this length.
         unsafe {
             let from = *arg.add(index);
             if !from.is_null() {

@@ -18,7 +18,8 @@ pub trait Function {
     fn evaluate(inputs: &[f64], outputs: &mut [f64]) -> Result<(), StateError>;
 }
 
-/// A generated module: its mechanism, and those derivatives that the trait [`Mechanism`] does not have. [`external!`](crate::external) implements it.
+/// A generated module: its mechanism, and those derivatives that the trait [`Mechanism`] does not have.
+/// [`external!`](crate::external) implements it.
 ///
 /// Matrices are written by columns. Each routine answers the errors of the module.
 pub trait Dynamics {
@@ -41,7 +42,8 @@ fn sizes<D: Dynamics>() -> [usize; 3] {
     [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| D::mechanism().count(kind))
 }
 
-/// Inputs and outputs without those that have no numbers, and the reason why a mechanism has no such function.
+/// Inputs and outputs without those that have no numbers, and the reason why a mechanism has no such
+/// function.
 fn layout<D: Dynamics>(inputs: &[(&str, usize)], outputs: &[(&str, usize)]) -> Layout {
     let some: Vec<_> = inputs.iter().copied().filter(|(name, size)| *name != "inputs" || *size > 0).collect();
     let mut layout = Layout::of_vectors(&some, outputs);

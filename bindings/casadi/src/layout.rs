@@ -10,7 +10,8 @@ pub struct Block {
     name: CString,
     /// how many numbers it has
     pub size: usize,
-    /// CasADi's compressed form: rows, columns, then 1 for a dense matrix, or the starts of all columns for one without entries
+    /// CasADi's compressed form: rows, columns, then 1 for a dense matrix, or the starts of all columns for
+    /// one without entries
     sparsity: Vec<Int>,
 }
 
@@ -25,7 +26,8 @@ impl Block {
         }
     }
 
-    /// A matrix of zeros, which has no numbers: Jacobians of CasADi receive results of the function in such places and need not read them.
+    /// A matrix of zeros, which has no numbers: Jacobians of CasADi receive results of the function in such
+    /// places and need not read them.
     pub fn absent(name: &str, rows: usize) -> Self {
         Block { size: 0, sparsity: vec![rows as Int, 1, 0, 0], ..Block::dense(name, 0, 0) }
     }
@@ -60,7 +62,8 @@ impl Layout {
         Layout { inputs: blocks(inputs), outputs: blocks(outputs), refused: None }
     }
 
-    /// Its Jacobian, as CasADi asks for it: results of the function follow its inputs, and there is a block for each result (slow) and input (fast).
+    /// Its Jacobian, as CasADi asks for it: results of the function follow its inputs, and there is a block
+    /// for each result (slow) and input (fast).
     pub fn jacobian(&self) -> Self {
         let text = |block: &Block| block.name.to_string_lossy().into_owned();
         let results =

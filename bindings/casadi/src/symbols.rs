@@ -1,7 +1,7 @@
 //! The C functions by which CasADi finds a function, its shape and its Jacobian.
 
-/// Offers a generated module to `casadi.external` under a name: the module's type, with the arguments that its methods have. See the
-/// [documentation of the crate](crate).
+/// Offers a generated module to `casadi.external` under a name: the module's type, with the arguments that
+/// its methods have. See the [documentation of the crate](crate).
 #[macro_export]
 macro_rules! external {
     ($name:literal => $($module:ident)::+ ($q:ident, $u:ident $(, $inputs:ident)?)) => {
@@ -78,8 +78,8 @@ macro_rules! external {
 
 /// The symbols of one function.
 ///
-/// They are `unsafe` because another library may have symbols of these names; CasADi looks for them in this one alone, where the linker sees to it
-/// that there are no two.
+/// They are `unsafe` because another library may have symbols of these names; CasADi looks for them in this
+/// one alone, where the linker sees to it that there are no two.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! symbols {

@@ -1,4 +1,5 @@
-//! What generated modules answer, bit by bit, for the tests of the wheel: lines of `model routine row bits..`; states come first.
+//! What generated modules answer, bit by bit, for the tests of the wheel: lines of `model routine row
+//! bits..`; states come first.
 
 use hodograph::{Contacts, Kind, Law, State, Surface};
 

@@ -38,7 +38,8 @@ impl Rows<'_> {
     }
 }
 
-/// A table of `width` columns from an array of shape (width,) or (n, width), or `default` where none is given.
+/// A table of `width` columns from an array of shape (width,) or (n, width), or `default` where none is
+/// given.
 pub fn rows<'py>(
     py: Python<'py>,
     given: Option<&Bound<'py, PyAny>>,

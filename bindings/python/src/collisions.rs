@@ -207,7 +207,8 @@ pub fn collide<'py>(
     answers.into_fields(py, rows, &fields)
 }
 
-/// The exception of a collision without outcome; `place`: its row, of how many, and how many of them have none.
+/// The exception of a collision without outcome; `place`: its row, of how many, and how many of them have
+/// none.
 pub fn impact_error(
     py: Python<'_>,
     error: &hodograph::ImpactError<f64>,

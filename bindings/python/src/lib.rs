@@ -1,4 +1,5 @@
-//! The native part of the Python package `hodograph`; `python/hodograph` makes classes of it that Python users see.
+//! The native part of the Python package `hodograph`; `python/hodograph` makes classes of it that Python
+//! users see.
 
 #![forbid(unsafe_code)]
 

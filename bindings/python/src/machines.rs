@@ -33,7 +33,8 @@ impl Machines {
         self.numbers.get(row * self.width..(row + 1) * self.width).unwrap_or(&[])
     }
 
-    /// Calls `with` for these rows, each with the mechanism of its parameters and whether that is another one than that of the row before.
+    /// Calls `with` for these rows, each with the mechanism of its parameters and whether that is another one
+    /// than that of the row before.
     fn each(
         &self,
         mechanism: &InterpretedMechanism,
@@ -55,8 +56,8 @@ impl Machines {
         }
     }
 
-    /// Evaluates a routine at all rows, each with its parameters: the numbers by rows (of a row without answer they are not numbers), and the rows
-    /// without answer.
+    /// Evaluates a routine at all rows, each with its parameters: the numbers by rows (of a row without
+    /// answer they are not numbers), and the rows without answer.
     pub fn evaluate(
         &self,
         mechanism: &InterpretedMechanism,
@@ -97,7 +98,8 @@ impl Machines {
         all
     }
 
-    /// Solves the collisions of these rows of a contact; `with` receives the row, and the answer with the speeds after it.
+    /// Solves the collisions of these rows of a contact; `with` receives the row, and the answer with the
+    /// speeds after it.
     pub fn collide(
         &self,
         mechanism: &InterpretedMechanism,

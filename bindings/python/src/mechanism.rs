@@ -179,8 +179,9 @@ impl Mechanism {
 
 #[pymethods]
 impl Mechanism {
-    /// Reads a model (a path, or a text) and its derivation (a path; by default the file beside the model), or takes those of another mechanism.
-    /// With `parameters`: all that can be changed, in the order of the model; with many rows of them, one mechanism for every row of a state.
+    /// Reads a model (a path, or a text) and its derivation (a path; by default the file beside the model),
+    /// or takes those of another mechanism. With `parameters`: all that can be changed, in the order of
+    /// the model; with many rows of them, one mechanism for every row of a state.
     #[new]
     #[pyo3(signature = (model, derivation = None, parameters = None))]
     fn new(

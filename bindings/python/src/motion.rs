@@ -49,7 +49,8 @@ struct Found {
 /// The exception that a function of Python raised, kept until the motion ends for it.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
-/// A function of Python as a function that writes inputs; where it raises, they are not numbers, which ends the motion.
+/// A function of Python as a function that writes inputs; where it raises, they are not numbers, which ends
+/// the motion.
 fn controlled(control: Py<PyAny>, raised: &Raised) -> InputFunction {
     let raised = Arc::clone(raised);
     Arc::new(move |time, coordinates, speeds, inputs: &mut [f64]| {

@@ -31,7 +31,8 @@ pub struct Limits {
 const STACK: usize = 256 << 20;
 
 impl Limits {
-    /// Does work for at most so long; what is not done by then ends with the process. `doing` is what messages call it.
+    /// Does work for at most so long; what is not done by then ends with the process. `doing` is what
+    /// messages call it.
     ///
     /// # Errors
     ///
@@ -124,8 +125,9 @@ pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
 
 /// Derives a model: the program, and the text in which it is kept.
 ///
-/// The algebra engine prints on standard output and can end the process that uses it, so it runs in a process of its
-/// own. Only one at a time may run on behalf of a user; the generator waits, and says so, while another does.
+/// The algebra engine prints on standard output and can end the process that uses it, so it runs in a process
+/// of its own. Only one at a time may run on behalf of a user; the generator waits, and says so, while
+/// another does.
 ///
 /// # Errors
 ///
@@ -149,8 +151,8 @@ pub fn trace(model: &Model, limits: &Limits) -> Outcome<String> {
 /// What the process that derives writes before its answer: what stands above it is the engine's.
 pub const ANSWER: &str = "\nthe answer of hodograph derive-worker:\n";
 
-/// Runs the process that derives: it reads the model from standard input, and writes its answer at the end of standard output. So there
-/// is no file that could be left.
+/// Runs the process that derives: it reads the model from standard input, and writes its answer at the end of
+/// standard output. So there is no file that could be left.
 fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
     if !cfg!(feature = "derive") {
         return Err(Stop::Fault(

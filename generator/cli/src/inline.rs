@@ -17,7 +17,8 @@ const MAX_BYTES: usize = 16 << 20;
 /// What a `mechanism!` in a Rust file names.
 #[derive(Clone, Debug)]
 pub enum Invocation {
-    /// a model in the file itself; in the source the rest of the file is blank, so that places are those in the file
+    /// a model in the file itself; in the source the rest of the file is blank, so that places are those in
+    /// the file
     Inline(Source),
     /// a model file, by the path in the macro
     File(PathBuf),
@@ -85,7 +86,8 @@ fn places(trees: &[TokenTree]) -> Option<Range<usize>> {
     Some(trees.first()?.span().byte_range().start..trees.last()?.span().byte_range().end)
 }
 
-/// The text up to the end of a range, with everything outside it and in some parts of it blank, line by line and character by character the same length.
+/// The text up to the end of a range, with everything outside it and in some parts of it blank, line by line
+/// and character by character the same length.
 fn blanked(text: &str, range: Range<usize>, parts: &[Range<usize>]) -> String {
     let is_kept = |at: usize| at >= range.start && !parts.iter().any(|part| part.contains(&at));
     let upto = text.char_indices().take_while(|(at, _)| *at < range.end);

@@ -27,7 +27,8 @@ impl Drop for Unfinished {
     }
 }
 
-/// From now on files that are not complete are removed when the user or the system ends the process, which then ends as it would have.
+/// From now on files that are not complete are removed when the user or the system ends the process, which
+/// then ends as it would have.
 #[cfg(unix)]
 pub fn clean_up() {
     use signal_hook::consts::{SIGINT, SIGTERM};

@@ -1,4 +1,5 @@
-//! The command line tool of Hodograph: checks and derives models, evaluates them in states, solves collisions, simulates motions.
+//! The command line tool of Hodograph: checks and derives models, evaluates them in states, solves
+//! collisions, simulates motions.
 
 use std::process::ExitCode;
 
@@ -29,8 +30,8 @@ use commands::{
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
 ///
-/// Results go to standard output, everything else to standard error. Exit code 0: done; 1: a mistake in a model, a state
-/// or a collision, or a check that failed; 2: the call was wrong.
+/// Results go to standard output, everything else to standard error. Exit code 0: done; 1: a mistake in a
+/// model, a state or a collision, or a check that failed; 2: the call was wrong.
 #[derive(Parser)]
 #[command(name = "hodograph", version, max_term_width = 110)]
 struct Arguments {

@@ -38,13 +38,14 @@ pub fn line(line: &str) -> Outcome {
     text(&format!("{line}\n"))
 }
 
-/// Writes text for people to standard error, with a newline. Nobody may read it, and its disk may be full: that is no reason to fail.
+/// Writes text for people to standard error, with a newline. Nobody may read it, and its disk may be full:
+/// that is no reason to fail.
 pub fn say(text: impl std::fmt::Display) {
     let _ = writeln!(io::stderr().lock(), "{}", visible(&text.to_string()));
 }
 
-/// Text without what a terminal would obey: control characters, but for ends of lines and tabs, are shown by their numbers, and so are
-/// those that turn the direction of writing.
+/// Text without what a terminal would obey: control characters, but for ends of lines and tabs, are shown by
+/// their numbers, and so are those that turn the direction of writing.
 pub fn visible(text: &str) -> String {
     let shown = |c: char| {
         let turns = matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
@@ -57,7 +58,8 @@ pub fn visible(text: &str) -> String {
     text.chars().map(shown).collect()
 }
 
-/// Standard output whose reader may leave before the end. What comes after that is not written, but the work goes on to its exit code.
+/// Standard output whose reader may leave before the end. What comes after that is not written, but the work
+/// goes on to its exit code.
 #[derive(Default)]
 pub struct Report {
     reader_gone: bool,
@@ -153,7 +155,8 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.persist(&place).map(drop).map_err(|error| error.error)
 }
 
-/// Writes a folder with these files (paths in it and texts), whole or not at all: beside its place first, and moved there when it is complete.
+/// Writes a folder with these files (paths in it and texts), whole or not at all: beside its place first, and
+/// moved there when it is complete.
 ///
 /// # Errors
 ///

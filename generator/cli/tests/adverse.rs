@@ -1,5 +1,5 @@
-//! Adverse conditions: full disks, closed pipes, signals, hostile names and files. The tool must not panic, must return the right exit code, and must
-//! leave no files behind.
+//! Adverse conditions: full disks, closed pipes, signals, hostile names and files. The tool must not panic,
+//! must return the right exit code, and must leave no files behind.
 #![cfg(unix)]
 
 mod common;

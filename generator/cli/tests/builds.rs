@@ -1,4 +1,5 @@
-//! The same model gives the same bytes: in any process, folder, order and locale, and with several derivations at once.
+//! The same model gives the same bytes: in any process, folder, order and locale, and with several
+//! derivations at once.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -97,7 +98,8 @@ fn derivations_at_once_wait_for_each_other() {
     }
 }
 
-/// The lock belongs to the user, not to the environment: different homes and temporary directories are no way around it.
+/// The lock belongs to the user, not to the environment: different homes and temporary directories are no way
+/// around it.
 #[test]
 fn derivations_with_different_homes_wait_for_each_other() {
     let folders: Vec<PathBuf> = (0..4).map(|i| folder(&format!("home {i}"))).collect();

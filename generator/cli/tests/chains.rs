@@ -1,4 +1,5 @@
-//! Compares imported robots and long chains with the numeric evaluation of the model: mass matrix, forces, accelerations and contacts at random states.
+//! Compares imported robots and long chains with the numeric evaluation of the model: mass matrix, forces,
+//! accelerations and contacts at random states.
 #![cfg(feature = "derive")]
 
 mod common;
@@ -100,7 +101,8 @@ fn agrees(m: &Mechanism, program: &Program) {
     }
 }
 
-/// A chain in space, each joint across the one before; its tip strikes the ground, and two of its links strike each other.
+/// A chain in space, each joint across the one before; its tip strikes the ground, and two of its links
+/// strike each other.
 fn chain(links: usize) -> String {
     let list = |line: &dyn Fn(usize) -> String| (1..=links).map(line).collect::<String>();
     let mut text = "mechanism Chain;\nparameters { m: kg = 0.5, l: m = 0.3, g: m/s^2 = 9.81 }\n".to_owned();

@@ -208,7 +208,8 @@ fn costs_are_a_table() {
     }
 }
 
-/// The box begins with its corner on the ground, to within rounding even below it, and falls: it strikes at once.
+/// The box begins with its corner on the ground, to within rounding even below it, and falls: it strikes at
+/// once.
 #[test]
 fn what_touches_at_the_start_strikes_at_once() {
     let gap = |state: &str| {

@@ -1,4 +1,5 @@
-//! `hodograph export --c`: the crate builds, a C program that calls it gets the answers of the tool, and every header is C and C++.
+//! `hodograph export --c`: the crate builds, a C program that calls it gets the answers of the tool, and
+//! every header is C and C++.
 
 mod common;
 
@@ -31,7 +32,8 @@ fn output(command: &mut Command, folder: &Path) -> Output {
     output
 }
 
-/// Builds the crate in the folder with the workspace's versions of its dependencies, where the other crates of tests are built.
+/// Builds the crate in the folder with the workspace's versions of its dependencies, where the other crates
+/// of tests are built.
 fn build(folder: &Path) -> PathBuf {
     std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     let target = root().join("target/tmp/downstream");
@@ -77,7 +79,8 @@ fn a_program_in_c_gets_the_answers_of_the_tool() {
     };
     assert_eq!(line("accelerations"), independent(&eval["udot"]));
     assert_eq!(line("kinetic_energy"), numbers(&eval["kinetic_energy"]));
-    // The module knows the structure of its reduced matrix and takes a shorter way than the tool: equal but for rounding.
+    // The module knows the structure of its reduced matrix and takes a shorter way than the tool: equal but
+    // for rounding.
     for (name, expected) in [
         ("impulse", numbers(&hit["impulse"])),
         ("separation", numbers(&hit["v"])),

@@ -1,7 +1,8 @@
 //! `mechanism!` with the feature `derive`, in compilers that run at the same time.
 //!
-//! A child cargo would build the algebra engine a second time, for the host. But what this package was built from is there: the macro
-//! is linked from it here, and then rustc itself expands models without derivations, as cargo would have it do.
+//! A child cargo would build the algebra engine a second time, for the host. But what this package was built
+//! from is there: the macro is linked from it here, and then rustc itself expands models without derivations,
+//! as cargo would have it do.
 
 #![cfg(feature = "derive")]
 
@@ -82,7 +83,8 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Links the macro with the generator that was built for this test's package. Older and other builds may lie beside it.
+/// Links the macro with the generator that was built for this test's package. Older and other builds may lie
+/// beside it.
 fn built(test: &str) -> Built {
     let dependencies = std::env::current_exe().expect("this program").parent().expect("a folder").to_owned();
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
@@ -127,7 +129,8 @@ fn built(test: &str) -> Built {
     panic!("no generator with the feature `derive` in {}:\n{last}", dependencies.display());
 }
 
-/// Four crates are built and two of them checked as an editor would, all at once, while the tool derives too: each waits for its turn.
+/// Four crates are built and two of them checked as an editor would, all at once, while the tool derives too:
+/// each waits for its turn.
 #[test]
 fn compilers_derive_at_once() {
     let built = built("compilers at once");
@@ -164,7 +167,8 @@ fn compilers_derive_at_once() {
     });
 }
 
-/// What cannot be derived is an error of the compiler at the user's tokens, and the next model is derived all the same.
+/// What cannot be derived is an error of the compiler at the user's tokens, and the next model is derived all
+/// the same.
 #[test]
 fn mistakes_are_errors_of_the_compiler() {
     let built = built("compiler with mistakes");

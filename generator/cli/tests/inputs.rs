@@ -1,4 +1,5 @@
-//! Unusual paths: for directories, devices, pipes, and missing or too large files a command ends soon and says why.
+//! Unusual paths: for directories, devices, pipes, and missing or too large files a command ends soon and
+//! says why.
 
 mod common;
 

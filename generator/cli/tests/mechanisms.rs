@@ -1,5 +1,5 @@
-//! Mechanisms that are not shipped: those written from the language reference alone, against Lagrange's equations
-//! (`tests/data/mechanisms`, see `tests/data/README.md`), and the examples of the reference itself.
+//! Mechanisms that are not shipped: those written from the language reference alone, against Lagrange's
+//! equations (`tests/data/mechanisms`, see `tests/data/README.md`), and the examples of the reference itself.
 
 mod common;
 

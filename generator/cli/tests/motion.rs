@@ -44,7 +44,8 @@ fn hits_do_not_depend_on_the_step() {
     assert_eq!(all[0], all[2]);
 }
 
-/// A ball thrown up strikes the ceiling within the first step and comes back: nothing inside a step is missed.
+/// A ball thrown up strikes the ceiling within the first step and comes back: nothing inside a step is
+/// missed.
 #[test]
 fn hits_inside_a_step_are_found() {
     let run = simulate("ceiling", &[&["--until", "2", "--step", "1"], &BALL[..]].concat());
@@ -56,7 +57,8 @@ fn hits_inside_a_step_are_found() {
     assert!((number(&collisions[0]["t"]) - hit).abs() < 1e-11, "{}", collisions[0]);
 }
 
-/// A block on an incline does not creep; pulled by a force that grows it begins to slip when friction is used up, and stops when it ends.
+/// A block on an incline does not creep; pulled by a force that grows it begins to slip when friction is used
+/// up, and stops when it ends.
 #[test]
 fn a_block_sticks_and_slips() {
     let surface = ["--mu", "0.5", "--e", "0", "--law", "poisson"];
@@ -163,7 +165,8 @@ fn missing_gaps_are_told() {
     assert!(run.stderr.contains("contact rim_wall has no gap in the model"), "{}", run.stderr);
 }
 
-/// The page holds the points where the lines say that they are, every event, and what acts; also where the motion ends with an error.
+/// The page holds the points where the lines say that they are, every event, and what acts; also where the
+/// motion ends with an error.
 #[test]
 fn pages_show_the_motion() {
     let folder = tempfile::tempdir().unwrap();
@@ -236,7 +239,8 @@ fn balls_answer_by_their_stiffnesses() {
     }
 }
 
-/// A word that is not understood, or stands there twice, is refused with its place; what a table says is what an expression says.
+/// A word that is not understood, or stands there twice, is refused with its place; what a table says is what
+/// an expression says.
 #[test]
 fn inputs_and_surfaces_are_read_with_care() {
     let folder = tempfile::tempdir().unwrap();
@@ -278,7 +282,8 @@ fn inputs_and_surfaces_are_read_with_care() {
     assert_eq!(unknown.error_kind(), "unknown_name");
     let both = call(&["--inputs", &table("t,F\n0,1\n"), "--input", "F=1"]);
     assert!(both.code == 2 && both.stderr.contains("F is given twice"), "{}", both.stderr);
-    // The same force: as other programs write tables, as an expression of `t`, and of `time`, as models call it.
+    // The same force: as other programs write tables, as an expression of `t`, and of `time`, as models call
+    // it.
     let rows = call(&["--inputs", &table("\u{feff}t, F\r\n0, 0\r\n10, -300\r\n")]);
     assert_eq!(rows.code, 0, "{}", rows.stderr);
     assert!(number(&rows.lines().last().unwrap()["q"]["x"]) < -0.1, "{}", rows.stdout);
@@ -292,8 +297,8 @@ fn inputs_and_surfaces_are_read_with_care() {
     assert!(hidden.code == 1 && hidden.stderr.contains("the input F is NaN"), "{}", hidden.stderr);
 }
 
-/// A push between steps that would be long gives its whole impulse, 2 N s on 2 kg: of a millisecond in flight, and of 50 ms against friction that
-/// held the block before.
+/// A push between steps that would be long gives its whole impulse, 2 N s on 2 kg: of a millisecond in
+/// flight, and of 50 ms against friction that held the block before.
 #[test]
 fn short_pushes_of_a_table_are_not_stepped_over() {
     let folder = tempfile::tempdir().unwrap();

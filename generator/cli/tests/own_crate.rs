@@ -1,5 +1,5 @@
-//! Follows the README's instructions for a crate of one's own literally: its manifest, its source, the model of CONTRIBUTING.md, and the command that
-//! derives it.
+//! Follows the README's instructions for a crate of one's own literally: its manifest, its source, the model
+//! of CONTRIBUTING.md, and the command that derives it.
 
 mod common;
 

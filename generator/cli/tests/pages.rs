@@ -1,4 +1,5 @@
-//! Pages in a real browser. They are left out of `cargo test`, which needs none: `cargo test --workspace in_a_browser -- --ignored`.
+//! Pages in a real browser. They are left out of `cargo test`, which needs none: `cargo test --workspace
+//! in_a_browser -- --ignored`.
 
 #[path = "common/browser.rs"]
 mod browser;

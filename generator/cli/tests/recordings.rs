@@ -83,7 +83,8 @@ fn near(a: [f64; 3], b: [f64; 3], error: f64) {
     assert!((0..3).all(|i| (a[i] - b[i]).abs() <= error), "{a:?} {b:?}");
 }
 
-/// A rod in a plane that falls on its end: times, coordinates, the place of its centre, its frame, and forces are those of the lines.
+/// A rod in a plane that falls on its end: times, coordinates, the place of its centre, its frame, and forces
+/// are those of the lines.
 #[test]
 fn recordings_say_what_the_lines_say() {
     let folder = tempfile::tempdir().unwrap();
@@ -183,7 +184,8 @@ fn arrow(message: &Message) -> Value {
     message.1["entities"][0]["arrows"][0].clone()
 }
 
-/// Where gravity is along -N.y, N is turned so that N.y points upwards in the world; two runs give the same bytes.
+/// Where gravity is along -N.y, N is turned so that N.y points upwards in the world; two runs give the same
+/// bytes.
 #[test]
 fn the_world_stands_upright_and_bytes_are_the_same() {
     let folder = tempfile::tempdir().unwrap();

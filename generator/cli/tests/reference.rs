@@ -161,7 +161,8 @@ fn collide_agrees_with_every_reference_impact() {
                 let run = hodograph(&[&call[..], &["--state", "-"]].concat(), &state(&file, reference));
                 let what = format!("{name} {contact} mu {mu} e {e} {law}");
                 if expected.is_null() || expected["end"].is_null() {
-                    // Stuck, and v_n cannot change any more: Poisson's law is content with v_n = 0, the others are not.
+                    // Stuck, and v_n cannot change any more: Poisson's law is content with v_n = 0, the
+                    // others are not.
                     if law == "poisson" {
                         let answer = run.line();
                         // Without a compression of its own it ends where slip does.

@@ -1,5 +1,5 @@
-//! Rolling balls, stated in every way that the language allows. The vector equation says nothing along one direction, which the derivation must
-//! find.
+//! Rolling balls, stated in every way that the language allows. The vector equation says nothing along one
+//! direction, which the derivation must find.
 
 mod common;
 
@@ -159,7 +159,8 @@ fn on_each_other() {
     assert!((number(&answer["udot"]["w"]) - expected).abs() < 1e-13, "{answer}");
 }
 
-/// Where no frame has the direction along which nothing is said, the error says so, at its place and with its code.
+/// Where no frame has the direction along which nothing is said, the error says so, at its place and with its
+/// code.
 #[test]
 fn on_a_surface_without_frames() {
     let vectors = "definitions { n = unit(N.vec(-2*x/R, -2*y/R, 1)); }";

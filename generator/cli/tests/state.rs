@@ -135,8 +135,8 @@ fn singular_states_are_said_where() {
     }
 }
 
-/// Where a linkage folds, its completed coordinates are known to the root of the rounding error only: no number follows from
-/// them. A little beside all do.
+/// Where a linkage folds, its completed coordinates are known to the root of the rounding error only: no
+/// number follows from them. A little beside all do.
 #[test]
 fn folded_linkages_are_singular() {
     let folded = [
@@ -266,7 +266,8 @@ fn wrong_collisions_are_named() {
 
 #[test]
 fn without_slip_t_lies_along_an_axis() {
-    // The slider of the crank can only approach along the normal: N.x is within 30 degrees of it, so t is N.y.
+    // The slider of the crank can only approach along the normal: N.x is within 30 degrees of it, so t is
+    // N.y.
     let contact = eval("slider_crank", &json!({})).line()["contacts"]["slider_wall"].clone();
     assert_eq!(contact["tangent"], json!([0.0, 1.0, 0.0]));
     assert_eq!(numbers(&contact["v"])[1..], [0.0, 0.0]);

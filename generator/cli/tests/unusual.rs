@@ -1,5 +1,6 @@
-//! Valid mechanisms of unusual kinds (`tests/data/unusual`: gears, belts, rolling in drums, knife edges, struck frames, springs of all
-//! forms, quaternions, linkages, very small and very large parts): accepted without a warning, derived, and equal to the numeric evaluation.
+//! Valid mechanisms of unusual kinds (`tests/data/unusual`: gears, belts, rolling in drums, knife edges,
+//! struck frames, springs of all forms, quaternions, linkages, very small and very large parts): accepted
+//! without a warning, derived, and equal to the numeric evaluation.
 #![cfg(feature = "derive")]
 
 mod common;

@@ -16,8 +16,8 @@ pub fn run(bytes: &[u8]) {
     let _ = model_hash(&source);
 }
 
-/// As [`run`], for the input of a macro too. `proc_macro2` itself recurses with the nesting of brackets, so only texts without
-/// deep nesting are tried.
+/// As [`run`], for the input of a macro too. `proc_macro2` itself recurses with the nesting of brackets, so
+/// only texts without deep nesting are tried.
 pub fn run_inline(text: &str) {
     let depth = text.bytes().filter(|b| b"([{".contains(b)).count();
     if depth > 200 {

@@ -1,5 +1,6 @@
-//! Many states at once: quantities of a mechanism, its collisions, and collisions by themselves, row by row. A row without an answer has its
-//! error and does not touch the others; the bits are those of the same call for one state.
+//! Many states at once: quantities of a mechanism, its collisions, and collisions by themselves, row by row.
+//! A row without an answer has its error and does not touch the others; the bits are those of the same call
+//! for one state.
 
 use std::ops::Range;
 
@@ -20,8 +21,9 @@ use crate::routines::{OfContact, Request};
 /// So many rows are one task for a core.
 const TASK: usize = 16 * LANES;
 
-/// Calls `f` with ranges that make up `0..rows`, on all cores where the feature `parallel` is on; the answers come in the order of the rows. The
-/// ranges, and so the bits of what is computed in each, do not depend on the number of cores.
+/// Calls `f` with ranges that make up `0..rows`, on all cores where the feature `parallel` is on; the answers
+/// come in the order of the rows. The ranges, and so the bits of what is computed in each, do not depend on
+/// the number of cores.
 pub fn over_rows<R: Send>(rows: usize, f: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     let range = |task: usize| task * TASK..((task + 1) * TASK).min(rows);
     let tasks = rows.div_ceil(TASK);
@@ -33,8 +35,9 @@ pub fn over_rows<R: Send>(rows: usize, f: impl Fn(Range<usize>) -> R + Sync) -> 
     (0..tasks).map(|task| f(range(task))).collect()
 }
 
-/// Evaluates all states of a table into `numbers` (rows x [`Columns::len`], by rows) and `failures` (rows), on all cores where the feature
-/// `parallel` is on. The numbers of a state that fails are not numbers. Rows for which there is no room are left out.
+/// Evaluates all states of a table into `numbers` (rows x [`Columns::len`], by rows) and `failures` (rows),
+/// on all cores where the feature `parallel` is on. The numbers of a state that fails are not numbers. Rows
+/// for which there is no room are left out.
 pub fn evaluate_rows(
     columns: &Columns,
     table: &Table<'_>,
@@ -66,7 +69,8 @@ pub struct Collisions {
 }
 
 impl InterpretedMechanism {
-    /// Prepares quantities for many states, at the mechanism's parameters; those that it has not are left out.
+    /// Prepares quantities for many states, at the mechanism's parameters; those that it has not are left
+    /// out.
     pub fn columns(&self, quantities: &[Quantity]) -> Columns {
         Columns::new(self.program(), self.constants(), quantities)
     }
@@ -86,7 +90,8 @@ impl InterpretedMechanism {
     ///
     /// # Errors
     ///
-    /// [`StateError::Missing`] where there is no contact of this number, [`StateError::Undefined`] where it has no collision.
+    /// [`StateError::Missing`] where there is no contact of this number, [`StateError::Undefined`] where it
+    /// has no collision.
     pub fn collisions(&self, contact: usize) -> Result<Collisions, StateError> {
         self.exists(Kind::Contact, contact)?;
         if COLLISION_NEEDS.iter().any(|&quantity| self.size(contact, quantity) == 0) {
@@ -98,9 +103,11 @@ impl InterpretedMechanism {
 }
 
 impl Collisions {
-    /// Solves the collisions of the states of these rows, each on the surface of its row; `with` receives the row and the answer, in order.
+    /// Solves the collisions of the states of these rows, each on the surface of its row; `with` receives the
+    /// row and the answer, in order.
     ///
-    /// The functions are no generic ones, so that all of this is compiled in this crate, however the caller's is compiled.
+    /// The functions are no generic ones, so that all of this is compiled in this crate, however the caller's
+    /// is compiled.
     pub fn solve(
         &self,
         table: &Table<'_>,
@@ -145,7 +152,8 @@ pub struct Impacts<'a> {
 }
 
 impl Impacts<'_> {
-    /// Solves the collisions of these rows, each on the surface of its row; `with` receives the row and the answer, in order.
+    /// Solves the collisions of these rows, each on the surface of its row; `with` receives the row and the
+    /// answer, in order.
     pub fn solve(
         &self,
         surface: &dyn Fn(usize) -> Surface<f64>,

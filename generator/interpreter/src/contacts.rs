@@ -47,7 +47,8 @@ impl InterpretedMechanism {
         self.array::<3>(request, state, &[]).map(Vector3::from)
     }
 
-    /// Solves a contact as the generated module does: the structure that the symbols show selects a closed form.
+    /// Solves a contact as the generated module does: the structure that the symbols show selects a closed
+    /// form.
     fn resolve(
         &self,
         index: usize,
@@ -100,7 +101,8 @@ impl InterpretedMechanism {
         }
     }
 
-    /// The numbers of a request of a contact that needs all of `quantities`; `what` is undefined without them.
+    /// The numbers of a request of a contact that needs all of `quantities`; `what` is undefined without
+    /// them.
     fn numbers(
         &self,
         contact: usize,
@@ -134,7 +136,8 @@ impl InterpretedMechanism {
         Ok(self.outcome(contact, &numbers, speeds, resolve)?)
     }
 
-    /// The collision of a contact of which `numbers` are those of `COLLISION`. `speeds` are those before it and become those after it.
+    /// The collision of a contact of which `numbers` are those of `COLLISION`. `speeds` are those before it
+    /// and become those after it.
     pub(crate) fn struck_by_numbers(
         &self,
         contact: usize,

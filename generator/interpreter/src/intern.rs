@@ -1,12 +1,13 @@
-//! Keeps texts of interpreted models for the rest of the process, because errors of the runtime hold `&'static str`.
+//! Keeps texts of interpreted models for the rest of the process, because errors of the runtime hold
+//! `&'static str`.
 
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
 static TEXTS: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
-/// The text, kept for ever. Equal texts are kept once, so that no more memory is used than the names and messages of the models
-/// amount to that were ever in use.
+/// The text, kept for ever. Equal texts are kept once, so that no more memory is used than the names and
+/// messages of the models amount to that were ever in use.
 pub fn intern(text: &str) -> &'static str {
     let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = texts.get(text) {

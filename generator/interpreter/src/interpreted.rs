@@ -14,9 +14,11 @@ use hodograph_generator::{artifact, check, emit, reading, rendering};
 use crate::routines::{Request, Routines};
 use crate::{Error, parameters};
 
-/// A mechanism whose equations are interpreted. It has the traits [`hodograph::Mechanism`] and [`hodograph::Contacts`].
+/// A mechanism whose equations are interpreted. It has the traits [`hodograph::Mechanism`] and
+/// [`hodograph::Contacts`].
 ///
-/// What a routine needs is prepared at its first call; later calls compute numbers only. Clones share the model and the program.
+/// What a routine needs is prepared at its first call; later calls compute numbers only. Clones share the
+/// model and the program.
 #[derive(Clone, Debug)]
 pub struct InterpretedMechanism {
     model: Arc<Mechanism>,
@@ -46,7 +48,8 @@ impl InterpretedMechanism {
         Self::with(model, program, parameters)
     }
 
-    /// The mechanism of a model and its program, with these parameters: all that are not `fixed`, in the order of the model.
+    /// The mechanism of a model and its program, with these parameters: all that are not `fixed`, in the
+    /// order of the model.
     ///
     /// # Errors
     ///
@@ -151,7 +154,8 @@ impl InterpretedMechanism {
         check_length(state.inputs, self.model.inputs.len(), "inputs")
     }
 
-    /// Computes what is requested; `with` receives each number's index and value. `expected` is how many numbers there are to be.
+    /// Computes what is requested; `with` receives each number's index and value. `expected` is how many
+    /// numbers there are to be.
     pub(crate) fn compute(
         &self,
         request: Request,
@@ -176,7 +180,8 @@ impl InterpretedMechanism {
         !self.routines.get(request, &self.program, &self.constants).is_empty()
     }
 
-    /// Computes what is requested into a slice, which must be as long; where the mechanism has no such thing, that is empty.
+    /// Computes what is requested into a slice, which must be as long; where the mechanism has no such thing,
+    /// that is empty.
     pub(crate) fn write(
         &self,
         request: Request,

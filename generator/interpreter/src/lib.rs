@@ -1,8 +1,9 @@
-//! Loads mechanisms at run time: a model file and its derivation become an [`InterpretedMechanism`], which implements the traits
-//! [`Mechanism`](hodograph::Mechanism) and [`Contacts`](hodograph::Contacts) as generated modules do.
+//! Loads mechanisms at run time: a model file and its derivation become an [`InterpretedMechanism`], which
+//! implements the traits [`Mechanism`](hodograph::Mechanism) and [`Contacts`](hodograph::Contacts) as
+//! generated modules do.
 //!
-//! Its numbers have the same bits as those of the generated module. So a program that works on many models, or is called from another language, needs no
-//! compiler.
+//! Its numbers have the same bits as those of the generated module. So a program that works on many models,
+//! or is called from another language, needs no compiler.
 //!
 //! [`columns`] evaluates many states at once.
 //!

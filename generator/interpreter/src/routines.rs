@@ -101,13 +101,15 @@ impl Request {
                 let of = |quantity: ContactQuantity| Quantity::Contact(contact as u32, quantity);
                 match what {
                     OfContact::State => STATE.map(of).to_vec(),
-                    // A collision gives the dependent speeds after it, too: where these are singular, it has no outcome.
+                    // A collision gives the dependent speeds after it, too: where these are singular, it has
+                    // no outcome.
                     OfContact::Collision => {
                         let mut all = COLLISION.map(of).to_vec();
                         all.extend([of(ContactQuantity::DependentResponse), Quantity::DependentSpeeds]);
                         all
                     }
-                    // Last what only must not be singular: the generated module gives the rates of the dependent speeds, too.
+                    // Last what only must not be singular: the generated module gives the rates of the
+                    // dependent speeds, too.
                     OfContact::Closed => {
                         let mut all = COLLISION.map(of).to_vec();
                         all.extend(CLOSED.map(of));

@@ -10,8 +10,8 @@ use symbolica::domains::rational::Rational;
 
 use crate::number::Number;
 
-/// The number of a symbol. Users' names never reach the engine: symbols are numbered, and always made in the order of
-/// their numbers, so that the engine's ordering does not depend on what was derived before.
+/// The number of a symbol. Users' names never reach the engine: symbols are numbered, and always made in the
+/// order of their numbers, so that the engine's ordering does not depend on what was derived before.
 pub type SymbolId = u32;
 
 /// An exact algebraic expression in numbered symbols: rational numbers, sums, products and integer powers.

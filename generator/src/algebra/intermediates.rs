@@ -1,7 +1,8 @@
 //! Intermediate symbols (the paper's Z's), which keep expressions short, and differentiation through them.
 //!
-//! Every symbol stands for an input, a named expression, or a function of expressions. A subexpression that would otherwise be written out inside larger
-//! ones gets a name; equal expressions get the same name, so that they are computed once. Derivatives follow from the chain rule through the names, and
+//! Every symbol stands for an input, a named expression, or a function of expressions. A subexpression that
+//! would otherwise be written out inside larger ones gets a name; equal expressions get the same name, so
+//! that they are computed once. Derivatives follow from the chain rule through the names, and
 //! each is computed once.
 
 mod simplify;
@@ -21,7 +22,8 @@ pub enum Meaning {
     Input(Input),
     /// pi
     Pi,
-    /// an unknown of equations that are being set up (rate of a coordinate, dependent speed), until it is defined
+    /// an unknown of equations that are being set up (rate of a coordinate, dependent speed), until it is
+    /// defined
     Unknown,
     /// a named expression
     Named(Expr),
@@ -105,7 +107,8 @@ impl Intermediates {
         self.meanings[unknown as usize] = Meaning::Named(value);
     }
 
-    /// The expression as a number, a symbol, or a number times a symbol; gives it a name if it is none of these.
+    /// The expression as a number, a symbol, or a number times a symbol; gives it a name if it is none of
+    /// these.
     pub fn name(&mut self, expr: Expr) -> Expr {
         match expr.view() {
             View::Number(_) | View::Symbol(_) => expr,
@@ -150,8 +153,8 @@ impl Intermediates {
         Expr::symbol(symbol)
     }
 
-    /// A function of expressions, with the simplifications that structure depends on: odd and even functions of
-    /// opposites, right angles, roots and powers of exact squares.
+    /// A function of expressions, with the simplifications that structure depends on: odd and even functions
+    /// of opposites, right angles, roots and powers of exact squares.
     pub fn call(&mut self, function: Function, arguments: Vec<Expr>) -> Expr {
         use Function::*;
         let arguments: Vec<Expr> = arguments.into_iter().map(|a| self.name(a)).collect();
@@ -303,8 +306,8 @@ impl Intermediates {
         }
     }
 
-    /// An upper bound of the magnitude of an expression that is made of parameters wherever possible: the scale against
-    /// which a divisor counts as zero.
+    /// An upper bound of the magnitude of an expression that is made of parameters wherever possible: the
+    /// scale against which a divisor counts as zero.
     pub fn bound(&mut self, expr: &Expr) -> Expr {
         let bound = match expr.view() {
             View::Number(number) => {

@@ -1,7 +1,8 @@
 //! Decides whether an expression is identically 0, by evaluating it at arbitrary values of its inputs.
 //!
-//! The algebra does not see all cancellation, since named expressions are not multiplied out; a vector that is transformed to turning axes and back is an
-//! example. An expression that is not identically 0 is 0 at random inputs with probability 0.
+//! The algebra does not see all cancellation, since named expressions are not multiplied out; a vector that
+//! is transformed to turning axes and back is an example. An expression that is not identically 0 is 0 at
+//! random inputs with probability 0.
 
 use std::collections::HashMap;
 

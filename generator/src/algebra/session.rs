@@ -1,7 +1,8 @@
 //! Runs one derivation at a time. The engine allows one thread per user and aborts the process otherwise.
 //!
-//! A lock file excludes other processes and a mutex excludes other threads of this one. The work runs on a new thread with a large stack, returns owned
-//! data only, and ends before the locks are released. Nothing else starts the engine.
+//! A lock file excludes other processes and a mutex excludes other threads of this one. The work runs on a
+//! new thread with a large stack, returns owned data only, and ends before the locks are released. Nothing
+//! else starts the engine.
 
 mod lock;
 
@@ -64,7 +65,8 @@ const STACK: usize = 512 << 20;
 
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
-/// Runs `work` as the only user of the algebra engine, waiting (and saying so on stderr) while another holds it.
+/// Runs `work` as the only user of the algebra engine, waiting (and saying so on stderr) while another holds
+/// it.
 pub fn exclusively<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static) -> Result<R, SessionError> {
     let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
     let lock = lock::acquire()?;
@@ -81,7 +83,8 @@ pub fn exclusively<R: Send + 'static>(work: impl FnOnce() -> R + Send + 'static)
     result
 }
 
-/// The engine keeps its permit below the home directory, and ends the process where it cannot: that is found out before.
+/// The engine keeps its permit below the home directory, and ends the process where it cannot: that is found
+/// out before.
 fn writable_home() -> Result<(), SessionError> {
     let Some(home) = std::env::home_dir().filter(|home| !home.as_os_str().is_empty()) else { return Ok(()) };
     // A name that nobody can have put there before: a file that exists, or a link, is not opened.

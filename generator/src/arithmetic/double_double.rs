@@ -1,5 +1,5 @@
-//! The operations on values that depend on parameters only: computed with twice the digits and rounded once at the end. Constructors of generated code
-//! compute the same bits (`hodograph::generated::construction`).
+//! The operations on values that depend on parameters only: computed with twice the digits and rounded once
+//! at the end. Constructors of generated code compute the same bits (`hodograph::generated::construction`).
 
 use hodograph_arithmetic::DoubleDouble;
 

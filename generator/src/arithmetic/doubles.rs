@@ -1,4 +1,5 @@
-//! The operations and functions of programs in doubles, and the trait [`Arithmetic`] of all number types in which programs are evaluated.
+//! The operations and functions of programs in doubles, and the trait [`Arithmetic`] of all number types in
+//! which programs are evaluated.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

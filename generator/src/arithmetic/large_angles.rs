@@ -43,7 +43,8 @@ fn exactly(number: f64) -> BigInt {
     if number < 0.0 { -size } else { size }
 }
 
-/// The number of right angles nearest to `high + low`, of which the last two bits count, and what is left, in two parts.
+/// The number of right angles nearest to `high + low`, of which the last two bits count, and what is left, in
+/// two parts.
 pub fn reduced(high: f64, low: f64) -> (u8, [f64; 2]) {
     let angle: BigInt = (exactly(high) + exactly(low)) << MORE;
     let half_pi = half_pi();

@@ -1,5 +1,6 @@
-//! The operations and functions of programs in three number types: doubles, numbers of twice the digits, and numbers that are the same on every machine.
-//! Generated code computes the same bits (`hodograph::generated`).
+//! The operations and functions of programs in three number types: doubles, numbers of twice the digits, and
+//! numbers that are the same on every machine. Generated code computes the same bits
+//! (`hodograph::generated`).
 
 mod double_double;
 mod doubles;

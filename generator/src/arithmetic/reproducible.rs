@@ -1,7 +1,9 @@
-//! Numbers of which every operation gives the same bits on every machine and in every build. Decisions on which a derivation depends are made with them.
+//! Numbers of which every operation gives the same bits on every machine and in every build. Decisions on
+//! which a derivation depends are made with them.
 //!
-//! They have twice the digits of a double, do not depend on fused operations, and have functions of their own, since those of operating systems differ in
-//! the last digit. Expressions that are identically 0 come out below 1e-30 of their terms.
+//! They have twice the digits of a double, do not depend on fused operations, and have functions of their
+//! own, since those of operating systems differ in the last digit. Expressions that are identically 0 come
+//! out below 1e-30 of their terms.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -62,7 +64,8 @@ impl Reproducible {
         (times, self - Self::exactly(times) * unit)
     }
 
-    /// The even and the odd part of the exponential series, or with alternating signs those of cosine and sine; up to pi/4.
+    /// The even and the odd part of the exponential series, or with alternating signs those of cosine and
+    /// sine; up to pi/4.
     fn series(self, alternating: bool) -> (Self, Self) {
         let (mut term, mut sums) = (Self::exactly(1.0), [Self::exactly(1.0), Self::exactly(0.0)]);
         for power in 1..32_u32 {
@@ -89,7 +92,8 @@ impl Reproducible {
     fn hyperbolic(self, function: Function) -> Self {
         let half = Self::exactly(0.5);
         let size = self.rounded().abs();
-        // sinh and cosh: near 0 the series, which cancels nothing, and far from it the larger exponential alone
+        // sinh and cosh: near 0 the series, which cancels nothing, and far from it the larger exponential
+        // alone
         let (cosh, sinh) = if size <= 0.7 {
             self.series(false)
         } else if size <= 100.0 {

@@ -26,7 +26,8 @@ impl fmt::Display for DecodeError {
 
 impl std::error::Error for DecodeError {}
 
-/// Reads a derivation, which must be to the byte what was written, but for ends of lines that a checkout has made CR LF throughout.
+/// Reads a derivation, which must be to the byte what was written, but for ends of lines that a checkout has
+/// made CR LF throughout.
 pub fn decode(text: &str) -> Result<Artifact, DecodeError> {
     let text = &*line_feeds(text);
     let mut lines = Lines { rest: text, number: 0 };

@@ -6,9 +6,10 @@ use crate::source::Source;
 use crate::syntax::token::{Token, TokenKind};
 use crate::syntax::tree::Section;
 
-/// A hash of all that the equations of a model depend on, as 64 hexadecimal digits: its tokens without documentation and without
-/// the values of what is not `fixed`, which are defaults of the module and no part of its equations. Blanks, line ends and comments do
-/// not matter either, and a model has the same hash in a file and inline.
+/// A hash of all that the equations of a model depend on, as 64 hexadecimal digits: its tokens without
+/// documentation and without the values of what is not `fixed`, which are defaults of the module and no part
+/// of its equations. Blanks, line ends and comments do not matter either, and a model has the same hash in a
+/// file and inline.
 pub fn model_hash(source: &Source) -> String {
     let mut hash = Sha256::new();
     hash.update(b"hodograph model 2\n");

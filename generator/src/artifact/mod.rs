@@ -16,8 +16,8 @@
 //! digest 9f4e01..                     hash of all that stands above, to the byte
 //! ```
 //!
-//! A text that was changed since it was written does not agree with its digest and is refused. Numbers are the shortest decimals that read back exactly.
-//! The same program gives the same bytes.
+//! A text that was changed since it was written does not agree with its digest and is refused. Numbers are
+//! the shortest decimals that read back exactly. The same program gives the same bytes.
 
 mod decode;
 mod encode;

@@ -87,7 +87,8 @@ fn line_ends_of_a_checkout_do_not_matter_if_they_are_all_alike() {
     assert!(decode(&text.replace('\n', "\r")).is_err());
 }
 
-/// A text that differs from a derivation in one character is none: changed, left out, put in, or changed for its neighbour.
+/// A text that differs from a derivation in one character is none: changed, left out, put in, or changed for
+/// its neighbour.
 #[test]
 fn a_single_character_makes_a_derivation_invalid() {
     let others = ['0', '7', '.', '-', ' ', '\n', '\r', '\t', 'e', 'A', 'é', '\u{200b}'];

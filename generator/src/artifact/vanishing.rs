@@ -1,4 +1,5 @@
-//! Tests that no shipped derivation computes a value that is identically 0, 1 or -1, or multiplies and divides by the same value.
+//! Tests that no shipped derivation computes a value that is identically 0, 1 or -1, or multiplies and
+//! divides by the same value.
 
 use std::path::{Path, PathBuf};
 
@@ -35,7 +36,8 @@ fn numbers(seed: u64) -> Vec<f64> {
     (0..400).map(|_| next()).collect()
 }
 
-/// What rounding takes from a sum is nothing but for rounding: this says whether the value is a part of that, `a - (t - (t - a))` with `t = a + ..`.
+/// What rounding takes from a sum is nothing but for rounding: this says whether the value is a part of that,
+/// `a - (t - (t - a))` with `t = a + ..`.
 fn is_rounding(program: &Program, value: Value) -> bool {
     let (term, part) = match program.operation(value) {
         Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),

@@ -22,8 +22,8 @@ pub struct Impossible {
     pub what: String,
 }
 
-/// The masses that are not positive and the inertias that no body has, with the parameters of a state. What has no value there is
-/// passed over.
+/// The masses that are not positive and the inertias that no body has, with the parameters of a state. What
+/// has no value there is passed over.
 pub fn impossible_bodies(m: &Mechanism, state: &State) -> Vec<Impossible> {
     let values = at_rest(m, state);
     let of =
@@ -47,7 +47,8 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
     };
     let trace = i[0][0] + i[1][1] + i[2][2];
     let size = i.iter().flatten().fold(0.0_f64, |s, c| s.max(c.abs()));
-    // second moments of mass: tr(I)/2 - I must not be negative along any direction; that implies I is not either
+    // second moments of mass: tr(I)/2 - I must not be negative along any direction; that implies I is not
+    // either
     let mut moments = i.map(|row| row.map(|c| -c));
     (0..3).for_each(|k| moments[k][k] += 0.5 * trace);
     if !i.iter().flatten().all(|c| c.is_finite()) || least_eigenvalue(&moments) >= -POSSIBLE * size {
@@ -64,8 +65,8 @@ fn impossible(values: &Evaluator<'_>, body: &Body) -> Option<(Code, String)> {
     ))
 }
 
-/// The same as messages about a model with its own values. `readable` says which bodies could be read, `upright` whether axes are unit
-/// vectors.
+/// The same as messages about a model with its own values. `readable` says which bodies could be read,
+/// `upright` whether axes are unit vectors.
 pub(super) fn bodies(m: &Mechanism, state: &State, readable: &Readable, upright: bool) -> Vec<Diagnostic> {
     let mut out: Vec<Diagnostic> = Vec::new();
     // bodies that have the same mass: it is one mistake

@@ -1,5 +1,6 @@
-//! Reports points that do not move with the body that they are said to belong to. In `P of B = Q + ..` the velocity of P is that of Q plus the angular
-//! velocity of B times the arm, which is right only if Q moves with B. The check evaluates velocities.
+//! Reports points that do not move with the body that they are said to belong to. In `P of B = Q + ..` the
+//! velocity of P is that of Q plus the angular velocity of B times the arm, which is right only if Q moves
+//! with B. The check evaluates velocities.
 
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};

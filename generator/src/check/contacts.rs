@@ -1,4 +1,5 @@
-//! Checks contacts by numbers: whether the point can move along the normal, and whether it belongs to the bodies that are named.
+//! Checks contacts by numbers: whether the point can move along the normal, and whether it belongs to the
+//! bodies that are named.
 
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};
@@ -11,7 +12,8 @@ const SLIP: f64 = 1e-6;
 /// What rounding can leave of a velocity that is 0, beside the fastest.
 const ROUNDING: f64 = 1e-12;
 
-/// Mistakes in contacts, at the states that were seen. `found` is what is said already, of points for instance.
+/// Mistakes in contacts, at the states that were seen. `found` is what is said already, of points for
+/// instance.
 pub fn contacts(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagnostic> {
     let places = Places { m, views: seen.iter().map(|seen| &seen.views).collect() };
     let mut out = Vec::new();
@@ -189,7 +191,8 @@ impl Places<'_> {
         if !self.always(through) {
             return None;
         }
-        // without another body to which it belongs it may be meant so: a rim against a wall that it does not touch first there
+        // without another body to which it belongs it may be meant so: a rim against a wall that it does not
+        // touch first there
         let home = self.homes(point).first().map(|home| &self.m.bodies[home.0].name)?;
         let stated = &self.m.bodies[body.0].name;
         let message = format!(
@@ -200,8 +203,8 @@ impl Places<'_> {
         Some(Diagnostic::new(codes::CONTACT_POINT, span, message).help(help))
     }
 
-    /// The body whose point is meant where `of` is forgotten: the place moves with no body, and is carried at a constant distance by the mass
-    /// centre of one that turns.
+    /// The body whose point is meant where `of` is forgotten: the place moves with no body, and is carried at
+    /// a constant distance by the mass centre of one that turns.
     fn forgotten_body(&self, point: PointId) -> Option<&str> {
         if matches!(self.m.points[point.0].place, Place::Material { .. } | Place::Origin | Place::Velocity(_))
         {

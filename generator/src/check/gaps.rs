@@ -1,4 +1,5 @@
-//! Checks gaps: the rate of a gap must be the normal velocity of its contact, and no gap may be negative at the initial values.
+//! Checks gaps: the rate of a gap must be the normal velocity of its contact, and no gap may be negative at
+//! the initial values.
 
 use super::states::{Seen, at_rest, stated};
 use crate::diagnostics::{Diagnostic, codes};
@@ -8,10 +9,12 @@ use crate::numeric::{self, Level, State, Views, hyper_dual::HyperDual};
 
 /// Rates may differ by this much, relative to the larger.
 const SAME: f64 = 1e-6;
-/// A gap may begin negative by this much, relative to the size of the coordinates above 1: rounding of initial values.
+/// A gap may begin negative by this much, relative to the size of the coordinates above 1: rounding of
+/// initial values.
 const TOUCHING: f64 = 1e-6;
 
-/// Gaps that do not belong to their contacts, and those that begin negative. `found` is what is said already of the contacts.
+/// Gaps that do not belong to their contacts, and those that begin negative. `found` is what is said already
+/// of the contacts.
 pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for contact in &m.contacts {

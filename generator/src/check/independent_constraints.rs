@@ -1,9 +1,11 @@
 //! Overconstrained loops: chooses the velocity constraints that determine the dependent speeds.
 //!
-//! An overconstrained loop (Bennett's linkage, a plate on three parallel cranks) satisfies more velocity constraints than it has dependent speeds. They are
-//! consistent where the loop is closed and contradict each other where it is open, so that algebra with arbitrary coordinates cannot show that some follow
-//! from the others. Numbers show it: at closed states the rank of all constraints is the number of dependent speeds, for all parameters. As many constraints
-//! are then chosen as there are dependent speeds: those that are most independent at the worst of many states.
+//! An overconstrained loop (Bennett's linkage, a plate on three parallel cranks) satisfies more velocity
+//! constraints than it has dependent speeds. They are consistent where the loop is closed and contradict each
+//! other where it is open, so that algebra with arbitrary coordinates cannot show that some follow
+//! from the others. Numbers show it: at closed states the rank of all constraints is the number of dependent
+//! speeds, for all parameters. As many constraints are then chosen as there are dependent speeds: those that
+//! are most independent at the worst of many states.
 //!
 //! Theory: docs/theory.md, section 16.5.
 
@@ -12,13 +14,16 @@ use crate::model::mechanism::{Equation, EquationSides, FrameId, Mechanism, Scala
 use crate::number::Number;
 use crate::numeric::{self, State};
 
-/// Of the states at which checks look so many, the nearest to the start, are looked at with the stated parameters and with others.
+/// Of the states at which checks look so many, the nearest to the start, are looked at with the stated
+/// parameters and with others.
 const NEAR: usize = 3;
 /// Closed states that must agree, at least.
 const FEWEST: usize = 4;
-/// How far parameters are moved, relative to their values: what holds for these values alone does not hold at run time.
+/// How far parameters are moved, relative to their values: what holds for these values alone does not hold at
+/// run time.
 const PARAMETERS_MOVED: f64 = 0.03;
-/// What a chosen constraint says that those chosen before it do not, at least, beside its largest coefficient.
+/// What a chosen constraint says that those chosen before it do not, at least, beside its largest
+/// coefficient.
 const INDEPENDENT: f64 = 1e-6;
 /// Constraints that are independent by the same but for this factor are taken in the order of the file.
 const ALIKE: f64 = 0.99;
@@ -26,8 +31,9 @@ const ALIKE: f64 = 0.99;
 /// Constraints at a state: rows of coefficients of the speeds, the constant last.
 type Rows = Vec<Vec<f64>>;
 
-/// As many of the velocity constraints as there are dependent speeds, from which the others follow wherever the loops are closed.
-/// `None` where the constraints are not too many at arbitrary states either, or are too many at closed states too.
+/// As many of the velocity constraints as there are dependent speeds, from which the others follow wherever
+/// the loops are closed. `None` where the constraints are not too many at arbitrary states either, or are too
+/// many at closed states too.
 pub fn determining(m: &Mechanism) -> Option<Vec<Equation>> {
     let dependent = m.speeds.iter().filter(|u| u.dependent).count();
     let all: Vec<Equation> = m.constraints.iter().flat_map(components).collect();
@@ -91,8 +97,9 @@ fn components(equation: &Equation) -> Vec<Equation> {
     (0..3).map(along).collect()
 }
 
-/// The rows that determine the last `count` speeds, after the first `independent` ones: one after another the row that at its worst
-/// state has the longest part orthogonal to the rows chosen before, each row measured by its largest coefficient at any state.
+/// The rows that determine the last `count` speeds, after the first `independent` ones: one after another the
+/// row that at its worst state has the longest part orthogonal to the rows chosen before, each row measured
+/// by its largest coefficient at any state.
 fn choose(closed: &[Rows], independent: usize, count: usize) -> Option<Vec<usize>> {
     let mut rest = scaled(closed, independent, count);
     let mut chosen = Vec::new();
@@ -112,8 +119,8 @@ fn choose(closed: &[Rows], independent: usize, count: usize) -> Option<Vec<usize
     Some(chosen)
 }
 
-/// The coefficients of the dependent speeds at all states, each row divided by its largest coefficient at any of them; a row of rounding
-/// errors is 0.
+/// The coefficients of the dependent speeds at all states, each row divided by its largest coefficient at any
+/// of them; a row of rounding errors is 0.
 fn scaled(closed: &[Rows], independent: usize, count: usize) -> Vec<Rows> {
     let largest = |row: usize| {
         let entries = closed.iter().filter_map(|rows| rows.get(row)).flatten();

@@ -63,7 +63,8 @@ fn never_moves<E>(places: &Places<'_>, parts: impl Fn(&Views<'_>) -> Result<Vec<
     !places.views.is_empty() && places.views.iter().copied().all(still)
 }
 
-/// A load on a place where a contact acts on the point of a body that is there: the two points move differently.
+/// A load on a place where a contact acts on the point of a body that is there: the two points move
+/// differently.
 fn on_a_place(places: &Places<'_>, point: PointId, span: Span) -> Option<Diagnostic> {
     let m = places.m;
     let of_body = m.contacts.iter().find_map(|contact| {
@@ -108,7 +109,8 @@ enum Fit {
 }
 
 impl Turns<'_> {
-    /// The rate of the angle is the angular velocity about the axis, or the spring's energy is not what its torque does.
+    /// The rate of the angle is the angular velocity about the axis, or the spring's energy is not what its
+    /// torque does.
     fn unlike_its_angle(&self, places: &Places<'_>, span: Span) -> Option<Diagnostic> {
         let m = places.m;
         let fits: Option<Vec<Fit>> = places.views.iter().map(|views| self.fit(views)).collect();

@@ -6,10 +6,12 @@ use crate::model::mechanism::Mechanism;
 use crate::numeric::views::{norm3, sub3};
 use crate::numeric::{self, State};
 
-/// Points that are to be one may be this far apart, relative to their distance from O above 1 m: initial values are rounded.
+/// Points that are to be one may be this far apart, relative to their distance from O above 1 m: initial
+/// values are rounded.
 const OPEN: f64 = 1e-6;
 
-/// Says so where the initial values leave a loop open. A model that states no initial value says nothing of its start.
+/// Says so where the initial values leave a loop open. A model that states no initial value says nothing of
+/// its start.
 pub fn open_at_the_start(m: &Mechanism) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     if m.coordinates.iter().all(|coordinate| coordinate.value.is_none()) {

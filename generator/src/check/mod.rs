@@ -1,4 +1,5 @@
-//! Reads a model and checks it as a whole: numbers of equations and unknowns, and properties that only evaluation at states shows.
+//! Reads a model and checks it as a whole: numbers of equations and unknowns, and properties that only
+//! evaluation at states shows.
 
 mod bodies;
 mod body_points;

@@ -1,4 +1,5 @@
-//! Checks the motion by numbers: the equations must determine the rates and the dependent speeds, and every speed must have inertia.
+//! Checks the motion by numbers: the equations must determine the rates and the dependent speeds, and every
+//! speed must have inertia.
 
 use super::states::{Seen, at_rest};
 use crate::diagnostics::{Diagnostic, codes};
@@ -25,8 +26,8 @@ pub fn changing_inertias(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     out
 }
 
-/// For each body: whether its inertia is given in a frame in which it changes. It does not if turning about the relative angular
-/// velocity W leaves it as it is: W I = I W.
+/// For each body: whether its inertia is given in a frame in which it changes. It does not if turning about
+/// the relative angular velocity W leaves it as it is: W I = I W.
 fn turning_inertias(m: &Mechanism, state: &State, at: &Evaluation) -> Vec<bool> {
     let values = at_rest(m, state);
     let changes = |body: &Body| {
@@ -151,8 +152,8 @@ pub fn inertia_of_speeds(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Diagnostic>
     Some(Diagnostic::new(codes::NO_INERTIA, speed.span, message).help(help))
 }
 
-/// What rounding can make of each diagonal entry of the mass matrix where it should be 0: by what moves at all with that speed, whatever
-/// its units and however little that is.
+/// What rounding can make of each diagonal entry of the mass matrix where it should be 0: by what moves at
+/// all with that speed, whatever its units and however little that is.
 fn noise(m: &Mechanism, seen: &Seen<'_>) -> Option<Vec<f64>> {
     let values = &seen.views.now;
     let mut noise = vec![0.0_f64; seen.views.units.len()];

@@ -1,5 +1,5 @@
-//! The checks that evaluate the mechanism at several arbitrary states near its initial values. What is wrong at all of them is a mistake of the model; what
-//! is wrong at one may be a singular state, which is none.
+//! The checks that evaluate the mechanism at several arbitrary states near its initial values. What is wrong
+//! at all of them is a mistake of the model; what is wrong at one may be a singular state, which is none.
 
 use super::states::Seen;
 use super::{

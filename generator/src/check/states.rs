@@ -1,4 +1,5 @@
-//! The states at which the checks evaluate a mechanism: arbitrary ones near the initial values, and some all over the ranges of the coordinates.
+//! The states at which the checks evaluate a mechanism: arbitrary ones near the initial values, and some all
+//! over the ranges of the coordinates.
 
 use crate::model::mechanism::{Mechanism, Orientation};
 use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual};
@@ -65,8 +66,8 @@ fn state(m: &Mechanism, distance: f64, seed: u64) -> State {
     state
 }
 
-/// The state with only what the model itself says: parameters without a value, and where `dependent` is false what the configuration
-/// equations determine, are not numbers, and neither is what depends on them.
+/// The state with only what the model itself says: parameters without a value, and where `dependent` is false
+/// what the configuration equations determine, are not numbers, and neither is what depends on them.
 pub fn stated(m: &Mechanism, state: &State, dependent: bool) -> State {
     let mut state = state.clone();
     let missing = |value: &mut f64| *value = f64::NAN;

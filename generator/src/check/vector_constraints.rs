@@ -1,5 +1,5 @@
-//! Reports vector constraints with dependent components for which no frame separates them: the derivation needs axes along which the redundant components are
-//! identically 0.
+//! Reports vector constraints with dependent components for which no frame separates them: the derivation
+//! needs axes along which the redundant components are identically 0.
 
 use super::states::Seen;
 use crate::diagnostics::{Diagnostic, codes};

@@ -12,7 +12,8 @@ impl Code {
         if self.0.starts_with('W') { Severity::Warning } else { Severity::Error }
     }
 
-    /// Whether only the form is wrong. Then the model means what it would mean without the mistake, and all checks go on.
+    /// Whether only the form is wrong. Then the model means what it would mean without the mistake, and all
+    /// checks go on.
     pub fn is_of_form(self) -> bool {
         [SECTION_ORDER, SECTION_TWICE, SECOND_MECHANISM, STRAY_DOCS, COLLISION].contains(&self)
     }

@@ -1,4 +1,5 @@
-//! Emits the computation of several sines and cosines at once: with vector instructions eight take little longer than one.
+//! Emits the computation of several sines and cosines at once: with vector instructions eight take little
+//! longer than one.
 
 use std::collections::BTreeSet;
 
@@ -13,8 +14,8 @@ use crate::program::operation::{Operation, Stage, Value};
 const MOST: usize = 8;
 
 impl Emitter<'_> {
-    /// The sine-cosine pairs among `values` that are computed together, before all else: those of angles that no other sine or cosine
-    /// enters. None where there is but one.
+    /// The sine-cosine pairs among `values` that are computed together, before all else: those of angles that
+    /// no other sine or cosine enters. None where there is but one.
     pub fn together(&self, values: &[Value]) -> Vec<Value> {
         let mut late: BTreeSet<Value> = BTreeSet::new();
         let mut pairs = Vec::new();

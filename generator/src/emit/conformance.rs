@@ -1,5 +1,6 @@
-//! Checks that a program fits a mechanism: that all inputs, contacts, points and frames exist and all quantities have their shapes. Without it a derivation
-//! of another mechanism would become code that does not compile.
+//! Checks that a program fits a mechanism: that all inputs, contacts, points and frames exist and all
+//! quantities have their shapes. Without it a derivation of another mechanism would become code that does not
+//! compile.
 
 use crate::model::mechanism::Mechanism;
 use crate::program::Program;

@@ -1,4 +1,5 @@
-//! Emits the type of the mechanism, which holds the parameters and all values that depend on them only, and its constructor.
+//! Emits the type of the mechanism, which holds the parameters and all values that depend on them only, and
+//! its constructor.
 
 use std::collections::BTreeSet;
 
@@ -128,7 +129,8 @@ impl Emitter<'_> {
         quote! { #statements [#(#krate::generated::construction::rounded(#values)),*] }
     }
 
-    /// Statements that compute values which depend on parameters alone, in twice the digits: what all results share has but one rounding.
+    /// Statements that compute values which depend on parameters alone, in twice the digits: what all results
+    /// share has but one rounding.
     fn at_construction(&self, values: &[Value]) -> TokenStream {
         let mut needed = BTreeSet::new();
         let mut stack = values.to_vec();

@@ -1,6 +1,7 @@
 //! Emits one method for a set of quantities that the user chooses: what they have in common is computed once.
 //!
-//! A set names routines of the module. Equal operations of their quantities are one value of the program, so that one routine for all of them computes it once.
+//! A set names routines of the module. Equal operations of their quantities are one value of the program, so
+//! that one routine for all of them computes it once.
 
 use std::collections::BTreeSet;
 

@@ -1,7 +1,8 @@
 //! Emits the check that results are finite.
 //!
-//! A sum, difference or product of a number that is not finite is not finite either, nor is a quotient with such a dividend. A result that enters another
-//! result through such operations alone needs no check of its own: the rate of a joint enters the rates of all joints that it carries.
+//! A sum, difference or product of a number that is not finite is not finite either, nor is a quotient with
+//! such a dividend. A result that enters another result through such operations alone needs no check of its
+//! own: the rate of a joint enters the rates of all joints that it carries.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +15,8 @@ use super::values::local;
 use crate::program::operation::{Operation, Stage, Value};
 
 impl Emitter<'_> {
-    /// The expression that tells whether a result is not finite, those of loops too; nothing where constants are all there is.
+    /// The expression that tells whether a result is not finite, those of loops too; nothing where constants
+    /// are all there is.
     pub fn not_finite(&self, results: &BTreeSet<Value>, lanes: &[Lanes]) -> Option<TokenStream> {
         let krate = self.krate;
         let ends = self.ends(results);

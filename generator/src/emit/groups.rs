@@ -1,5 +1,6 @@
-//! Puts the statements of a long function into groups, since in builds with debug information the compiler descends into a scope for every variable of a
-//! function, and its stack ends at about four thousand. The variables of a group that nothing else needs end with it.
+//! Puts the statements of a long function into groups, since in builds with debug information the compiler
+//! descends into a scope for every variable of a function, and its stack ends at about four thousand. The
+//! variables of a group that nothing else needs end with it.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! Arrays that loops over columns read. The parts of a long routine write them straight; a short routine writes them down as they are.
+//! Arrays that loops over columns read. The parts of a long routine write them straight; a short routine
+//! writes them down as they are.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +22,8 @@ pub struct Home {
 struct Filled {
     name: Ident,
     rows: Vec<Vec<Value>>,
-    /// length of its rows with what fills them up, as the loop reads them; `None`: the only row, and the array is one of numbers
+    /// length of its rows with what fills them up, as the loop reads them; `None`: the only row, and the
+    /// array is one of numbers
     width: Option<usize>,
 }
 

@@ -1,8 +1,10 @@
-//! Emits the columns of a matrix that are computed by the same operations as one loop, so that vector instructions take several columns at a time.
+//! Emits the columns of a matrix that are computed by the same operations as one loop, so that vector
+//! instructions take several columns at a time.
 //!
-//! Columns that solve equations with one factor differ in their right sides alone. Such operations are found from the results backwards, in step with
-//! those of another column: each has a factor that all columns share, and other operands of its own. Every entry is computed by its own
-//! operations in their order, and so the bits are those of the program.
+//! Columns that solve equations with one factor differ in their right sides alone. Such operations are found
+//! from the results backwards, in step with those of another column: each has a factor that all columns
+//! share, and other operands of its own. Every entry is computed by its own operations in their order, and so
+//! the bits are those of the program.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -64,7 +66,8 @@ struct Columns<'a> {
 }
 
 impl Emitter<'_> {
-    /// What of an output that needs the values `order` is computed in loops. `checked` are values that others look at.
+    /// What of an output that needs the values `order` is computed in loops. `checked` are values that others
+    /// look at.
     pub fn lanes(&self, output: &Output, order: &[Value], checked: &BTreeSet<Value>) -> Vec<Lanes> {
         let columns = Columns::new(self, output, order, checked);
         let mut left: Vec<usize> = (0..output.columns).collect();
@@ -245,7 +248,8 @@ impl Lanes {
         self.steps.first().map_or(0, Vec::len)
     }
 
-    /// Estimate of the instructions saved: an operation for itself takes two with what it moves, one in a loop is done once for every four columns.
+    /// Estimate of the instructions saved: an operation for itself takes two with what it moves, one in a
+    /// loop is done once for every four columns.
     fn saves(&self) -> usize {
         let columns = self.columns();
         let (steps, moved) = (self.steps.len(), self.given.len() + self.made.len());

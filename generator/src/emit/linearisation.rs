@@ -1,4 +1,5 @@
-//! Emits the derivatives of accelerations and inverse dynamics as matrices, and the linearised equations x' = A x + B w formed from them.
+//! Emits the derivatives of accelerations and inverse dynamics as matrices, and the linearised equations x' =
+//! A x + B w formed from them.
 
 use std::ops::Range;
 
@@ -121,7 +122,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// Rows of coordinates from the derivatives of their rates, rows of speeds from those of the accelerations.
+    /// Rows of coordinates from the derivatives of their rates, rows of speeds from those of the
+    /// accelerations.
     fn by_derivatives(&self, arguments: Arguments) -> TokenStream {
         let krate = self.krate;
         let (states, inputs) = self.linear_sizes();

@@ -105,8 +105,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// Whether the answer of a routine is made before it is checked: each number is then stored once, where the caller wants it. Short answers stay in registers
-    /// until they are checked.
+    /// Whether the answer of a routine is made before it is checked: each number is then stored once, where
+    /// the caller wants it. Short answers stay in registers until they are checked.
     pub fn answers_in_place(&self, quantities: &[Quantity]) -> bool {
         /// More numbers than there are registers.
         const MANY: usize = 16;

@@ -1,8 +1,8 @@
 //! Emits the Rust module of a mechanism from its program.
 //!
 //! The module holds the structs of named numbers (`record`), the mechanism's own type with its constructor
-//! (`construct`), a method per quantity (`methods`) and per contact (`contacts`). Every path in it starts at the
-//! runtime's own crate or at `::core`; it has no panics and no `std`, and loops
+//! (`construct`), a method per quantity (`methods`) and per contact (`contacts`). Every path in it starts at
+//! the runtime's own crate or at `::core`; it has no panics and no `std`, and loops
 //! over columns of matrices only (`lanes`).
 
 mod angles;

@@ -23,7 +23,8 @@ struct Field {
 }
 
 impl Record {
-    /// A struct `name` with a field for each of the quantities; defaults are their values in the model, else 0.
+    /// A struct `name` with a field for each of the quantities; defaults are their values in the model, else
+    /// 0.
     pub fn new<'a>(name: &str, docs: &str, quantities: impl Iterator<Item = &'a Variable>) -> Self {
         let fields = quantities
             .map(|quantity| {

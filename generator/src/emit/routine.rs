@@ -42,7 +42,8 @@ impl Emitter<'_> {
         quote! { #statements #check }
     }
 
-    /// The statements that compute quantities and check what must not vanish, and the expression that tells whether a result is not finite.
+    /// The statements that compute quantities and check what must not vanish, and the expression that tells
+    /// whether a result is not finite.
     pub fn computed(&self, quantities: &[Quantity]) -> (TokenStream, Option<TokenStream>) {
         let slice = self.program.slice(quantities);
         let needed = self.needed(

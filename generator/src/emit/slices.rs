@@ -1,5 +1,5 @@
-//! Emits the implementation of the traits `Mechanism` and `Contacts`: it converts slices to the arguments of the type's own methods, and their results to
-//! slices.
+//! Emits the implementation of the traits `Mechanism` and `Contacts`: it converts slices to the arguments of
+//! the type's own methods, and their results to slices.
 
 mod contacts;
 mod description;
@@ -95,7 +95,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// The statements that write a quantity into a slice; where the mechanism has none, the slice must be empty.
+    /// The statements that write a quantity into a slice; where the mechanism has none, the slice must be
+    /// empty.
     fn written(&self, quantity: Quantity, to: &Written) -> TokenStream {
         let krate = self.krate;
         let Written { method, slice, what } = to;

@@ -1,7 +1,9 @@
-//! Splits long routines into several functions, since the time to compile a function grows faster than its length.
+//! Splits long routines into several functions, since the time to compile a function grows faster than its
+//! length.
 //!
-//! A part receives inputs of the routine and the arrays that earlier parts have written, and writes an array of its own: the values that later parts or the
-//! result need, each as soon as it is there. The operations are the same as in one function, and so are the bits.
+//! A part receives inputs of the routine and the arrays that earlier parts have written, and writes an array
+//! of its own: the values that later parts or the result need, each as soon as it is there. The operations
+//! are the same as in one function, and so are the bits.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +16,8 @@ use super::homes::{Home, Homes};
 use super::values::{Place, local};
 use crate::program::operation::{Operation, Stage, Value};
 
-/// The greatest number of statements in one function of an emitted module, roughly. What passes from one function to the next is stored and loaded.
+/// The greatest number of statements in one function of an emitted module, roughly. What passes from one
+/// function to the next is stored and loaded.
 pub const LONGEST: usize = 4400;
 
 /// Where the values of earlier parts are.
@@ -54,7 +57,8 @@ fn array(part: usize) -> Ident {
 }
 
 impl Emitter<'_> {
-    /// The statements that compute `values`, in their order, and fill the arrays of loops; `wanted` are those that are looked at afterwards.
+    /// The statements that compute `values`, in their order, and fill the arrays of loops; `wanted` are those
+    /// that are looked at afterwards.
     pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>, homes: &Homes) -> TokenStream {
         let pairs = self.together(values);
         let angles = self.angles(&pairs, values);
@@ -86,7 +90,8 @@ impl Emitter<'_> {
         quote! { #(#angles)* #of_angles #(#given)* #empty #(#calls)* #(#looked_at)* #stores }
     }
 
-    /// Parts of about equal length, at least so many. None makes more variables than a function may, but for a sixth more, unless it is one statement.
+    /// Parts of about equal length, at least so many. None makes more variables than a function may, but for
+    /// a sixth more, unless it is one statement.
     fn parts<'v>(&self, work: &'v [Value], least: usize) -> Vec<&'v [Value]> {
         let most = self.longest + self.longest / 6;
         let variables = |part: &[Value]| {
@@ -104,7 +109,8 @@ impl Emitter<'_> {
         }
     }
 
-    /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only fetched.
+    /// Whether it is computed in a method. Numbers, inputs and what is known at construction are only
+    /// fetched.
     pub fn is_work(&self, value: Value) -> bool {
         self.stage(value) > Stage::Parameter && !matches!(self.program.operation(value), Operation::Input(_))
     }

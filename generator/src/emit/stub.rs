@@ -1,4 +1,5 @@
-//! Emits the module of a model with mistakes: compile errors for the mistakes, and names that keep the compiler from reporting others.
+//! Emits the module of a model with mistakes: compile errors for the mistakes, and names that keep the
+//! compiler from reporting others.
 
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -7,9 +8,10 @@ use crate::rust_names;
 
 /// A module that holds `errors` (calls of `compile_error!`) and the names of the types that a mechanism has.
 ///
-/// The names are imports of what does not exist. In a module with a `compile_error!` the compiler does not report these, and takes what
-/// they name, and all that follows from it in the user's code, for already reported: one mistake in a model is one error. `tracked` as in
-/// [`super::Options`]; `types` are those of the sets.
+/// The names are imports of what does not exist. In a module with a `compile_error!` the compiler does not
+/// report these, and takes what they name, and all that follows from it in the user's code, for already
+/// reported: one mistake in a model is one error. `tracked` as in [`super::Options`]; `types` are those of
+/// the sets.
 pub fn stub(
     module: &str,
     mechanism: &str,

@@ -192,7 +192,8 @@ fn structure_selects_the_closed_form() {
     assert!(!call(Structure::General).contains("resolve_structured"));
 }
 
-/// A value that depends on parameters alone, compared with one that depends on coordinates, is kept for the routines that check it.
+/// A value that depends on parameters alone, compared with one that depends on coordinates, is kept for the
+/// routines that check it.
 #[test]
 fn a_guard_is_checked_where_all_of_it_is_known() {
     let mut derived = derived();
@@ -209,7 +210,8 @@ fn a_guard_is_checked_where_all_of_it_is_known() {
     assert!(after.contains("vanishes_beside"));
 }
 
-/// A result that is a factor of another need not be looked at: the product is not finite either. Its reciprocal may be.
+/// A result that is a factor of another need not be looked at: the product is not finite either. Its
+/// reciprocal may be.
 #[test]
 fn only_results_that_no_other_depends_on_are_checked() {
     let mut derived = derived();

@@ -8,8 +8,8 @@ use crate::program::Program;
 use crate::reading;
 use crate::source::Source;
 
-/// Finds the program of a model. `path` is where its derivation should be, `shown` how messages call that file, `command` what
-/// writes it.
+/// Finds the program of a model. `path` is where its derivation should be, `shown` how messages call that
+/// file, `command` what writes it.
 pub fn find(
     source: &Source,
     mechanism: &Mechanism,
@@ -51,8 +51,9 @@ fn absent(source: &Source, mechanism: &Mechanism, _shown: &str, _command: &str) 
     }
 }
 
-/// The algebra engine prints a greeting to standard output, which here belongs to the compiler or to an editor's macro server. Until the guard is dropped,
-/// standard output goes to standard error or, where that is not possible, is discarded.
+/// The algebra engine prints a greeting to standard output, which here belongs to the compiler or to an
+/// editor's macro server. Until the guard is dropped, standard output goes to standard error or, where that
+/// is not possible, is discarded.
 #[cfg(all(feature = "derive", unix))]
 fn lead_stdout_elsewhere() -> Box<dyn std::any::Any> {
     let stderr = std::fs::OpenOptions::new().write(true).open("/dev/stderr").ok();

@@ -8,7 +8,8 @@ use crate::emit::{self, Options};
 use crate::model::mechanism::Mechanism;
 use crate::program::Program;
 
-/// The module of a mechanism whose program `found` finds, or the errors: those about sets where they stand, others at `at`.
+/// The module of a mechanism whose program `found` finds, or the errors: those about sets where they stand,
+/// others at `at`.
 pub fn emitted(
     mechanism: &Mechanism,
     sets: &Sets,

@@ -1,4 +1,5 @@
-//! Expands `mechanism! { mechanism Name; .. }`: a model in the Rust source. Its derivation is in `derived/` beside Cargo.toml.
+//! Expands `mechanism! { mechanism Name; .. }`: a model in the Rust source. Its derivation is in `derived/`
+//! beside Cargo.toml.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,6 @@
-//! Expands `mechanism!`: finds the model and its derivation, and returns the module or the mistakes. It runs in the compiler and in macro servers of
-//! editors, which run for a long time and expand often, from several threads.
+//! Expands `mechanism!`: finds the model and its derivation, and returns the module or the mistakes. It runs
+//! in the compiler and in macro servers of editors, which run for a long time and expand often, from several
+//! threads.
 
 mod derivation;
 mod emitted;
@@ -17,9 +18,9 @@ use crate::syntax::tree::Section;
 
 pub use sets::Sets;
 
-/// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is `($crate)
-/// "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime is `::hodograph`. `package` is
-/// the folder of the invoking package's `Cargo.toml`.
+/// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is
+/// `($crate) "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime
+/// is `::hodograph`. `package` is the folder of the invoking package's `Cargo.toml`.
 pub fn expand(input: TokenStream, package: &Path) -> TokenStream {
     let expand = std::panic::AssertUnwindSafe(|| module(input, package));
     std::panic::catch_unwind(expand).unwrap_or_else(|_| {

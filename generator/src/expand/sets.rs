@@ -21,7 +21,8 @@ pub struct Sets {
 }
 
 impl Sets {
-    /// Takes the sets out of the input. Each begins with the word `evaluate` and may end with a comma or a semicolon.
+    /// Takes the sets out of the input. Each begins with the word `evaluate` and may end with a comma or a
+    /// semicolon.
     pub fn take(trees: Vec<TokenTree>) -> Self {
         let mut sets = Sets::default();
         let mut trees = trees.into_iter().peekable();

@@ -96,7 +96,8 @@ pub fn times(a: Term, b: Term) -> Term {
     if minus_a == minus_b { product } else { neg(product) }
 }
 
-/// The place of a factor: a function stands last, for what follows its argument could be taken for part of it.
+/// The place of a factor: a function stands last, for what follows its argument could be taken for part of
+/// it.
 fn place(factor: &Term) -> u8 {
     match factor {
         Term::Number(_) => 0,

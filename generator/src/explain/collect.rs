@@ -155,7 +155,8 @@ impl Reader<'_> {
         format!("delta_{name}")
     }
 
-    /// The equations of a quantity; its symbol gets a stroke where a name of the model looks like one of its entries.
+    /// The equations of a quantity; its symbol gets a stroke where a name of the model looks like one of its
+    /// entries.
     fn section(&self, output: &Output, symbols: &Symbols) -> Section {
         let heading = heading(self.mechanism, output.quantity);
         let taken = |head: &str, index: String| symbols.has(&Symbol { head: head.to_owned(), index });

@@ -1,5 +1,5 @@
-//! Leaves out operations that are 0 in exact arithmetic: a program computes the rounding error of sums of angles to correct it; in the equations it has
-//! no place.
+//! Leaves out operations that are 0 in exact arithmetic: a program computes the rounding error of sums of
+//! angles to correct it; in the equations it has no place.
 
 use std::collections::{HashMap, HashSet};
 

@@ -1,7 +1,8 @@
 //! Writes the equations of a mechanism for people: as text, LaTeX or HTML.
 //!
-//! The operations of a program are converted back to expressions, with like terms collected and without the operations that only correct rounding. An
-//! expression that is used more than once, or would make a line too long, gets a name: z1, z2 .. as in the paper.
+//! The operations of a program are converted back to expressions, with like terms collected and without the
+//! operations that only correct rounding. An expression that is used more than once, or would make a line too
+//! long, gets a name: z1, z2 .. as in the paper.
 
 mod arithmetic;
 mod collect;
@@ -167,8 +168,8 @@ impl Section {
         }
     }
 
-    /// Where the equations form a matrix that is worth showing: for each place the term that stands there, or else the equation
-    /// that is to be written below; and the equations to be written.
+    /// Where the equations form a matrix that is worth showing: for each place the term that stands there, or
+    /// else the equation that is to be written below; and the equations to be written.
     fn laid_out(&self) -> (Vec<Vec<Place<'_>>>, Vec<&Equation>) {
         let many = self.matrix.first().is_some_and(|row| row.len() > MANY_COLUMNS);
         let short = if many { SHORTEST } else { SHORT };

@@ -52,7 +52,8 @@ pub fn greek_name(letter: char) -> Option<&'static str> {
     GREEK.iter().find(|(_, known)| *known == letter).map(|(name, _)| *name)
 }
 
-/// The symbol of a name, by itself: `q1` is q with the index 1, `gamma` a Greek letter, `m_arm` m with the index arm.
+/// The symbol of a name, by itself: `q1` is q with the index 1, `gamma` a Greek letter, `m_arm` m with the
+/// index arm.
 pub fn symbol(name: &str) -> Symbol {
     let (head, tail) = match name.split_once('_') {
         Some((head, tail)) if !head.is_empty() && !tail.is_empty() => (head, tail),
@@ -154,7 +155,8 @@ const LARGEST_DENOMINATOR: u32 = 360;
 /// A number of fewer digits is written as it is.
 const MANY_DIGITS: usize = 10;
 
-/// The shortest form that reads back as the same double: a decimal, or a quotient where the decimal would be long.
+/// The shortest form that reads back as the same double: a decimal, or a quotient where the decimal would be
+/// long.
 pub fn form(number: f64) -> Form {
     let text = format!("{number:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));

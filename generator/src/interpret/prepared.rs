@@ -1,12 +1,14 @@
-//! Prepares quantities that are evaluated often: selects and renumbers the operations that they need, and computes once what depends on parameters only. The
-//! results have the same bits as those of [`super::Evaluator`].
+//! Prepares quantities that are evaluated often: selects and renumbers the operations that they need, and
+//! computes once what depends on parameters only. The results have the same bits as those of
+//! [`super::Evaluator`].
 
 use crate::arithmetic::DoubleDouble;
 use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Inputs, Program, Quantity, VANISHING, operate};
 
-/// The numbers from outside but for parameters, borrowed; each in the unit that the model declares, in file order.
+/// The numbers from outside but for parameters, borrowed; each in the unit that the model declares, in file
+/// order.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Arguments<'a> {
     /// time, s

@@ -1,4 +1,5 @@
-//! Accelerations of points and frames: differentiates the relations of the graph of velocities, from the ground outwards.
+//! Accelerations of points and frames: differentiates the relations of the graph of velocities, from the
+//! ground outwards.
 //!
 //! Theory: docs/theory.md, section 16.1.
 
@@ -37,7 +38,8 @@ impl Accelerations {
         }
     }
 
-    /// What speeds alone add at each relation of the graph: no speed changes, every base is at rest but for the ground.
+    /// What speeds alone add at each relation of the graph: no speed changes, every base is at rest but for
+    /// the ground.
     pub fn apart(speeds: usize, ground: Mixed) -> Self {
         Accelerations { apart: true, ..Self::new(vec![Expr::zero(); speeds], ground) }
     }
@@ -106,7 +108,8 @@ impl Accelerations {
         value
     }
 
-    /// What a point's relation adds to the acceleration of its base (or is, if it has none), in its home axes.
+    /// What a point's relation adds to the acceleration of its base (or is, if it has none), in its home
+    /// axes.
     pub fn own_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Triple {
         let motion = k.points[point.0].clone();
         let mut sum = match motion.base {
@@ -148,7 +151,8 @@ impl Accelerations {
         linear_forms::add(&linear_forms::cross(&alpha, &arm.arm), &linear_forms::cross(&w, &rate))
     }
 
-    /// Rows of `[alpha]x + w w' - w.w 1`, which turns an arm fixed in the frame into its part of an acceleration.
+    /// Rows of `[alpha]x + w w' - w.w 1`, which turns an arm fixed in the frame into its part of an
+    /// acceleration.
     pub fn turning_matrix(&mut self, k: &mut Kinematics<'_>, frame: FrameId) -> [Triple; 3] {
         if let Some(known) = self.turning.get(&frame) {
             return known.clone();

@@ -1,9 +1,11 @@
-//! Base parameters of robot dynamics: combines and regroups the inertia parameters, so that fewer of them describe the same mechanism.
+//! Base parameters of robot dynamics: combines and regroups the inertia parameters, so that fewer of them
+//! describe the same mechanism.
 //!
-//! Mass that moves rigidly with a frame is described, about a reference point of the frame, by mass, first moment and second moments (the matrix of
-//! `integral r r' dm`, the pseudo-inertia). Bodies with the same frame and reference point are added. Mass on the axis of a revolute joint moves with the
-//! bodies on both sides of it; its mass, first moment and second moment along the axis are therefore moved to the body on the inner side. Mass on an axis
-//! that is fixed in N does not move and is dropped.
+//! Mass that moves rigidly with a frame is described, about a reference point of the frame, by mass, first
+//! moment and second moments (the matrix of `integral r r' dm`, the pseudo-inertia). Bodies with the same
+//! frame and reference point are added. Mass on the axis of a revolute joint moves with the bodies on both
+//! sides of it; its mass, first moment and second moment along the axis are therefore moved to the body on
+//! the inner side. Mass on an axis that is fixed in N does not move and is dropped.
 
 use std::collections::BTreeMap;
 
@@ -73,8 +75,9 @@ impl Lump {
     }
 }
 
-/// A sum or difference of second moments by its parameters: what the model states as moments of inertia stands there again, without
-/// the rounding errors of the way there and back. Larger sums stay in parts, which round less than one long sum.
+/// A sum or difference of second moments by its parameters: what the model states as moments of inertia
+/// stands there again, without the rounding errors of the way there and back. Larger sums stay in parts,
+/// which round less than one long sum.
 pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
     const LARGEST: usize = 40;
     let opened = z.opened(value, LARGEST);
@@ -87,8 +90,9 @@ pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
 pub enum Masses {
     /// on the other side of the joint, as everything that lies on its axis: fewest parameters
     Handed,
-    /// in the body itself. Articulated inertias want that: handed on, the masses of all that follows would stand in one number, from
-    /// which most is taken again where hinges give way, and what is left would have the rounding of the whole.
+    /// in the body itself. Articulated inertias want that: handed on, the masses of all that follows would
+    /// stand in one number, from which most is taken again where hinges give way, and what is left would
+    /// have the rounding of the whole.
     Kept,
 }
 
@@ -132,8 +136,8 @@ fn carrier(k: &mut Kinematics<'_>, point: PointId) -> Option<FrameId> {
     }
 }
 
-/// Follows a point back as long as each step is an arm fixed in the frame: the point reached (`None`: one at rest) and
-/// the way from there, along the frame's home axes.
+/// Follows a point back as long as each step is an arm fixed in the frame: the point reached (`None`: one at
+/// rest) and the way from there, along the frame's home axes.
 fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (Option<PointId>, Triple) {
     let home = k.frames[frame.0].home;
     let mut way = linear_forms::zero();
@@ -177,8 +181,8 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Mas
         let base = k.turning(k.frames[frame.0].base);
         let seats: Vec<Seat> = lumps.keys().copied().filter(|seat| seat.0 == frame).collect();
         for seat in seats {
-            // Points on the axis move with the base as they do with the frame, whether the joint is fixed in the base or
-            // not; where it is, the way goes on to the base's own reference point.
+            // Points on the axis move with the base as they do with the frame, whether the joint is fixed in
+            // the base or not; where it is, the way goes on to the base's own reference point.
             let (target, r) =
                 if base == FrameId::N { (seat.1, linear_forms::zero()) } else { rigid_way(k, base, seat.1) };
             let Some(lump) = lumps.get_mut(&seat) else { continue };

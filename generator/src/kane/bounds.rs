@@ -1,9 +1,11 @@
-//! Upper bounds of the diagonal entries of the mass matrix for all configurations, which serve as scale for its pivots.
+//! Upper bounds of the diagonal entries of the mass matrix for all configurations, which serve as scale for
+//! its pivots.
 //!
-//! The kinetic energy of one speed alone is at most what it would be if all vectors that add up were parallel. So magnitudes take the place of vectors in the
-//! relations of the graph of velocities; inserting these one after the other, as for the mass matrix, gives one bound per speed. Magnitudes do not change
-//! when axes turn, while bounds of components would double at every joint. Without sliding joints the bounds depend on parameters only and cost nothing at
-//! run time.
+//! The kinetic energy of one speed alone is at most what it would be if all vectors that add up were
+//! parallel. So magnitudes take the place of vectors in the relations of the graph of velocities; inserting
+//! these one after the other, as for the mass matrix, gives one bound per speed. Magnitudes do not change
+//! when axes turn, while bounds of components would double at every joint. Without sliding joints the bounds
+//! depend on parameters only and cost nothing at run time.
 
 use std::collections::BTreeMap;
 
@@ -91,7 +93,8 @@ fn relation(k: &mut Kinematics<'_>, node: Node) -> BTreeMap<Magnitude, Expr> {
     sum
 }
 
-/// Puts a relation in the place of a magnitude. Products of speeds with others are kept only as long as the speed comes `later`.
+/// Puts a relation in the place of a magnitude. Products of speeds with others are kept only as long as the
+/// speed comes `later`.
 fn insert(
     k: &mut Kinematics<'_>,
     form: &mut BTreeMap<(Magnitude, Magnitude), Expr>,

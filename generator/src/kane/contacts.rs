@@ -115,7 +115,8 @@ fn velocity(k: &mut Kinematics<'_>, of: &Mover<'_>, axes: AxesId, along: Along) 
     }
 }
 
-/// Unit forces along given vectors on what strikes and against what is struck; `None` where a surface of given velocity takes them.
+/// Unit forces along given vectors on what strikes and against what is struck; `None` where a surface of
+/// given velocity takes them.
 fn unit_forces(
     k: &mut Kinematics<'_>,
     contact: &Contact,
@@ -153,7 +154,8 @@ fn without_dependent(k: &mut Kinematics<'_>, form: &LinearVector) -> LinearVecto
     })
 }
 
-/// Tangential axes that go with a normal, right-handed: the second is one along which nothing moves if there is one.
+/// Tangential axes that go with a normal, right-handed: the second is one along which nothing moves if there
+/// is one.
 fn tangents(k: &mut Kinematics<'_>, normal: &Triple, relative: &LinearVector) -> (Triple, Triple) {
     let still = |i: usize| {
         relative.rest[i].is_zero() && relative.terms.values().all(|partial: &Triple| partial[i].is_zero())

@@ -14,8 +14,9 @@ pub enum Node {
     Point(PointId),
 }
 
-/// Everything that the velocities of these points and frames depend on, each velocity after those that are stated in terms of it; angular velocities as
-/// early as they can go, so that what a frame carries is one rigid whole before its hinge is passed.
+/// Everything that the velocities of these points and frames depend on, each velocity after those that are
+/// stated in terms of it; angular velocities as early as they can go, so that what a frame carries is one
+/// rigid whole before its hinge is passed.
 pub fn elimination_order(k: &Kinematics<'_>, on: &[PointId], of: &[FrameId]) -> Vec<Node> {
     let (mut points, mut frames) = relevant(k, on, of);
     let mut order = Vec::new();

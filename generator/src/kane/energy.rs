@@ -38,7 +38,8 @@ pub fn kinetic_energy(k: &mut Kinematics<'_>) -> Expr {
     half().mul(&sum)
 }
 
-/// Potential energy of gravity and springs, zero with every mass centre at O; `None` where a height is not known.
+/// Potential energy of gravity and springs, zero with every mass centre at O; `None` where a height is not
+/// known.
 pub fn potential_energy(k: &mut Kinematics<'_>) -> Option<Expr> {
     let gravity = super::forces::gravity(k);
     let mut sum = Expr::zero();

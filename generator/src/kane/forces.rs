@@ -1,8 +1,10 @@
-//! Generalized active and inertia forces, passed along the graph of velocities from the leaves back to the ground.
+//! Generalized active and inertia forces, passed along the graph of velocities from the leaves back to the
+//! ground.
 //!
-//! The generalized force F_r is the sum of partial velocities times forces. Instead of forming all partial velocities, each force is passed from its point to
-//! the base of that point; its moment acts on the frames of the arms, and its product with the partial velocities of the relation is added to the
-//! generalized forces of the speeds in the relation.
+//! The generalized force F_r is the sum of partial velocities times forces. Instead of forming all partial
+//! velocities, each force is passed from its point to the base of that point; its moment acts on the frames
+//! of the arms, and its product with the partial velocities of the relation is added to the generalized
+//! forces of the speeds in the relation.
 //!
 //! Theory: docs/theory.md, section 16.1.
 
@@ -53,7 +55,8 @@ impl Wrenches {
 }
 
 impl Wrenches {
-    /// A torque on a frame and its opposite on another: it meets the speeds of the frames between them, and no others.
+    /// A torque on a frame and its opposite on another: it meets the speeds of the frames between them, and
+    /// no others.
     fn torque_between(&mut self, k: &mut Kinematics<'_>, on: FrameId, from: FrameId, torque: &Mixed) {
         let (ahead, behind) = (k.ancestry(on), k.ancestry(from));
         let between = |chain: &[FrameId], other: &[FrameId]| -> Vec<FrameId> {
@@ -147,8 +150,8 @@ pub fn generalized_forces(
     pass_back(k, wrenches)
 }
 
-/// Moment of inertia forces about the reference point: integral of `r x U r` for second moments Sigma of r, with
-/// `U = [alpha]x + w w' - w.w 1`.
+/// Moment of inertia forces about the reference point: integral of `r x U r` for second moments Sigma of r,
+/// with `U = [alpha]x + w w' - w.w 1`.
 fn inertia_moment(
     z: &mut Intermediates,
     u: &[Triple; 3],

@@ -1,9 +1,10 @@
 //! The mass matrix, by passing the kinetic energy along the graph of velocities.
 //!
-//! The kinetic energy is a quadratic form in the velocities of mass centres and the angular velocities of bodies. Each
-//! relation of the graph (velocity = that of the base + ..) is inserted in turn, leaves first, until only the speeds are
-//! left: their coefficients are the mass matrix. On the way the form gathers masses, first moments and inertias of what
-//! moves together, which is the composite-rigid-body algorithm (CRBA), found here for any graph and not only for trees of joints.
+//! The kinetic energy is a quadratic form in the velocities of mass centres and the angular velocities of
+//! bodies. Each relation of the graph (velocity = that of the base + ..) is inserted in turn, leaves first,
+//! until only the speeds are left: their coefficients are the mass matrix. On the way the form gathers
+//! masses, first moments and inertias of what moves together, which is the composite-rigid-body algorithm
+//! (CRBA), found here for any graph and not only for trees of joints.
 
 use std::collections::BTreeMap;
 
@@ -32,8 +33,8 @@ struct Form {
     matrix: Products,
 }
 
-/// The mass matrix of all speeds, dependent ones included, by slots `(r, s)` with `r <= s`. The slot after the last
-/// speed stands for prescribed motion (the remainders, with speed 1).
+/// The mass matrix of all speeds, dependent ones included, by slots `(r, s)` with `r <= s`. The slot after
+/// the last speed stands for prescribed motion (the remainders, with speed 1).
 pub fn full_mass_matrix(
     k: &mut Kinematics<'_>,
     lumps: &BTreeMap<Seat, Lump>,

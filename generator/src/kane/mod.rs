@@ -1,4 +1,5 @@
-//! Derives Kane's equations: mass matrix, generalized forces, elimination of constraints, contacts; written as a graph of values.
+//! Derives Kane's equations: mass matrix, generalized forces, elimination of constraints, contacts; written
+//! as a graph of values.
 
 pub mod accelerations;
 pub mod articulated;
@@ -41,7 +42,8 @@ impl std::fmt::Display for DerivationError {
 
 impl std::error::Error for DerivationError {}
 
-/// Derives the equations of a mechanism: waits for its turn at the algebra engine and works there on a thread of its own.
+/// Derives the equations of a mechanism: waits for its turn at the algebra engine and works there on a thread
+/// of its own.
 pub fn derive(mechanism: &Mechanism) -> Result<Derived, DerivationError> {
     let mechanism = mechanism.clone();
     match exclusively(move || {

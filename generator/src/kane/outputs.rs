@@ -34,7 +34,8 @@ struct Writer<'k, 'm> {
     independent: Vec<usize>,
     dependent: Vec<usize>,
     lumps: BTreeMap<Seat, Lump>,
-    /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where dependent speeds enter
+    /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where
+    /// dependent speeds enter
     largest: Vec<Node>,
     /// the mass matrix factorised by articulated inertias, where the mechanism permits
     articulated: Option<Articulated>,
@@ -132,7 +133,8 @@ impl Writer<'_, '_> {
         let remainder = self.k.speeds.len();
         let entry = |r: usize, s: usize| full.get(&(r.min(s), r.max(s))).cloned().unwrap_or_else(Expr::zero);
         let (independent, dependent) = (self.independent.clone(), self.dependent.clone());
-        // rows of the dependent speeds, with their own dependence inserted: M_d = M_di + M_dd A (and prescribed motion)
+        // rows of the dependent speeds, with their own dependence inserted: M_d = M_di + M_dd A (and
+        // prescribed motion)
         let mut rows: BTreeMap<(usize, usize), Expr> = BTreeMap::new();
         for &d in &dependent {
             for &s in independent.iter().chain([&remainder]) {
@@ -190,7 +192,8 @@ impl Writer<'_, '_> {
         self.guards.extend(pivots);
     }
 
-    /// The pivots of a factor of the mass matrix, which must not vanish beside the `largest` that its diagonal can be.
+    /// The pivots of a factor of the mass matrix, which must not vanish beside the `largest` that its
+    /// diagonal can be.
     fn pivots(&self, graph: &Graph, factor: &Factor, largest: &[Node]) -> Vec<Guard<Node>> {
         let open = factor.pivots.iter().filter(|(value, ..)| graph.as_number(*value).is_none());
         let guard = |&(value, scale, row): &(Node, Node, usize)| {
@@ -227,7 +230,8 @@ impl Writer<'_, '_> {
         Accelerations::apart(self.k.speeds.len(), ground)
     }
 
-    /// Sets up articulated inertias for all forces of the mechanism and its contacts, where it permits; the forces.
+    /// Sets up articulated inertias for all forces of the mechanism and its contacts, where it permits; the
+    /// forces.
     fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
         let mut apart = self.apart();
         let lumps = base_parameters::lumps(self.k, Masses::Kept);
@@ -270,7 +274,8 @@ impl Writer<'_, '_> {
         let half = factor.half_solve(&mut self.graph, &forcing);
         let mut accelerations = factor.finish(&mut self.graph, &half);
         if let Some(articulated) = self.articulated.take() {
-            // Even where it costs more: the factorised mass matrix loses digits wherever outer joints give way to inner ones.
+            // Even where it costs more: the factorised mass matrix loses digits wherever outer joints give
+            // way to inner ones.
             if let Some(nodes) = self.accelerations(&articulated, acting) {
                 accelerations = nodes;
                 self.guard_articulated(&articulated);
@@ -309,8 +314,8 @@ impl Writer<'_, '_> {
         self.put(Quantity::InverseDynamics, required.len(), 1, required);
     }
 
-    /// A direction in the independent states and inputs: how each input changes along it. `None` where dependent coordinates do not
-    /// follow.
+    /// A direction in the independent states and inputs: how each input changes along it. `None` where
+    /// dependent coordinates do not follow.
     fn direction(&mut self) -> Option<HashMap<Input, Node>> {
         let mechanism = self.k.mechanism;
         let followers = self.dependent_coordinate_rates()?;
@@ -367,8 +372,8 @@ impl Writer<'_, '_> {
         self.put(Quantity::StateTangent, tangent.len(), 1, tangent);
     }
 
-    /// Dependent coordinates as they follow the independent ones: forms in the numbers of coordinates. `None` where the
-    /// configuration equations cannot be solved for them.
+    /// Dependent coordinates as they follow the independent ones: forms in the numbers of coordinates. `None`
+    /// where the configuration equations cannot be solved for them.
     fn dependent_coordinate_rates(&mut self) -> Option<BTreeMap<usize, LinearScalar>> {
         let mechanism = self.k.mechanism;
         let dependent: Vec<usize> =

@@ -11,7 +11,8 @@ use crate::kinematics::linear_forms::{self, Triple};
 pub struct Products(BTreeMap<(usize, usize), Expr>);
 
 impl Products {
-    /// Adds to an entry. An entry beside the diagonal stands for both halves, so that the form gains the whole product.
+    /// Adds to an entry. An entry beside the diagonal stands for both halves, so that the form gains the
+    /// whole product.
     pub fn add(&mut self, r: usize, s: usize, value: &Expr) {
         sum_scalar(&mut self.0, (r.min(s), r.max(s)), value);
     }
@@ -31,8 +32,9 @@ impl Products {
         }
     }
 
-    /// Adds what half a quadratic form takes from one slot, by its momentum and the partial velocities of slots up to its own, which
-    /// stands last: the square once, and the product with every other speed fully.
+    /// Adds what half a quadratic form takes from one slot, by its momentum and the partial velocities of
+    /// slots up to its own, which stands last: the square once, and the product with every other speed
+    /// fully.
     pub fn add_square(&mut self, partials: &[(usize, Triple)], momentum: &Triple) {
         let Some(((slot, own), before)) = partials.split_last() else { return };
         self.add_products(*slot, momentum, before);

@@ -11,8 +11,8 @@ const SAMPLES: u64 = 24;
 /// Half a turn in the units of angles that coordinates commonly have.
 const HALF_TURNS: [(&str, f64); 4] = [("rad", PI), ("mrad", 1000.0 * PI), ("deg", 180.0), ("rev", 0.5)];
 
-/// States all over the mechanism's range and parameters of common sizes, the same ones every time. Default values do not enter, so that
-/// equations are the same whatever they are.
+/// States all over the mechanism's range and parameters of common sizes, the same ones every time. Default
+/// values do not enter, so that equations are the same whatever they are.
 pub fn samples(mechanism: &Mechanism) -> Vec<Inputs> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
 }

@@ -1,4 +1,5 @@
-//! Sets of axes, and the transformation of vectors and dyadics from one set to another, one rotation at a time.
+//! Sets of axes, and the transformation of vectors and dyadics from one set to another, one rotation at a
+//! time.
 
 use super::linear_forms::{Triple, cross, dot, name, scale, zero};
 use crate::algebra::{Expr, Intermediates};
@@ -99,7 +100,8 @@ impl AxesTree {
         self.axes[from].depth + self.axes[to].depth - 2 * self.axes[top].depth
     }
 
-    /// The unit vectors of one set of axes along another; each matrix on the way is formed once, by whoever asks first.
+    /// The unit vectors of one set of axes along another; each matrix on the way is formed once, by whoever
+    /// asks first.
     pub fn columns(&self, z: &mut Intermediates, from: AxesId, to: AxesId) -> [Triple; 3] {
         if from == to {
             return std::array::from_fn(unit);
@@ -194,8 +196,8 @@ impl AxesTree {
         self.convert_graded(z, m, from, to, |_, _, _| Smaller::Neither)
     }
 
-    /// As `convert_symmetric`, with an operation or three more per turn that keep the digits of small components beside large ones:
-    /// `smaller` tells which of two is.
+    /// As `convert_symmetric`, with an operation or three more per turn that keep the digits of small
+    /// components beside large ones: `smaller` tells which of two is.
     pub fn convert_graded(
         &self,
         z: &mut Intermediates,

@@ -1,4 +1,5 @@
-//! Solves the velocity constraints for the dependent speeds, and their time derivatives for the rates of the dependent speeds.
+//! Solves the velocity constraints for the dependent speeds, and their time derivatives for the rates of the
+//! dependent speeds.
 
 use super::linear_forms::LinearScalar;
 use super::solve::{SolveError, Solver};
@@ -9,7 +10,8 @@ use crate::diagnostics::codes;
 use crate::model::mechanism::Mechanism;
 
 impl Kinematics<'_> {
-    /// Solves the constraints for the dependent speeds, and their time derivatives for those of the dependent speeds.
+    /// Solves the constraints for the dependent speeds, and their time derivatives for those of the dependent
+    /// speeds.
     pub(super) fn find_dependent_speeds(&mut self) -> Result<(), DeriveError> {
         let mechanism = self.mechanism;
         let equations = self.constraint_forms()?;
@@ -43,7 +45,8 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// The constraints that determine the dependent speeds, as forms in all speeds; an error where the components of one repeat each other.
+    /// The constraints that determine the dependent speeds, as forms in all speeds; an error where the
+    /// components of one repeat each other.
     fn constraint_forms(&mut self) -> Result<Vec<LinearScalar>, DeriveError> {
         let mut equations = Vec::new();
         let mut repeated = None;
@@ -64,8 +67,8 @@ impl Kinematics<'_> {
         }
     }
 
-    /// The time derivatives of the constraints `sum J u + j = 0`, that is `sum J u' + (sum J' u + j') = 0` with u' = 0 of the independent
-    /// speeds: forms in the rates of the dependent ones.
+    /// The time derivatives of the constraints `sum J u + j = 0`, that is `sum J u' + (sum J' u + j') = 0`
+    /// with u' = 0 of the independent speeds: forms in the rates of the dependent ones.
     fn constraint_changes(&mut self, equations: &[LinearScalar], unknowns: &[usize]) -> Vec<LinearScalar> {
         let mut changes = Vec::new();
         for form in equations {

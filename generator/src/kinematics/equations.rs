@@ -1,8 +1,10 @@
-//! Converts equations to forms linear in the speeds (left side minus right side) without components that are identically 0.
+//! Converts equations to forms linear in the speeds (left side minus right side) without components that are
+//! identically 0.
 //!
-//! A vector equation may say nothing in some direction: the contact point of a ball that rolls on a plane has no velocity along the normal, whatever the
-//! speeds. Its component along that direction is identically 0, but along other axes the algebra does not see the dependence. So axes are sought along
-//! which the equation has as few components as are independent.
+//! A vector equation may say nothing in some direction: the contact point of a ball that rolls on a plane has
+//! no velocity along the normal, whatever the speeds. Its component along that direction is identically 0,
+//! but along other axes the algebra does not see the dependence. So axes are sought along which the equation
+//! has as few components as are independent.
 
 use std::collections::HashMap;
 
@@ -93,8 +95,8 @@ impl Kinematics<'_> {
         ranks.take(ENOUGH).max().unwrap_or(forms.len())
     }
 
-    /// A vector as a form along given axes, by the shortest way: velocities do not pass through the axes of bodies that they do
-    /// not depend on.
+    /// A vector as a form along given axes, by the shortest way: velocities do not pass through the axes of
+    /// bodies that they do not depend on.
     fn vector_along(&mut self, vector: &Vector, axes: AxesId) -> LinearVector {
         match vector {
             Vector::Add(terms) => {
@@ -173,8 +175,9 @@ pub(super) fn vanishes(z: &Intermediates, samples: &mut [Sample], expr: &Expr) -
     seen.len() > 1 && seen.iter().all(|&zero| zero)
 }
 
-/// Arbitrary states and parameters of common sizes, the same ones every time. Default values do not enter: what is 0 with them only
-/// is not identically 0, and equations are the same whatever they are. Some expressions have values in some of the states only.
+/// Arbitrary states and parameters of common sizes, the same ones every time. Default values do not enter:
+/// what is 0 with them only is not identically 0, and equations are the same whatever they are. Some
+/// expressions have values in some of the states only.
 pub(super) fn samples(mechanism: &Mechanism) -> Vec<Sample> {
     (0..SAMPLES).map(|seed| sample(mechanism, seed)).collect()
 }

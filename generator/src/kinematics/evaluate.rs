@@ -181,8 +181,8 @@ impl Kinematics<'_> {
         }
     }
 
-    /// A scalar as a form linear in the speeds (and, while they are unknown, in the rates of coordinates). The front
-    /// end has checked that it is one.
+    /// A scalar as a form linear in the speeds (and, while they are unknown, in the rates of coordinates).
+    /// The front end has checked that it is one.
     pub fn linear_scalar(&mut self, scalar: &Scalar) -> LinearScalar {
         match scalar {
             Scalar::Speed(id) => LinearScalar::unknown(id.0),

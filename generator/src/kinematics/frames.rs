@@ -10,8 +10,8 @@ use crate::model::mechanism::{
     Vector,
 };
 
-/// Which frames' own axes the model's expressions use for anything but their orientation. The angular velocity of frames that
-/// nothing uses is kept along the axes of their parents, which spares the rotation.
+/// Which frames' own axes the model's expressions use for anything but their orientation. The angular
+/// velocity of frames that nothing uses is kept along the axes of their parents, which spares the rotation.
 pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
     let mut used = vec![false; mechanism.frames.len()];
     used[0] = true;
@@ -121,8 +121,8 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// The axes along which inertias are given are used too, and what a used frame is oriented in. The inertia of a ball is
-    /// the same along any axes, so it uses none.
+    /// The axes along which inertias are given are used too, and what a used frame is oriented in. The
+    /// inertia of a ball is the same along any axes, so it uses none.
     fn use_axes_of_inertias(&mut self) {
         let mechanism = self.mechanism;
         for body in &mechanism.bodies {
@@ -202,8 +202,8 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// Whether a frame is one of three or more in a row that turn about the same axis. Two have nothing to save by absolute angles, and a mass
-    /// matrix that needs the angle between them alone.
+    /// Whether a frame is one of three or more in a row that turn about the same axis. Two have nothing to
+    /// save by absolute angles, and a mass matrix that needs the angle between them alone.
     fn goes_on(&self, id: FrameId, axis: Axis) -> bool {
         let frames = &self.mechanism.frames;
         let turns = |frame: FrameId| match &frames[frame.0].orientation {
@@ -215,9 +215,10 @@ impl Kinematics<'_> {
         before || (0..frames.len()).any(|child| frames[child].parent == Some(id) && turns(FrameId(child)))
     }
 
-    /// Rotations about one axis that keeps its direction in N add up: in a planar chain the axes of every link are turned
-    /// against the ground by the sum of the angles, which spares the products of their sines and cosines. An angle that
-    /// does not change is left alone: what is fixed in the parent stays so.
+    /// Rotations about one axis that keeps its direction in N add up: in a planar chain the axes of every
+    /// link are turned against the ground by the sum of the angles, which spares the products of their
+    /// sines and cosines. An angle that does not change is left alone: what is fixed in the parent stays
+    /// so.
     fn flatten(&mut self, parent: AxesId, axis: Axis, negative: bool, angle: Expr) -> (AxesId, Expr) {
         if self.rate_of(&angle).is_zero() {
             return (parent, angle);

@@ -1,8 +1,9 @@
 //! Kinematics: axes, angular velocities and velocities as forms linear in the generalized speeds.
 //!
-//! The forms are kept as a graph of small relations, one per frame (`angular velocity = that of another frame + sum of a_r u_r`) and one per point
-//! (`velocity = that of another point + angular velocity x arm + sum of b_r u_r`). Partial velocities, mass matrix and generalized forces are computed by
-//! passing along that graph, so that their cost is nearly linear in the number of bodies.
+//! The forms are kept as a graph of small relations, one per frame (`angular velocity = that of another frame + sum
+//! of a_r u_r`) and one per point (`velocity = that of another point + angular velocity x arm + sum of
+//! b_r u_r`). Partial velocities, mass matrix and generalized forces are computed by passing along that
+//! graph, so that their cost is nearly linear in the number of bodies.
 //!
 //! Theory: docs/theory.md, section 16.1.
 
@@ -124,8 +125,8 @@ pub struct Kinematics<'m> {
     pub coordinates: Vec<SymbolId>,
     /// symbols of the speeds, independent and dependent
     pub speeds: Vec<SymbolId>,
-    /// rates of the coordinates as forms: while kinematical equations are set up each rate is an unknown of its own
-    /// (slots after those of the speeds), afterwards they are forms in the speeds
+    /// rates of the coordinates as forms: while kinematical equations are set up each rate is an unknown of
+    /// its own (slots after those of the speeds), afterwards they are forms in the speeds
     pub rates: Vec<LinearScalar>,
     /// whether the rates have been found.
     pub solved: bool,
@@ -153,8 +154,8 @@ pub struct Kinematics<'m> {
 }
 
 impl<'m> Kinematics<'m> {
-    /// Sets up the kinematics: solves the kinematical equations for the rates and the constraints for the dependent
-    /// speeds.
+    /// Sets up the kinematics: solves the kinematical equations for the rates and the constraints for the
+    /// dependent speeds.
     pub fn new(mechanism: &'m Mechanism) -> Result<Self, DeriveError> {
         let mut z = Intermediates::default();
         z.pi();
@@ -294,8 +295,8 @@ impl<'m> Kinematics<'m> {
         }
     }
 
-    /// Notes that a determinant must not vanish: `message` says what cannot be found where one of its factors does, from the names of
-    /// the unknowns whose forms it divides.
+    /// Notes that a determinant must not vanish: `message` says what cannot be found where one of its factors
+    /// does, from the names of the unknowns whose forms it divides.
     pub fn guard_determinant(
         &mut self,
         determinant: &Expr,

@@ -1,4 +1,5 @@
-//! Builds the graph of velocities, one relation per frame and per point, and computes velocities and partial velocities from it.
+//! Builds the graph of velocities, one relation per frame and per point, and computes velocities and partial
+//! velocities from it.
 
 use super::axes::{AxesId, AxesTree, Turn};
 use super::linear_forms::{self, LinearVector, Triple};
@@ -59,7 +60,8 @@ impl Kinematics<'_> {
         order
     }
 
-    /// The nearest frame, going towards N, that turns against its base: the one whose angular velocity this frame has.
+    /// The nearest frame, going towards N, that turns against its base: the one whose angular velocity this
+    /// frame has.
     pub fn turning(&self, frame: FrameId) -> FrameId {
         let mut at = frame;
         while at != FrameId::N && self.frames[at.0].relative.is_zero() {
@@ -116,8 +118,9 @@ impl Kinematics<'_> {
         PointMotion { base, arms, relative, home }
     }
 
-    /// Axes for the value of a point's velocity: those of the frame that carries it on, where something further along
-    /// turns against that frame; otherwise the ones it comes from, which spares the rotation.
+    /// Axes for the value of a point's velocity: those of the frame that carries it on, where something
+    /// further along turns against that frame; otherwise the ones it comes from, which spares the
+    /// rotation.
     fn choose_home(
         &self,
         base: Option<PointId>,

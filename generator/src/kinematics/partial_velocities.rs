@@ -1,4 +1,5 @@
-//! Partial velocities of points: each frame that turns contributes its partial angular velocities crossed with the whole arm that it carries.
+//! Partial velocities of points: each frame that turns contributes its partial angular velocities crossed
+//! with the whole arm that it carries.
 //!
 //! Theory: docs/theory.md, section 16.1.
 
@@ -9,12 +10,15 @@ use super::axes::AxesId;
 use super::linear_forms::{self, LinearVector, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
-/// Along which axes arms are crossed with partial angular velocities. Which takes fewer operations depends on the mechanism.
+/// Along which axes arms are crossed with partial angular velocities. Which takes fewer operations depends on
+/// the mechanism.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
-    /// Those of the result: arms and axes of rotation are turned by the matrices between axes, which are shared by all.
+    /// Those of the result: arms and axes of rotation are turned by the matrices between axes, which are
+    /// shared by all.
     Result,
-    /// The home axes of the frame, in which an axis of rotation mostly has one component: the products are turned on, joint by joint.
+    /// The home axes of the frame, in which an axis of rotation mostly has one component: the products are
+    /// turned on, joint by joint.
     Home,
 }
 
@@ -87,7 +91,8 @@ impl Kinematics<'_> {
         }
     }
 
-    /// `sum over frames of (angular velocity x arm)` as a form, from the arms that each frame carries, along the axes that [`Along`] says.
+    /// `sum over frames of (angular velocity x arm)` as a form, from the arms that each frame carries, along
+    /// the axes that [`Along`] says.
     fn turning_parts(
         &mut self,
         mut carried: BTreeMap<FrameId, Triple>,

@@ -62,7 +62,8 @@ impl Kinematics<'_> {
         }
     }
 
-    /// Rate of a vector free of speeds, as a form, by differentiation with angular velocities from orientations.
+    /// Rate of a vector free of speeds, as a form, by differentiation with angular velocities from
+    /// orientations.
     pub(super) fn derived_rate(&mut self, v: &Mixed) -> MixedLinear {
         let mut sum = MixedLinear::new();
         for (&axes, components) in v {

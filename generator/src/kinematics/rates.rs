@@ -11,7 +11,8 @@ use crate::number::Number;
 use crate::program::graph::Input;
 use crate::span::Span;
 
-/// Coefficients of kinematical equations up to this size are written out, for what their sines and cosines cancel.
+/// Coefficients of kinematical equations up to this size are written out, for what their sines and cosines
+/// cancel.
 const OPEN: usize = 24;
 
 impl Kinematics<'_> {
@@ -68,8 +69,9 @@ impl Kinematics<'_> {
         Ok(())
     }
 
-    /// What the model states: kinematical equations, and motions of frames and points that have an orientation or a position too, whose
-    /// derivative must agree. Each form is zero, and has its place in the model.
+    /// What the model states: kinematical equations, and motions of frames and points that have an
+    /// orientation or a position too, whose derivative must agree. Each form is zero, and has its place
+    /// in the model.
     fn stated_equations(&mut self) -> Vec<(LinearScalar, Span)> {
         let mechanism = self.mechanism;
         let mut equations = Vec::new();

@@ -1,7 +1,8 @@
 //! Solves linear systems of equations symbolically: for the rates of coordinates, and for dependent speeds.
 //!
-//! Equations and unknowns are matched and split into the smallest blocks that can be solved one after another. Each block is solved by its adjugate, so that
-//! the only divisor is its determinant, which is zero only where the block is singular.
+//! Equations and unknowns are matched and split into the smallest blocks that can be solved one after
+//! another. Each block is solved by its adjugate, so that the only divisor is its determinant, which is zero
+//! only where the block is singular.
 
 use std::collections::BTreeMap;
 
@@ -40,8 +41,9 @@ pub enum SolveError {
 }
 
 impl Solver {
-    /// Prepares to solve `equations` (each = 0) for the `unknowns`. Equations that are not needed are left alone; of
-    /// several that would do, earlier ones are taken. `samples` show what is constant without looking so.
+    /// Prepares to solve `equations` (each = 0) for the `unknowns`. Equations that are not needed are left
+    /// alone; of several that would do, earlier ones are taken. `samples` show what is constant without
+    /// looking so.
     pub fn new(
         z: &mut Intermediates,
         samples: &mut [Sample],
@@ -83,8 +85,8 @@ impl Solver {
         Ok(solver)
     }
 
-    /// The unknowns that solve the equations (which may differ from those given to `new` in all but the coefficients of
-    /// the unknowns), as forms in what else occurs; `tidy` shortens every coefficient.
+    /// The unknowns that solve the equations (which may differ from those given to `new` in all but the
+    /// coefficients of the unknowns), as forms in what else occurs; `tidy` shortens every coefficient.
     pub fn solve(
         &self,
         equations: &[LinearScalar],
@@ -213,7 +215,8 @@ fn invert(z: &mut Intermediates, samples: &mut [Sample], matrix: &[Vec<Expr>]) -
     (inverse, determinant)
 }
 
-/// The determinant, or the number that it is: 1 or -1 where the matrix is a rotation, 0 where its rows depend on each other.
+/// The determinant, or the number that it is: 1 or -1 where the matrix is a rotation, 0 where its rows depend
+/// on each other.
 fn constant(z: &Intermediates, samples: &mut [Sample], determinant: Expr) -> Expr {
     let is = |n: i64, samples: &mut [Sample]| vanishes(z, samples, &determinant.sub(&Expr::integer(n)));
     match [0, 1, -1].into_iter().find(|&n| !determinant.is_number() && is(n, samples)) {

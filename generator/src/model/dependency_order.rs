@@ -1,4 +1,5 @@
-//! The order in which definitions, frames and points can be resolved, each after those that it refers to; reports cycles.
+//! The order in which definitions, frames and points can be resolved, each after those that it refers to;
+//! reports cycles.
 
 use std::collections::{HashMap, HashSet};
 

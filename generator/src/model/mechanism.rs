@@ -1,10 +1,11 @@
 //! A mechanism with all names resolved: the result of reading a model, and the input of the derivation.
 //!
-//! Invariants that the front end guarantees: ids are in range; definitions, frames and points are acyclic; dimensions agree;
-//! every expression is in SI units (a symbol declared in another unit appears multiplied by its factor); constraints are
-//! linear in the speeds and kinematical equations linear in rates and speeds; normals and gaps are free of speeds; nothing that is
-//! differentiated depends on inputs. `kinematics` holds the stated equations and, last, `d(q..)/dt = u..` for the coordinates of whose
-//! rates nothing else speaks; what declared velocities imply is not repeated there. Names refer to names in chains of at most 300,
+//! Invariants that the front end guarantees: ids are in range; definitions, frames and points are acyclic;
+//! dimensions agree; every expression is in SI units (a symbol declared in another unit appears multiplied by
+//! its factor); constraints are linear in the speeds and kinematical equations linear in rates and speeds;
+//! normals and gaps are free of speeds; nothing that is differentiated depends on inputs. `kinematics` holds
+//! the stated equations and, last, `d(q..)/dt = u..` for the coordinates of whose rates nothing else speaks;
+//! what declared velocities imply is not repeated there. Names refer to names in chains of at most 300,
 //! and expressions are nested a few hundred deep at most, so recursion over them is safe.
 
 use crate::arithmetic::Function;
@@ -77,8 +78,8 @@ pub struct Mechanism {
     pub kinematics: Vec<Equation>,
     /// velocity constraints
     pub constraints: Vec<Equation>,
-    /// where `constraints` say more at arbitrary states than there are dependent speeds, and just as much wherever the loops are
-    /// closed: scalar equations among them that determine the dependent speeds
+    /// where `constraints` say more at arbitrary states than there are dependent speeds, and just as much
+    /// wherever the loops are closed: scalar equations among them that determine the dependent speeds
     pub determining_constraints: Option<Vec<Equation>>,
     /// configuration constraints
     pub configuration: Vec<Equation>,
@@ -87,7 +88,8 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
-    /// The velocity constraints that determine the dependent speeds; others follow from them wherever the loops are closed.
+    /// The velocity constraints that determine the dependent speeds; others follow from them wherever the
+    /// loops are closed.
     pub fn constraints_of_dependent_speeds(&self) -> &[Equation] {
         self.determining_constraints.as_deref().unwrap_or(&self.constraints)
     }
@@ -107,12 +109,13 @@ pub struct Variable {
     pub docs: String,
     /// unit as written, for instance `kg*m^2`
     pub unit: String,
-    /// value or initial value in that unit, if one is given; unless it is `fixed`, equations do not depend on it
+    /// value or initial value in that unit, if one is given; unless it is `fixed`, equations do not depend
+    /// on it
     pub value: Option<f64>,
     /// a size that such a quantity commonly has, in that unit; all quantities of a unit have the same
     pub typical: f64,
-    /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it appears as
-    /// its number; it is kept here so that callers can refer to it by name.
+    /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it
+    /// appears as its number; it is kept here so that callers can refer to it by name.
     pub fixed: bool,
     /// `dependent` (of a coordinate or a speed)
     pub dependent: bool,

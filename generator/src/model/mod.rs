@@ -14,7 +14,8 @@ use crate::syntax::tree::Tree;
 pub use lower::lower;
 pub use readable::Readable;
 
-/// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with their cube.
+/// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with
+/// their cube.
 pub const MOST_SPEEDS: usize = 64;
 /// Most coordinates: a quaternion for each speed.
 pub const MOST_COORDINATES: usize = 4 * MOST_SPEEDS;

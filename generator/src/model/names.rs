@@ -8,8 +8,8 @@ use crate::span::Span;
 use crate::suggest;
 use crate::syntax::tree::{Name, Tree};
 
-/// What a name stands for. Indices as in `Mechanism`: frame 0 is N, point 0 is O, dependent speeds follow the independent ones
-/// and particles the bodies.
+/// What a name stands for. Indices as in `Mechanism`: frame 0 is N, point 0 is O, dependent speeds follow the
+/// independent ones and particles the bodies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[allow(missing_docs)]
 pub enum Symbol {

@@ -8,7 +8,8 @@ use crate::dimension::Exponent;
 /// What depends on more names than this is not traced back to them.
 const MOST_NAMES: usize = 32;
 
-/// The powers in which names enter a product, in the order of names, none of them 0; `None` where there are too many.
+/// The powers in which names enter a product, in the order of names, none of them 0; `None` where there are
+/// too many.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Provenance(Option<Vec<(Symbol, Exponent)>>);
 

@@ -1,6 +1,7 @@
 //! Records which parts of a mechanism were read without mistakes.
 
-/// The parts of a mechanism that say what the model says; the others, which hold a mistake or rest on one, hold stand-ins.
+/// The parts of a mechanism that say what the model says; the others, which hold a mistake or rest on one,
+/// hold stand-ins.
 #[derive(Clone, Debug, Default)]
 pub struct Readable {
     /// all that says how it moves: names, quantities, definitions, frames, points and equations

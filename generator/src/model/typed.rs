@@ -1,4 +1,5 @@
-//! An expression with its type: scalar or vector, dimension, and dependence on speeds, coordinates, time and inputs.
+//! An expression with its type: scalar or vector, dimension, and dependence on speeds, coordinates, time and
+//! inputs.
 
 use num_rational::BigRational;
 

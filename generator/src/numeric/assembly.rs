@@ -6,8 +6,8 @@ use super::linear_system::solve;
 use super::state::{Failure, State};
 use crate::model::mechanism::Mechanism;
 
-/// Changes the dependent coordinates so that the configuration equations hold, starting from what they are: Newton's method,
-/// with steps halved where they make things worse.
+/// Changes the dependent coordinates so that the configuration equations hold, starting from what they are:
+/// Newton's method, with steps halved where they make things worse.
 pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
     let unknown: Vec<usize> = (0..m.coordinates.len()).filter(|i| m.coordinates[*i].dependent).collect();
     if unknown.is_empty() {

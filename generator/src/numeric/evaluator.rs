@@ -1,7 +1,7 @@
 //! Values of expressions, orientations, positions and velocities at one state and motion.
 //!
-//! Expressions are evaluated at one of two levels. *Geometry* knows coordinates and time, which move (e1 carries their rates);
-//! *motion* knows speeds as well, and takes from geometry values and rates.
+//! Expressions are evaluated at one of two levels. *Geometry* knows coordinates and time, which move (e1
+//! carries their rates); *motion* knows speeds as well, and takes from geometry values and rates.
 
 use std::cell::{Cell, RefCell};
 
@@ -295,7 +295,8 @@ impl<'m> Evaluator<'m> {
             let (rate, value) =
                 (m.map(|row| row.map(HyperDual::rate)), m.map(|row| row.map(HyperDual::still)));
             let spin = product(&rate, &transposed(&value));
-            // antisymmetric for a rotation; the mean keeps what rounding and a quaternion's length disturb small
+            // antisymmetric for a rotation; the mean keeps what rounding and a quaternion's length disturb
+            // small
             let half = HyperDual::constant(0.5);
             [
                 half * (spin[2][1] - spin[1][2]),

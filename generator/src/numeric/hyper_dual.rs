@@ -99,7 +99,8 @@ impl HyperDual {
 
     /// angle of the point (`x`, `self`)
     pub fn atan2(self, x: HyperDual) -> Self {
-        // d atan2 = (x dy - y dx)/(x^2 + y^2): take the quotient whose divisor is larger, and put the branch right
+        // d atan2 = (x dy - y dx)/(x^2 + y^2): take the quotient whose divisor is larger, and put the branch
+        // right
         let angle = self.re.atan2(x.re);
         let shape = if x.re.abs() >= self.re.abs() { (self / x).atan() } else { -(x / self).atan() };
         HyperDual { re: angle, ..shape }

@@ -16,7 +16,8 @@ pub struct Undetermined {
     pub unknown: usize,
 }
 
-/// Solves `A x = B` for `count` unknowns. Each row holds the coefficients of the unknowns and then the right sides.
+/// Solves `A x = B` for `count` unknowns. Each row holds the coefficients of the unknowns and then the right
+/// sides.
 ///
 /// Gaussian elimination with the largest pivots; equations are scaled to their largest coefficient.
 pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize) -> Result<Solved, Undetermined> {
@@ -103,8 +104,8 @@ pub fn rank(mut rows: Vec<Vec<f64>>) -> usize {
     rank
 }
 
-/// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is. A diagonal entry is 0
-/// if it is no more than its `noise`.
+/// The factors of a symmetric matrix scaled to a unit diagonal: the column at which it is singular, if it is.
+/// A diagonal entry is 0 if it is no more than its `noise`.
 pub fn singular_column(matrix: &[Vec<f64>], noise: &[f64]) -> Option<usize> {
     let n = matrix.len();
     let noise_of = |i: usize| noise.get(i).copied().unwrap_or(0.0).max(0.0);

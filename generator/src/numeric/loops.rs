@@ -1,14 +1,17 @@
-//! Finds closed loops that are stated by velocities: pairs of points that a velocity constraint holds together.
+//! Finds closed loops that are stated by velocities: pairs of points that a velocity constraint holds
+//! together.
 
 use super::state::State;
 use super::views::{Vector3, Views, alike};
 use crate::model::mechanism::{EquationSides, Mechanism, PointId, Vector};
 
-/// The pairs of points that velocity constraints hold together, so that they must be one point from the beginning.
+/// The pairs of points that velocity constraints hold together, so that they must be one point from the
+/// beginning.
 ///
-/// `velocity(P) = velocity(Q)` is the rate of `position(P) = position(Q)`, and so integrable, if both velocities are those of the points
-/// as places: the rates of their positions. The velocity of a material point that is at the place only now (a tooth in mesh, a point of a
-/// rolling wheel) is another, and such a constraint says nothing of positions. Which it is shows at the state, or where that is singular near it.
+/// `velocity(P) = velocity(Q)` is the rate of `position(P) = position(Q)`, and so integrable, if both
+/// velocities are those of the points as places: the rates of their positions. The velocity of a material
+/// point that is at the place only now (a tooth in mesh, a point of a rolling wheel) is another, and such a
+/// constraint says nothing of positions. Which it is shows at the state, or where that is singular near it.
 pub fn held_together(m: &Mechanism, state: &State) -> Vec<[PointId; 2]> {
     let pairs: Vec<[PointId; 2]> =
         m.constraints.iter().filter_map(|equation| joined(&equation.sides)).collect();

@@ -1,9 +1,10 @@
-//! Evaluates a mechanism numerically at one state, without algebra. It is an independent check of the derived equations, and `check` finds
-//! mistakes with it that only numbers show.
+//! Evaluates a mechanism numerically at one state, without algebra. It is an independent check of the derived
+//! equations, and `check` finds mistakes with it that only numbers show.
 //!
-//! Positions and orientations are evaluated with numbers that carry derivatives, velocities are their rates, accelerations
-//! the rates of velocities; rates of coordinates and dependent speeds are solved for numerically. Everything is in SI units
-//! but quantities that the model declares in another unit, which are counted in that unit.
+//! Positions and orientations are evaluated with numbers that carry derivatives, velocities are their rates,
+//! accelerations the rates of velocities; rates of coordinates and dependent speeds are solved for
+//! numerically. Everything is in SI units but quantities that the model declares in another unit, which are
+//! counted in that unit.
 
 mod assembly;
 mod dynamics;

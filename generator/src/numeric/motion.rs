@@ -1,4 +1,5 @@
-//! Solves kinematical equations and constraints numerically: rates of coordinates and dependent speeds as affine functions of the independent speeds.
+//! Solves kinematical equations and constraints numerically: rates of coordinates and dependent speeds as
+//! affine functions of the independent speeds.
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;
@@ -14,7 +15,8 @@ pub fn constraint_rank(m: &Mechanism, state: &State) -> Result<usize, Failure> {
     Ok(rank(rows))
 }
 
-/// The constraints at a state by their coefficients: speeds, then the constant; a vector equation has three rows, along N.x, N.y, N.z.
+/// The constraints at a state by their coefficients: speeds, then the constant; a vector equation has three
+/// rows, along N.x, N.y, N.z.
 pub fn constraint_coefficients(m: &Mechanism, state: &State) -> Result<Vec<Vec<f64>>, Failure> {
     let coordinates = state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect();
     let time = HyperDual::constant(state.time);
@@ -132,8 +134,8 @@ impl<'m> Instant<'m> {
         Ok(solved.unknowns)
     }
 
-    /// What must vanish: the stated equations, declared motions less those that follow from positions, and for each quaternion
-    /// that its length stays.
+    /// What must vanish: the stated equations, declared motions less those that follow from positions, and
+    /// for each quaternion that its length stays.
     fn kinematical_residuals(&self, values: &Evaluator<'_>) -> Result<Vec<(HyperDual, Span)>, Failure> {
         let mut out = Vec::new();
         for equation in &self.m.kinematics {
@@ -202,7 +204,8 @@ impl<'m> Instant<'m> {
         })
     }
 
-    /// The constraints by their coefficients: speeds, then the constant; three rows for a vector equation, along N.x, N.y, N.z.
+    /// The constraints by their coefficients: speeds, then the constant; three rows for a vector equation,
+    /// along N.x, N.y, N.z.
     pub fn constraint_coefficients(&self) -> Result<Vec<Vec<f64>>, Failure> {
         let rates = self.solve_rates()?;
         let maps = Maps { rates, speeds: Vec::new() };

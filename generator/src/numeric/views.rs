@@ -1,4 +1,5 @@
-//! Evaluates a state several times: as it is, with all speeds zero, with one speed 1 and the others 0 (partial velocities), and moving on (accelerations).
+//! Evaluates a state several times: as it is, with all speeds zero, with one speed 1 and the others 0
+//! (partial velocities), and moving on (accelerations).
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;
@@ -129,7 +130,8 @@ impl<'m> Views<'m> {
         self.units.iter().map(|unit| Ok(sub3(values(of(unit)?), rest))).collect()
     }
 
-    /// The parts of a vector that is linear in the speeds: of each independent speed, then what is left where all are 0.
+    /// The parts of a vector that is linear in the speeds: of each independent speed, then what is left where
+    /// all are 0.
     pub fn vector_parts<'v>(
         &'v self,
         of: impl Fn(&Evaluator<'v>) -> Result<Triple, Failure>,
@@ -142,7 +144,8 @@ impl<'m> Views<'m> {
         Ok(parts)
     }
 
-    /// The parts of something linear in the speeds: of each independent speed, then what is left where all are 0.
+    /// The parts of something linear in the speeds: of each independent speed, then what is left where all
+    /// are 0.
     pub fn parts<'v>(
         &'v self,
         of: impl Fn(&Evaluator<'v>) -> Result<f64, Failure>,

@@ -1,4 +1,5 @@
-//! Builds a program operation by operation: equal operations become one value, constants are folded, negations are absorbed where possible.
+//! Builds a program operation by operation: equal operations become one value, constants are folded,
+//! negations are absorbed where possible.
 
 use std::collections::HashMap;
 

@@ -10,8 +10,8 @@ use super::passes;
 use super::quantity::Quantity;
 use super::straight_line::Program;
 
-/// Numbers of operations. A fused multiply-add counts as a multiplication and an addition; a negation as nothing where it is
-/// one of a sum, else as an addition.
+/// Numbers of operations. A fused multiply-add counts as a multiplication and an addition; a negation as
+/// nothing where it is one of a sum, else as an addition.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Count {
     /// multiplications

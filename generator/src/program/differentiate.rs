@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use super::graph::{Graph, Input, Node, NodeKind};
 use crate::arithmetic::Function;
 
-/// The derivatives of `nodes` along the direction in which each input changes as `rates` says (others do not).
+/// The derivatives of `nodes` along the direction in which each input changes as `rates` says (others do
+/// not).
 pub fn differentiate(graph: &mut Graph, nodes: &[Node], rates: &HashMap<Input, Node>) -> Vec<Node> {
     let needed = reachable(graph, nodes);
     let zero = graph.integer(0);

@@ -1,6 +1,7 @@
 //! The graph that a derivation builds: sums, products and functions, each once.
 //!
-//! Nodes refer only to earlier nodes, so the order of the nodes is an order of evaluation. Equal expressions are one node.
+//! Nodes refer only to earlier nodes, so the order of the nodes is an order of evaluation. Equal expressions
+//! are one node.
 
 use std::collections::HashMap;
 
@@ -99,8 +100,8 @@ impl Graph {
         reachable
     }
 
-    /// A node as it is: nothing is collected or flattened. Operands must be nodes of this graph. The passes use it to say which
-    /// factors or terms belong together.
+    /// A node as it is: nothing is collected or flattened. Operands must be nodes of this graph. The passes
+    /// use it to say which factors or terms belong together.
     pub fn intern(&mut self, value: NodeKind) -> Node {
         if let Some(&node) = self.known.get(&value) {
             return node;
@@ -190,7 +191,8 @@ impl Graph {
         if let [only] = rest[..] { only } else { self.intern(NodeKind::Sum(rest)) }
     }
 
-    /// Cancels a divisor against a factor that is the same, or whose parts are; says what number is left of it.
+    /// Cancels a divisor against a factor that is the same, or whose parts are; says what number is left of
+    /// it.
     fn cancel(&mut self, factors: &mut Vec<Node>) -> Option<Number> {
         for at in 0..factors.len() {
             let &NodeKind::Power(base, exponent) = self.kind(factors[at]) else { continue };
@@ -234,7 +236,8 @@ impl Graph {
         true
     }
 
-    /// The product of `factors`, numbers collected, ones dropped; 0 if one of them is 0. Divisors cancel against equal factors.
+    /// The product of `factors`, numbers collected, ones dropped; 0 if one of them is 0. Divisors cancel
+    /// against equal factors.
     pub fn product(&mut self, factors: impl IntoIterator<Item = Node>) -> Node {
         let mut constant = Number::integer(1);
         let mut rest = Vec::new();

@@ -17,8 +17,8 @@ pub struct Inputs {
     pub inputs: Vec<f64>,
     /// derivatives of the independent speeds; only inverse dynamics reads them
     pub accelerations: Vec<f64>,
-    /// direction of a linearisation: independent coordinates, independent speeds, named inputs; only the state tangent
-    /// reads it
+    /// direction of a linearisation: independent coordinates, independent speeds, named inputs; only the
+    /// state tangent reads it
     pub tangent: Vec<f64>,
 }
 

@@ -1,9 +1,10 @@
 //! Forms Jacobians of nodes in the same graph, by eliminating one intermediate node after the other.
 //!
-//! The derivatives of nodes with respect to their operands are the edges of a graph from the directions to the results. Eliminating a node joins every edge
-//! into it with every edge out of it; the edges that remain at the end are the Jacobian. Each order of elimination gives the same
-//! numbers: operands first is forward differentiation, results first is backward differentiation, and an order between both gathers
-//! the forces of a whole branch before they meet the velocities on which they depend.
+//! The derivatives of nodes with respect to their operands are the edges of a graph from the directions to
+//! the results. Eliminating a node joins every edge into it with every edge out of it; the edges that remain
+//! at the end are the Jacobian. Each order of elimination gives the same numbers: operands first is forward
+//! differentiation, results first is backward differentiation, and an order between both gathers the forces
+//! of a whole branch before they meet the velocities on which they depend.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,5 @@
-//! LDL^T factorisation and solution of symmetric positive definite systems as straight-line programs that skip structural zeros.
+//! LDL^T factorisation and solution of symmetric positive definite systems as straight-line programs that
+//! skip structural zeros.
 
 use super::graph::{Graph, Node};
 
@@ -48,7 +49,8 @@ pub fn factorise(graph: &mut Graph, matrix: &[Vec<Node>]) -> Factor {
     Factor { order, lower, inverse, pivots }
 }
 
-/// Eliminates first what is coupled to least: minimum degree, later rows first among equals (leaves of a chain).
+/// Eliminates first what is coupled to least: minimum degree, later rows first among equals (leaves of a
+/// chain).
 fn sparse_order(graph: &Graph, matrix: &[Vec<Node>]) -> Vec<usize> {
     let n = matrix.len();
     let mut coupled: Vec<Vec<bool>> =

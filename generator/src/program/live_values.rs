@@ -1,20 +1,24 @@
 //! Orders the operations of a routine so that fewer values are live at a time.
 //!
-//! The depth-first order of a slice computes what is shared where it is used first, and keeps it to the last use. In a long routine, as the accelerations of an arm,
-//! hundreds of values then wait at the same time, and the compiler stores and loads them. This order is made from the end: of the values whose uses are all placed,
-//! the one comes next that ends most lives and begins fewest. It is taken where it lowers the peak much. The operations stay the same, and so do the bits.
+//! The depth-first order of a slice computes what is shared where it is used first, and keeps it to the last
+//! use. In a long routine, as the accelerations of an arm, hundreds of values then wait at the same time, and
+//! the compiler stores and loads them. This order is made from the end: of the values whose uses are all
+//! placed, the one comes next that ends most lives and begins fewest. It is taken where it lowers the peak
+//! much. The operations stay the same, and so do the bits.
 
 use super::operation::Value;
 use super::straight_line::Program;
 
 /// Fewer live values than this are no burden.
 const FEW: usize = 64;
-/// The other order is taken where its peak is below this share of the peak, in percent. Close to it the compiler's own order of instructions decides more.
+/// The other order is taken where its peak is below this share of the peak, in percent. Close to it the
+/// compiler's own order of instructions decides more.
 const SHARE: usize = 75;
 
 impl Program {
-    /// The values of `order` (operands before their use) in an order with fewer live values, or as they are. `fetched` tells what is only loaded from memory where it is
-    /// used: inputs, numbers, values known at construction.
+    /// The values of `order` (operands before their use) in an order with fewer live values, or as they are.
+    /// `fetched` tells what is only loaded from memory where it is used: inputs, numbers, values known at
+    /// construction.
     pub fn with_few_live(&self, order: &[Value], fetched: impl Fn(Value) -> bool) -> Vec<Value> {
         let lives = Lives::new(self, order, &fetched);
         let first: Vec<usize> = (0..order.len()).collect();
@@ -110,7 +114,8 @@ impl Lives {
         order
     }
 
-    /// How good it is to place a value next, from the end: what is fetched first, then the lives that it ends less those it begins, then the latest asked for.
+    /// How good it is to place a value next, from the end: what is fetched first, then the lives that it ends
+    /// less those it begins, then the latest asked for.
     fn worth(&self, place: usize, live: &[bool], asked: &[usize]) -> (isize, usize, usize) {
         if self.fetched[place] {
             return (isize::MAX, 0, place);
@@ -153,7 +158,8 @@ mod tests {
         }
     }
 
-    /// Two sums of the same hundred terms: one after the other all terms wait for the second; together none does.
+    /// Two sums of the same hundred terms: one after the other all terms wait for the second; together none
+    /// does.
     #[test]
     fn sums_of_the_same_terms_are_made_together() {
         let derived = small(|graph| {

@@ -1,10 +1,12 @@
 //! Lowers a graph of sums, products and powers to binary operations.
 //!
 //! * Signs are kept beside the values and become additions or subtractions, not multiplications by -1.
-//! * Factors and terms are ordered by stage, so that what depends on parameters alone forms a value of its own and is hoisted.
+//! * Factors and terms are ordered by stage, so that what depends on parameters alone forms a value of its
+//!   own and is hoisted.
 //! * A divisor that occurs once divides; one that occurs more often is inverted once.
-//! * Sine and cosine of one angle are computed together. The rounding error of a sum of angles is computed too, and sine and cosine are corrected by it:
-//!   absolute angles of long chains would lose digits otherwise.
+//! * Sine and cosine of one angle are computed together. The rounding error of a sum of angles is computed
+//!   too, and sine and cosine are corrected by it: absolute angles of long chains would lose digits
+//!   otherwise.
 
 use std::collections::{HashMap, HashSet};
 
@@ -248,8 +250,8 @@ impl<'a> Lowering<'a> {
         Signed { value, negative }
     }
 
-    /// What rounding takes from a sum, exactly (Knuth's two-sum), with what it took from its terms; `None` for anything but
-    /// sums at run time. Follows [`Lowering::sum`], whose values it finds again.
+    /// What rounding takes from a sum, exactly (Knuth's two-sum), with what it took from its terms; `None`
+    /// for anything but sums at run time. Follows [`Lowering::sum`], whose values it finds again.
     fn lost(&mut self, node: Node) -> Option<Value> {
         let NodeKind::Sum(terms) = self.graph.kind(node) else { return None };
         let result = self.signed(node);
@@ -302,7 +304,8 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// Sine or cosine of a sum that lost something: of `a + e` they are `sin a + e cos a` and `cos a - e sin a`.
+    /// Sine or cosine of a sum that lost something: of `a + e` they are `sin a + e cos a` and `cos a - e sin
+    /// a`.
     fn restored(&mut self, sine: bool, angle: Value, lost: Value) -> Value {
         let (s, c) = (self.builder.sin_cos(true, angle), self.builder.sin_cos(false, angle));
         if sine {
@@ -386,7 +389,8 @@ mod tests {
     #[test]
     fn sines_of_sums_are_as_good_as_sines() {
         let program = lower(&angles());
-        // Coordinates are integers of 53 bits in these units; their sums are longer, and doubles must round them.
+        // Coordinates are integers of 53 bits in these units; their sums are longer, and doubles must round
+        // them.
         let unit = 2f64.powi(-48);
         let (mut bits, mut rounded) = (0x9e37_79b9_7f4a_7c15u64, 0);
         for _ in 0..200 {

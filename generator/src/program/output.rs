@@ -1,4 +1,5 @@
-//! Outputs (quantities with their values) and guards (values that must not be zero), of a derivation or of a program.
+//! Outputs (quantities with their values) and guards (values that must not be zero), of a derivation or of a
+//! program.
 
 use super::operation::Value;
 use super::quantity::Quantity;
@@ -21,7 +22,8 @@ pub struct Output<V = Value> {
 pub struct Guard<V = Value> {
     /// the value
     pub value: V,
-    /// what it is compared with: it counts as zero where |value| <= [`VANISHING`] |scale|; `None`: where it is exactly zero or not finite
+    /// what it is compared with: it counts as zero where |value| <= [`VANISHING`] |scale|; `None`: where it
+    /// is exactly zero or not finite
     pub scale: Option<V>,
     /// what is wrong when it vanishes, for instance `the constraints cannot be solved for u2, u3`
     pub message: String,

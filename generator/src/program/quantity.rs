@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-/// A quantity that a program computes. Shapes: `p` independent speeds, `d` dependent speeds, `n` coordinates, `c` configuration
-/// equations (as many as dependent coordinates). Matrices are stored by rows.
+/// A quantity that a program computes. Shapes: `p` independent speeds, `d` dependent speeds, `n` coordinates,
+/// `c` configuration equations (as many as dependent coordinates). Matrices are stored by rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// q' (n)
@@ -23,16 +23,17 @@ pub enum Quantity {
     #[doc(alias = "RNEA")]
     /// generalized forces (p) that must be added to the loads for the given u' (inputs `Acceleration`): M u' - forcing
     InverseDynamics,
-    /// derivative of the rates of the independent coordinates and of the accelerations along a direction (inputs
-    /// `Tangent`): a column of the linearised equations (number of independent coordinates + p)
+    /// derivative of the rates of the independent coordinates and of the accelerations along a direction
+    /// (inputs `Tangent`): a column of the linearised equations (number of independent coordinates + p)
     StateTangent,
-    /// u' and its derivatives by independent coordinates, independent speeds and named inputs: p rows; columns: the value, then one per
-    /// coordinate, speed and input. Dependent coordinates and speeds follow; parameters and time are held
+    /// u' and its derivatives by independent coordinates, independent speeds and named inputs: p rows;
+    /// columns: the value, then one per coordinate, speed and input. Dependent coordinates and speeds
+    /// follow; parameters and time are held
     AccelerationsDerivatives,
     /// inverse dynamics and its derivatives, likewise, for given u' (inputs `Acceleration`), which is held
     InverseDynamicsDerivatives,
-    /// derivatives of the rates of the independent coordinates (rows); columns: one per independent coordinate, independent speed and
-    /// named input
+    /// derivatives of the rates of the independent coordinates (rows); columns: one per independent
+    /// coordinate, independent speed and named input
     RatesDerivatives,
     /// kinetic energy (1), J
     KineticEnergy,
@@ -48,11 +49,13 @@ pub enum Quantity {
     Contact(u32, ContactQuantity),
     /// a quantity of a point (index into `Mechanism::points`)
     Point(u32, PointQuantity),
-    /// components of the axes of a frame in N (3 x 3: columns are the frame's x, y, z; index into `Mechanism::frames`)
+    /// components of the axes of a frame in N (3 x 3: columns are the frame's x, y, z; index into
+    /// `Mechanism::frames`)
     Orientation(u32),
 }
 
-/// Quantities of a contact. The contact basis is `normal`, `first`, `second`, right-handed (second = normal x first).
+/// Quantities of a contact. The contact basis is `normal`, `first`, `second`, right-handed (second = normal x
+/// first).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ContactQuantity {
     /// n along N.x, N.y, N.z (3)
@@ -80,10 +83,11 @@ pub enum ContactQuantity {
     Gap,
     /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
     PrescribedWork,
-    /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is one) along a direction
-    /// (inputs `Tangent`), where none of them depends on time by itself
+    /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is
+    /// one) along a direction (inputs `Tangent`), where none of them depends on time by itself
     Tangent,
-    /// the same quantities (rows) with their derivatives; columns: the value, then one per independent coordinate, independent speed and named input
+    /// the same quantities (rows) with their derivatives; columns: the value, then one per independent
+    /// coordinate, independent speed and named input
     Derivatives,
 }
 
@@ -96,7 +100,8 @@ pub enum PointQuantity {
     Velocity,
     /// partial velocities along N.x, N.y, N.z (3 x p)
     Jacobian,
-    /// acceleration in N along N.x, N.y, N.z (3) for given rates of the independent speeds (inputs `Acceleration`)
+    /// acceleration in N along N.x, N.y, N.z (3) for given rates of the independent speeds (inputs
+    /// `Acceleration`)
     Acceleration,
 }
 
@@ -190,7 +195,8 @@ impl fmt::Display for Quantity {
 }
 
 impl Quantity {
-    /// Whether it is a matrix whose columns solve systems of equations. Few values are alive while its entries are computed column by column.
+    /// Whether it is a matrix whose columns solve systems of equations. Few values are alive while its
+    /// entries are computed column by column.
     pub fn is_solved_by_columns(self) -> bool {
         matches!(self, Quantity::AccelerationsDerivatives)
     }

@@ -1,4 +1,5 @@
-//! Selects the operations of a program that a routine needs, in an order in which few values are live at a time.
+//! Selects the operations of a program that a routine needs, in an order in which few values are live at a
+//! time.
 
 use super::operation::{Operation, Stage, Value};
 use super::output::{Guard, Output};

@@ -1,15 +1,17 @@
-//! Appends the solution of systems of equations to a program: M X = -B for the columns of B, with the factor of M.
+//! Appends the solution of systems of equations to a program: M X = -B for the columns of B, with the factor
+//! of M.
 //!
-//! The columns are solved after all passes, each by the same operations in the same order. So a column costs no work of the passes, and emitted code may
-//! take several columns at a time (`emit/lanes.rs`).
+//! The columns are solved after all passes, each by the same operations in the same order. So a column costs
+//! no work of the passes, and emitted code may take several columns at a time (`emit/lanes.rs`).
 
 use super::build::Builder;
 use super::operation::{Operation, Value};
 use super::output::{Guard, Output};
 use super::straight_line::Program;
 
-/// What a solution is made of. The only output of the program holds, row by row in the order of elimination, `held` columns that stay as they are, the
-/// columns of B, and a square block: the entries of L below the diagonal of M = L D L^T, on the diagonal -1 / D.
+/// What a solution is made of. The only output of the program holds, row by row in the order of elimination,
+/// `held` columns that stay as they are, the columns of B, and a square block: the entries of L below the
+/// diagonal of M = L D L^T, on the diagonal -1 / D.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Solve {
     /// which row of M is eliminated at which step
@@ -96,8 +98,9 @@ impl Single {
     }
 }
 
-/// The inverse of M is symmetric, so that its entry in the column of one single number is that in the column of another, transposed. For the first rows of a
-/// column, while this holds: in which other column the entry is, and in which row of it. Both are computed from the last row on.
+/// The inverse of M is symmetric, so that its entry in the column of one single number is that in the column
+/// of another, transposed. For the first rows of a column, while this holds: in which other column the entry
+/// is, and in which row of it. Both are computed from the last row on.
 fn mirrors(single: &[Option<Single>], column: usize) -> Vec<(usize, usize)> {
     let Some(own) = single[column] else { return Vec::new() };
     let other = |row: usize| single.iter().position(|&other| other == Some(Single { row, ..own }));
@@ -130,8 +133,9 @@ mod tests {
     use super::*;
     use crate::interpret::Evaluator;
 
-    /// M X = -B with a matrix of four rows, whose second row is coupled to the first alone; `held` is a column that stays. Three columns of B are columns of
-    /// the identity matrix, so that entries of X are equal.
+    /// M X = -B with a matrix of four rows, whose second row is coupled to the first alone; `held` is a
+    /// column that stays. Three columns of B are columns of the identity matrix, so that entries of X are
+    /// equal.
     #[test]
     fn the_solution_satisfies_the_equations() {
         let m = [[5.0, 1.0, 2.0, 1.0], [1.0, 4.0, 0.0, 0.0], [2.0, 0.0, 6.0, 1.0], [1.0, 0.0, 1.0, 3.0]];

@@ -1,4 +1,5 @@
-//! Converts the input of a macro to tokens. Their positions are indices of the macro's tokens, so that a message can underline these.
+//! Converts the input of a macro to tokens. Their positions are indices of the macro's tokens, so that a
+//! message can underline these.
 
 use proc_macro2::{Delimiter, Span as RustSpan, TokenStream, TokenTree};
 

@@ -1,4 +1,5 @@
-//! Converts the text of a file to tokens, by those lexical rules of Rust that models need. It never fails: text that is not a token becomes a bad token.
+//! Converts the text of a file to tokens, by those lexical rules of Rust that models need. It never fails:
+//! text that is not a token becomes a bad token.
 
 use super::token::{Bad, Token, TokenKind, is_decimal};
 use crate::span::Span;

@@ -117,7 +117,8 @@ impl Parser<'_> {
         self.nesting.remove(open);
     }
 
-    /// Whether a second mechanism begins here, perhaps after its documentation. It is said once, and all of it is left alone.
+    /// Whether a second mechanism begins here, perhaps after its documentation. It is said once, and all of
+    /// it is left alone.
     fn another_mechanism(&mut self) -> bool {
         let docs = |kind| matches!(kind, TokenKind::InnerDoc | TokenKind::OuterDoc);
         let ahead = self.tokens[self.at..].iter().take_while(|token| docs(token.kind)).count();
@@ -246,7 +247,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Sections stand in one order. However many do not, that is one mistake: the fewest that must move are pointed out.
+    /// Sections stand in one order. However many do not, that is one mistake: the fewest that must move are
+    /// pointed out.
     fn order(&mut self) {
         let mut first: Vec<(Section, Span)> = Vec::new();
         for &(section, span) in &self.tree.sections {

@@ -36,7 +36,8 @@ pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
     (parser.tree, parser.diagnostics)
 }
 
-/// Words in which Cyrillic letters stand among Latin ones are refused, each once, and then read as they look: it is one mistake.
+/// Words in which Cyrillic letters stand among Latin ones are refused, each once, and then read as they look:
+/// it is one mistake.
 fn in_latin<'t>(tokens: &'t [Token], diagnostics: &mut Vec<Diagnostic>) -> Cow<'t, [Token]> {
     let is_mixed = |token: &Token| token.kind == TokenKind::Name && letters::mixed(&token.text).is_some();
     if !tokens.iter().any(is_mixed) {
@@ -104,8 +105,8 @@ fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
     matches!(bad, Bad::Number | Bad::NumberThenName | Bad::Quoted | Bad::RawName)
 }
 
-/// Brackets must have partners before anything can be said about what is between them. Gives the number of brackets around
-/// each token.
+/// Brackets must have partners before anything can be said about what is between them. Gives the number of
+/// brackets around each token.
 fn balanced(tokens: &[&Token]) -> Result<Vec<u32>, Box<Diagnostic>> {
     let mut open: Vec<(char, Span)> = Vec::new();
     let mut nesting = Vec::with_capacity(tokens.len());
@@ -329,8 +330,8 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// Passes over what cannot be read: to the sign that separates entries at this nesting (which is passed) or to the bracket
-    /// that closes them (which is not).
+    /// Passes over what cannot be read: to the sign that separates entries at this nesting (which is passed)
+    /// or to the bracket that closes them (which is not).
     pub(super) fn skip_entry(&mut self, separator: char, nesting: u32) {
         while let Some(token) = self.peek() {
             if self.nesting() < nesting {

@@ -47,7 +47,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Declares the names of an entry that could not be read: the first, and whatever stands before a `:`, `=` or `{`. Returns whether it begins with one.
+    /// Declares the names of an entry that could not be read: the first, and whatever stands before a `:`,
+    /// `=` or `{`. Returns whether it begins with one.
     fn broken(&mut self, start: usize, nesting: u32) -> bool {
         let passed = start..self.at.min(self.tokens.len());
         let (mut first, mut named) = (true, false);
@@ -178,7 +179,8 @@ impl Parser<'_> {
         if self.is_close() || begins { Ok(()) } else { Err(Lost) }
     }
 
-    /// A word before the name that an entry begins with, as in `let x = ..` or `const m: kg`: said, and passed over.
+    /// A word before the name that an entry begins with, as in `let x = ..` or `const m: kg`: said, and
+    /// passed over.
     pub(super) fn stray_word(&mut self, section: Section) {
         use Section::*;
         let begins = |kind| match section {

@@ -45,7 +45,8 @@ pub enum Bad {
 pub struct Token {
     /// what it is
     pub kind: TokenKind,
-    /// the text of a name or number, the words of a documentation line, the offending text of a bad token; else empty
+    /// the text of a name or number, the words of a documentation line, the offending text of a bad token;
+    /// else empty
     pub text: String,
     /// where it stands
     pub span: Span,

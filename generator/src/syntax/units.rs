@@ -31,9 +31,9 @@ impl Unit {
         self.number.to_f64() * std::f64::consts::PI.powi(self.pi_power)
     }
 
-    /// A size that quantities with this unit commonly have, counted in it: that of a mechanism of half a metre, a kilogram and a
-    /// quarter of a second, whose radii of gyration are an eighth of a metre; for numbers and angles a half. (A weight is 8 N then.)
-    /// Powers of 2 are the same on every machine.
+    /// A size that quantities with this unit commonly have, counted in it: that of a mechanism of half a
+    /// metre, a kilogram and a quarter of a second, whose radii of gyration are an eighth of a metre; for
+    /// numbers and angles a half. (A weight is 8 N then.) Powers of 2 are the same on every machine.
     pub fn typical(&self) -> f64 {
         let [metre, _, second] =
             self.dimension.exponents.map(|exponent| exponent.to_integer().clamp(-30, 30));

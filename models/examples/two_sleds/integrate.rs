@@ -53,8 +53,8 @@ pub fn slopes(contact: &Contact, mu: f64, phi: f64) -> (f64, f64, f64) {
 
 /// Integrates the collision up to the normal impulse `end`.
 ///
-/// With dI_n = s dtau the singular point s = 0 of (34) lies at infinity, where s is exponentially small; there the arc that
-/// follows takes over.
+/// With dI_n = s dtau the singular point s = 0 of (34) lies at infinity, where s is exponentially small;
+/// there the arc that follows takes over.
 pub fn course(contact: &Contact, mu: f64, end: f64) -> Course {
     let mut place = Place {
         phi: 0.0,

@@ -1,8 +1,8 @@
-//! The example of S. Djerassi, "Three-dimensional, one-point collision with friction" (2012), from its model file to its
-//! solved collisions, beside every number that the paper prints for it.
+//! The example of S. Djerassi, "Three-dimensional, one-point collision with friction" (2012), from its model
+//! file to its solved collisions, beside every number that the paper prints for it.
 //!
-//! `cargo run --release --example two_sleds`. Equation numbers are the paper's. The paper takes s = t x n in this example
-//! (and n x t elsewhere); this program prints s = t x n, too.
+//! `cargo run --release --example two_sleds`. Equation numbers are the paper's. The paper takes s = t x n in
+//! this example (and n x t elsewhere); this program prints s = t x n, too.
 
 mod integrate;
 mod paper;
@@ -136,7 +136,8 @@ fn positive(angle: f64) -> f64 {
     angle.rem_euclid(std::f64::consts::TAU)
 }
 
-/// The direction phi_hat in which slip is renewed, for mu < mu_c: (mu T + gamma) d = b with gamma > 0, see (44).
+/// The direction phi_hat in which slip is renewed, for mu < mu_c: (mu T + gamma) d = b with gamma > 0, see
+/// (44).
 fn renewal_direction(m: &ReducedMatrix<f64>, mu: f64) -> f64 {
     let direction = |gamma: f64| {
         let (tt, ts, ss) = (mu * m.tt + gamma, mu * m.ts, mu * m.ss + gamma);

@@ -1,8 +1,9 @@
-//! Numbers of twice the digits, as unevaluated sums of two numbers (Dekker 1971). Constructors compute in them what depends on parameters only, and
-//! round the result once.
+//! Numbers of twice the digits, as unevaluated sums of two numbers (Dekker 1971). Constructors compute in
+//! them what depends on parameters only, and round the result once.
 //!
-//! The relative error of products and quotients is a few units in the last of all places; that of sums is as many units relative to their terms. Rounding
-//! errors are computed by arithmetic operations and not by manipulating bits, so that numbers that carry derivatives can be components.
+//! The relative error of products and quotients is a few units in the last of all places; that of sums is as
+//! many units relative to their terms. Rounding errors are computed by arithmetic operations and not by
+//! manipulating bits, so that numbers that carry derivatives can be components.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -22,7 +23,8 @@ pub trait Component:
     fn is_finite(&self) -> bool;
     /// Square root.
     fn sqrt(self) -> Self;
-    /// 2^k + 1 for numbers of 2k or 2k - 1 binary digits: it splits a number into two halves whose products are exact.
+    /// 2^k + 1 for numbers of 2k or 2k - 1 binary digits: it splits a number into two halves whose products
+    /// are exact.
     fn splitter() -> Self;
 }
 
@@ -42,7 +44,8 @@ impl Component for f64 {
     }
 }
 
-/// `high + low`, where `low` is at most half a unit in the last place of `high`, and zero where `high` is not finite.
+/// `high + low`, where `low` is at most half a unit in the last place of `high`, and zero where `high` is not
+/// finite.
 #[derive(Clone, Copy, Debug)]
 pub struct DoubleDouble<T> {
     high: T,
@@ -63,8 +66,8 @@ fn split<T: Component>(a: T) -> (T, T) {
     (high, a - high)
 }
 
-/// What rounding took from `product = a * b` (Dekker 1971), without fused operations, which some targets have in software only. Not finite
-/// where a factor is so large that it cannot be split.
+/// What rounding took from `product = a * b` (Dekker 1971), without fused operations, which some targets have
+/// in software only. Not finite where a factor is so large that it cannot be split.
 #[inline(never)]
 fn lost_of_product<T: Component>(a: T, b: T, product: T) -> T {
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));

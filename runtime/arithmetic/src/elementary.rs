@@ -1,11 +1,13 @@
-//! Elementary functions by `libm`, not by the system: the same bits on every machine, with the standard library and without.
+//! Elementary functions by `libm`, not by the system: the same bits on every machine, with the standard
+//! library and without.
 
 /// Functions of doubles, to about a unit in the last place.
 pub mod double {
     pub use libm::{acos, asin, atan, atan2, exp, expm1 as exp_m1, log as ln, log1p as ln_1p, tan};
 }
 
-/// Functions of singles, to about a unit in the last place. Those that are not used in routines may compute in doubles.
+/// Functions of singles, to about a unit in the last place. Those that are not used in routines may compute
+/// in doubles.
 pub mod single {
     pub use libm::{
         acosf as acos, asinf as asin, atan2f as atan2, atanf as atan, coshf as cosh, expf as exp,

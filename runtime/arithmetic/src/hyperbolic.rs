@@ -1,8 +1,9 @@
 //! Hyperbolic functions of a double, to two units in the last place, the same bits on every machine.
 //!
-//! All three are computed from e^a - 1, which keeps its digits for small a. a is reduced by a multiple of log 2, which is stored in two parts; for the
-//! remainder, at most log(2)/2 in size, a Taylor series of twelve terms has an error below 2^-55. No operation is fused and no function of the system is
-//! called, so that the bits do not depend on machine or standard library.
+//! All three are computed from e^a - 1, which keeps its digits for small a. a is reduced by a multiple of log
+//! 2, which is stored in two parts; for the remainder, at most log(2)/2 in size, a Taylor series of twelve
+//! terms has an error below 2^-55. No operation is fused and no function of the system is called, so that the
+//! bits do not depend on machine or standard library.
 
 /// 1.5 * 2^52: adding it rounds to an integer, whose last bits are then those of the sum.
 const ROUNDER: f64 = 6755399441055744.0;

@@ -1,6 +1,8 @@
-//! The arithmetic that the interpreter (`hodograph-generator`) and generated code (`hodograph`) share, so that both compute the same bits:
+//! The arithmetic that the interpreter (`hodograph-generator`) and generated code (`hodograph`) share, so
+//! that both compute the same bits:
 //!
-//! * [`mul_add`]: a * b + c, with one rounding where the feature `fused` is on and the target has the instruction,
+//! * [`mul_add`]: a * b + c, with one rounding where the feature `fused` is on and the target has the
+//!   instruction,
 //! * [`trigonometry`]: sine and cosine of a double and of a single, the same on every machine,
 //! * [`elementary`]: the other elementary functions, likewise,
 //! * [`hyperbolic`]: hyperbolic functions of a double, likewise,

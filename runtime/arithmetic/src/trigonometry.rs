@@ -1,7 +1,9 @@
-//! Sine and cosine of a double together, to less than one unit in the last place, in forty operations without a branch, the same bits on every machine.
+//! Sine and cosine of a double together, to less than one unit in the last place, in forty operations without
+//! a branch, the same bits on every machine.
 //!
-//! The angle is reduced by a multiple of pi/2, which is stored in three parts. Sine and cosine of the remainder are polynomials (Chebyshev interpolation
-//! on [0, pi/4], error below 2^-55); the quadrant exchanges them and sets their signs. For angles beyond 2^19 the caller supplies a function.
+//! The angle is reduced by a multiple of pi/2, which is stored in three parts. Sine and cosine of the
+//! remainder are polynomials (Chebyshev interpolation on [0, pi/4], error below 2^-55); the quadrant
+//! exchanges them and sets their signs. For angles beyond 2^19 the caller supplies a function.
 
 pub mod single;
 
@@ -11,7 +13,8 @@ use crate::fused::{FUSED, mul_add};
 const LARGEST: f64 = 524288.0;
 /// 1.5 * 2^52: adding it rounds to an integer, whose last bits are then those of the sum.
 const ROUNDER: f64 = 6755399441055744.0;
-/// pi/2 in three parts, for products that are not rounded: the second has 33 bits, so that what the difference loses is a double.
+/// pi/2 in three parts, for products that are not rounded: the second has 33 bits, so that what the
+/// difference loses is a double.
 const HALF_PI: [f64; 3] = [core::f64::consts::FRAC_PI_2, 6.12323399538461e-17, 3.5215598651832e-27];
 /// pi/2 in three parts, of which the first two have 33 bits: their products with a multiple are exact.
 const HALF_PI_SHORT: [f64; 3] = [1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21];
@@ -63,7 +66,8 @@ pub fn is_within(x: f64) -> bool {
     x.abs() <= LARGEST
 }
 
-/// The difference of an angle and the nearest multiple of pi/2, the rounding error of the difference, and the multiple, of which the last two bits count.
+/// The difference of an angle and the nearest multiple of pi/2, the rounding error of the difference, and the
+/// multiple, of which the last two bits count.
 #[inline(always)]
 pub fn reduced(x: f64) -> (f64, f64, u64) {
     let shifted = mul_add(x, core::f64::consts::FRAC_2_PI, ROUNDER);
@@ -91,8 +95,8 @@ pub fn near_zero(r: f64, low: f64) -> (f64, f64) {
     (sine, cosine)
 }
 
-/// Exchanges sine and cosine and changes their signs according to the quadrant, without a table: what [`sin_cos`] makes of them, for loops over many
-/// angles.
+/// Exchanges sine and cosine and changes their signs according to the quadrant, without a table: what
+/// [`sin_cos`] makes of them, for loops over many angles.
 #[inline(always)]
 pub fn turned((sine, cosine): (f64, f64), turns: u64) -> (f64, f64) {
     let odd = (turns & 1).wrapping_neg();

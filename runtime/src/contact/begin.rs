@@ -1,7 +1,8 @@
 //! Finds all directions in which slip of a contact at rest may begin.
 //!
-//! Slip begins in the direction of the acceleration: (b - mu T d) lambda_n + beta_tan = gamma d with gamma > 0, and without normal acceleration. Eliminating
-//! lambda_n gives d' . (c + mu S d) = 0 with c = beta_tan - beta_n b and S = beta_n T - beta_tan b^T (in units where m_nn = 1), a quartic in the tangent of
+//! Slip begins in the direction of the acceleration: (b - mu T d) lambda_n + beta_tan = gamma d with gamma >
+//! 0, and without normal acceleration. Eliminating lambda_n gives d' . (c + mu S d) = 0 with c = beta_tan -
+//! beta_n b and S = beta_n T - beta_tan b^T (in units where m_nn = 1), a quartic in the tangent of
 //! half the angle.
 //!
 //! Theory: docs/theory.md, section 17.2.
@@ -25,8 +26,8 @@ pub(super) struct Beginning<T: Real> {
 /// At most so many: the quartic has four zeros.
 pub(super) const MOST: usize = 4;
 
-/// All ways in which slip may begin. `wedged` says that the force of sticking is not unique; directions without acceleration are then recognised with a wider
-/// tolerance.
+/// All ways in which slip may begin. `wedged` says that the force of sticking is not unique; directions
+/// without acceleration are then recognised with a wider tolerance.
 pub(super) fn beginnings<T: Real>(closed: &Closed<T>, wedged: bool) -> [Option<Beginning<T>>; MOST] {
     let mut found = [None; MOST];
     let mut count = 0;

@@ -10,22 +10,22 @@ use crate::ImpactError;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ContactError<T> {
-    /// The contact slides with f < 0 and is pressed together: any force presses it together more. What follows is an impact without
-    /// collision (Painleve's paradox).
+    /// The contact slides with f < 0 and is pressed together: any force presses it together more. What
+    /// follows is an impact without collision (Painleve's paradox).
     ImpactWithoutCollision {
         /// f (31), 1/kg, negative.
         f: T,
         /// beta_n, m/s^2, negative.
         free_acceleration: T,
     },
-    /// The contact slides with f = 0 and is pressed together: the force grows beyond all bounds (dynamic jam). What follows is an impact
-    /// without collision.
+    /// The contact slides with f = 0 and is pressed together: the force grows beyond all bounds (dynamic
+    /// jam). What follows is an impact without collision.
     Jam {
         /// beta_n, m/s^2, negative.
         free_acceleration: T,
     },
-    /// No force agrees with the mode, or with any mode. Tangential motion that no impulse can change (prescribed motion) may leave a contact
-    /// so.
+    /// No force agrees with the mode, or with any mode. Tangential motion that no impulse can change
+    /// (prescribed motion) may leave a contact so.
     NoMode {
         /// beta_n, m/s^2.
         free_acceleration: T,

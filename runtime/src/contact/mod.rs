@@ -1,7 +1,9 @@
-//! Lasting contact: mode, force and acceleration of a contact whose gap is closed and whose normal velocity is zero.
+//! Lasting contact: mode, force and acceleration of a contact whose gap is closed and whose normal velocity
+//! is zero.
 //!
-//! Under a contact force lambda (n, t, s) the relative velocity has the rate M lambda + beta, where M is the reduced matrix and beta, the free acceleration of
-//! the contact, is the rate without contact force. Coulomb's law allows four modes:
+//! Under a contact force lambda (n, t, s) the relative velocity has the rate M lambda + beta, where M is the
+//! reduced matrix and beta, the free acceleration of the contact, is the rate without contact force.
+//! Coulomb's law allows four modes:
 //!
 //! | mode | force | holds while |
 //! | --- | --- | --- |
@@ -10,8 +12,9 @@
 //! | stick (no slip) | the one without acceleration | lambda_n >= 0, abs(lambda_tan) <= mu lambda_n |
 //! | begin to slip (no slip yet) | as slide, d along the acceleration | lambda_n >= 0, acceleration along d positive |
 //!
-//! with f = m_nn - mu b.d (31) and b = (m_nt, m_ns). [`contact_mode`] selects the mode at an event. Between events [`contact_force`] keeps the mode, and its
-//! margins tell when the mode ends. Where mu |b| < m_nn at least one mode fits, and well below that bound exactly one. Where several fit, `selection` of the
+//! with f = m_nn - mu b.d (31) and b = (m_nt, m_ns). [`contact_mode`] selects the mode at an event. Between
+//! events [`contact_force`] keeps the mode, and its margins tell when the mode ends. Where mu |b| < m_nn at
+//! least one mode fits, and well below that bound exactly one. Where several fit, `selection` of the
 //! result says so; where a sliding contact has no finite force (Painleve's paradox) there is an error.
 //!
 //! Theory: docs/theory.md, section 17.
@@ -66,7 +69,8 @@ pub enum Selection {
     Unique,
     /// Several modes fit; this is the one whose force is nearest to the one before.
     SeveralModes,
-    /// The contact slides with f < 0 and beta_n >= 0: it may lift off or suffer an impact without collision. Lift-off is taken.
+    /// The contact slides with f < 0 and beta_n >= 0: it may lift off or suffer an impact without collision.
+    /// Lift-off is taken.
     Indeterminate,
 }
 
@@ -88,7 +92,8 @@ pub struct Margins<T> {
 }
 
 impl<T: Copy> Margins<T> {
-    /// The margins with their names `lambda_n` (N), `f` (1/kg), `cone` (N), `s` (m/s); `None` where the mode does not have one.
+    /// The margins with their names `lambda_n` (N), `f` (1/kg), `cone` (N), `s` (m/s); `None` where the mode
+    /// does not have one.
     #[inline]
     pub const fn named(&self) -> [(&'static str, Option<T>); 4] {
         [("lambda_n", self.lambda_n), ("f", self.f), ("cone", self.cone), ("s", self.s)]
@@ -123,14 +128,17 @@ pub struct ContactForce<T: nalgebra::Scalar> {
     pub direction: Option<Vector2<T>>,
     /// The quantities whose zeros end the mode.
     pub margins: Margins<T>,
-    /// Whether no other force gives this acceleration in this mode. It is false where the contact is wedged: then the least force is given.
+    /// Whether no other force gives this acceleration in this mode. It is false where the contact is wedged:
+    /// then the least force is given.
     pub force_is_unique: bool,
 }
 
-/// Selects the mode of a closed contact with v_n = 0, coming from no contact force (free flight, or an impact).
+/// Selects the mode of a closed contact with v_n = 0, coming from no contact force (free flight, or an
+/// impact).
 ///
-/// `free_acceleration` is beta (n, t, s), `slip` the tangential velocity (t, s); the contact counts as not slipping where it is exactly zero.
-/// Without slip all directions in which it may begin are computed, in some 10 000 instructions; the work is bounded.
+/// `free_acceleration` is beta (n, t, s), `slip` the tangential velocity (t, s); the contact counts as not
+/// slipping where it is exactly zero. Without slip all directions in which it may begin are computed, in some
+/// 10 000 instructions; the work is bounded.
 ///
 /// # Errors
 /// Each reason is a variant of [`ContactError`].
@@ -144,7 +152,8 @@ pub fn contact_mode<T: Scalar>(
     contact_mode_after(matrix, free_acceleration, slip, mu, &Vector3::zeros())
 }
 
-/// Selects the mode as [`contact_mode`] does; where several fit, the one whose force is nearest to the force before.
+/// Selects the mode as [`contact_mode`] does; where several fit, the one whose force is nearest to the force
+/// before.
 ///
 /// # Errors
 /// As [`contact_mode`].
@@ -159,14 +168,15 @@ pub fn contact_mode_after<T: Scalar>(
     select::select(matrix, free_acceleration, slip, mu, force_before)
 }
 
-/// Force and margins of a mode that is kept. A margin that is not positive says that the mode has ended; the force is then the one that
-/// would keep it.
+/// Force and margins of a mode that is kept. A margin that is not positive says that the mode has ended; the
+/// force is then the one that would keep it.
 ///
 /// `slip` is read while sliding only. [`ContactMode::BeginSlip`] selects the direction anew.
 ///
 /// # Errors
-/// [`ContactError::Jam`] or [`ContactError::ImpactWithoutCollision`] where a sliding contact has no force; [`ContactError::NoMode`] where no force
-/// keeps the contact from slipping, or none begins slip; [`ContactError::Input`].
+/// [`ContactError::Jam`] or [`ContactError::ImpactWithoutCollision`] where a sliding contact has no force;
+/// [`ContactError::NoMode`] where no force keeps the contact from slipping, or none begins slip;
+/// [`ContactError::Input`].
 #[inline]
 pub fn contact_force<T: Scalar>(
     mode: ContactMode,

@@ -28,10 +28,11 @@ impl<T: Real> Zeros<T> {
     }
 }
 
-/// The zeros in [-1, 1] of a polynomial with these coefficients, constant first, and the places where it touches zero up to rounding.
+/// The zeros in [-1, 1] of a polynomial with these coefficients, constant first, and the places where it
+/// touches zero up to rounding.
 ///
-/// Between two zeros of its derivative a polynomial is monotone, so that a bracket finds what is there: from the third derivative
-/// down to the polynomial itself. At most 10 brackets.
+/// Between two zeros of its derivative a polynomial is monotone, so that a bracket finds what is there: from
+/// the third derivative down to the polynomial itself. At most 10 brackets.
 pub(super) fn zeros<T: Real>(p: &[T; 5]) -> Zeros<T> {
     let mut size = T::zero();
     for coefficient in p {
@@ -84,8 +85,8 @@ fn derivative<T: Real>([_, b, c, d, e]: &[T; 5]) -> [T; 5] {
     [*b, two * *c, constant::<T>(3.0) * *d, constant::<T>(4.0) * *e, T::zero()]
 }
 
-/// The zero of a polynomial between two places between which it is monotone, by Newton's method, with bisection where that leaves the bracket or converges
-/// too slowly.
+/// The zero of a polynomial between two places between which it is monotone, by Newton's method, with
+/// bisection where that leaves the bracket or converges too slowly.
 fn between<T: Real>(q: &[T; 5], slope: &[T; 5], low: T, high: T) -> Option<T> {
     let (zero, half) = (T::zero(), constant::<T>(0.5));
     let (mut low, mut high) = (low.primal(), high.primal());
@@ -124,7 +125,8 @@ fn between<T: Real>(q: &[T; 5], slope: &[T; 5], low: T, high: T) -> Option<T> {
     Some(place)
 }
 
-/// Two more steps of Newton's method, after which the zero has the derivatives that follow from those of the coefficients.
+/// Two more steps of Newton's method, after which the zero has the derivatives that follow from those of the
+/// coefficients.
 fn polished<T: Real>(p: &[T; 5], slope: &[T; 5], mut place: T) -> T {
     for _ in 0..2 {
         let step = value(p, place) / value(slope, place);

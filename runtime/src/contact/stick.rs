@@ -49,8 +49,8 @@ pub(super) fn stuck<T: Real>(closed: &Closed<T>) -> Option<Stuck<T>> {
             unique: true,
         });
     }
-    // While the contact sticks, no normal force accelerates it: it is wedged. If its free acceleration is consistent with that, it stays at rest under
-    // every force in the cone of friction.
+    // While the contact sticks, no normal force accelerates it: it is wedged. If its free acceleration is
+    // consistent with that, it stays at rest under every force in the cone of friction.
     if free.abs() > lost * (closed.normal.abs() + length(&closed.b) * length(&pull)) {
         return None;
     }
@@ -64,7 +64,8 @@ pub(super) fn stuck<T: Real>(closed: &Closed<T>) -> Option<Stuck<T>> {
     })
 }
 
-/// The normal force of the least force (lambda, -(pull + hold lambda)) in the cone of friction, or the one nearest to it.
+/// The normal force of the least force (lambda, -(pull + hold lambda)) in the cone of friction, or the one
+/// nearest to it.
 fn wedged<T: Real>(mu: T, hold: &Vector2<T>, pull: &Vector2<T>) -> T {
     let zero = T::zero();
     let couple = hold.dot(pull);

@@ -1,4 +1,5 @@
-//! A closed contact in units where m_nn = 1 and the greatest component of the free acceleration is one, and its tangential equations T x = rhs.
+//! A closed contact in units where m_nn = 1 and the greatest component of the free acceleration is one, and
+//! its tangential equations T x = rhs.
 //!
 //! Theory: docs/theory.md, section 17.
 
@@ -51,8 +52,8 @@ impl<T: Real> Closed<T> {
         T::one() - self.mu * self.b.dot(d)
     }
 
-    /// Whether at most one mode fits without slip where f > 0 in all directions: A = T - beta_tan b^T / beta_n has a positive definite
-    /// symmetric part (theory, 17.3).
+    /// Whether at most one mode fits without slip where f > 0 in all directions: A = T - beta_tan b^T /
+    /// beta_n has a positive definite symmetric part (theory, 17.3).
     pub fn one_mode(&self) -> bool {
         if self.normal >= T::zero() {
             return false;
@@ -72,7 +73,8 @@ impl<T: Real> Closed<T> {
         constant::<T>(8.0) * T::default_epsilon() * (T::one() + self.mu * length(&self.b))
     }
 
-    /// The least-squares solution x of T x = rhs of least norm; a second pivot within rounding of zero counts as zero.
+    /// The least-squares solution x of T x = rhs of least norm; a second pivot within rounding of zero counts
+    /// as zero.
     pub fn hold(&self, rhs: &Vector2<T>) -> Held<T> {
         match self.block.eliminate(rhs) {
             // b^2 <= m_nn T, so where T underflows b counts as zero too.
@@ -84,7 +86,8 @@ impl<T: Real> Closed<T> {
         }
     }
 
-    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from slipping.
+    /// Rate of v_n per normal force while the tangential force -hold per normal force keeps the contact from
+    /// slipping.
     pub fn held_rate(&self, hold: &Vector2<T>) -> T {
         self.block.held_rate(&self.b, hold)
     }

@@ -1,4 +1,5 @@
-//! Dual numbers: a value with its derivatives with respect to `N` inputs. The solver runs on them to differentiate an outcome (forward mode).
+//! Dual numbers: a value with its derivatives with respect to `N` inputs. The solver runs on them to
+//! differentiate an outcome (forward mode).
 //!
 //! Theory: docs/theory.md, section 13.1.
 
@@ -6,7 +7,8 @@ mod operators;
 
 use crate::{Scalar, scalar::Real};
 
-/// A value and its partial derivatives. Comparisons use the value only, so that a calculation takes the same branches as without derivatives.
+/// A value and its partial derivatives. Comparisons use the value only, so that a calculation takes the same
+/// branches as without derivatives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Dual<T, const N: usize> {
     pub value: T,

@@ -1,4 +1,5 @@
-//! Sines and cosines of several angles at once, in loops without branches that compilers turn into vector instructions.
+//! Sines and cosines of several angles at once, in loops without branches that compilers turn into vector
+//! instructions.
 
 use core::{any::TypeId, array::from_fn, hint::black_box};
 
@@ -45,8 +46,9 @@ fn first<const N: usize, const LANES: usize>(
     (from_fn(|lane| sines[lane.min(LANES - 1)]), from_fn(|lane| cosines[lane.min(LANES - 1)]))
 }
 
-// The angles are arguments of their own, which come in registers. In an array the caller would store one after the other, and a processor cannot load
-// a vector from several stores before all of them, and everything in front of them, are done.
+// The angles are arguments of their own, which come in registers. In an array the caller would store one
+// after the other, and a processor cannot load a vector from several stores before all of them, and
+// everything in front of them, are done.
 
 #[inline(never)]
 fn of_two(a: f64, b: f64) -> ([f64; 2], [f64; 2]) {
@@ -101,8 +103,9 @@ fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     (sines, cosines)
 }
 
-/// Compilers unroll loops of this many turns before they look for vector instructions, and then find these only up to a dozen operations before a store.
-/// Intermediate results are therefore stored, which costs less than missing vector instructions would.
+/// Compilers unroll loops of this many turns before they look for vector instructions, and then find these
+/// only up to a dozen operations before a store. Intermediate results are therefore stored, which costs less
+/// than missing vector instructions would.
 const UNROLLED: usize = 4;
 
 #[cold]

@@ -1,4 +1,5 @@
-//! The arithmetic operations of generated code, for any scalar. For doubles they give the same bits as `hodograph_generator::arithmetic`.
+//! The arithmetic operations of generated code, for any scalar. For doubles they give the same bits as
+//! `hodograph_generator::arithmetic`.
 
 use core::any::TypeId;
 
@@ -14,7 +15,8 @@ pub fn number<T: Scalar>(number: f64) -> T {
     convert(number)
 }
 
-/// a * b + c, with one rounding where the feature `fused` is on and the target has the instruction (and never by a library call).
+/// a * b + c, with one rounding where the feature `fused` is on and the target has the instruction (and never
+/// by a library call).
 #[inline(always)]
 pub fn mul_add<T: Scalar>(a: T, b: T, c: T) -> T {
     if FUSED { a.mul_add(b, c) } else { a * b + c }
@@ -38,7 +40,8 @@ pub fn recip<T: Scalar>(a: T) -> T {
     T::one() / a
 }
 
-/// Sine and cosine. Those of doubles and singles are our own: faster than the system's, and the same everywhere.
+/// Sine and cosine. Those of doubles and singles are our own: faster than the system's, and the same
+/// everywhere.
 #[inline(always)]
 pub fn sin_cos<T: Scalar>(a: T) -> (T, T) {
     // Known at compile time; the conversions of a number to itself vanish.
@@ -88,8 +91,8 @@ functions! {
     abs => abs,
 }
 
-/// Functions of one number: those of doubles (first module) and singles (second) are the same on every machine, those of other numbers
-/// their own.
+/// Functions of one number: those of doubles (first module) and singles (second) are the same on every
+/// machine, those of other numbers their own.
 macro_rules! same_everywhere {
     ($($(#[$doc:meta])* $name:ident => $double:ident::$function:ident, $single:ident::$single_function:ident, $method:ident),* $(,)?) => {$(
         $(#[$doc])*

@@ -1,4 +1,5 @@
-//! Checks of generated routines: singular states, numbers that are not finite, impossible parameters, lengths of slices.
+//! Checks of generated routines: singular states, numbers that are not finite, impossible parameters, lengths
+//! of slices.
 
 use super::{mul_add, number};
 use crate::{ParameterError, Scalar, StateError};
@@ -13,7 +14,8 @@ pub fn vanishes_beside<T: Scalar>(value: T, scale: T) -> bool {
     !above && !is_infinite(value)
 }
 
-/// Whether a divisor is infinite. It is then large, not zero, and the quotient is 0; this is asked only where the scale is infinite too.
+/// Whether a divisor is infinite. It is then large, not zero, and the quotient is 0; this is asked only where
+/// the scale is infinite too.
 #[cold]
 #[inline(never)]
 fn is_infinite<T: Scalar>(value: T) -> bool {
@@ -36,7 +38,8 @@ pub fn singular<T: Scalar>(value: T, scale: T, what: &'static str) -> StateError
 
 /// Whether all values are finite, by one operation each and without branches.
 ///
-/// From `MANY` values on there are four sums: in one each operation waits for the one before, which takes longer than all else in a mass matrix.
+/// From `MANY` values on there are four sums: in one each operation waits for the one before, which takes
+/// longer than all else in a mass matrix.
 #[inline(always)]
 pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
     /// Fewer values cost more instructions in four sums than they save time.
@@ -58,7 +61,8 @@ pub fn all_finite<T: Scalar, const N: usize>(values: [T; N]) -> bool {
     (sums[0] + sums[1]) + (sums[2] + sums[3]) == T::zero()
 }
 
-/// Whether all values of a table are finite, likewise. Its rows are long: there are sixteen sums, since in fewer each would wait for the one before.
+/// Whether all values of a table are finite, likewise. Its rows are long: there are sixteen sums, since in
+/// fewer each would wait for the one before.
 #[inline(always)]
 pub fn all_rows_finite<T: Scalar, const WIDTH: usize, const ROWS: usize>(rows: &[[T; WIDTH]; ROWS]) -> bool {
     let mut sums = [T::zero(); 16];
@@ -86,9 +90,9 @@ pub fn check_mass<T: Scalar>(mass: T, body: &'static str) -> Result<(), Paramete
     }
 }
 
-/// Checks an inertia matrix with components xx, yy, zz, xy, yz, zx about the mass centre: it must be one of a body, that is
-/// `S = (trace / 2) 1 - I`, the second moment of its mass, must be positive semidefinite (up to rounding). The diagonal of S is
-/// a, b, c, its other entries are the opposites of xy, yz, zx.
+/// Checks an inertia matrix with components xx, yy, zz, xy, yz, zx about the mass centre: it must be one of a
+/// body, that is `S = (trace / 2) 1 - I`, the second moment of its mass, must be positive semidefinite (up to
+/// rounding). The diagonal of S is a, b, c, its other entries are the opposites of xy, yz, zx.
 #[inline(never)]
 pub fn check_inertia<T: Scalar>(components: [T; 6], body: &'static str) -> Result<(), ParameterError> {
     let [xx, yy, zz, xy, yz, zx] = components;

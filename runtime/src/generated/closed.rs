@@ -1,4 +1,5 @@
-//! Calls the functions of lasting contact for a contact of a generated module, and decides which slip counts as zero.
+//! Calls the functions of lasting contact for a contact of a generated module, and decides which slip counts
+//! as zero.
 //!
 //! Theory: docs/theory.md, section 18.12.
 
@@ -13,8 +14,8 @@ use crate::{
 /// The rounding error of a velocity, in rounding units of the sum of the sizes of its terms.
 const ROUNDINGS: f64 = 64.0;
 
-/// The largest slip that rounding alone can make where the exact slip is zero: the terms (partial velocities, by rows, times speeds, and prescribed motion)
-/// cancel up to their roundings.
+/// The largest slip that rounding alone can make where the exact slip is zero: the terms (partial velocities,
+/// by rows, times speeds, and prescribed motion) cancel up to their roundings.
 #[inline]
 pub fn slip_noise<T: Scalar>(partial_velocities: &[T], speeds: &[T], remainder: &Vector3<T>) -> T {
     let mut terms = remainder.iter().fold(T::zero(), |sum, part| sum + Real::abs(*part));
@@ -27,7 +28,8 @@ pub fn slip_noise<T: Scalar>(partial_velocities: &[T], speeds: &[T], remainder: 
     terms * constant::<T>(ROUNDINGS) * <T as Real>::default_epsilon()
 }
 
-/// Mode and force of a contact whose gap is closed and whose normal velocity counts as zero; slip below `noise` counts as none.
+/// Mode and force of a contact whose gap is closed and whose normal velocity counts as zero; slip below
+/// `noise` counts as none.
 ///
 /// # Errors
 ///

@@ -1,4 +1,5 @@
-//! The arithmetic operations of constructors, in numbers of twice the digits, under the same names as those of `arithmetic`.
+//! The arithmetic operations of constructors, in numbers of twice the digits, under the same names as those
+//! of `arithmetic`.
 //!
 //! Theory: docs/theory.md, section 16.4.
 

@@ -1,4 +1,5 @@
-//! Solves the collision of a contact of a generated module: turns the contact basis so that t lies along the slip, calls the solver, and turns the result back.
+//! Solves the collision of a contact of a generated module: turns the contact basis so that t lies along the
+//! slip, calls the solver, and turns the result back.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -8,7 +9,8 @@ use crate::{
     structure::{Structure, solve_structured},
 };
 
-/// The quantities of a contact in a state of the mechanism. The contact basis is `normal`, `first`, `second`, right-handed.
+/// The quantities of a contact in a state of the mechanism. The contact basis is `normal`, `first`, `second`,
+/// right-handed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<T> {
     /// n along N.x, N.y, N.z
@@ -21,9 +23,11 @@ pub struct Contact<T> {
     pub velocity: Vector3<T>,
     /// reduced matrix in the contact basis, 1/kg
     pub reduced: ReducedMatrix<T>,
-    /// the part of the velocity of approach that prescribed motion causes (the paper's v_t^R), in the contact basis, m/s
+    /// the part of the velocity of approach that prescribed motion causes (the paper's v_t^R), in the
+    /// contact basis, m/s
     pub remainder: Vector3<T>,
-    /// work of the prescribed motion per unit impulse, in the contact basis, m/s: the sum of m v_t . dv in (24)
+    /// work of the prescribed motion per unit impulse, in the contact basis, m/s: the sum of m v_t . dv in
+    /// (24)
     pub prescribed_work: Vector3<T>,
 }
 
@@ -48,8 +52,8 @@ pub struct Resolved<T: nalgebra::Scalar> {
     pub energy_change: T,
 }
 
-/// Cosine and sine of the angle from `first` to t. t lies along the slip of approach; without slip it is the projection of the
-/// first of N.x, N.y, N.z that is not within 30 degrees of the normal.
+/// Cosine and sine of the angle from `first` to t. t lies along the slip of approach; without slip it is the
+/// projection of the first of N.x, N.y, N.z that is not within 30 degrees of the normal.
 #[inline]
 pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
     let along = |direction: Vector2<T>| {

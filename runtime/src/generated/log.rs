@@ -1,7 +1,7 @@
 //! Implements `defmt::Format` for generated structs where the feature `defmt` is on, and nothing otherwise.
 //!
-//! defmt's macros name the crate `defmt`, which a user's crate need not have: they find the runtime's. Their format string must be one literal, which the generator
-//! writes.
+//! defmt's macros name the crate `defmt`, which a user's crate need not have: they find the runtime's. Their
+//! format string must be one literal, which the generator writes.
 
 /// Implements `Format` for a generated struct, or nothing.
 #[cfg(not(feature = "defmt"))]

@@ -1,4 +1,5 @@
-//! Functions and macros that generated modules call. Only generated code names them; the error types are public.
+//! Functions and macros that generated modules call. Only generated code names them; the error types are
+//! public.
 
 mod angles;
 mod arithmetic;
@@ -46,6 +47,7 @@ pub use crate::{
     __serialize_record as serialize_record,
 };
 
-/// Generated code names this constant, so that a module made by a generator of another version does not compile with this runtime.
+/// Generated code names this constant, so that a module made by a generator of another version does not
+/// compile with this runtime.
 #[doc(hidden)]
 pub const GENERATED_CODE_FORMAT_4: () = ();

@@ -1,4 +1,5 @@
-//! Implements arithmetic, names, units and text for the structs of numbers of a generated module, so that they can be used in loops.
+//! Implements arithmetic, names, units and text for the structs of numbers of a generated module, so that
+//! they can be used in loops.
 
 /// Implements for a record `+`, `-`, `*` and `/` by a number, `NAMES`, `UNITS`, `get`, `iter`, `Display`.
 #[doc(hidden)]

@@ -6,7 +6,8 @@ use nalgebra::{SMatrix, SVector, Vector3, Vector6};
 
 use crate::{CollisionError, ImpactDerivative, ImpactError, Saltation, Scalar, saltation};
 
-/// The rates of the state: of the independent coordinates, whose places among all coordinates are given, then of the `P` speeds.
+/// The rates of the state: of the independent coordinates, whose places among all coordinates are given, then
+/// of the `P` speeds.
 #[inline]
 pub fn state<T: Scalar, const K: usize, const C: usize, const P: usize, const N: usize>(
     rates: &[T; K],
@@ -19,7 +20,8 @@ pub fn state<T: Scalar, const K: usize, const C: usize, const P: usize, const N:
     )
 }
 
-/// The derivative of the jump of the state: the block of the speeds and the identity for coordinates, without the derivatives of speeds by coordinates.
+/// The derivative of the jump of the state: the block of the speeds and the identity for coordinates, without
+/// the derivatives of speeds by coordinates.
 #[inline]
 pub fn reset<T: Scalar, const P: usize, const N: usize>(speeds: &SMatrix<T, P, P>) -> SMatrix<T, N, N> {
     let first = N.saturating_sub(P);
@@ -33,8 +35,9 @@ pub fn reset<T: Scalar, const P: usize, const N: usize>(speeds: &SMatrix<T, P, P
     })
 }
 
-/// Adds the derivatives of the speeds after the collision with respect to one coordinate, and returns that of the gap. `change` holds the derivatives of
-/// velocity, reduced matrix, response and gap with respect to that coordinate, in this order.
+/// Adds the derivatives of the speeds after the collision with respect to one coordinate, and returns that of
+/// the gap. `change` holds the derivatives of velocity, reduced matrix, response and gap with respect to that
+/// coordinate, in this order.
 #[inline]
 pub fn by_coordinate<T: Scalar, const P: usize, const N: usize>(
     reset: &mut SMatrix<T, N, N>,
@@ -58,7 +61,8 @@ pub fn by_coordinate<T: Scalar, const P: usize, const N: usize>(
     at(9 + 3 * P)
 }
 
-/// The derivatives of velocity, reduced matrix, response and gap of a contact with respect to all coordinates.
+/// The derivatives of velocity, reduced matrix, response and gap of a contact with respect to all
+/// coordinates.
 pub type ByCoordinates<'a, T, const P: usize, const C: usize> =
     (&'a SMatrix<T, 3, C>, &'a SMatrix<T, 6, C>, &'a [SMatrix<T, P, 3>; C], &'a SVector<T, C>);
 

@@ -1,5 +1,5 @@
-//! Serialisation of generated structs with the feature `serde`: a map from field names, as the model spells them, to numbers. Missing fields take their
-//! defaults; unknown fields are errors.
+//! Serialisation of generated structs with the feature `serde`: a map from field names, as the model spells
+//! them, to numbers. Missing fields take their defaults; unknown fields are errors.
 
 /// Implements serde's traits for a generated struct of numbers, or nothing.
 #[cfg(not(feature = "serde"))]

@@ -72,7 +72,8 @@ impl Description {
     }
 }
 
-/// Scales quaternions, given by the numbers of their coordinates, to length 1; those of length 0 are not changed.
+/// Scales quaternions, given by the numbers of their coordinates, to length 1; those of length 0 are not
+/// changed.
 pub fn normalize_quaternions<T: Scalar>(coordinates: &mut [T], quaternions: &[[usize; 4]]) {
     for quaternion in quaternions {
         let parts = quaternion.iter().filter_map(|&index| coordinates.get(index));

@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 
 use crate::{ContactForce, ReducedMatrix};
 
-/// Mode, force and acceleration of a closed contact, with the numbers that they were computed from. The contact basis is `normal`,
-/// `first`, `second`: unit vectors, right-handed, called n, t, s.
+/// Mode, force and acceleration of a closed contact, with the numbers that they were computed from. The
+/// contact basis is `normal`, `first`, `second`: unit vectors, right-handed, called n, t, s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -18,7 +18,8 @@ pub struct ContactOutcome<T: nalgebra::Scalar = f64> {
     pub first: Vector3<T>,
     /// second tangential axis s along N.x, N.y, N.z
     pub second: Vector3<T>,
-    /// velocity of the striking point relative to what it touches, along n, t, s, m/s. The answer takes its first component as zero.
+    /// velocity of the striking point relative to what it touches, along n, t, s, m/s. The answer takes its
+    /// first component as zero.
     pub velocity: Vector3<T>,
     /// reduced mass matrix V M^-1 V^T (20)-(22) along n, t, s, 1/kg
     pub reduced: ReducedMatrix<T>,

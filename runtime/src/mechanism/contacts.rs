@@ -105,7 +105,8 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     ///
     /// # Errors
     ///
-    /// Those of [`Contacts::collide`], and [`ImpactError::BudgetExceeded`](crate::ImpactError::BudgetExceeded).
+    /// Those of [`Contacts::collide`], and
+    /// [`ImpactError::BudgetExceeded`](crate::ImpactError::BudgetExceeded).
     fn collide_within(
         &self,
         contact: usize,

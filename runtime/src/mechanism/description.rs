@@ -1,6 +1,8 @@
-//! Names, numbers and units of a mechanism's components: parameters, coordinates, speeds, inputs, points, frames and contacts.
+//! Names, numbers and units of a mechanism's components: parameters, coordinates, speeds, inputs, points,
+//! frames and contacts.
 
-/// The kinds of components of a mechanism that have a name and a number, counted from 0 in the order of the model.
+/// The kinds of components of a mechanism that have a name and a number, counted from 0 in the order of the
+/// model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
@@ -51,6 +53,7 @@ impl Kind {
 pub struct Component<'a> {
     /// the name, as the model spells it
     pub name: &'a str,
-    /// the unit that the model declares, as `kg*m^2`; `1` for a number without unit, empty for a point, frame or contact
+    /// the unit that the model declares, as `kg*m^2`; `1` for a number without unit, empty for a point,
+    /// frame or contact
     pub unit: &'a str,
 }

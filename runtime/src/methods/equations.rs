@@ -1,4 +1,5 @@
-//! The differential equations of a collision, (31)-(35), (45) and (46), in units where m_nn = 1 and v_n1 = -1, for the paper's methods.
+//! The differential equations of a collision, (31)-(35), (45) and (46), in units where m_nn = 1 and v_n1 =
+//! -1, for the paper's methods.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -148,7 +149,8 @@ impl Problem {
             let rate = if rate <= 64.0 * f64::EPSILON { 0.0 } else { rate };
             return Terminal { sticks: true, phi: 0.0, impulse: -back(hold), v_n: rate, s: 0.0 };
         }
-        // (mu T + gamma) d = b with |d| = 1 and gamma = g_hat > 0, by Newton's method on 1 / |d|, which rises to the root.
+        // (mu T + gamma) d = b with |d| = 1 and gamma = g_hat > 0, by Newton's method on 1 / |d|, which rises
+        // to the root.
         let denominators = [self.mu * values[0], self.mu * values[1]];
         let solution = |gamma: f64| {
             let part = |i: usize| if parts[i] == 0.0 { 0.0 } else { parts[i] / (denominators[i] + gamma) };

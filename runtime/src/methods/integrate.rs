@@ -13,17 +13,19 @@ use crate::{Impact, Path, ReducedMatrix, Surface};
 /// When lambda of (55) leaves zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Switch {
-    /// Where slip stops. Below the threshold the equations (34) are integrated over the variable tau, dI_n = s dtau, in which they have
-    /// no singular point, so the threshold has no effect on the result.
+    /// Where slip stops. Below the threshold the equations (34) are integrated over the variable tau, dI_n =
+    /// s dtau, in which they have no singular point, so the threshold has no effect on the result.
     AtRest,
-    /// Where slip falls below the threshold, as the paper says: what slip is left is dropped, and the result is off in proportion to it.
+    /// Where slip falls below the threshold, as the paper says: what slip is left is dropped, and the result
+    /// is off in proportion to it.
     AtThreshold,
 }
 
 /// How (55) is integrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Integration {
-    /// Error allowed per step, relative to the approach (in its own units of velocity, impulse and work); 1e-14 to 0.1.
+    /// Error allowed per step, relative to the approach (in its own units of velocity, impulse and work);
+    /// 1e-14 to 0.1.
     pub tolerance: f64,
     /// The paper's eps_s, as a part of the slip at the start; above 0, below 1.
     pub slip_threshold: f64,
@@ -61,8 +63,9 @@ impl Integration {
     }
 }
 
-/// Integrates (55) until the law ends the collision (section 4): sliding (34) with lambda = 0, then sticking (45) with lambda = -1 or renewal (46) with
-/// lambda = 1, by Dormand and Prince's method of order 5(4); the ends of compression and of restitution are located to the tolerance.
+/// Integrates (55) until the law ends the collision (section 4): sliding (34) with lambda = 0, then sticking
+/// (45) with lambda = -1 or renewal (46) with lambda = 1, by Dormand and Prince's method of order 5(4); the
+/// ends of compression and of restitution are located to the tolerance.
 ///
 /// The works are the integrals (35a) and (35b), independent of (23).
 ///
@@ -219,7 +222,8 @@ impl Walk<'_> {
         parts.iter().fold(0.0, |top, &x| if x <= top { top } else { x }) / self.options.tolerance
     }
 
-    /// Integrates until the law ends the collision (no step size is returned) or `next` says to leave (the next step size is).
+    /// Integrates until the law ends the collision (no step size is returned) or `next` says to leave (the
+    /// next step size is).
     fn run(
         &mut self,
         branch: Branch<'_>,
@@ -278,7 +282,8 @@ impl Walk<'_> {
     }
 }
 
-/// The point in (0, width] where a height rises through zero, and the state there: Newton's method inside a bracket.
+/// The point in (0, width] where a height rises through zero, and the state there: Newton's method inside a
+/// bracket.
 fn locate(
     state: impl Fn(f64) -> State,
     (from, width): (&State, f64),

@@ -1,4 +1,5 @@
-//! Partial integration and partial recursive summation (6.2, 6.3 of the paper): numerical while the contact slides, closed form afterwards.
+//! Partial integration and partial recursive summation (6.2, 6.3 of the paper): numerical while the contact
+//! slides, closed form afterwards.
 
 use nalgebra::Vector3;
 
@@ -20,8 +21,9 @@ pub enum Partial {
     Integrate(Integration),
 }
 
-/// Sums or integrates while the contact slides, and finishes in closed form after slip has stopped: (57), (58) if it sticks, (59), (60) if slip is
-/// renewed, with the procedures of 6.3 for the three hypotheses, (61) and (62) for Stronge's.
+/// Sums or integrates while the contact slides, and finishes in closed form after slip has stopped: (57),
+/// (58) if it sticks, (59), (60) if slip is renewed, with the procedures of 6.3 for the three hypotheses,
+/// (61) and (62) for Stronge's.
 ///
 /// # Errors
 /// As [`crate::solve`], else [`MethodError::Unfinished`] or [`MethodError::BadOption`].

@@ -72,7 +72,8 @@ impl Ending {
         state[self.watch % state.len()]
     }
 
-    /// The event between the present state and a later one, if there is any. An `End` may lie before an `Approach`.
+    /// The event between the present state and a later one, if there is any. An `End` may lie before an
+    /// `Approach`.
     #[inline]
     pub fn between(&self, to: &State) -> Option<Event> {
         if self.approaching {
@@ -145,7 +146,8 @@ impl Ending {
         }
     }
 
-    /// Follows the terminal arc to its end in closed form: (57)-(60), with (61) and (62) for Stronge's hypothesis.
+    /// Follows the terminal arc to its end in closed form: (57)-(60), with (61) and (62) for Stronge's
+    /// hypothesis.
     ///
     /// `slack` is how far from zero v_n may be where slip and normal velocity stop together.
     pub fn close(
@@ -182,7 +184,8 @@ impl Ending {
         let more = match self.law {
             Law::Newton => missing / arc.v_n,
             Law::Poisson => missing,
-            // (61): v_n2^2 = v_n^2 + 2 (1 / c_n) (Delta E_n2 - Delta E_n), and the impulse without cancellation.
+            // (61): v_n2^2 = v_n^2 + 2 (1 / c_n) (Delta E_n2 - Delta E_n), and the impulse without
+            // cancellation.
             Law::Stronge => 2.0 * missing / (at[V_N] + (at[V_N] * at[V_N] + 2.0 * arc.v_n * missing).sqrt()),
         };
         at = arc.after(problem.mu, &at, more);
@@ -190,7 +193,8 @@ impl Ending {
         Ok(at)
     }
 
-    /// Where slip and normal velocity vanish together and neither changes again, the error of the method must not decide which vanished first.
+    /// Where slip and normal velocity vanish together and neither changes again, the error of the method must
+    /// not decide which vanished first.
     pub fn settle(&mut self, arc: &Terminal, at: &mut State, slack: f64) {
         if arc.v_n <= 0.0 && at[V_N].abs() <= slack {
             at[V_N] = 0.0;

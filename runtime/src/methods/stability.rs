@@ -10,8 +10,8 @@ use crate::ReducedMatrix;
 pub struct Stability {
     /// The two eigenvalues that are not zero, in 1/(N s): (h' +- sqrt(h'^2 - 4 h g')) / (2 s).
     pub eigenvalues: [Complex<f64>; 2],
-    /// The largest step D in N s with |1 + lambda D| <= 1 for both; 0 if one of them grows whatever the step, infinite if
-    /// both are zero.
+    /// The largest step D in N s with |1 + lambda D| <= 1 for both; 0 if one of them grows whatever the
+    /// step, infinite if both are zero.
     pub largest_step: f64,
 }
 
@@ -22,10 +22,12 @@ impl Stability {
     }
 }
 
-/// The eigenvalues of (34) linearised about slip `s` (m/s, positive) in the direction `phi`, and the step they bound (6.1).
+/// The eigenvalues of (34) linearised about slip `s` (m/s, positive) in the direction `phi`, and the step
+/// they bound (6.1).
 ///
-/// Corrected: the paper prints 1/s for 1/(2 s), |1 - lambda D| for |1 + lambda D|, and calls the eigenvalues eigenvectors. As s goes to zero at
-/// phi_bar, where h = 0, one eigenvalue is zero and the other h' / s, so the bound reads 0 < -h' D / s < 2.
+/// Corrected: the paper prints 1/s for 1/(2 s), |1 - lambda D| for |1 + lambda D|, and calls the eigenvalues
+/// eigenvectors. As s goes to zero at phi_bar, where h = 0, one eigenvalue is zero and the other h' / s, so
+/// the bound reads 0 < -h' D / s < 2.
 pub fn stability(matrix: &ReducedMatrix<f64>, mu: f64, phi: f64, s: f64) -> Stability {
     let problem = Problem::scaled(matrix, mu, 1.0, s, phi);
     let (sin, cos) = phi.sin_cos();

@@ -18,8 +18,8 @@ const STEPS: u32 = 1_000_000;
 pub struct Summation {
     /// The paper's refinement factor k >= 1: steps to a unit of impulse.
     pub k: u32,
-    /// The unit of impulse in N s. The paper's is 1 N s, whatever the system. `None` takes -v_n1 / (4 m_nn), which is 1.05 N s for its two sleds and
-    /// does not depend on the units.
+    /// The unit of impulse in N s. The paper's is 1 N s, whatever the system. `None` takes -v_n1 / (4 m_nn),
+    /// which is 1.05 N s for its two sleds and does not depend on the units.
     pub unit: Option<f64>,
 }
 
@@ -43,10 +43,12 @@ impl Summation {
     }
 }
 
-/// Sums (56) with the step D = unit / k until the law ends the collision; where slip stops the step is cut short, and lambda goes to -1 (sticking)
-/// or 1 (renewal). Corrected in (56f) and (56h); within the last step, and where compression ends, all quantities are interpolated linearly.
+/// Sums (56) with the step D = unit / k until the law ends the collision; where slip stops the step is cut
+/// short, and lambda goes to -1 (sticking) or 1 (renewal). Corrected in (56f) and (56h); within the last
+/// step, and where compression ends, all quantities are interpolated linearly.
 ///
-/// The error falls like 1 / k. Near the end of slip steps larger than [`super::stability`] allows make it large.
+/// The error falls like 1 / k. Near the end of slip steps larger than [`super::stability`] allows make it
+/// large.
 ///
 /// # Errors
 /// As [`crate::solve`], else [`MethodError::Unfinished`] or [`MethodError::BadOption`].
@@ -141,10 +143,12 @@ pub(super) fn slide(
 /// The greatest angle that [`turned`] takes, in radians.
 const SMALL: f64 = 0.25;
 
-/// After so many turns sine and cosine are computed from the angle again, so that roundings of turns do not add up.
+/// After so many turns sine and cosine are computed from the angle again, so that roundings of turns do not
+/// add up.
 const TURNS: u32 = 256;
 
-/// Sine and cosine of an angle, given as such, plus a small one, whose series end where their rests are below rounding.
+/// Sine and cosine of an angle, given as such, plus a small one, whose series end where their rests are below
+/// rounding.
 #[inline]
 fn turned(sin: f64, cos: f64, by: f64) -> (f64, f64) {
     let z = by * by;

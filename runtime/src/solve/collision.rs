@@ -1,5 +1,5 @@
-//! Solves one collision: checks the input, follows the sliding arc and then the terminal arc in units where m_nn = 1 and v_n1 = -1, verifies
-//! the outcome and converts it to the units of the input.
+//! Solves one collision: checks the input, follows the sliding arc and then the terminal arc in units where
+//! m_nn = 1 and v_n1 = -1, verifies the outcome and converts it to the units of the input.
 //!
 //! Theory: docs/theory.md, sections 1 and 10.
 
@@ -19,12 +19,15 @@ use crate::{
     scalar::{Real, constant, larger, length},
 };
 
-/// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of separation out.
+/// Solves one collision: reduced matrix and velocity of approach (n, t, s) in, impulse and velocity of
+/// separation out.
 ///
-/// The reduced matrix is in 1/kg, velocities are in m/s, impulses in N s. n is the contact normal; t and s are any orthonormal pair in the contact plane.
-/// No slip at the start, slip that keeps its direction, singular matrices and repeated compression are all allowed.
+/// The reduced matrix is in 1/kg, velocities are in m/s, impulses in N s. n is the contact normal; t and s
+/// are any orthonormal pair in the contact plane. No slip at the start, slip that keeps its direction,
+/// singular matrices and repeated compression are all allowed.
 ///
-/// Every outcome is checked against the laws of impact before it is returned; one that violates them because of rounding becomes an error.
+/// Every outcome is checked against the laws of impact before it is returned; one that violates them because
+/// of rounding becomes an error.
 ///
 /// ```
 /// # use hodograph::{Law, ReducedMatrix, Surface, solve};
@@ -39,7 +42,8 @@ use crate::{
 /// ```
 ///
 /// # Errors
-/// Each reason is a variant of [`ImpactError`]; [`ImpactError::BudgetExceeded`] comes of [`crate::Budgeted`] surfaces alone. No number of an outcome is NaN or infinite.
+/// Each reason is a variant of [`ImpactError`]; [`ImpactError::BudgetExceeded`] comes of [`crate::Budgeted`]
+/// surfaces alone. No number of an outcome is NaN or infinite.
 #[inline]
 pub fn solve<T: crate::Scalar>(
     matrix: &ReducedMatrix<T>,
@@ -69,7 +73,8 @@ pub(crate) fn solve_real<T: Real>(
     collide(matrix, approach, -approach.x, surface, restitution, slide)
 }
 
-/// Solves an impact whose input has been checked. Velocities are divided by `speed`; `slide` follows the sliding arc.
+/// Solves an impact whose input has been checked. Velocities are divided by `speed`; `slide` follows the
+/// sliding arc.
 #[inline(always)]
 pub(crate) fn collide<T: Real>(
     matrix: &ReducedMatrix<T>,
@@ -147,8 +152,9 @@ pub(crate) fn collide<T: Real>(
     })
 }
 
-/// Converts normal impulses below eps^2 from the limited friction that was calculated with to the true friction, which is `1 / share` times as large.
-/// Impulses that small change v_n by nothing; they only measure how long friction acted (theory, section 1.2).
+/// Converts normal impulses below eps^2 from the limited friction that was calculated with to the true
+/// friction, which is `1 / share` times as large. Impulses that small change v_n by nothing; they only
+/// measure how long friction acted (theory, section 1.2).
 #[cold]
 #[inline(never)]
 fn in_true_friction<T: Real>(share: T, states: [Option<&mut State<T>>; 4]) {
@@ -158,7 +164,8 @@ fn in_true_friction<T: Real>(share: T, states: [Option<&mut State<T>>; 4]) {
     }
 }
 
-/// An error if a quantity of the outcome is not finite, or if the normal impulse is so small that it has lost digits (denormal).
+/// An error if a quantity of the outcome is not finite, or if the normal impulse is so small that it has lost
+/// digits (denormal).
 #[cold]
 #[inline(never)]
 fn in_range<T: Real>(
@@ -196,7 +203,8 @@ pub(crate) fn slips<T: Real>(slip: T) -> bool {
     slip > eps * eps * eps * eps
 }
 
-/// Slip and normal velocity vanish at the same impulse: compression ends. True if the collision ends with it (e = 0).
+/// Slip and normal velocity vanish at the same impulse: compression ends. True if the collision ends with it
+/// (e = 0).
 #[cold]
 #[inline(never)]
 fn stop_together<T: Real>(restitution: &mut Restitution<T>, state: &State<T>) -> bool {
@@ -213,8 +221,9 @@ fn after_slip<T: Real>(
     sensitivity: &mut Sensitivity,
 ) -> Option<(State<T>, Vector2<T>, Path)> {
     let Terminal { sticks, push, gain, rate, mu_c } = Terminal::of(contact);
-    // Where slip and normal velocity vanish together, rounding must not decide which does so first. A wrong sign of v_n does most harm where v_n
-    // hardly changes afterwards, or where compression has ended before: the bound is wider there.
+    // Where slip and normal velocity vanish together, rounding must not decide which does so first. A wrong
+    // sign of v_n does most harm where v_n hardly changes afterwards, or where compression has ended
+    // before: the bound is wider there.
     let again = restitution.compressions > 0 && state.velocity < T::zero();
     let more = constant::<T>(if again || rate <= constant(0.01) { 32.0 } else { 1.0 });
     if slips && state.velocity.abs() <= more * contact.together(state.normal) {

@@ -1,4 +1,5 @@
-//! A contact in the units of the solver: reduced matrix and coefficient of friction, and the rates f, g and h of (31)-(33) formed from them.
+//! A contact in the units of the solver: reduced matrix and coefficient of friction, and the rates f, g and h
+//! of (31)-(33) formed from them.
 //!
 //! Theory: docs/theory.md, section 2.
 
@@ -36,11 +37,12 @@ impl<T: Real> Contact<T> {
         Self { nn: T::one(), mu, b, tt, ts, ss, mu_b: b * mu, mu_tt: mu * tt, mu_ts: mu * ts, mu_ss: mu * ss }
     }
 
-    /// The contact to calculate with, and its mu over the true mu. The quotient is below one where products of the true mu would overflow and a
-    /// smaller mu is used.
+    /// The contact to calculate with, and its mu over the true mu. The quotient is below one where products
+    /// of the true mu would overflow and a smaller mu is used.
     ///
-    /// Friction of that size stops slip, or ends the collision, after an I_n of the order of 1/mu, during which nothing but friction counts.
-    /// A smaller mu gives the same arc with a larger I_n (docs/theory.md, section 1.2).
+    /// Friction of that size stops slip, or ends the collision, after an I_n of the order of 1/mu, during
+    /// which nothing but friction counts. A smaller mu gives the same arc with a larger I_n
+    /// (docs/theory.md, section 1.2).
     #[inline(always)]
     pub fn limited(matrix: &ReducedMatrix<T>, mu: T) -> (Self, T) {
         let mut used = mu;
@@ -82,7 +84,8 @@ impl<T: Real> Contact<T> {
         [self.normal_rate(d), dot(rate.x, d.x, rate.y, d.y), dot(rate.y, d.x, -rate.x, d.y)]
     }
 
-    /// g + h' = -mu d'.T d' (theory, 2.8), where d' is d turned by a right angle and h' the derivative of h with respect to phi.
+    /// g + h' = -mu d'.T d' (theory, 2.8), where d' is d turned by a right angle and h' the derivative of h
+    /// with respect to phi.
     #[inline]
     pub fn convergence(&self, d: &Vector2<T>) -> T {
         let twice = self.mu_ts + self.mu_ts;
@@ -101,13 +104,15 @@ impl<T: Real> Contact<T> {
         self.nn + self.mu_b.x.abs() + self.mu_b.y.abs()
     }
 
-    /// The size of v_n that is taken for zero where slip stops at this normal impulse: some roundings of its terms.
+    /// The size of v_n that is taken for zero where slip stops at this normal impulse: some roundings of its
+    /// terms.
     #[inline]
     pub fn together(&self, normal: T) -> T {
         constant::<T>(8.0) * T::default_epsilon() * fma(normal, self.normal_size(), T::one())
     }
 
-    /// Whether slip is no more than some roundings of the terms that have brought it down to this at this normal impulse.
+    /// Whether slip is no more than some roundings of the terms that have brought it down to this at this
+    /// normal impulse.
     #[inline]
     pub fn slip_is_rounding(&self, slip: T, normal: T) -> bool {
         slip <= constant::<T>(32.0) * T::default_epsilon() * fma(normal, self.slip_size(), T::one())
@@ -139,5 +144,6 @@ fn single<T: Real>() -> bool {
 /// The largest ordinary rate, in single and in double precision: 2^20 and 2^160.
 const WIDE: (f64, f64) = (1_048_576.0, 1_461_501_637_330_902_918_203_684_832_716_283_019_655_932_542_976.0);
 
-/// The largest product of mu and an entry that is calculated with, in single and in double precision: its square does not overflow.
+/// The largest product of mu and an entry that is calculated with, in single and in double precision: its
+/// square does not overflow.
 const MOST: (f64, f64) = (1e18, 1e150);

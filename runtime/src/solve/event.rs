@@ -1,5 +1,6 @@
-//! Events of a sliding arc. An event is the point where v_n, I_n or the normal work reaches a target value. This file predicts its place (`guess`)
-//! and computes the next step of the iteration towards it (`Correction`); `event_location` iterates.
+//! Events of a sliding arc. An event is the point where v_n, I_n or the normal work reaches a target value.
+//! This file predicts its place (`guess`) and computes the next step of the iteration towards it
+//! (`Correction`); `event_location` iterates.
 //!
 //! Theory: docs/theory.md, section 8.
 
@@ -69,14 +70,16 @@ impl<T: Real> Event<T> {
         (impulse * self.by_impulse(state.velocity, slope), curvature)
     }
 
-    /// The normal impulse from here to the event if f is linear in I_n with the rate `bend`; zero or less if the event does not come then.
+    /// The normal impulse from here to the event if f is linear in I_n with the rate `bend`; zero or less if
+    /// the event does not come then.
     #[inline]
     fn impulse(&self, point: &ArcPoint<T>, slope: T, bend: T) -> T {
         let zero = T::zero();
         let missing = -self.at(point);
         let v = match self {
             Self::Impulse(_) => return missing,
-            // With constant f the work is quadratic in I_n; the change of f adds a cubic term, taken for v_n = 0 at the beginning.
+            // With constant f the work is quadratic in I_n; the change of f adds a cubic term, taken for v_n
+            // = 0 at the beginning.
             Self::Work(_) => {
                 let v = point.state.velocity;
                 let square = dot(v, v, missing + missing, slope);
@@ -93,8 +96,9 @@ impl<T: Real> Event<T> {
         if square <= zero { zero } else { (v + v) / (slope + square.sqrt()) }
     }
 
-    /// A first guess of the length in lambda from here to the event (theory, 8.3); negative if none is expected. Slip is taken for a quadratic in I_n,
-    /// and the length is the integral of (q / e) / s over I_n.
+    /// A first guess of the length in lambda from here to the event (theory, 8.3); negative if none is
+    /// expected. Slip is taken for a quadratic in I_n, and the length is the integral of (q / e) / s over
+    /// I_n.
     #[inline]
     pub(super) fn guess(&self, arc: &SlidingArc<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
         let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
@@ -147,7 +151,8 @@ pub(super) struct Correction<T> {
     pub step: T,
     /// The step divided by the length in lambda over which the integrands change.
     pub size: T,
-    /// The size of (ln y')' is `curvature`, y' itself is `slope` (primes: derivatives with respect to lambda).
+    /// The size of (ln y')' is `curvature`, y' itself is `slope` (primes: derivatives with respect to
+    /// lambda).
     slope: T,
     curvature: T,
 }
@@ -174,7 +179,8 @@ impl<T: Real> Correction<T> {
         Self { step, slope, curvature: bend, size }
     }
 
-    /// Estimates of the errors of `second_order_step` (of third order in the length) and of `third_order_step` (of fourth order).
+    /// Estimates of the errors of `second_order_step` (of third order in the length) and of
+    /// `third_order_step` (of fourth order).
     #[inline]
     pub fn errors(&self, event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> (T, T) {
         let length = self.step.primal().abs();
@@ -214,7 +220,8 @@ impl<T: Real> Correction<T> {
     }
 }
 
-/// The step to the zero of the parabola with the same value, slope and curvature: `newton` is Newton's step x, `bent` is x (ln y')'.
+/// The step to the zero of the parabola with the same value, slope and curvature: `newton` is Newton's step
+/// x, `bent` is x (ln y')'.
 #[inline]
 fn square<T: Real>(newton: T, bent: T) -> T {
     let one = T::one();

@@ -1,5 +1,6 @@
-//! Follows one stretch of the sliding arc: to the next event (the end of compression or of restitution), to a turning point of v_n, or as far as one
-//! quadrature reaches, whichever comes first. Events are located by trials of `gauss16` inside a bracket.
+//! Follows one stretch of the sliding arc: to the next event (the end of compression or of restitution), to a
+//! turning point of v_n, or as far as one quadrature reaches, whichever comes first. Events are located by
+//! trials of `gauss16` inside a bracket.
 //!
 //! Theory: docs/theory.md, section 8.
 
@@ -25,7 +26,8 @@ pub(super) struct EventLocation<'a, T: Real> {
     /// Whether v_n rises, and the length in lambda to its turning point, if there is one ahead.
     pub rising: bool,
     pub turning_point: Option<T>,
-    /// Whether slip is so fast that the work from the balance of energy would lose digits; it is then integrated directly.
+    /// Whether slip is so fast that the work from the balance of energy would lose digits; it is then
+    /// integrated directly.
     pub fast: bool,
     pub panel: &'a mut Panel<T>,
     /// The greatest length in lambda of one quadrature.
@@ -33,8 +35,8 @@ pub(super) struct EventLocation<'a, T: Real> {
 }
 
 impl<T: Real> EventLocation<'_, T> {
-    /// Follows the arc to the next event or to the end of the stretch, and sets `to` to that point; true if the law ends the collision there. Once the panel is
-    /// over its budget, neither means anything.
+    /// Follows the arc to the next event or to the end of the stretch, and sets `to` to that point; true if
+    /// the law ends the collision there. Once the panel is over its budget, neither means anything.
     #[inline]
     pub fn follow(&mut self, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
         let zero = T::zero();
@@ -92,7 +94,8 @@ impl<T: Real> EventLocation<'_, T> {
             *to = last;
             return false;
         }
-        // The residual at the end is not negative, so the event lies on the stretch; if `find` misses it, it is at the end up to rounding.
+        // The residual at the end is not negative, so the event lies on the stretch; if `find` misses it, it
+        // is at the end up to rounding.
         self.find(&end, T::one(), limit, to);
         true
     }
@@ -106,11 +109,12 @@ impl<T: Real> EventLocation<'_, T> {
         self.arc.step(&self.from, length, self.fast, self.panel, to);
     }
 
-    /// Sets `to` to the event, where the residual rises (`sign` = 1) or falls (-1) through zero, and returns its length from the beginning; without an
-    /// event before `limit`, sets `to` to the end of the stretch and returns `None`.
+    /// Sets `to` to the event, where the residual rises (`sign` = 1) or falls (-1) through zero, and returns
+    /// its length from the beginning; without an event before `limit`, sets `to` to the end of the
+    /// stretch and returns `None`.
     ///
-    /// Each trial is one quadrature from the beginning of the stretch; the next trial follows by a method of third order inside a bracket. The last
-    /// steps are short and start from the last trial.
+    /// Each trial is one quadrature from the beginning of the stretch; the next trial follows by a method of
+    /// third order inside a bracket. The last steps are short and start from the last trial.
     #[inline(never)]
     fn find(&mut self, event: &Event<T>, sign: T, limit: T, to: &mut ArcPoint<T>) -> Option<T> {
         if event.at(&self.from) * sign >= T::zero() {
@@ -155,8 +159,9 @@ impl<T: Real> EventLocation<'_, T> {
                 return Some(x + self.polish(event, rates, correction, to));
             }
             let next = (x + correction.step).primal();
-            // Where the second trial still lies before the event, the end of the stretch decides whether there is one. Every fourth trial halves the bracket, in
-            // case the steps converge slowly.
+            // Where the second trial still lies before the event, the end of the stretch decides whether
+            // there is one. Every fourth trial halves the bracket, in case the steps converge
+            // slowly.
             let slow = if open { trial == 1 } else { trial % 4 == 3 };
             x = if next > lo && next < hi && !slow {
                 next
@@ -170,7 +175,8 @@ impl<T: Real> EventLocation<'_, T> {
         Some(x)
     }
 
-    /// Takes the last short steps, each from where the one before ended, and returns the sum of their lengths.
+    /// Takes the last short steps, each from where the one before ended, and returns the sum of their
+    /// lengths.
     #[inline]
     fn polish(
         &self,

@@ -1,5 +1,5 @@
-//! Grazing: keeps the least distance of the turning points of v_n from a value that ends compression or restitution. Where a turning point just reaches
-//! such a value the outcome jumps.
+//! Grazing: keeps the least distance of the turning points of v_n from a value that ends compression or
+//! restitution. Where a turning point just reaches such a value the outcome jumps.
 //!
 //! Theory: docs/theory.md, section 14.
 

@@ -1,4 +1,5 @@
-//! Checks the input of an impact: refuses what is wrong, with the reason, and removes from a reduced matrix what rounding added to it.
+//! Checks the input of an impact: refuses what is wrong, with the reason, and removes from a reduced matrix
+//! what rounding added to it.
 //!
 //! Theory: docs/theory.md, section 1.3.
 
@@ -11,8 +12,9 @@ use crate::{
 
 /// The uncertainty of an entry of a reduced matrix, in rounding units times the largest diagonal entry.
 ///
-/// An entry is a sum of products of partial velocities and their images under M^-1. Its rounding error is relative to the sizes of these
-/// terms, which are those of the largest diagonal entry, however small the entry itself is: a few units for each of some dozen terms.
+/// An entry is a sum of products of partial velocities and their images under M^-1. Its rounding error is
+/// relative to the sizes of these terms, which are those of the largest diagonal entry, however small the
+/// entry itself is: a few units for each of some dozen terms.
 const NOISE: f64 = 256.0;
 
 /// An error that says what is wrong with the input, if anything is.
@@ -25,7 +27,8 @@ pub(crate) fn check<T: Real>(
     checked(m, v, surface).map(|_| ())
 }
 
-/// An error that says what is wrong with the input of a collision, if anything is. Where rounding alone makes the matrix indefinite, the matrix to use instead.
+/// An error that says what is wrong with the input of a collision, if anything is. Where rounding alone makes
+/// the matrix indefinite, the matrix to use instead.
 #[inline]
 pub(crate) fn checked<T: Real>(
     m: &ReducedMatrix<T>,
@@ -42,7 +45,8 @@ pub(crate) fn checked<T: Real>(
     Ok(Some(matrix))
 }
 
-/// Whether contact and surface are valid by a margin so large that rounding does not matter; `false` decides nothing.
+/// Whether contact and surface are valid by a margin so large that rounding does not matter; `false` decides
+/// nothing.
 #[inline]
 fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
     let zero = T::zero();
@@ -66,7 +70,8 @@ fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
         && (det + surface.mu).is_finite()
 }
 
-/// An error that says what is wrong with contact, surface and numbers, if anything is; else the matrix without the effect of rounding.
+/// An error that says what is wrong with contact, surface and numbers, if anything is; else the matrix
+/// without the effect of rounding.
 #[cold]
 #[inline(never)]
 pub(super) fn check_closely<T: Real>(
@@ -97,8 +102,9 @@ fn without_noise<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, Impa
     }
 }
 
-/// The matrix with small diagonal entries raised, within their uncertainty, where a coupling demands it by more than its own uncertainty: beside a large
-/// entry, a small one decides by its rounding error alone how large the coupling may be.
+/// The matrix with small diagonal entries raised, within their uncertainty, where a coupling demands it by
+/// more than its own uncertainty: beside a large entry, a small one decides by its rounding error alone how
+/// large the coupling may be.
 #[cold]
 #[inline(never)]
 fn raised<T: Real>(m: &ReducedMatrix<T>) -> ReducedMatrix<T> {
@@ -124,8 +130,8 @@ fn uncertainty<T: Real>(m: &ReducedMatrix<T>) -> T {
     constant::<T>(NOISE) * T::default_epsilon() * larger(larger(m.nn, m.tt), m.ss)
 }
 
-/// The matrix, if it is positive semidefinite up to rounding. An entry m_ij may exceed sqrt(m_ii m_jj) by its uncertainty and is then set to that
-/// bound, which is zero where m_ii or m_jj is zero.
+/// The matrix, if it is positive semidefinite up to rounding. An entry m_ij may exceed sqrt(m_ii m_jj) by its
+/// uncertainty and is then set to that bound, which is zero where m_ii or m_jj is zero.
 fn bounded<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactError<T>> {
     let (zero, one) = (T::zero(), T::one());
     let noise = uncertainty(m);
@@ -135,7 +141,8 @@ fn bounded<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactErro
         _ => Err(ImpactError::NotPositiveSemidefinite { minor }),
     };
     let (nn, tt, ss) = (diagonal(m.nn)?, diagonal(m.tt)?, diagonal(m.ss)?);
-    // Roots before products, which may overflow or underflow. The minors are those of the correlations, which have no units.
+    // Roots before products, which may overflow or underflow. The minors are those of the correlations, which
+    // have no units.
     let (n, t, s) = (nn.sqrt(), tt.sqrt(), ss.sqrt());
     let slack = T::default_epsilon().sqrt() * constant(0.0625);
     let bounded = |x: T, p: T, q: T| {
@@ -161,7 +168,8 @@ fn bounded<T: Real>(m: &ReducedMatrix<T>) -> Result<ReducedMatrix<T>, ImpactErro
     if det >= -slack {
         return Ok(matrix);
     }
-    // Each correlation is uncertain by noise / sqrt(m_ii m_jj); the determinant by at most four times their sum.
+    // Each correlation is uncertain by noise / sqrt(m_ii m_jj); the determinant by at most four times their
+    // sum.
     let uncertain = |p: T, q: T| if p * q > zero { noise / (p * q) } else { zero };
     let sum = uncertain(n, t) + uncertain(n, s) + uncertain(t, s);
     if det < -slack - constant::<T>(4.0) * sum {

@@ -1,9 +1,11 @@
-//! Finds the invariant directions on either side of a direction of slip: the zeros of h, in which slip keeps its direction.
+//! Finds the invariant directions on either side of a direction of slip: the zeros of h, in which slip keeps
+//! its direction.
 //!
-//! In the principal axes of T, mirrored so that b = (p, q) has positive components, h = q cos phi - p sin phi + delta sin phi cos phi, where delta is mu
-//! times the difference of the principal values. The first quadrant holds one stable zero and the third one unstable zero; the fourth holds one of each
-//! or none; the second none. At a zero d is parallel to b - mu T d, so that d = (p / (eta + delta), q / eta) for some eta; abs(d) = 1 is a secular
-//! equation for eta.
+//! In the principal axes of T, mirrored so that b = (p, q) has positive components, h = q cos phi - p sin phi + delta
+//! sin phi cos phi, where delta is mu times the difference of the principal values. The first
+//! quadrant holds one stable zero and the third one unstable zero; the fourth holds one of each or none; the
+//! second none. At a zero d is parallel to b - mu T d, so that d = (p / (eta + delta), q / eta) for some eta;
+//! abs(d) = 1 is a secular equation for eta.
 //!
 //! Theory: docs/theory.md, section 3.
 
@@ -14,13 +16,15 @@ use crate::scalar::{Real, constant, dot, fma, larger, length};
 /// The greatest number of Newton steps; a handful suffices unless two zeros are about to merge.
 const STEPS: u32 = 32;
 
-/// The relative change of eta at which the iteration ends: the next step would not change the first half of the digits.
+/// The relative change of eta at which the iteration ends: the next step would not change the first half of
+/// the digits.
 const ROUGH: f64 = 1e-4;
 
-/// The zeros of h next to the direction `d`: the unstable one that slip turns away from, and the stable one that it turns to.
+/// The zeros of h next to the direction `d`: the unstable one that slip turns away from, and the stable one
+/// that it turns to.
 ///
-/// `turn` is h at d, not zero. `b` is (m_nt, m_ns), `nu` is mu times the deviator of T, ((m_tt - m_ss) / 2, m_ts). The vectors returned are right to half
-/// the digits, and their length is one to half the digits only.
+/// `turn` is h at d, not zero. `b` is (m_nt, m_ns), `nu` is mu times the deviator of T, ((m_tt - m_ss) / 2,
+/// m_ts). The vectors returned are right to half the digits, and their length is one to half the digits only.
 #[inline]
 pub(super) fn neighbours<T: Real>(
     b: &Vector2<T>,
@@ -45,7 +49,8 @@ pub(super) fn neighbours<T: Real>(
     let (sx, sy) = (sign(pull.x), sign(pull.y));
     let slip = Vector2::new(slip.x * sx, slip.y * sy);
     let forward = turn * sx * sy > zero;
-    // Where a component of b vanishes a zero lies on an axis; replacing it by a tiny number keeps the zero inside its quadrant.
+    // Where a component of b vanishes a zero lies on an axis; replacing it by a tiny number keeps the zero
+    // inside its quadrant.
     let eps = T::default_epsilon();
     let none = eps * eps * (pull.x.abs() + pull.y.abs() + delta);
     let (p, q) = (larger(pull.x.abs(), none), larger(pull.y.abs(), none));
@@ -66,7 +71,8 @@ pub(super) fn neighbours<T: Real>(
         let (x, y) = paired(p, q, delta);
         Vector2::new(x, -y)
     };
-    // h' changes sign once in the fourth quadrant, between its zeros: its sign tells on which side of them the direction lies.
+    // h' changes sign once in the fourth quadrant, between its zeros: its sign tells on which side of them
+    // the direction lies.
     let slope =
         fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
     let found = if forward && crowded(p, q, delta) {
@@ -86,7 +92,8 @@ pub(super) fn neighbours<T: Real>(
     })
 }
 
-/// Whether the fourth quadrant holds zeros: whether b lies inside the astroid p^(2/3) + q^(2/3) = delta^(2/3).
+/// Whether the fourth quadrant holds zeros: whether b lies inside the astroid p^(2/3) + q^(2/3) =
+/// delta^(2/3).
 #[inline]
 fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
     let inside = fma(delta, delta, -dot(p, p, q, q));
@@ -94,8 +101,8 @@ fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
     inside > T::zero() && inside * inside * inside > constant::<T>(27.0) * product * product
 }
 
-/// The direction (p / (eta + delta), q / eta) of length one (to half the digits) with eta > 0, by Newton's method on 1 / length = 1, which converges from
-/// below (theory, 3.2).
+/// The direction (p / (eta + delta), q / eta) of length one (to half the digits) with eta > 0, by Newton's
+/// method on 1 / length = 1, which converges from below (theory, 3.2).
 #[inline]
 fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
@@ -118,7 +125,8 @@ fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     (x, y)
 }
 
-/// The direction (p / eta, q / (delta - eta)) of length one (to half the digits) with the lesser such eta in (0, delta).
+/// The direction (p / eta, q / (delta - eta)) of length one (to half the digits) with the lesser such eta in
+/// (0, delta).
 #[inline]
 fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
@@ -163,8 +171,8 @@ pub(super) struct Zero<T: Real> {
 }
 
 impl<T: Real> Zero<T> {
-    /// The zero next to the direction `v` at which h' has the given sign. Steps solve the quadratic approximation of h, so that another zero close by is not
-    /// taken for it.
+    /// The zero next to the direction `v` at which h' has the given sign. Steps solve the quadratic
+    /// approximation of h, so that another zero close by is not taken for it.
     #[inline(always)]
     pub fn close(b: &Vector2<T>, nu: &Vector2<T>, mut v: Vector2<T>, sign: T) -> Self {
         let enough = if T::refined() { constant::<T>(8.0) * T::default_epsilon() } else { constant(3e-8) };
@@ -177,7 +185,8 @@ impl<T: Real> Zero<T> {
             let bend = fma(constant::<T>(4.0), double.y, -along.y);
             let turn = to_zero(h * sign, slope, bend * sign);
             let size = turn.abs();
-            // A large step is NaN or leads to another zero and is not taken; nor is the last one, since the steps are rounding where zeros merge.
+            // A large step is NaN or leads to another zero and is not taken; nor is the last one, since the
+            // steps are rounding where zeros merge.
             if size <= constant(0.1) && left > 0 {
                 let along = fma(turn * turn, constant(-0.5), T::one());
                 v = Vector2::new(dot(v.x, along, -v.y, turn), dot(v.y, along, v.x, turn));
@@ -194,8 +203,8 @@ impl<T: Real> Zero<T> {
     }
 }
 
-/// The unit vector at half the angle of `v`, counted from the axis in the sense of `side` (1 anticlockwise, -1 clockwise); this angle is at most 240 degrees
-/// (theory, 3.3).
+/// The unit vector at half the angle of `v`, counted from the axis in the sense of `side` (1 anticlockwise,
+/// -1 clockwise); this angle is at most 240 degrees (theory, 3.3).
 #[inline(always)]
 fn halved<T: Real>(v: &Vector2<T>, side: T) -> Vector2<T> {
     let (one, half) = (T::one(), constant::<T>(0.5));
@@ -214,7 +223,8 @@ pub(super) struct Near<T> {
 }
 
 impl<T: Real> Near<T> {
-    /// The zero next to the approximate zero `rough`, and the unit vector at half the angle to it. `b` and `nu` as for [`neighbours`].
+    /// The zero next to the approximate zero `rough`, and the unit vector at half the angle to it. `b` and
+    /// `nu` as for [`neighbours`].
     #[inline(always)]
     pub fn exact(&self, [b, nu, rough]: [&Vector2<T>; 3], side: T, sign: T) -> (Vector2<T>, Zero<T>) {
         let zero = Zero::close(b, nu, rough / length(rough), sign);
@@ -228,7 +238,8 @@ impl<T: Real> Near<T> {
         (halved(direction, side), zero)
     }
 
-    /// The unit vectors at half the angle and at the angle of a zero near the axis. The angle has the same relative error as h.
+    /// The unit vectors at half the angle and at the angle of a zero near the axis. The angle has the same
+    /// relative error as h.
     #[inline(always)]
     pub fn beside(&self, v: &Vector2<T>, side: T, sign: T) -> (Vector2<T>, Vector2<T>) {
         let one = T::one();
@@ -254,7 +265,8 @@ impl<T: Real> Near<T> {
     }
 }
 
-/// The zero x of `value` + `slope` x + `bend` x^2 / 2 at which this rises, or its extremum if it has no zero. `slope` must be positive up to rounding.
+/// The zero x of `value` + `slope` x + `bend` x^2 / 2 at which this rises, or its extremum if it has no zero.
+/// `slope` must be positive up to rounding.
 #[inline(always)]
 fn to_zero<T: Real>(value: T, slope: T, bend: T) -> T {
     let two = constant::<T>(2.0);
@@ -293,7 +305,8 @@ mod tests {
         }
     }
 
-    /// Half angles to both zeros next to the axis: their doubles are zeros of h, on the side on which they are sought, with the right sign of h'.
+    /// Half angles to both zeros next to the axis: their doubles are zeros of h, on the side on which they
+    /// are sought, with the right sign of h'.
     #[test]
     fn half_angles_lead_to_the_zeros_on_either_side() {
         let (mut far, mut near) = (0, 0);

@@ -1,4 +1,5 @@
-//! Arrays of four numbers that undergo the same operations, so that the compiler keeps them in one vector register; their exponential.
+//! Arrays of four numbers that undergo the same operations, so that the compiler keeps them in one vector
+//! register; their exponential.
 //!
 //! Theory: docs/theory.md, section 5.
 
@@ -57,9 +58,11 @@ const COTH: [f64; 7] = [
     1.0 / 6.0,
 ];
 
-/// The exponential. For abs(x) up to nine its error is a few rounding units of max(e^x, 1); up to twelve it is 5e-14 of that.
+/// The exponential. For abs(x) up to nine its error is a few rounding units of max(e^x, 1); up to twelve it
+/// is 5e-14 of that.
 ///
-/// E = e^y - 1 = 2 y / (y coth(y / 2) - y) for y = x / 16, and then four times E <- (1 + E)^2 - 1 = E (E + 2), which loses no digits.
+/// E = e^y - 1 = 2 y / (y coth(y / 2) - y) for y = x / 16, and then four times E <- (1 + E)^2 - 1 = E (E +
+/// 2), which loses no digits.
 #[inline(always)]
 pub(super) fn exp<T: Real>(x: Lanes<T>) -> Lanes<T> {
     let two = all(constant(2.0));

@@ -1,7 +1,9 @@
-//! Takes a short step along the sliding arc by collocation with five Lobatto nodes: from the last trial of `event_location` to the event.
+//! Takes a short step along the sliding arc by collocation with five Lobatto nodes: from the last trial of
+//! `event_location` to the event.
 //!
-//! The integrals are those of `gauss16`; over lengths of a few hundredths of a stretch five nodes give them to machine precision. The first of them is the
-//! beginning, where all rates are known, and the last is the end, so that four nodes are computed, and nothing else.
+//! The integrals are those of `gauss16`; over lengths of a few hundredths of a stretch five nodes give them
+//! to machine precision. The first of them is the beginning, where all rates are known, and the last is the
+//! end, so that four nodes are computed, and nothing else.
 //!
 //! Theory: docs/theory.md, section 8.5.
 
@@ -20,7 +22,8 @@ const WEIGHTS: Lanes<f64> = [0.2722222222222222, 0.35555555555555557, 0.27222222
 /// The weight of the beginning.
 const FIRST: f64 = 0.05;
 
-/// The integral from 0 to each node (within a row) of the polynomial that is one at one of the five nodes and zero at the others.
+/// The integral from 0 to each node (within a row) of the polynomial that is one at one of the five nodes and
+/// zero at the others.
 const INTEGRALS: [Lanes<f64>; 5] = [
     [0.0677284321861569, 0.040625, 0.05370013924241453, 0.05],
     [0.11974476934341168, 0.30318418332304278, 0.2615863979968067, 0.2722222222222222],
@@ -29,7 +32,8 @@ const INTEGRALS: [Lanes<f64>; 5] = [
     [-0.0037001392424145306, 0.009375, -0.0177284321861569, 0.05],
 ];
 
-/// Quantities at the four nodes: w, (dlambda/dc) / q (c from 0 to 1 along the step), e, d ln sigma / dc and its integral, the terms of the sums.
+/// Quantities at the four nodes: w, (dlambda/dc) / q (c from 0 to 1 along the step), e, d ln sigma / dc and
+/// its integral, the terms of the sums.
 struct Nodes<T> {
     w: Lanes<T>,
     value: Lanes<T>,
@@ -40,7 +44,8 @@ struct Nodes<T> {
 }
 
 impl<T: Real> SlidingArc<T> {
-    /// Moves the point, which has these rates, by `length` in lambda, with its work (backwards if `length` is negative).
+    /// Moves the point, which has these rates, by `length` in lambda, with its work (backwards if `length` is
+    /// negative).
     #[inline(never)]
     pub fn short_step(&self, point: &mut ArcPoint<T>, rates: &Rates<T>, length: T) {
         let (one, any) = (T::one(), [length; 4]);
@@ -73,7 +78,8 @@ impl<T: Real> SlidingArc<T> {
         point.w = w;
     }
 
-    /// Fills `nodes` for a step from w = `from`, where d ln sigma / dc is `growth`. w changes by ((1 + s c) / (1 - s c))^4.
+    /// Fills `nodes` for a step from w = `from`, where d ln sigma / dc is `growth`. w changes by ((1 + s c) /
+    /// (1 - s c))^4.
     #[inline(never)]
     fn nodes(&self, [from, s, scale, growth]: [T; 4], nodes: &mut Nodes<T>) {
         let ([q0, q1, q2], [k0, k1, k2]) = (self.q, self.k);
@@ -106,7 +112,8 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// The integral over I_n of v_n less its value at the beginning, where its derivative is `begin`, divided by the square of sigma at the beginning.
+    /// The integral over I_n of v_n less its value at the beginning, where its derivative is `begin`, divided
+    /// by the square of sigma at the beginning.
     #[inline(never)]
     fn push(&self, begin: T, nodes: &mut Nodes<T>) -> T {
         let [f0, f1, f2] = self.f;
@@ -122,7 +129,8 @@ impl<T: Real> SlidingArc<T> {
     }
 }
 
-/// The integrals from the beginning to each node of a function with these values at the beginning and at the nodes.
+/// The integrals from the beginning to each node of a function with these values at the beginning and at the
+/// nodes.
 #[inline(always)]
 fn collocate<T: Real>(begin: T, values: &Lanes<T>, out: &mut Lanes<T>) {
     let [first, rows @ ..] = &INTEGRALS;

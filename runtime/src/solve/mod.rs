@@ -1,4 +1,5 @@
-//! The impact solver. `collision` solves one collision; the other files hold its parts, in units where m_nn = 1 and v_n1 = -1.
+//! The impact solver. `collision` solves one collision; the other files hold its parts, in units where m_nn =
+//! 1 and v_n1 = -1.
 //!
 //! Theory: docs/theory.md, section 1.
 

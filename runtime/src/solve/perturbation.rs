@@ -1,4 +1,5 @@
-//! The sliding arc to first order in the angle by which slip turns, for slip that begins next to an invariant direction.
+//! The sliding arc to first order in the angle by which slip turns, for slip that begins next to an invariant
+//! direction.
 //!
 //! Theory: docs/theory.md, section 7.2.
 
@@ -11,12 +12,15 @@ use super::{
 };
 use crate::scalar::{Real, constant, larger};
 
-/// The arc from a direction where h is nearly zero, to first order in the angle by which slip turns; `None` where first order is not accurate enough.
+/// The arc from a direction where h is nearly zero, to first order in the angle by which slip turns; `None`
+/// where first order is not accurate enough.
 ///
-/// It is needed where two zeros of h are about to merge: the quadratic q of the general method is then a difference of large terms without digits.
+/// It is needed where two zeros of h are about to merge: the quadratic q of the general method is then a
+/// difference of large terms without digits.
 ///
-/// With B the integral of the angle over I_n, slip changes by (b - mu T d) I_n - mu T d' B and v_n by f I_n - mu b.d' B. v_n is followed along one mean
-/// direction up to the end of compression and along another from there on, so that it is right to first order at both events.
+/// With B the integral of the angle over I_n, slip changes by (b - mu T d) I_n - mu T d' B and v_n by f I_n -
+/// mu b.d' B. v_n is followed along one mean direction up to the end of compression and along another from
+/// there on, so that it is right to first order at both events.
 #[cold]
 #[inline(never)]
 pub(super) fn perturbed<T: Real>(
@@ -30,8 +34,8 @@ pub(super) fn perturbed<T: Real>(
     let pull = c.dragged(&across);
     let rate = c.slip_rate(d);
     let [f, g, turn] = c.rates(d);
-    // First order does not suffice where the angle grows faster than slip stops. The general method does: a zero with so large an h' has no other
-    // zero next to it.
+    // First order does not suffice where the angle grows faster than slip stops. The general method does: a
+    // zero with so large an h' has no other zero next to it.
     let slope = -pull.dot(&across) - g;
     let size = c.slip_size();
     if slope > constant::<T>(0.25) * g.abs() && slope > constant::<T>(1e-3) * size {
@@ -73,8 +77,8 @@ pub(super) fn perturbed<T: Real>(
     }
     let tangential = |impulse: T, angle: T| -(*d * impulse + across * angle) * c.mu;
     let left = |impulse: T, angle: T| *d * slip + rate * impulse - pull * angle;
-    // The work is the area under v_n over I_n; this is the part between v_n and its chord: the integral of B by Boole's rule, in a variable whose points
-    // are dense where slip may stop.
+    // The work is the area under v_n over I_n; this is the part between v_n and its chord: the integral of B
+    // by Boole's rule, in a variable whose points are dense where slip may stop.
     let bow = |from: T, length: T| {
         let part = |y: f64| (one - constant(y)) * angle(from + length * constant(y * (2.0 - y)));
         let sum = (part(0.25) + part(0.75)) * constant(32.0)

@@ -1,12 +1,14 @@
-//! Follows the sliding arc, in other units where its rates are so large or so small that their sixth powers would overflow or underflow.
+//! Follows the sliding arc, in other units where its rates are so large or so small that their sixth powers
+//! would overflow or underflow.
 //!
-//! With x = 1 + mu (|m_nt| + |m_ns|) for normal and y = |m_nt| + |m_ns| + mu tr T for tangential rates, the following units make all rates at most one:
-//! 1/x for I_n, y/x for v_tan, mu/x for I_tan; v_n keeps its unit. Then
+//! With x = 1 + mu (|m_nt| + |m_ns|) for normal and y = |m_nt| + |m_ns| + mu tr T for tangential rates, the
+//! following units make all rates at most one: 1/x for I_n, y/x for v_tan, mu/x for I_tan; v_n keeps its
+//! unit. Then
 //!
 //! dv_n = (1/x - (mu b/x).d) dI_n,  dv_tan = (b/y - (mu T/y) d) dI_n,  dI_tan = -d dI_n.
 //!
-//! b/y and mu b/x no longer differ by the factor mu. The arc does not need that they do, but the balance of energy does; the work is therefore integrated
-//! directly.
+//! b/y and mu b/x no longer differ by the factor mu. The arc does not need that they do, but the balance of
+//! energy does; the work is therefore integrated directly.
 //!
 //! Theory: docs/theory.md, section 1.2.
 
@@ -45,7 +47,8 @@ fn rescaled<T: Real>(
 ) -> Slide<T> {
     let one = T::one();
     let (x, y) = (c.normal_size(), c.slip_size());
-    // f is at least 1/2, so that the collision ends before I_n = 8; until then slip changes by less than rounding.
+    // f is at least 1/2, so that the collision ends before I_n = 8; until then slip changes by less than
+    // rounding.
     let still = x <= constant(1.5) && y * constant(8.0) <= T::default_epsilon() * speed;
     if still || y <= T::zero() {
         return straight(c, from / speed, speed, restitution.start(), restitution);

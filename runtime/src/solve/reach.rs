@@ -1,4 +1,5 @@
-//! The length of the next stretch of the sliding arc: how far one quadrature of sixteen nodes is exact to rounding, and where v_n has a turning point.
+//! The length of the next stretch of the sliding arc: how far one quadrature of sixteen nodes is exact to
+//! rounding, and where v_n has a turning point.
 //!
 //! Theory: docs/theory.md, sections 5.3 and 8.1.
 
@@ -6,7 +7,8 @@ use super::sliding_arc::{ArcPoint, Rates, SlidingArc, wide_ln};
 use crate::scalar::{Real, constant, dot, fma, larger, smaller};
 
 impl<T: Real> SlidingArc<T> {
-    /// The distance in lambda by which a point lies beyond the mean modulus of the zeros of q, or a lower bound of it; negative before them.
+    /// The distance in lambda by which a point lies beyond the mean modulus of the zeros of q, or a lower
+    /// bound of it; negative before them.
     #[inline(always)]
     pub fn beyond(&self, point: &ArcPoint<T>) -> T {
         wide_ln(point.w.primal() * self.scale)
@@ -14,8 +16,9 @@ impl<T: Real> SlidingArc<T> {
 
     /// The greatest length in lambda that one quadrature from `point` may have.
     ///
-    /// If all zeros of q lie outside an ellipse whose foci are the ends of the stretch, and the integrand grows at a constant rate, the error is about
-    /// e^(c (rho + 1 / rho - 2) / 2) rho^(-32), where rho is the sum of the semi-axes (for foci at +-1) and c half the rate times the length.
+    /// If all zeros of q lie outside an ellipse whose foci are the ends of the stretch, and the integrand
+    /// grows at a constant rate, the error is about e^(c (rho + 1 / rho - 2) / 2) rho^(-32), where rho is
+    /// the sum of the semi-axes (for foci at +-1) and c half the rate times the length.
     #[inline]
     pub fn reach(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
         // rho + 1 / rho at which rho^-32 = 1e-15 (theory, 5.3).
@@ -40,7 +43,8 @@ impl<T: Real> SlidingArc<T> {
             // The integrand of the work has the size of slip times that of the impulse.
             rate = larger(rate, (rates.growth + rates.weight + rates.shape + rates.shape).abs().primal());
         }
-        // A growth that changes means that sigma has a large power of the distance from the zeros of q; the stretch must keep farther from them.
+        // A growth that changes means that sigma has a large power of the distance from the zeros of q; the
+        // stretch must keep farther from them.
         let bent = (rates.change.abs().primal() * constant(0.06)).sqrt();
         let limited = |rate: T| {
             // A fit to the length at which the error with growth is 1e-15 (theory, 18.4).
@@ -55,7 +59,8 @@ impl<T: Real> SlidingArc<T> {
             return both.primal();
         }
         let both = both * constant(0.5);
-        // An estimate of the growth at the far end, where it may be larger; what it has risen by is added once more, since it rises on.
+        // An estimate of the growth at the far end, where it may be larger; what it has risen by is added
+        // once more, since it rises on.
         let near = (rates.growth + one).abs().primal();
         let far = |both: T| {
             let part = both * constant(0.125);

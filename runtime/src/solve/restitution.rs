@@ -1,5 +1,5 @@
-//! The laws of restitution: the target at which each ends the collision, set where compression ends, and straight arcs up to it in closed form. Units:
-//! m_nn = 1 and v_n1 = -1.
+//! The laws of restitution: the target at which each ends the collision, set where compression ends, and
+//! straight arcs up to it in closed form. Units: m_nn = 1 and v_n1 = -1.
 //!
 //! Theory: docs/theory.md, section 9.
 
@@ -43,8 +43,8 @@ impl<T: Real> State<T> {
     }
 }
 
-/// A law of restitution and the progress of a collision under it: compressions so far, and the target that ends restitution. Compression ends wherever v_n
-/// rises through zero.
+/// A law of restitution and the progress of a collision under it: compressions so far, and the target that
+/// ends restitution. Compression ends wherever v_n rises through zero.
 #[derive(Clone, Copy)]
 pub(crate) struct Restitution<T: Real> {
     law: Law,
@@ -58,9 +58,11 @@ pub(crate) struct Restitution<T: Real> {
     least_work: T,
     /// Normal work at the end of the latest compression.
     ended: T,
-    /// Normal work from there to the end of restitution (Stronge). As the difference of `target` and `ended` it would lose digits.
+    /// Normal work from there to the end of restitution (Stronge). As the difference of `target` and `ended`
+    /// it would lose digits.
     pub wanted: T,
-    /// The normal work since the end of the latest compression, as integrated, less its value as the difference of total works: the rounding error of the latter.
+    /// The normal work since the end of the latest compression, as integrated, less its value as the
+    /// difference of total works: the rounding error of the latter.
     lost: T,
     pub compressions: u32,
     /// The states where the first and the latest compression ended, if they were located.
@@ -100,7 +102,8 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// The beginning of an impact without collision, v_n1 = 0 and f < 0. v_n starts at -eps^4 instead of zero, which changes no sum, so that compression comes first.
+    /// The beginning of an impact without collision, v_n1 = 0 and f < 0. v_n starts at -eps^4 instead of
+    /// zero, which changes no sum, so that compression comes first.
     #[inline]
     pub fn without_collision(law: Law, e: T) -> Self {
         let eps = T::default_epsilon();
@@ -122,7 +125,8 @@ impl<T: Real> Restitution<T> {
         State::before(self.start)
     }
 
-    /// The same after multiplying normal and tangential impulses by these factors. `direct` says whether the work is always integrated directly.
+    /// The same after multiplying normal and tangential impulses by these factors. `direct` says whether the
+    /// work is always integrated directly.
     #[cold]
     pub fn in_units(&self, normal: T, tangential: T, direct: bool) -> Self {
         Self {
@@ -152,7 +156,8 @@ impl<T: Real> Restitution<T> {
         self.latest = None;
     }
 
-    /// Records the end of compression at this state (v_n = 0 and rising) and sets the target. True if the collision ends here (e = 0).
+    /// Records the end of compression at this state (v_n = 0 and rising) and sets the target. True if the
+    /// collision ends here (e = 0).
     #[inline]
     pub fn compressed(&mut self, at: &State<T>) -> bool {
         let (normal, work) = (at.normal, at.work);
@@ -178,7 +183,8 @@ impl<T: Real> Restitution<T> {
         self.e <= T::zero()
     }
 
-    /// Records the normal work at `at` since the latest compression ended, which is more accurate than the difference of the total works.
+    /// Records the normal work at `at` since the latest compression ended, which is more accurate than the
+    /// difference of the total works.
     #[inline]
     pub fn since(&mut self, at: &State<T>, since: T) {
         if self.law == Law::Stronge && self.compressions > 0 {
@@ -200,8 +206,9 @@ impl<T: Real> Restitution<T> {
         larger(self.wanted - ((work - self.ended) + self.lost), T::zero())
     }
 
-    /// Records that v_n falls through zero at this state, and how near the target of Poisson's or Stronge's law is: on one side of the target the collision
-    /// has ended before, on the other another compression follows.
+    /// Records that v_n falls through zero at this state, and how near the target of Poisson's or Stronge's
+    /// law is: on one side of the target the collision has ended before, on the other another compression
+    /// follows.
     #[inline]
     pub fn falls(&mut self, at: &State<T>) {
         let size = match self.law {
@@ -217,13 +224,15 @@ impl<T: Real> Restitution<T> {
         self.law
     }
 
-    /// Whether the work must be integrated directly because slip is so fast that the balance of energy would lose its digits.
+    /// Whether the work must be integrated directly because slip is so fast that the balance of energy would
+    /// lose its digits.
     #[inline]
     pub fn fast(&self, contact: &Contact<T>, slip: T) -> bool {
         self.direct || slip * larger(T::one(), contact.mu) > constant(FAST)
     }
 
-    /// Whether the law ends the collision at this state, up to an error of `share` relative to the scale of its quantity.
+    /// Whether the law ends the collision at this state, up to an error of `share` relative to the scale of
+    /// its quantity.
     #[inline]
     pub fn is_ended(&self, end: &State<T>, share: T) -> bool {
         let (residual, scale) = self.missed(end);
@@ -241,7 +250,8 @@ impl<T: Real> Restitution<T> {
         ((self.watched(end) - self.target).abs(), scale)
     }
 
-    /// The quantity whose target ends the collision: v_n (Newton), I_n (Poisson) or the normal work (Stronge).
+    /// The quantity whose target ends the collision: v_n (Newton), I_n (Poisson) or the normal work
+    /// (Stronge).
     #[inline]
     pub fn watched(&self, state: &State<T>) -> T {
         match self.law {
@@ -251,9 +261,9 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// Whether no event that must be located lies between a state and a later one, if v_n is monotone between them. Counts an end of compression whose place
-    /// is not needed. A v_n within `noise` of zero at the end counts as zero: compression ends, or v_n
-    /// falls to zero, at the end of the stretch.
+    /// Whether no event that must be located lies between a state and a later one, if v_n is monotone between
+    /// them. Counts an end of compression whose place is not needed. A v_n within `noise` of zero at the
+    /// end counts as zero: compression ends, or v_n falls to zero, at the end of the stretch.
     #[inline]
     pub fn passes(&mut self, from: &State<T>, to: &State<T>, noise: T) -> bool {
         let zero = T::zero();
@@ -273,8 +283,8 @@ impl<T: Real> Restitution<T> {
         to.velocity >= -noise && self.watched(to) < self.target
     }
 
-    /// Follows an arc on which v_n is linear in I_n with slope `rate`, over an impulse of at most `length` (no limit if `None`). The tangential impulse is
-    /// -`push` per I_n.
+    /// Follows an arc on which v_n is linear in I_n with slope `rate`, over an impulse of at most `length`
+    /// (no limit if `None`). The tangential impulse is -`push` per I_n.
     #[inline]
     pub fn follow_linear(
         &mut self,

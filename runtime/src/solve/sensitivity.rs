@@ -1,4 +1,5 @@
-//! Sets the flags of [`Sensitivity`]: the reasons why a small change of the input would change the outcome, or its derivatives, by much.
+//! Sets the flags of [`Sensitivity`]: the reasons why a small change of the input would change the outcome,
+//! or its derivatives, by much.
 //!
 //! Theory: docs/theory.md, section 14.
 
@@ -13,7 +14,8 @@ use crate::{
     scalar::{Real, constant, length},
 };
 
-/// The bound below which a flag is set, of |mu / mu_c - 1|, of v_n over the speed of approach, and of an angle in radians.
+/// The bound below which a flag is set, of |mu / mu_c - 1|, of v_n over the speed of approach, and of an
+/// angle in radians.
 const NEAR: f64 = 1e-3;
 /// The bound of f I_n2 over the speed of approach below which v_n hardly rises at the end of the collision.
 const STEEP: f64 = 0.05;
@@ -36,7 +38,8 @@ impl Sensitivity {
         self.near_mu_c = (mu - mu_c).abs() < constant::<T>(NEAR) * mu_c;
     }
 
-    /// Sets the flag of grazing at the end of the collision. `slides` is the tangential velocity there if slip has not stopped before.
+    /// Sets the flag of grazing at the end of the collision. `slides` is the tangential velocity there if
+    /// slip has not stopped before.
     #[inline]
     pub(super) fn ended<T: Real>(
         &mut self,

@@ -1,5 +1,5 @@
-//! Follows the sliding arc (34), stretch by stretch, until the law ends the collision or slip stops. It chooses between straight arcs, the perturbed arc,
-//! quadrature and the series to the end of slip.
+//! Follows the sliding arc (34), stretch by stretch, until the law ends the collision or slip stops. It
+//! chooses between straight arcs, the perturbed arc, quadrature and the series to the end of slip.
 //!
 //! Theory: docs/theory.md, sections 5 to 8.
 
@@ -16,13 +16,16 @@ use super::{
 };
 use crate::scalar::{Real, constant};
 
-/// The greatest number of stretches. The length of a stretch in lambda is proportional to its distance from the zeros of q, so that few are needed.
+/// The greatest number of stretches. The length of a stretch in lambda is proportional to its distance from
+/// the zeros of q, so that few are needed.
 const STRETCHES: u32 = 512;
 
-/// If |h| at the start is below this many times its rounding error, slip may turn by a small angle only, and `perturbed` is tried first.
+/// If |h| at the start is below this many times its rounding error, slip may turn by a small angle only, and
+/// `perturbed` is tried first.
 const NEARLY: f64 = 131_072.0;
 
-/// Follows the sliding arc from the tangential velocity `from` of length `speed`, for a contact whose rates are neither very large nor very small.
+/// Follows the sliding arc from the tangential velocity `from` of length `speed`, for a contact whose rates
+/// are neither very large nor very small.
 #[inline]
 pub(super) fn arc<T: Real>(
     c: &Contact<T>,

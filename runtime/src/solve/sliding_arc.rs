@@ -1,12 +1,15 @@
-//! The chart of a sliding arc: slip turns from an unstable invariant direction a^2 towards a stable one b^2, and one parameter w makes all rates rational.
+//! The chart of a sliding arc: slip turns from an unstable invariant direction a^2 towards a stable one b^2,
+//! and one parameter w makes all rates rational.
 //!
-//! With complex numbers for vectors of the contact plane, slip is sigma (a + b w)^2 with w from 0 to infinity. Along lambda = ln w, (34) becomes
-//! d ln sigma = (k / q) dlambda, dI_n = (sigma e^2 / q) dlambda and dv_n = (sigma e F / q) dlambda, with quadratics e, q, k and F in w. Normal impulse,
-//! tangential impulse and v_n are sums of three integrals: of sigma e / q times 1, w and w^2.
+//! With complex numbers for vectors of the contact plane, slip is sigma (a + b w)^2 with w from 0 to
+//! infinity. Along lambda = ln w, (34) becomes d ln sigma = (k / q) dlambda, dI_n = (sigma e^2 / q) dlambda
+//! and dv_n = (sigma e F / q) dlambda, with quadratics e, q, k and F in w. Normal impulse, tangential impulse
+//! and v_n are sums of three integrals: of sigma e / q times 1, w and w^2.
 //!
-//! With C + i S = a b* (b* the conjugate), h = -2 S w q / e^2. The coefficients of q (of 1, w and w^2) are h'(a^2), 6 m S and -h'(b^2), where m is mu times
-//! the off-diagonal entry of T in axes along a b. Those of k follow from (34) in the limits w -> 0 and w -> infinity: g(a^2),
-//! C (g(a^2) + g(b^2)) - q_1 and g(b^2) - 2 q_2.
+//! With C + i S = a b* (b* the conjugate), h = -2 S w q / e^2. The coefficients of q (of 1, w and w^2) are
+//! h'(a^2), 6 m S and -h'(b^2), where m is mu times the off-diagonal entry of T in axes along a b. Those of k
+//! follow from (34) in the limits w -> 0 and w -> infinity: g(a^2), C (g(a^2) + g(b^2)) - q_1 and g(b^2) - 2
+//! q_2.
 //!
 //! Theory: docs/theory.md, section 4.
 
@@ -45,7 +48,8 @@ pub(super) struct SlidingArc<T: Real> {
     bend: T,
     /// The larger of the moduli of the zeros of q.
     pub outer: T,
-    /// The angle between a zero of q and the positive real axis, and the distance of the logarithms of two real zeros from their mean.
+    /// The angle between a zero of q and the positive real axis, and the distance of the logarithms of two
+    /// real zeros from their mean.
     pub angle: T,
     pub spread: T,
     /// The inverse of the geometric mean of the moduli of the zeros of q.
@@ -58,7 +62,8 @@ pub(super) struct SlidingArc<T: Real> {
 #[derive(Clone, Copy)]
 pub(super) struct ArcPoint<T: Real> {
     pub state: State<T>,
-    /// Normal work since the latest compression ended, kept apart from the total because it may be much smaller.
+    /// Normal work since the latest compression ended, kept apart from the total because it may be much
+    /// smaller.
     pub since: T,
     pub w: T,
     pub sigma: T,
@@ -82,7 +87,8 @@ pub(super) struct Rates<T> {
     pub turn: T,
 }
 
-/// Higher derivatives with respect to lambda: the third of ln sigma (`growth`), and the second of ln(sigma e / q), ln e and ln F.
+/// Higher derivatives with respect to lambda: the third of ln sigma (`growth`), and the second of ln(sigma e
+/// / q), ln e and ln F.
 pub(super) struct RateChanges<T> {
     pub growth: T,
     pub weight: T,
@@ -234,7 +240,8 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// Adds to impulses and v_n of a state what the three integrals contribute (theory, 4.15); the work is left as it is.
+    /// Adds to impulses and v_n of a state what the three integrals contribute (theory, 4.15); the work is
+    /// left as it is.
     #[inline(always)]
     pub fn add(&self, [m0, m1, m2]: Integrals<T>, state: &mut State<T>) {
         let [f0, f1, f2] = self.f;
@@ -265,7 +272,8 @@ pub(super) fn rough_ln<T: Real>(x: T) -> T {
     (u + u) * fma(constant::<T>(-4.0), z, constant(15.0)) / fma(constant::<T>(-9.0), z, constant(15.0))
 }
 
-/// ln x with a relative error of about one per cent between 1/4000 and 4000, and of a size between 8 and 14.7 beyond.
+/// ln x with a relative error of about one per cent between 1/4000 and 4000, and of a size between 8 and 14.7
+/// beyond.
 #[inline]
 pub(super) fn wide_ln<T: Real>(x: T) -> T {
     if x < constant(0.125) || x > constant(8.0) {

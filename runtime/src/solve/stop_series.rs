@@ -1,8 +1,9 @@
 //! Integrates the rest of the sliding arc, until slip stops, by power series in u = 1 / w.
 //!
-//! Near the stable direction slip is tau (b + a u)^2 with tau = sigma w^2. The integrals from here to the end of slip are tau R(u) (tau^2 R(u) for the work
-//! of friction), where Q u R' - K R is a known polynomial in u. The coefficients of R obey a three-term recurrence, which runs for four integrals at once.
-//! They are kept in arrays of four, which the compiler holds in one vector register.
+//! Near the stable direction slip is tau (b + a u)^2 with tau = sigma w^2. The integrals from here to the end
+//! of slip are tau R(u) (tau^2 R(u) for the work of friction), where Q u R' - K R is a known polynomial in u.
+//! The coefficients of R obey a three-term recurrence, which runs for four integrals at once. They are kept
+//! in arrays of four, which the compiler holds in one vector register.
 //!
 //! Theory: docs/theory.md, section 6.
 
@@ -14,7 +15,8 @@ use super::{
 };
 use crate::scalar::{Real, constant, dot, fma, larger};
 
-/// One coefficient of each series, for the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and for the work of friction.
+/// One coefficient of each series, for the integrals of sigma e w^2 / q, sigma e w / q, sigma e / q and for
+/// the work of friction.
 type Row<T> = [T; 4];
 
 /// The number of terms between two tests for convergence.
@@ -23,7 +25,8 @@ const BLOCK: usize = 8;
 /// The greatest number of blocks. Four suffice if u is less than half the distance to the zeros of Q.
 const BLOCKS: u32 = 12;
 
-/// The coefficients of the recurrence (theory, 6.4), each as `base` + n `slope`: of term n on its left side, and of terms n - 1 and n - 2 on its right side.
+/// The coefficients of the recurrence (theory, 6.4), each as `base` + n `slope`: of term n on its left side,
+/// and of terms n - 1 and n - 2 on its right side.
 struct Taps<T> {
     base: [Row<T>; 3],
     slope: [Row<T>; 3],
@@ -39,7 +42,8 @@ impl<T: Real> SlidingArc<T> {
         }
         let [q0, q1, q2] = self.q;
         let [k0, k1, _] = self.k;
-        // The terms must also decrease from the first on: large powers of the distance from the zeros of q would let them grow first.
+        // The terms must also decrease from the first on: large powers of the distance from the zeros of q
+        // would let them grow first.
         let u = T::one() / point.w;
         let (last, fall) = (-self.last_rate(), q2 - self.last_rate());
         let rise = larger(((k1 + q1 + q1).abs() + (k0 + q0 + q0).abs() * u) * u - fall, T::zero());
@@ -119,10 +123,11 @@ impl<T: Real> SlidingArc<T> {
     }
 }
 
-/// Computes eight terms from the two before them, which are the first two of `rows`, and adds them to `total`. Prepares `rows`, `sources` and `taps` for the
-/// next block.
+/// Computes eight terms from the two before them, which are the first two of `rows`, and adds them to
+/// `total`. Prepares `rows`, `sources` and `taps` for the next block.
 ///
-/// A function of its own: the bound of a collision's instructions (`tests/firmware/work.awk`) counts its calls.
+/// A function of its own: the bound of a collision's instructions (`tests/firmware/work.awk`) counts its
+/// calls.
 #[inline(never)]
 fn block<T: Real>(
     rows: &mut [Row<T>; BLOCK + 2],

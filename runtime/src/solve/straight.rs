@@ -72,8 +72,9 @@ pub(crate) fn straight<T: Real>(
 
 /// B, the integral over I_n of the angle by which slip turns, to first order in h (theory, 7.1).
 ///
-/// To first order theta' = h + h' theta along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'. Where h = 0 the value is zero, but not its derivative.
-/// `impulse` is I_n since the beginning, or `None` for all I_n until slip stops.
+/// To first order theta' = h + h' theta along tau, with s' = g s and dI_n = s dtau; h' + g = -mu d'.T d'.
+/// Where h = 0 the value is zero, but not its derivative. `impulse` is I_n since the beginning, or `None` for
+/// all I_n until slip stops.
 #[inline]
 pub(super) fn deviation<T: Real>(c: &Contact<T>, d: &Vector2<T>, slip: T, impulse: Option<T>) -> T {
     let [_, g, turn] = c.rates(d);

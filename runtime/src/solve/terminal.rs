@@ -1,4 +1,5 @@
-//! The terminal arc, after slip has stopped: sticking (45), or renewed sliding in the direction phi_hat (46). All velocities are linear in I_n on it.
+//! The terminal arc, after slip has stopped: sticking (45), or renewed sliding in the direction phi_hat (46).
+//! All velocities are linear in I_n on it.
 //!
 //! Theory: docs/theory.md, section 10.
 
@@ -9,10 +10,12 @@ use crate::scalar::{Real, constant, dot, larger, length};
 use crate::tangential_block::TangentialBlock;
 
 impl<T: Real> Contact<T> {
-    /// The solution x of T x = b of least norm. The tangential impulse -x per I_n keeps the contact from slipping.
+    /// The solution x of T x = b of least norm. The tangential impulse -x per I_n keeps the contact from
+    /// slipping.
     ///
-    /// A second pivot within rounding of zero counts as zero if b lies in the range of T. If b does not, the pivot is small but not zero: in a positive
-    /// semidefinite matrix it is at least the square of what elimination leaves of b.
+    /// A second pivot within rounding of zero counts as zero if b lies in the range of T. If b does not, the
+    /// pivot is small but not zero: in a positive semidefinite matrix it is at least the square of what
+    /// elimination leaves of b.
     #[inline]
     pub fn hold(&self) -> Vector2<T> {
         let Some(elimination) = self.tangential().eliminate(&self.b) else { return Vector2::zeros() };
@@ -41,7 +44,8 @@ impl<T: Real> Contact<T> {
 
     /// The direction phi_hat of renewed sliding for mu < mu_c: (mu T + g) d = b with g > 0.
     ///
-    /// Newton's method on 1 / |(mu T + g)^-1 b| = 1, from below, where it rises to the root without crossing it.
+    /// Newton's method on 1 / |(mu T + g)^-1 b| = 1, from below, where it rises to the root without crossing
+    /// it.
     #[inline]
     pub fn renewal(&self) -> Vector2<T> {
         let (mut b, mut tt, mut ts, mut ss) = (self.b, self.mu_tt, self.mu_ts, self.mu_ss);

@@ -1,8 +1,10 @@
-//! Checks every outcome against the laws of impact before it is returned; an outcome that violates one becomes an error.
+//! Checks every outcome against the laws of impact before it is returned; an outcome that violates one
+//! becomes an error.
 //!
-//! The residuals of the laws are formed from the outcome, in the units of the solver, and compared with the speeds, impulses and works of the impact.
-//! An outcome has an error of a small multiple of the rounding unit times the condition of the contact. A residual above the square root of the rounding
-//! unit means that rounding has taken half of the digits: numbers of this precision do not determine the outcome.
+//! The residuals of the laws are formed from the outcome, in the units of the solver, and compared with the
+//! speeds, impulses and works of the impact. An outcome has an error of a small multiple of the rounding unit
+//! times the condition of the contact. A residual above the square root of the rounding unit means that
+//! rounding has taken half of the digits: numbers of this precision do not determine the outcome.
 //!
 //! Theory: docs/theory.md, sections 9.4 and 18.2.
 
@@ -23,7 +25,8 @@ fn share<T: Real>() -> T {
     constant(if T::default_epsilon() > constant(1e-10) { 3.5e-4 } else { 1.5e-8 })
 }
 
-/// The residual of the balance of momentum that roundings of its terms explain, in rounding units of these terms.
+/// The residual of the balance of momentum that roundings of its terms explain, in rounding units of these
+/// terms.
 const ROUNDINGS: f64 = 16.0;
 
 /// The largest share of the speeds that may be explained so.
@@ -37,8 +40,9 @@ struct Residuals<T> {
 }
 
 impl<T: Real> Restitution<T> {
-    /// Checks an outcome against v_2 = v_1 + M I (20)-(22), Coulomb's cone, I_n >= 0, v_n2 >= 0, work of friction <= 0, and the law of restitution. `from` is
-    /// the tangential velocity of approach, `slip` its length.
+    /// Checks an outcome against v_2 = v_1 + M I (20)-(22), Coulomb's cone, I_n >= 0, v_n2 >= 0, work of
+    /// friction <= 0, and the law of restitution. `from` is the tangential velocity of approach, `slip`
+    /// its length.
     #[inline]
     pub(super) fn verify(
         &self,
@@ -64,7 +68,8 @@ impl<T: Real> Restitution<T> {
         if sound { Ok(()) } else { self.violation(c, from, slip, end, velocity) }
     }
 
-    /// The residuals of the balance of momentum along n and across it, and the work of friction, each with its scale.
+    /// The residuals of the balance of momentum along n and across it, and the work of friction, each with
+    /// its scale.
     #[inline(always)]
     fn residuals(
         &self,
@@ -91,7 +96,8 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    /// An error that names the law which the outcome violates, if it does. The same checks again, safe from overflow and with the roundings of the terms.
+    /// An error that names the law which the outcome violates, if it does. The same checks again, safe from
+    /// overflow and with the roundings of the terms.
     #[cold]
     #[inline(never)]
     fn violation(
@@ -118,7 +124,8 @@ impl<T: Real> Restitution<T> {
         let along = end.normal + c.b.x.abs() * i.x.abs() + c.b.y.abs() * i.y.abs();
         let (b, rubbed) = (larger(c.b.x.abs(), c.b.y.abs()), larger(i.x.abs(), i.y.abs()));
         let across = b * end.normal + (larger(c.tt, c.ss) + c.ts.abs()) * rubbed;
-        // Where these roundings exceed a share of the speeds, any outcome would be accepted: they are bounded.
+        // Where these roundings exceed a share of the speeds, any outcome would be accepted: they are
+        // bounded.
         let known = |terms: T, scale: T| smaller(rounding * terms, scale * constant(LEFT));
         if !within(n - known(along, speed), speed) {
             return broken(Violation::Momentum, n / speed);
@@ -155,7 +162,8 @@ mod tests {
     use super::*;
     use crate::{Law, ReducedMatrix};
 
-    /// Slip that keeps its direction to the end of the collision, changed in every way that violates one law and no other.
+    /// Slip that keeps its direction to the end of the collision, changed in every way that violates one law
+    /// and no other.
     #[test]
     fn every_violation_has_its_name() {
         let (mu, from) = (0.3, Vector2::new(0.0, 2.0));

@@ -1,5 +1,5 @@
-//! Impact without collision (Painleve's paradox): v_n = 0, but the friction of the present slip makes a normal impulse reduce v_n (f < 0), so that no
-//! finite contact force exists.
+//! Impact without collision (Painleve's paradox): v_n = 0, but the friction of the present slip makes a
+//! normal impulse reduce v_n (f < 0), so that no finite contact force exists.
 //!
 //! Theory: docs/theory.md, section 17.6.
 
@@ -17,16 +17,19 @@ use crate::{
     scalar::{Real, constant, length},
 };
 
-/// Solves an impact that begins with v_n = 0: reduced matrix and slip (t, s) in, impulse and velocity of separation out.
+/// Solves an impact that begins with v_n = 0: reduced matrix and slip (t, s) in, impulse and velocity of
+/// separation out.
 ///
-/// A sliding contact with f < 0 (31) that is pressed together, beta_n < 0, has no finite force (Painleve's paradox): it suffers an impact
-/// at once. Slip drives the point into the surface until it has slowed down or turned enough for f to become positive; then compression ends, and
-/// restitution follows as in a collision. Velocities scale with the slip, impulses with the slip over m_nn, works with both.
+/// A sliding contact with f < 0 (31) that is pressed together, beta_n < 0, has no finite force (Painleve's
+/// paradox): it suffers an impact at once. Slip drives the point into the surface until it has slowed down or
+/// turned enough for f to become positive; then compression ends, and restitution follows as in a collision.
+/// Velocities scale with the slip, impulses with the slip over m_nn, works with both.
 ///
-/// Poisson's and Stronge's hypotheses hold as in [`crate::solve`], of which this is the limit for v_n1 -> 0. Newton's, v_n2 = -e v_n1, says
-/// v_n2 = 0 whatever e is: it acts as e = 0.
+/// Poisson's and Stronge's hypotheses hold as in [`crate::solve`], of which this is the limit for v_n1 -> 0.
+/// Newton's, v_n2 = -e v_n1, says v_n2 = 0 whatever e is: it acts as e = 0.
 ///
-/// Where f is zero but for rounding, and does not rise, the contact jams: an impact that [`crate::Sensitivity::jam`] flags.
+/// Where f is zero but for rounding, and does not rise, the contact jams: an impact that
+/// [`crate::Sensitivity::jam`] flags.
 ///
 /// ```
 /// # use hodograph::{Law, ReducedMatrix, Surface, impact_without_collision};
@@ -41,7 +44,8 @@ use crate::{
 /// ```
 ///
 /// # Errors
-/// [`ImpactError::NoImpact`] where f > 0 or nothing slips: then finite forces exist and nothing happens. Else those of [`crate::solve`].
+/// [`ImpactError::NoImpact`] where f > 0 or nothing slips: then finite forces exist and nothing happens. Else
+/// those of [`crate::solve`].
 pub fn impact_without_collision<T: crate::Scalar>(
     matrix: &ReducedMatrix<T>,
     slip: &Vector2<T>,

@@ -1,8 +1,10 @@
-//! The sliding arc of a balanced contact, m_nt = m_ns = 0, in closed form: tangential impulses do not change v_n, and v_n is linear in I_n.
+//! The sliding arc of a balanced contact, m_nt = m_ns = 0, in closed form: tangential impulses do not change
+//! v_n, and v_n is linear in I_n.
 //!
-//! Along the eigenvectors of T the components of slip are exponentials of sigma, where dI_n = s dsigma: v_1' = -alpha v_1 and v_2' = -nu v_2 with
-//! alpha = mu lambda_1 >= nu = mu lambda_2. I_n, the integral of s, is an incomplete beta function of the direction of slip. Two series give it, one where
-//! slip is near the direction of v_1 and one elsewhere.
+//! Along the eigenvectors of T the components of slip are exponentials of sigma, where dI_n = s dsigma: v_1'
+//! = -alpha v_1 and v_2' = -nu v_2 with alpha = mu lambda_1 >= nu = mu lambda_2. I_n, the integral of s, is
+//! an incomplete beta function of the direction of slip. Two series give it, one where slip is near the
+//! direction of v_1 and one elsewhere.
 //!
 //! Theory: docs/theory.md, section 11.3.
 
@@ -108,8 +110,8 @@ impl<T: Real> Decay<T> {
         self.axis * first + Vector2::new(-self.axis.y, self.axis.x) * second
     }
 
-    /// The state at the normal impulse `normal`, where the integrals of v_1 and v_2 over sigma are `first` and `second` times their values at the start, and the
-    /// normal work since the start.
+    /// The state at the normal impulse `normal`, where the integrals of v_1 and v_2 over sigma are `first`
+    /// and `second` times their values at the start, and the normal work since the start.
     fn state(&self, normal: T, first: T, second: T) -> (State<T>, T) {
         let [v1, v2] = self.start;
         let State { normal: before, tangential, velocity, work } = self.begin;
@@ -144,7 +146,8 @@ impl<T: Real> Decay<T> {
         }
     }
 
-    /// I_n from the start to `sigma`, where |v_2| < |v_1|: the integral of |v_1| (1 + z)^(1/2), z = (v_2 / v_1)^2, by the binomial series.
+    /// I_n from the start to `sigma`, where |v_2| < |v_1|: the integral of |v_1| (1 + z)^(1/2), z = (v_2 /
+    /// v_1)^2, by the binomial series.
     fn near(&self, sigma: T) -> T {
         let [first, second] = self.start;
         let [fast, _] = self.rates;
@@ -173,7 +176,8 @@ impl<T: Real> Decay<T> {
         first.abs() * sum
     }
 
-    /// I_n from any point where |v_2| is not small: the integral of |v_2| plus that of s - |v_2|, which is s R(u) with a power series R in u = (v_1 / s)^2.
+    /// I_n from any point where |v_2| is not small: the integral of |v_2| plus that of s - |v_2|, which is s
+    /// R(u) with a power series R in u = (v_1 / s)^2.
     fn far(&self, first: T, second: T, sigma: Option<T>) -> T {
         let (one, zero) = (T::one(), T::zero());
         let [fast, slow] = self.rates;
@@ -184,7 +188,8 @@ impl<T: Real> Decay<T> {
         }
         let (c, s) = (first / slip, second / slip);
         let u = c * c;
-        // The parts of s and of u that are left after sigma, and those that are gone, both without cancellation.
+        // The parts of s and of u that are left after sigma, and those that are gone, both without
+        // cancellation.
         let (steady, [kept, gone], [stays, lost]) = match sigma {
             None => (one / slow, [zero, one], [zero, one]),
             Some(sigma) => {

@@ -1,4 +1,5 @@
-//! Follows a sliding arc that is given in closed form, and locates on it the end of compression and the end of the collision.
+//! Follows a sliding arc that is given in closed form, and locates on it the end of compression and the end
+//! of the collision.
 //!
 //! Theory: docs/theory.md, sections 8 and 11.
 
@@ -48,7 +49,8 @@ enum Piece<T: Real> {
     Ended(Point<T>),
     /// The law did not end the collision on it.
     Passed,
-    /// Compression ended here, and the law (Stronge's) needs the work from here on: the arc begins anew at this point.
+    /// Compression ended here, and the law (Stronge's) needs the work from here on: the arc begins anew at
+    /// this point.
     Compressed(Point<T>),
 }
 
@@ -169,7 +171,8 @@ fn piece<T: Real>(
     Piece::Ended(find(course, &Event::end(restitution), T::one(), &from, to.0).1)
 }
 
-/// The event between `from` and `hi`, where its residual rises (`sign` = 1) or falls (-1) through zero: Newton's method inside a bracket.
+/// The event between `from` and `hi`, where its residual rises (`sign` = 1) or falls (-1) through zero:
+/// Newton's method inside a bracket.
 fn find<T: Real>(
     course: &impl Course<T>,
     event: &Event<T>,
@@ -240,7 +243,8 @@ pub(super) fn elapsed<T: Real>(k: T, xi: T) -> T {
     -(-x).ln_1p() / k
 }
 
-/// Whether slip with components `along` and `across` an axis of symmetry keeps its direction: whether one of them is zero.
+/// Whether slip with components `along` and `across` an axis of symmetry keeps its direction: whether one of
+/// them is zero.
 #[inline]
 pub(super) fn stays<T: Real>(along: T, across: T) -> bool {
     let v = Vector2::new(along, across);

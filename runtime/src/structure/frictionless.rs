@@ -1,4 +1,5 @@
-//! The arc of a contact without friction: the impulse is along n, and v_n and the tangential velocity are linear in it.
+//! The arc of a contact without friction: the impulse is along n, and v_n and the tangential velocity are
+//! linear in it.
 //!
 //! Theory: docs/theory.md, section 11.1.
 

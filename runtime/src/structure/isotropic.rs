@@ -1,8 +1,9 @@
 //! The sliding arc of an isotropic contact, m_ts = 0 and m_tt = m_ss, in closed form.
 //!
-//! With slip (v_1, v_2) along b and across it, P = (s + v_1) / 2 and M = (s - v_1) / 2 obey P' = (beta - kappa) P and M' = -(beta + kappa) M, where
-//! dI_n = s dsigma, beta = |b| and kappa = mu m_tt. All quantities on the arc are therefore sums of exponentials of sigma. Eliminating sigma,
-//! s sin(psi) is proportional to tan(psi/2)^(kappa/beta), psi being the angle of slip from b.
+//! With slip (v_1, v_2) along b and across it, P = (s + v_1) / 2 and M = (s - v_1) / 2 obey P' = (beta -
+//! kappa) P and M' = -(beta + kappa) M, where dI_n = s dsigma, beta = |b| and kappa = mu m_tt. All quantities
+//! on the arc are therefore sums of exponentials of sigma. Eliminating sigma, s sin(psi) is proportional to
+//! tan(psi/2)^(kappa/beta), psi being the angle of slip from b.
 //!
 //! Theory: docs/theory.md, section 11.2.
 
@@ -86,8 +87,9 @@ struct Arc<T: Real> {
 }
 
 impl<T: Real> Arc<T> {
-    /// The state where the integrals of P, M and v_2 over sigma are `p`, `m` and `across` times their values at the start, and the normal work since the start.
-    /// `mixed` is likewise the double integral of P(sigma) M(sigma') over sigma' < sigma.
+    /// The state where the integrals of P, M and v_2 over sigma are `p`, `m` and `across` times their values
+    /// at the start, and the normal work since the start. `mixed` is likewise the double integral of
+    /// P(sigma) M(sigma') over sigma' < sigma.
     fn state(&self, [p, m, across]: [T; 3], mixed: T) -> (State<T>, T) {
         let half = constant::<T>(0.5);
         let [a, b] = self.gains;

@@ -1,7 +1,9 @@
-//! Contacts whose reduced matrix has a structure that is known at compile time, and solvers in closed form for them.
+//! Contacts whose reduced matrix has a structure that is known at compile time, and solvers in closed form
+//! for them.
 //!
-//! A marker type says which entries of the matrix, of the velocity of approach or of the surface are zero or equal. These are then not read, whatever their
-//! value. Each structure has a closed form of the sliding arc, with s the speed of slip and dI_n = s dsigma:
+//! A marker type says which entries of the matrix, of the velocity of approach or of the surface are zero or
+//! equal. These are then not read, whatever their value. Each structure has a closed form of the sliding arc,
+//! with s the speed of slip and dI_n = s dsigma:
 //!
 //! | structure | slip | impulse |
 //! | --- | --- | --- |
@@ -62,11 +64,13 @@ mod implementation {
 #[derive(Clone, Copy, Debug)]
 pub struct General;
 
-/// m_ns = m_ts = 0 and v_s = 0: all velocities and impulses lie in the plane of n and t, and are piecewise linear in I_n. m_ss is not read.
+/// m_ns = m_ts = 0 and v_s = 0: all velocities and impulses lie in the plane of n and t, and are piecewise
+/// linear in I_n. m_ss is not read.
 #[derive(Clone, Copy, Debug)]
 pub struct Planar;
 
-/// m_nt = m_ns = 0: friction does not change v_n, which is linear in I_n; the three laws of restitution agree.
+/// m_nt = m_ns = 0: friction does not change v_n, which is linear in I_n; the three laws of restitution
+/// agree.
 #[derive(Clone, Copy, Debug)]
 pub struct Balanced;
 
@@ -91,8 +95,9 @@ impl Structure for Frictionless {}
 
 impl Shape for General {}
 
-/// Solves one collision of known structure: the same outcome and errors as [`crate::solve`] for the matrix, velocity and surface with the entries set as the
-/// structure `S` says. Arguments and units are those of [`crate::solve`].
+/// Solves one collision of known structure: the same outcome and errors as [`crate::solve`] for the matrix,
+/// velocity and surface with the entries set as the structure `S` says. Arguments and units are those of
+/// [`crate::solve`].
 ///
 /// # Errors
 /// Those of [`crate::solve`].

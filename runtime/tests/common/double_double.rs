@@ -1,4 +1,5 @@
-//! Numbers of twice the digits: unevaluated sums of two doubles (Dekker 1971), for references that nothing here calculates with otherwise.
+//! Numbers of twice the digits: unevaluated sums of two doubles (Dekker 1971), for references that nothing
+//! here calculates with otherwise.
 
 use std::{
     cmp::Ordering,

@@ -63,8 +63,8 @@ impl Case {
         }
     }
 
-    /// The largest error: of the impulse over its largest component, of the velocity over approach plus separation, of the works over
-    /// impulse times velocity.
+    /// The largest error: of the impulse over its largest component, of the velocity over approach plus
+    /// separation, of the works over impulse times velocity.
     pub fn error(&self, hit: &Impact<f64>) -> f64 {
         let impulse = if top(&self.impulse) > 0.0 { top(&self.impulse) } else { 1.0 };
         let velocity = top(&self.velocity) + top(&self.approach);

@@ -1,9 +1,10 @@
-//! An independent solution of every collision, to some 25 digits: Taylor's method for the sliding equations (34) in Cartesian components, with numbers
-//! of 32 digits.
+//! An independent solution of every collision, to some 25 digits: Taylor's method for the sliding equations
+//! (34) in Cartesian components, with numbers of 32 digits.
 //!
-//! With dI_n = s dtau the equations are v_tan' = s b - mu T v_tan, v_n' = m_nn s - mu b.v_tan, I_tan' = -mu v_tan, I_n' = s, W' = s v_n, and
-//! s follows from s^2 = v_tan^2. It shares no equation in phi, no chart and no series with the solver. It takes its input as exact: a matrix counts as
-//! singular only if its determinant is zero to 28 digits.
+//! With dI_n = s dtau the equations are v_tan' = s b - mu T v_tan, v_n' = m_nn s - mu b.v_tan, I_tan' = -mu
+//! v_tan, I_n' = s, W' = s v_n, and s follows from s^2 = v_tan^2. It shares no equation in phi, no chart and
+//! no series with the solver. It takes its input as exact: a matrix counts as singular only if its
+//! determinant is zero to 28 digits.
 
 use hodograph::{Impact, Law, ReducedMatrix, Surface};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -25,13 +26,14 @@ pub struct Outcome {
     pub compressions: u32,
     /// Slip stopped before the end.
     pub stopped: bool,
-    /// How near v_n came to turning where that would change the outcome by a jump, over the speed of approach.
+    /// How near v_n came to turning where that would change the outcome by a jump, over the speed of
+    /// approach.
     pub margin: f64,
 }
 
 impl Outcome {
-    /// The largest error: of the impulse over its largest component, of the velocity over approach plus separation, of the works over
-    /// impulse times velocity.
+    /// The largest error: of the impulse over its largest component, of the velocity over approach plus
+    /// separation, of the works over impulse times velocity.
     pub fn error(&self, hit: &Impact<f64>, approach: &Vector3<f64>) -> f64 {
         let (impulse, velocity) = (self.impulse.amax(), self.velocity.amax() + approach.amax());
         ((hit.impulse - self.impulse).amax() / impulse)
@@ -73,7 +75,8 @@ struct Problem {
     speed: Double,
 }
 
-/// The law, and what it has seen: compression ends at each upward zero of v_n, and none ends the collision while v_n < 0.
+/// The law, and what it has seen: compression ends at each upward zero of v_n, and none ends the collision
+/// while v_n < 0.
 struct Watch {
     compressions: u32,
     target: Option<Double>,

@@ -1,8 +1,11 @@
-//! The controller of the juggler, for a desktop and for firmware: no standard library, no allocation, the same work at every sample.
+//! The controller of the juggler, for a desktop and for firmware: no standard library, no allocation, the
+//! same work at every sample.
 //!
-//! While the ball falls the controller asks the generated collision what a strike would do. A strike is a vertical speed of the paddle and its two tilts;
-//! its outcome is the velocity of the ball after it. One step of Newton's method per sample, with four collisions, moves the strike towards the one that
-//! sends the ball to the height that is asked for and back to the middle. The paddle is moved so that it makes this strike when the ball arrives.
+//! While the ball falls the controller asks the generated collision what a strike would do. A strike is a
+//! vertical speed of the paddle and its two tilts; its outcome is the velocity of the ball after it. One step
+//! of Newton's method per sample, with four collisions, moves the strike towards the one that sends the ball
+//! to the height that is asked for and back to the middle. The paddle is moved so that it makes this strike
+//! when the ball arrives.
 
 use hodograph::nalgebra::{Matrix3, Vector3, convert};
 use hodograph::{Scalar, Surface};
@@ -55,7 +58,8 @@ impl<T: Scalar> Control<T> {
         }
     }
 
-    /// Force and torques for the next period, from the state now and the height (of the centre of the ball, m) that is asked for.
+    /// Force and torques for the next period, from the state now and the height (of the centre of the ball,
+    /// m) that is asked for.
     pub fn act(&mut self, q: &Coordinates<T>, u: &Speeds<T>, height: T) -> Inputs<T> {
         self.learn(q, u);
         match self.meeting(q, u) {
@@ -79,7 +83,8 @@ impl<T: Scalar> Control<T> {
         })
     }
 
-    /// Takes the ratio of the normal velocities at a bounce into account, where there was one since the last sample.
+    /// Takes the ratio of the normal velocities at a bounce into account, where there was one since the last
+    /// sample.
     fn learn(&mut self, q: &Coordinates<T>, u: &Speeds<T>) {
         let Ok(velocity) = self.model.contact_velocity_bounce(q, u) else { return };
         let (before, after) = (self.approach, velocity[0]);
@@ -90,7 +95,8 @@ impl<T: Scalar> Control<T> {
         }
     }
 
-    /// Where and how fast the ball is when it meets the paddle, which is then at height zero and tilted as planned. `None`: it does not.
+    /// Where and how fast the ball is when it meets the paddle, which is then at height zero and tilted as
+    /// planned. `None`: it does not.
     fn meeting(&self, q: &Coordinates<T>, u: &Speeds<T>) -> Option<Meeting<T>> {
         let parameters = self.model.parameters();
         let (g, r) = (parameters.g, parameters.r);
@@ -149,8 +155,8 @@ impl<T: Scalar> Control<T> {
         }
     }
 
-    /// The accelerations now of the smoothest motion to the strike: cubics of time that end with the place and the speed planned. Shortly before the strike
-    /// they stay as they are.
+    /// The accelerations now of the smoothest motion to the strike: cubics of time that end with the place
+    /// and the speed planned. Shortly before the strike they stay as they are.
     fn push(&mut self, q: &Coordinates<T>, u: &Speeds<T>, after: T) {
         if after < convert(0.008) {
             return;

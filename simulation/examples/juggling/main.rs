@@ -1,4 +1,5 @@
-//! A paddle that juggles a ball under a controller of 1 kHz, which asks the generated collision what each strike will do.
+//! A paddle that juggles a ball under a controller of 1 kHz, which asks the generated collision what each
+//! strike will do.
 //!
 //!   cargo run --release -p hodograph-simulation --example juggling -- --svg juggling.svg
 

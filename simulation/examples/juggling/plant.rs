@@ -1,5 +1,6 @@
-//! The juggler itself, where the controller is tried in firmware: no standard library, no allocation. It flies by Runge-Kutta steps of one period and bounces
-//! by the generated collision. `hodograph_simulation` is a second road to the same motion.
+//! The juggler itself, where the controller is tried in firmware: no standard library, no allocation. It
+//! flies by Runge-Kutta steps of one period and bounces by the generated collision. `hodograph_simulation` is
+//! a second road to the same motion.
 
 use hodograph::{CollisionError, Mechanism, Scalar, StateError, Surface};
 
@@ -26,7 +27,8 @@ impl<T: Scalar> Plant<T> {
     pub fn advance(&mut self, inputs: &Inputs<T>, period: T) -> Result<(), CollisionError<T>> {
         let zero = T::zero();
         let mut rest = period;
-        // A ball that bounces twice within a period lies on the paddle: it is let through, and comes back with the next bounce.
+        // A ball that bounces twice within a period lies on the paddle: it is let through, and comes back
+        // with the next bounce.
         for _ in 0..4 {
             let end = self.after(inputs, rest)?;
             let open = self.juggler.gap_bounce(&self.coordinates)? >= zero;

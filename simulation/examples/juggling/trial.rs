@@ -1,4 +1,5 @@
-//! What is tried: the juggler as it is, what its controller takes it for, where the ball starts, and the heights that are asked for.
+//! What is tried: the juggler as it is, what its controller takes it for, where the ball starts, and the
+//! heights that are asked for.
 
 use hodograph::nalgebra::convert;
 use hodograph::{Law, Scalar, Surface};

@@ -99,7 +99,8 @@ pub fn follow(
     Ok(story)
 }
 
-/// The events as lines. Bounces follow each other ever faster: those that do, and the contacts that they end in, stand in one.
+/// The events as lines. Bounces follow each other ever faster: those that do, and the contacts that they end
+/// in, stand in one.
 pub fn lines(mechanism: &dyn Contacts<f64>, events: &[Event]) -> String {
     let mut text = String::new();
     let mut rest = events;

@@ -17,7 +17,8 @@ pub enum Part {
     Rim(f64),
 }
 
-/// A contact with the line normal . p = offset; the normal is (sin, cos) of its tilt against z, so that tilt 0 is the floor.
+/// A contact with the line normal . p = offset; the normal is (sin, cos) of its tilt against z, so that tilt
+/// 0 is the floor.
 #[derive(Clone, Copy, Debug)]
 pub struct Line {
     pub part: Part,

@@ -35,7 +35,8 @@ impl Random {
     }
 }
 
-/// Which random starts a test tries: the first so many, or what `HODOGRAPH_STARTS` says, a number or a range as `96..97`.
+/// Which random starts a test tries: the first so many, or what `HODOGRAPH_STARTS` says, a number or a range
+/// as `96..97`.
 pub fn starts(usual: u64) -> std::ops::Range<u64> {
     let text = std::env::var("HODOGRAPH_STARTS").unwrap_or_default();
     match text.split_once("..") {

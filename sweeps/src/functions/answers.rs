@@ -1,4 +1,5 @@
-//! Columns of answers: a struct of named fields for each row. `kind` is `ok`, or says why the other fields are NULL.
+//! Columns of answers: a struct of named fields for each row. `kind` is `ok`, or says why the other fields
+//! are NULL.
 
 use std::sync::Arc;
 

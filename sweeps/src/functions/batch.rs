@@ -1,4 +1,5 @@
-//! The argument of a model's function: columns of coordinates, speeds, inputs, parameters and surfaces, and what stands in a row.
+//! The argument of a model's function: columns of coordinates, speeds, inputs, parameters and surfaces, and
+//! what stands in a row.
 
 use std::ops::Range;
 
@@ -73,7 +74,8 @@ impl Batch {
         (0..defaults.len()).map(column).collect()
     }
 
-    /// The states of the rows; what is not given is as in the defaults: coordinates, speeds, inputs, parameters.
+    /// The states of the rows; what is not given is as in the defaults: coordinates, speeds, inputs,
+    /// parameters.
     pub fn table<'a>(&'a self, defaults: &'a [Vec<f64>; 4]) -> Table<'a> {
         let [coordinates, speeds, inputs, _] = defaults;
         Table {

@@ -1,4 +1,5 @@
-//! `checksum(hash)`: the sum of 64-bit hashes modulo 2^64. It does not depend on the order of the rows, and sums of parts add up.
+//! `checksum(hash)`: the sum of 64-bit hashes modulo 2^64. It does not depend on the order of the rows, and
+//! sums of parts add up.
 
 use std::sync::Arc;
 

@@ -1,5 +1,5 @@
-//! `histogram(x, low, high, bins)`: counts of x in `bins` equal bins, as a list of `bins + 2` integers: below `low`, the bins, from `high` on. NULL and
-//! numbers that are none do not count. Counts of parts add up.
+//! `histogram(x, low, high, bins)`: counts of x in `bins` equal bins, as a list of `bins + 2` integers: below
+//! `low`, the bins, from `high` on. NULL and numbers that are none do not count. Counts of parts add up.
 
 use std::sync::Arc;
 

@@ -1,4 +1,5 @@
-//! `<model>_collide`, `<model>_accelerations` and `<model>_energy`: the routines of a mechanism on columns of states.
+//! `<model>_collide`, `<model>_accelerations` and `<model>_energy`: the routines of a mechanism on columns of
+//! states.
 
 use std::hash::{Hash, Hasher};
 use std::sync::{Arc, OnceLock};

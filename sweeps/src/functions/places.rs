@@ -1,4 +1,5 @@
-//! What the fields of a model function's argument mean: `two_sleds_collide(named_struct('q3', 0.8, 'mu', 0.5, ..))`.
+//! What the fields of a model function's argument mean: `two_sleds_collide(named_struct('q3', 0.8, 'mu', 0.5,
+//! ..))`.
 
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use datafusion::common::{Result, plan_err};
@@ -34,8 +35,8 @@ pub enum Place {
 const SURFACE: [(&str, Place); 4] =
     [("mu", Place::Mu), ("e", Place::E), ("law", Place::Law), ("contact", Place::Contact)];
 
-/// All fields that a function of this mechanism knows. A component of the model that is called as a field of the collision, or `time`, has `model_`
-/// before its name.
+/// All fields that a function of this mechanism knows. A component of the model that is called as a field of
+/// the collision, or `time`, has `model_` before its name.
 pub fn known(mechanism: &InterpretedMechanism, collision: bool) -> Vec<(String, Place)> {
     let surface = if collision { SURFACE.as_slice() } else { &[] };
     let mut all: Vec<(String, Place)> =

@@ -1,5 +1,6 @@
-//! Numbers that depend on the number of the row alone: `uniform(row, dimension, seed)`, `normal(row, dimension, seed)`, `sobol(row, dimension, seed)`
-//! and `linspace(index, low, high, count)`. Any part of a sweep, on any machine, in any order, gets the same numbers.
+//! Numbers that depend on the number of the row alone: `uniform(row, dimension, seed)`, `normal(row,
+//! dimension, seed)`, `sobol(row, dimension, seed)` and `linspace(index, low, high, count)`. Any part of a
+//! sweep, on any machine, in any order, gets the same numbers.
 
 use std::sync::Arc;
 
@@ -44,7 +45,8 @@ fn sobol(row: i64, dimension: u32, seed: i64) -> f64 {
     f64::from(sobol_burley::sample((row % SEQUENCE) as u32, dimension, scramble as u32))
 }
 
-/// A number of the standard normal distribution (Box and Muller), by functions that have the same bits on every machine.
+/// A number of the standard normal distribution (Box and Muller), by functions that have the same bits on
+/// every machine.
 fn normal(row: i64, dimension: i64, seed: i64) -> f64 {
     let [radius, angle] = pair(row, dimension, seed);
     libm::sqrt(-2.0 * libm::log(1.0 - radius)) * libm::cos(core::f64::consts::TAU * angle)
@@ -116,7 +118,8 @@ impl ScalarUDFImpl for Sampler {
     }
 }
 
-/// `linspace(index, low, high, count)`: number `index` of `count` numbers from `low` to `high`, both of them included.
+/// `linspace(index, low, high, count)`: number `index` of `count` numbers from `low` to `high`, both of them
+/// included.
 #[derive(Debug, PartialEq, Eq, Hash)]
 pub struct Linspace {
     signature: Signature,
@@ -202,7 +205,8 @@ mod tests {
         near(moments(&|row| sobol(row, 3, 7)), (0.5, 1.0 / 12.0), 1e-4);
     }
 
-    /// What makes the sequence worth its name: each of 256 equal intervals has its share of points, in every sequence of its own seed.
+    /// What makes the sequence worth its name: each of 256 equal intervals has its share of points, in every
+    /// sequence of its own seed.
     #[test]
     fn sobol_points_fill_every_interval_alike() {
         for first in [0, SEQUENCE as i64, 5 * SEQUENCE as i64] {

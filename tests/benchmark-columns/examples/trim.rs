@@ -1,4 +1,5 @@
-//! Keeps of a derivation what the benchmark needs: `cargo run --example trim -- FULL.derivation > quadruped.derivation`.
+//! Keeps of a derivation what the benchmark needs: `cargo run --example trim -- FULL.derivation >
+//! quadruped.derivation`.
 
 use hodograph_generator::artifact;
 use hodograph_generator::program::operation::Value;

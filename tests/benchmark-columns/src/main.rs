@@ -1,6 +1,7 @@
-//! Forward dynamics of a quadruped with 18 speeds: many states at once against the generated module, in turns in one process and thread. What counts
-//! is the ratio: both are measured under the same load, and the best of many turns is taken. With `--seconds` it prints the time of the generated module
-//! alone, s a state, for `bindings/python/throughput`.
+//! Forward dynamics of a quadruped with 18 speeds: many states at once against the generated module, in turns
+//! in one process and thread. What counts is the ratio: both are measured under the same load, and the best
+//! of many turns is taken. With `--seconds` it prints the time of the generated module alone, s a state, for
+//! `bindings/python/throughput`.
 
 use std::hint::black_box;
 use std::time::Instant;

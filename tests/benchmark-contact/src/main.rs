@@ -1,7 +1,8 @@
-//! Motion with contact beside MuJoCo: seconds of motion per second of computing, on a box that tumbles and a hopper, in turns in one run; and how far
-//! a particle creeps that friction holds.
+//! Motion with contact beside MuJoCo: seconds of motion per second of computing, on a box that tumbles and a
+//! hopper, in turns in one run; and how far a particle creeps that friction holds.
 //!
-//! The ratio counts: both are measured under the same load, as time of the processor, and the best of several turns is taken. Both run in one thread.
+//! The ratio counts: both are measured under the same load, as time of the processor, and the best of several
+//! turns is taken. Both run in one thread.
 
 mod peer;
 

@@ -6,8 +6,8 @@ use nalgebra::{Matrix3, Vector3};
 use crate::Case;
 use crate::random::Random;
 
-/// Random contacts of rank 1 to 3 and conditions to 1e16; slip that hardly is or is fast, along a root of h or nearly, stopping nearly at mu_c; steep
-/// friction.
+/// Random contacts of rank 1 to 3 and conditions to 1e16; slip that hardly is or is fast, along a root of h
+/// or nearly, stopping nearly at mu_c; steep friction.
 pub fn hostile() -> Vec<Case> {
     let mut random = Random(2012);
     let mut cases = Vec::new();

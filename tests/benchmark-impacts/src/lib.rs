@@ -1,11 +1,11 @@
 //! The objects of the measurements: collisions, methods, errors of outcomes, and modes of closed contacts.
 
 mod hostile;
+pub mod modes;
+mod ode;
 #[path = "../../../runtime/tests/common/random.rs"]
 #[allow(dead_code)]
 mod random;
-pub mod modes;
-mod ode;
 pub mod times;
 
 use std::hint::black_box;
@@ -47,7 +47,8 @@ pub struct Case {
     answer: [f64; 8],
 }
 
-/// The two sleds of the paper, mu = 0.6, 1.1, 1.6 under the three laws, e = 0.8. The exact solver answers them to better than 1e-12.
+/// The two sleds of the paper, mu = 0.6, 1.1, 1.6 under the three laws, e = 0.8. The exact solver answers
+/// them to better than 1e-12.
 pub fn nine() -> Vec<Case> {
     let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
     let approach = Vector3::new(-0.946108022, 1.06306701, 0.0);
@@ -95,7 +96,8 @@ impl Case {
         Self { matrix, approach, surface, expect: None, answer: [0.0; 8] }
     }
 
-    /// The scaled error of an answer: impulse by its largest component, velocity by approach plus separation, works by impulse times velocity.
+    /// The scaled error of an answer: impulse by its largest component, velocity by approach plus separation,
+    /// works by impulse times velocity.
     pub fn error(&self, hit: &Outcome) -> f64 {
         let answer = self.expect.map_or(self.answer, |x| {
             let (i, v) = (x.impulse, x.velocity);

@@ -1,4 +1,5 @@
-//! Counts the instructions per collision of every method, and measures their errors. `docs/benchmarks.md` says how to read it.
+//! Counts the instructions per collision of every method, and measures their errors. `docs/benchmarks.md`
+//! says how to read it.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -62,7 +63,8 @@ fn profile(target: &Path, name: &str) -> Result<String, String> {
     std::fs::read_to_string(&profile).map_err(|error| error.to_string())
 }
 
-/// Instructions of each collision of a set by the exact solver: callgrind writes down what it has counted whenever the next one begins.
+/// Instructions of each collision of a set by the exact solver: callgrind writes down what it has counted
+/// whenever the next one begins.
 fn each(target: &Path, name: &str) -> Result<Vec<u64>, String> {
     let folder = target.join(name);
     std::fs::create_dir_all(&folder).map_err(|error| error.to_string())?;
@@ -87,7 +89,8 @@ fn each(target: &Path, name: &str) -> Result<Vec<u64>, String> {
     Ok(counts)
 }
 
-/// The nine collisions of two sleds one by one; the set has the last of them twice, so that each is followed by another.
+/// The nine collisions of two sleds one by one; the set has the last of them twice, so that each is followed
+/// by another.
 fn by_cases(target: &Path) -> Result<(), String> {
     println!("\nnine, one by one: exact\n");
     println!("| mu | Newton | Poisson | Stronge |");
@@ -126,7 +129,8 @@ fn execute(command: &mut Command) -> Result<(), String> {
     }
 }
 
-/// Instructions per call of each measured function, with all that it calls: a line `cfn=` names the callee, the line after `calls=` ends with the cost.
+/// Instructions per call of each measured function, with all that it calls: a line `cfn=` names the callee,
+/// the line after `calls=` ends with the cost.
 fn counts(profile: &str, names: &[&'static str]) -> BTreeMap<&'static str, f64> {
     let mut totals: BTreeMap<&'static str, (f64, f64)> = BTreeMap::new();
     let (mut callee, mut lines) = (None, profile.lines());

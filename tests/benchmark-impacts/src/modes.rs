@@ -18,7 +18,8 @@ pub struct Closed {
 /// How many of each row are measured.
 const COUNT: usize = 500;
 
-/// A row of the table: its name, that of its function, the function (never inlined), and which contacts it is asked of.
+/// A row of the table: its name, that of its function, the function (never inlined), and which contacts it is
+/// asked of.
 pub type Row = (&'static str, &'static str, fn(&Closed), fn(&Closed) -> bool);
 
 macro_rules! rows {

@@ -1,7 +1,7 @@
 //! The collision integrated with the crate `ode_solvers`, as one would write it with a general integrator.
 //!
-//! (55) over tau, dI_n = s dtau, where it has no singular point; the end of each phase lies between two steps, and is found by integrating to it
-//! again; once slip is below the tolerance, the rest is (57)-(62).
+//! (55) over tau, dI_n = s dtau, where it has no singular point; the end of each phase lies between two
+//! steps, and is found by integrating to it again; once slip is below the tolerance, the rest is (57)-(62).
 
 use hodograph::{Characteristics, Law, ReducedMatrix, Surface};
 use nalgebra::Vector3;

@@ -1,6 +1,7 @@
 //! Time of the exact solver over that of every other method, measured in one process.
 //!
-//! Turns of all methods alternate, so that whatever slows the machine meets all of them, and the best turn of each counts.
+//! Turns of all methods alternate, so that whatever slows the machine meets all of them, and the best turn of
+//! each counts.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};

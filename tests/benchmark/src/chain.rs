@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-/// The robot description of a cart with `links` links. Link i is 0.4 m + 0.02 m (i - 1) long with 0.5 kg + 0.03 kg (i - 1) at its end.
+/// The robot description of a cart with `links` links. Link i is 0.4 m + 0.02 m (i - 1) long with 0.5 kg +
+/// 0.03 kg (i - 1) at its end.
 pub fn urdf(links: usize) -> String {
     let length = |link: usize| 0.4 + 0.02 * (link as f64 - 1.0);
     let mut text = format!("<robot name=\"chain{links}\">\n<link name=\"base\"/>\n");

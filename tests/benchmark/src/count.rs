@@ -1,7 +1,8 @@
 //! Counts instructions and measures the code size of routines.
 //!
-//! valgrind's callgrind executes the program and counts every instruction that retires between entry and return of a routine,
-//! whatever it calls (sines, cosines) included, loops and argument hiding around it excluded. Counts do not depend on load.
+//! valgrind's callgrind executes the program and counts every instruction that retires between entry and
+//! return of a routine, whatever it calls (sines, cosines) included, loops and argument hiding around it
+//! excluded. Counts do not depend on load.
 
 use std::collections::BTreeMap;
 use std::process::Command;
@@ -28,7 +29,8 @@ pub fn instructions(folders: &Folders, built: &Built) -> Result<Counts, Failure>
     of_functions(folders, built, &functions)
 }
 
-/// Counts instructions per call of functions: what each is called here, and a part of its name in the program.
+/// Counts instructions per call of functions: what each is called here, and a part of its name in the
+/// program.
 pub fn of_functions<'a>(
     folders: &Folders,
     built: &Built,
@@ -45,7 +47,8 @@ pub fn of_functions<'a>(
         )
     };
     let counted = count().or_else(|failure| {
-        // valgrind does not know one of the two encodings of `vmovq` between registers; the compiler seldom takes that one.
+        // valgrind does not know one of the two encodings of `vmovq` between registers; the compiler seldom
+        // takes that one.
         if !failure.to_string().contains("unhandled instruction") {
             return Err(failure);
         }
@@ -62,7 +65,8 @@ pub fn of_functions<'a>(
     Ok(parse(&std::fs::read_to_string(&file)?, functions))
 }
 
-/// Reads a profile: a line `cfn=` names the callee, `calls=` says how often, the next line ends with the inclusive cost.
+/// Reads a profile: a line `cfn=` names the callee, `calls=` says how often, the next line ends with the
+/// inclusive cost.
 fn parse<'a>(profile: &str, functions: &[(&'a str, &str)]) -> BTreeMap<&'a str, f64> {
     let mut totals: BTreeMap<&str, (u64, u64)> = BTreeMap::new();
     let mut callee = None;
@@ -84,8 +88,8 @@ fn parse<'a>(profile: &str, functions: &[(&'a str, &str)]) -> BTreeMap<&'a str, 
     totals.into_iter().map(|(routine, (calls, cost))| (routine, cost as f64 / calls as f64)).collect()
 }
 
-/// Bytes of machine code per routine: its function, the method, where that is a function of its own, and the sines and cosines of several
-/// angles, which all routines share.
+/// Bytes of machine code per routine: its function, the method, where that is a function of its own, and the
+/// sines and cosines of several angles, which all routines share.
 pub fn sizes(built: &Built) -> Result<BTreeMap<&'static str, u64>, Failure> {
     let text = output(Command::new("nm").args(["--print-size", "--demangle"]).arg(&built.program))?;
     let methods = [

@@ -97,7 +97,8 @@ fn model(folders: &Folders, tool: &Path, case: &Case, fixed: bool) -> Result<Str
     output(&mut command)
 }
 
-/// The model with every parameter `fixed`. Declarations are recognised by `name: unit = value` inside `parameters { }`.
+/// The model with every parameter `fixed`. Declarations are recognised by `name: unit = value` inside
+/// `parameters { }`.
 fn with_fixed_parameters(model: &str) -> String {
     let mut inside = false;
     let lines = model.lines().map(|line| {

@@ -106,8 +106,8 @@ pub fn build(folders: &Folders, derivation: &Derivation<'_>) -> Result<Built, Fa
     cargo(folders, &package)
 }
 
-/// The program: `numbers` prints what the routines answer at its states, `answer` at states that it reads, a number repeats all routines
-/// that often at its states.
+/// The program: `numbers` prints what the routines answer at its states, `answer` at states that it reads, a
+/// number repeats all routines that often at its states.
 fn main(derivation: &Derivation<'_>) -> String {
     let case = derivation.case;
     let (module, contact) = (module_name(derivation), case.contact);
@@ -228,7 +228,8 @@ pub fn differentiated(derivation: &Derivation<'_>) -> bool {
     derivation.module.contains("fn accelerations_derivatives(")
 }
 
-/// The functions that are measured of the routines that differentiate, and how their answers are written: value, then derivatives.
+/// The functions that are measured of the routines that differentiate, and how their answers are written:
+/// value, then derivatives.
 fn derivatives(arguments: &str, inputs: &str) -> String {
     format!(
         "impl<T: Numbers> Numbers for Result<T, StateError> {{

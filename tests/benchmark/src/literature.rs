@@ -13,7 +13,8 @@ const ARMS: [(&str, &str); 2] = [
     ("puma_560", "Armstrong, Khatib and Burdick (1986), abbreviated (small terms dropped): 305 operations"),
 ];
 
-/// Prints operations per evaluation with all parameters at run time; what depends on parameters alone is computed once.
+/// Prints operations per evaluation with all parameters at run time; what depends on parameters alone is
+/// computed once.
 pub fn print(folders: &Folders, tool: &Path) -> Result<(), Failure> {
     println!("\n| inverse dynamics | ours | in the literature |\n| --- | --- | --- |");
     for (name, theirs) in ARMS {

@@ -1,5 +1,6 @@
-//! Measures the code that Hodograph generates: retired instructions per evaluation, operations, derivation time, compile time
-//! and code size, beside stored figures of other generators and libraries. `docs/benchmarks.md` says how to run and read it.
+//! Measures the code that Hodograph generates: retired instructions per evaluation, operations, derivation
+//! time, compile time and code size, beside stored figures of other generators and libraries.
+//! `docs/benchmarks.md` says how to run and read it.
 
 mod cases;
 mod chain;

@@ -1,4 +1,5 @@
-//! Numbers with twice the digits of a double: the unevaluated sum of two (Dekker 1971), some 31 decimal digits.
+//! Numbers with twice the digits of a double: the unevaluated sum of two (Dekker 1971), some 31 decimal
+//! digits.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -111,8 +112,8 @@ impl Precise {
     }
 }
 
-/// The numbers of some quantities, one after the other, as a program finds them in these numbers; or the operation that is not known in
-/// them.
+/// The numbers of some quantities, one after the other, as a program finds them in these numbers; or the
+/// operation that is not known in them.
 pub fn evaluate(
     program: &Program,
     quantities: &[Quantity],

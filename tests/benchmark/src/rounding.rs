@@ -1,5 +1,6 @@
-//! How much the rounding of doubles costs: what the measured programs answer at many random states, beside the same quantities in
-//! twice as many digits, and beside Pinocchio's error at the same states (stored, or measured anew with `--peers`).
+//! How much the rounding of doubles costs: what the measured programs answer at many random states, beside
+//! the same quantities in twice as many digits, and beside Pinocchio's error at the same states (stored, or
+//! measured anew with `--peers`).
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -180,8 +181,8 @@ fn answers(built: &Built, states: &[State]) -> Result<Vec<Vec<f64>>, Failure> {
     Ok(text.lines().map(line).collect())
 }
 
-/// The errors of a measured program against the program with parameters at run time, evaluated in twice the digits; the states and
-/// the exact answers are left in the folder for the peers, if that is wanted.
+/// The errors of a measured program against the program with parameters at run time, evaluated in twice the
+/// digits; the states and the exact answers are left in the folder for the peers, if that is wanted.
 pub fn measure(
     folders: &Folders,
     built: &Built,

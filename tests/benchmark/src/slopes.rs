@@ -74,7 +74,8 @@ pub fn names(derivation: &Derivation<'_>) -> Result<Names, Failure> {
     })
 }
 
-/// The differences of the matrices of one answer: a value and the derivatives by coordinates, speeds and inputs, all by rows.
+/// The differences of the matrices of one answer: a value and the derivatives by coordinates, speeds and
+/// inputs, all by rows.
 fn off(found: &[f64], names: &Names, state: &State, expected: &Value, kind: &str) -> Vec<f64> {
     let rows = names.speeds.len();
     let counts = [names.coordinates.len(), rows, names.inputs.len()];
@@ -107,7 +108,8 @@ fn off(found: &[f64], names: &Names, state: &State, expected: &Value, kind: &str
     all
 }
 
-/// What a column of the reference is in the model's columns: that of a speed, an input, or the small motion that a speed stands for.
+/// What a column of the reference is in the model's columns: that of a speed, an input, or the small motion
+/// that a speed stands for.
 pub fn column(names: &Names, state: &State, speed: &str, by: &str) -> Vec<(usize, f64)> {
     let bare = speed.trim_start_matches("u_");
     let place = |list: &[String], name: String| list.iter().position(|other| *other == name);
@@ -121,7 +123,8 @@ pub fn column(names: &Names, state: &State, speed: &str, by: &str) -> Vec<(usize
     }
 }
 
-/// How coordinates change with the small motion that a speed stands for. Those of a free base are along and about its own axes.
+/// How coordinates change with the small motion that a speed stands for. Those of a free base are along and
+/// about its own axes.
 fn motion(state: &State, speed: &str) -> Vec<(String, f64)> {
     let of = |name: &str| {
         state

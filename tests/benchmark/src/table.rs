@@ -40,8 +40,8 @@ fn quantities(routine: &str) -> Vec<Quantity> {
     }
 }
 
-/// Operations of a routine as the program has them: multiplications, additions, divisions, pairs of sine and cosine, and how many
-/// of the multiplications are fused with an addition.
+/// Operations of a routine as the program has them: multiplications, additions, divisions, pairs of sine and
+/// cosine, and how many of the multiplications are fused with an addition.
 fn operations(program: &Program, routine: &str) -> String {
     let count = program.cost(&quantities(routine)).evaluation();
     let Count { multiplications, additions, divisions, trigonometric, fused, .. } = count;

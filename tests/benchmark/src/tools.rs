@@ -75,7 +75,8 @@ pub fn tool(folders: &Folders, given: Option<&Path>) -> Result<PathBuf, Failure>
 
 /// What a program took.
 pub struct Effort {
-    /// seconds of the processor, of all its threads and children; other work on the machine is not in them. Without `/usr/bin/time` it is the time that passed.
+    /// seconds of the processor, of all its threads and children; other work on the machine is not in them.
+    /// Without `/usr/bin/time` it is the time that passed.
     pub seconds: f64,
     /// the most memory of one of its processes, kB
     pub kilobytes: Option<u64>,

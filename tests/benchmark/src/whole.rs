@@ -1,4 +1,5 @@
-//! Measures the time to compile a module with all of its methods called in doubles: the worst case, since methods that are not called are not compiled.
+//! Measures the time to compile a module with all of its methods called in doubles: the worst case, since
+//! methods that are not called are not compiled.
 
 use std::fmt::Write;
 

@@ -1,4 +1,5 @@
-//! A user's crate: `no_std`, the dependency renamed, a model in a file, one in the source, and one that is ready-made.
+//! A user's crate: `no_std`, the dependency renamed, a model in a file, one in the source, and one that is
+//! ready-made.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(warnings, missing_docs, clippy::all, clippy::pedantic)]

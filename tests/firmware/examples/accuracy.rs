@@ -1,6 +1,6 @@
-//! What singles lose against doubles: accelerations and collisions of every shipped model at random states, and the reference collisions by
-//! family. The states are singles, so that both types begin with the same numbers; parameters are rounded. Runs on this machine only; docs/singles.md is what it
-//! prints.
+//! What singles lose against doubles: accelerations and collisions of every shipped model at random states,
+//! and the reference collisions by family. The states are singles, so that both types begin with the same
+//! numbers; parameters are rounded. Runs on this machine only; docs/singles.md is what it prints.
 
 use std::collections::BTreeMap;
 

@@ -54,7 +54,8 @@ impl Digest {
         }
     }
 
-    /// Takes numbers in. All that are not a number count as one: their bits tell how they came about, which targets may do differently.
+    /// Takes numbers in. All that are not a number count as one: their bits tell how they came about, which
+    /// targets may do differently.
     pub fn take<T: Number>(&mut self, numbers: &[T]) {
         for &number in numbers {
             self.numbers += 1;

@@ -70,7 +70,8 @@ mod there {
     /// So much of it is painted, bytes.
     const PAINTED: usize = 64 * 1024;
 
-    /// Between the calls of these two the emulator counts instructions. They differ, or the linker would make one of them.
+    /// Between the calls of these two the emulator counts instructions. They differ, or the linker would make
+    /// one of them.
     #[unsafe(no_mangle)]
     #[inline(never)]
     extern "C" fn mark_begin() {

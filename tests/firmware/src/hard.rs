@@ -1,4 +1,5 @@
-//! States and surfaces that make collisions dear: slip that hardly is, is fast or lies next to an invariant direction, friction next to mu_c, steep friction.
+//! States and surfaces that make collisions dear: slip that hardly is, is fast or lies next to an invariant
+//! direction, friction next to mu_c, steep friction.
 
 use hodograph::nalgebra::{Matrix3, Vector2, Vector3};
 use hodograph::{Characteristics, Law, ReducedMatrix, Surface, rates};
@@ -74,7 +75,8 @@ fn invariant(random: &mut Random, matrix: &ReducedMatrix<f64>, mu: f64) -> Optio
     Some(Vector2::new(cos, sin))
 }
 
-/// A contact of no mechanism: a matrix of rank 1 to 3, now and then ill-conditioned, and a velocity of approach.
+/// A contact of no mechanism: a matrix of rank 1 to 3, now and then ill-conditioned, and a velocity of
+/// approach.
 pub fn contact(random: &mut Random) -> (ReducedMatrix<f64>, Vector3<f64>) {
     let kind = (4.0 * (1.0 + random.number())) as u32;
     let (rank, scale) = match kind {

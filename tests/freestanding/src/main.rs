@@ -7,7 +7,8 @@ use core::hint::black_box;
 use hodograph::nalgebra::{SMatrix, Vector2, Vector3};
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Structure, solve_structured};
 use hodograph::{
-    ClosedContactError, CollisionError, ContactError, ContactForce, ContactMode, Hodograph, Impact, ImpactDerivative, ImpactError, Law, ReducedMatrix, Saltation, StateError, Surface,
+    ClosedContactError, CollisionError, ContactError, ContactForce, ContactMode, Hodograph, Impact,
+    ImpactDerivative, ImpactError, Law, ReducedMatrix, Saltation, StateError, Surface,
 };
 use no_panic::no_panic;
 
@@ -16,12 +17,17 @@ mod memory;
 hodograph::mechanism!("../downstream/models/hopper.mech");
 
 use hopper::{
-    ClosedContact, Collision, CollisionDerivative, Coordinates, Derivatives, Hopper, Inputs, Linearisation, Parameters, Speeds,
+    ClosedContact, Collision, CollisionDerivative, Coordinates, Derivatives, Hopper, Inputs, Linearisation,
+    Parameters, Speeds,
 };
 
 #[no_panic]
 #[inline(never)]
-fn solve(m: &ReducedMatrix<f64>, v: &Vector3<f64>, surface: &Surface<f64>) -> Result<Impact<f64>, ImpactError<f64>> {
+fn solve(
+    m: &ReducedMatrix<f64>,
+    v: &Vector3<f64>,
+    surface: &Surface<f64>,
+) -> Result<Impact<f64>, ImpactError<f64>> {
     hodograph::solve(m, v, surface)
 }
 
@@ -60,7 +66,12 @@ fn phi_bar(m: &ReducedMatrix<f64>, mu: f64, phi: f64) -> Option<f64> {
 
 #[no_panic]
 #[inline(never)]
-fn collide(hopper: &Hopper, q: &Coordinates, u: &Speeds, surface: &Surface<f64>) -> Result<Collision, CollisionError<f64>> {
+fn collide(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    surface: &Surface<f64>,
+) -> Result<Collision, CollisionError<f64>> {
     hopper.collide_foot_ground(q, u, surface)
 }
 
@@ -160,7 +171,12 @@ fn mode_after(
 
 #[no_panic]
 #[inline(never)]
-fn accelerations(hopper: &Hopper, q: &Coordinates, u: &Speeds, inputs: &Inputs) -> Result<Speeds, StateError> {
+fn accelerations(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+) -> Result<Speeds, StateError> {
     hopper.accelerations(q, u, inputs)
 }
 
@@ -188,7 +204,12 @@ fn inverse_dynamics_derivatives(
 
 #[no_panic]
 #[inline(never)]
-fn linearise(hopper: &Hopper, q: &Coordinates, u: &Speeds, inputs: &Inputs) -> Result<Linearisation<f64>, StateError> {
+fn linearise(
+    hopper: &Hopper,
+    q: &Coordinates,
+    u: &Speeds,
+    inputs: &Inputs,
+) -> Result<Linearisation<f64>, StateError> {
     hopper.linearise(q, u, inputs)
 }
 
@@ -218,7 +239,10 @@ extern "C" fn _start() -> ! {
         black_box(linearise(&hopper, &q, &u, &Inputs::default()).is_ok());
         black_box(mass_matrix(&hopper, &q).is_ok());
         black_box(contact_mode(&hopper, &q, &u, &Inputs::default(), &surface).is_ok());
-        black_box(contact_force(&hopper, &q, &u, &Inputs::default(), black_box(ContactMode::Stick), &surface).is_ok());
+        black_box(
+            contact_force(&hopper, &q, &u, &Inputs::default(), black_box(ContactMode::Stick), &surface)
+                .is_ok(),
+        );
         black_box(impact_without_collision(&hopper, &q, &u, &surface).is_ok());
     }
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Poisson });

@@ -1,4 +1,5 @@
-//! The memory functions that compiled code calls, byte by byte, written so that the compiler does not replace them by calls of themselves.
+//! The memory functions that compiled code calls, byte by byte, written so that the compiler does not replace
+//! them by calls of themselves.
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn memcpy(to: *mut u8, from: *const u8, count: usize) -> *mut u8 {

@@ -1,5 +1,5 @@
-//! Counts the instructions of every routine in `measured`, and holds them against `counts.txt`: more than 3 % above it is an error.
-//! With `HODOGRAPH_UPDATE=1` the table is written anew instead.
+//! Counts the instructions of every routine in `measured`, and holds them against `counts.txt`: more than 3 %
+//! above it is an error. With `HODOGRAPH_UPDATE=1` the table is written anew instead.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,8 @@ const SLACK: f64 = 0.03;
 /// A few instructions are no matter, however short the routine.
 const FEW: f64 = 8.0;
 
-/// So many routines may be left out because valgrind does not know one of their instructions: which, changes with the compiler's choices.
+/// So many routines may be left out because valgrind does not know one of their instructions: which, changes
+/// with the compiler's choices.
 const MISSING: usize = 12;
 
 type Counts = BTreeMap<String, f64>;
@@ -124,8 +125,8 @@ fn execute(command: &mut Command) -> Result<String, String> {
     }
 }
 
-/// Instructions per call of each routine, with all that it calls: a line `cfn=` names the callee, the line after `calls=` ends with
-/// the cost.
+/// Instructions per call of each routine, with all that it calls: a line `cfn=` names the callee, the line
+/// after `calls=` ends with the cost.
 fn per_call(profile: &str) -> Counts {
     let mut totals: BTreeMap<String, (f64, f64)> = BTreeMap::new();
     let (mut callee, mut lines) = (None, profile.lines());
@@ -144,7 +145,8 @@ fn per_call(profile: &str) -> Counts {
     totals.into_iter().map(|(name, (calls, cost))| (name, cost / calls)).collect()
 }
 
-/// The name of a measured routine, `model::routine`, from that of a function: `measured::model::routine`, and what the compiler adds.
+/// The name of a measured routine, `model::routine`, from that of a function: `measured::model::routine`, and
+/// what the compiler adds.
 fn routine(function: &str) -> Option<String> {
     let rest = function.split("measured::").nth(1)?;
     let mut parts = rest.split("::").map(|part| part.split([' ', '\'']).next().unwrap_or(part));

@@ -72,7 +72,8 @@ fn cargo(copy: &Path, arguments: &[&str]) -> Outcome<Output> {
         .output()?)
 }
 
-/// The mutant at fault: the last one that begins before the error; of a `match` that lacks patterns, the first deleted arm after it.
+/// The mutant at fault: the last one that begins before the error; of a `match` that lacks patterns, the
+/// first deleted arm after it.
 fn blamed(message: &Value, texts: &BTreeMap<String, String>) -> Option<usize> {
     let message = &message["message"];
     if message["level"] != "error" {

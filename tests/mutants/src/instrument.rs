@@ -1,4 +1,5 @@
-//! Writes all mutants of a file into it: each place computes its original or, if its number is the active one, the mutant.
+//! Writes all mutants of a file into it: each place computes its original or, if its number is the active
+//! one, the mutant.
 
 use std::collections::HashMap;
 

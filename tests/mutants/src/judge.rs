@@ -17,7 +17,8 @@ struct Test {
     takes: Duration,
 }
 
-/// Judges mutants by the tests whose names contain `only`: names those that no test finds, then how many each test program found, the quickest first.
+/// Judges mutants by the tests whose names contain `only`: names those that no test finds, then how many each
+/// test program found, the quickest first.
 pub fn all(
     folder: &Path,
     programs: &[(String, PathBuf)],

@@ -1,14 +1,16 @@
 //! Judges mutants of the sources by the test suite.
 //!
-//! `cargo mutants` lists the mutants. Instead of building each one, this program builds all of them into one copy of the sources, where a number selects one
-//! while the tests run. A mutant costs the tests alone, which stop at the first failure.
+//! `cargo mutants` lists the mutants. Instead of building each one, this program builds all of them into one
+//! copy of the sources, where a number selects one while the tests run. A mutant costs the tests alone, which
+//! stop at the first failure.
 //!
 //! ```text
 //! hodograph-mutants PACKAGE FILES [COUNT [ONLY [TESTS]]]
 //! ```
 //!
-//! PACKAGE is the package that holds the sources and whose tests judge; FILES is the pattern of the sources; COUNT limits the mutants to a random sample;
-//! ONLY takes the mutants whose names contain it, TESTS the tests. The standard output is one line for each mutant that survives.
+//! PACKAGE is the package that holds the sources and whose tests judge; FILES is the pattern of the sources;
+//! COUNT limits the mutants to a random sample; ONLY takes the mutants whose names contain it, TESTS the
+//! tests. The standard output is one line for each mutant that survives.
 
 mod build;
 mod copy;

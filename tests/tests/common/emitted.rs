@@ -1,4 +1,5 @@
-//! The emitted modules of all shipped models behind one interface; `tests/build.rs` writes the implementations.
+//! The emitted modules of all shipped models behind one interface; `tests/build.rs` writes the
+//! implementations.
 
 use hodograph::nalgebra::SMatrix;
 use hodograph::{Contacts, Path, StateError, Surface};
@@ -14,7 +15,8 @@ pub trait Emitted {
     fn name(&self) -> &'static str;
     /// a routine by its name, if there is one; the error is its message
     fn call(&self, routine: &str, at: &Inputs) -> Option<Result<Vec<f64>, String>>;
-    /// the derivative of a routine along a direction (coordinates, speeds, inputs), by numbers that carry derivatives
+    /// the derivative of a routine along a direction (coordinates, speeds, inputs), by numbers that carry
+    /// derivatives
     fn along(&self, routine: &str, at: &Inputs, along: &Inputs) -> Option<Vec<f64>>;
     /// a collision; the error is its message
     fn collide(&self, contact: usize, at: &Inputs, surface: &Surface<f64>) -> Result<Hit, String>;
@@ -140,7 +142,8 @@ macro_rules! beside {
     }};
 }
 
-/// What a collision at a contact is made of, with its derivatives, as one matrix by rows. Reduced matrix, response and gap do not change with speeds and inputs.
+/// What a collision at a contact is made of, with its derivatives, as one matrix by rows. Reduced matrix,
+/// response and gap do not change with speeds and inputs.
 macro_rules! contact_beside {
     ($derivatives:expr) => {{
         let d = $derivatives;

@@ -35,7 +35,8 @@ pub struct Sample {
     pub numeric: Evaluation,
 }
 
-/// States around the one that the model states: dependent coordinates completed, parameters off their defaults.
+/// States around the one that the model states: dependent coordinates completed, parameters off their
+/// defaults.
 pub fn samples(model: &Model, count: usize) -> Vec<Sample> {
     let m = &model.mechanism;
     let mut random = Random::new(&model.name);

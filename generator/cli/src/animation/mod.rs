@@ -1,6 +1,8 @@
-//! Writes a motion as an animated HTML page: points and the lines between them, contacts, impulses and forces, and curves over time.
+//! Writes a motion as an animated HTML page: points and the lines between them, contacts, impulses and
+//! forces, and curves over time.
 //!
-//! [`page`] makes the text of the page from an [`Animation`]. The page loads no other files, and works with mouse, touch and keyboard.
+//! [`page`] makes the text of the page from an [`Animation`]. The page loads no other files, and works with
+//! mouse, touch and keyboard.
 
 mod segments;
 #[cfg(test)]
@@ -14,7 +16,8 @@ use crate::plot::svg::escaped;
 
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
-/// A page holds this many instants at most, about; of more, every second or third .. is kept, and those of events.
+/// A page holds this many instants at most, about; of more, every second or third .. is kept, and those of
+/// events.
 const MOMENTS: usize = 6000;
 
 /// What is to be seen. Lengths are in metres along N.x, N.y, N.z.
@@ -103,7 +106,8 @@ pub struct Series {
 pub fn page(animation: &Animation) -> String {
     let mut shown = animation.clone();
     shown.thin();
-    // JSON has no numbers that are not finite: they become null. Nothing in a string can end the element it stands in.
+    // JSON has no numbers that are not finite: they become null. Nothing in a string can end the element it
+    // stands in.
     let data = serde_json::to_string(&shown).unwrap_or_default().replace('<', "\\u003c");
     let title = escaped(&animation.title);
     format!(

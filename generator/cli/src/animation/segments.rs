@@ -1,7 +1,8 @@
 //! Chooses the points of a mechanism that the animation joins by lines.
 
-/// Lines that make a stick figure: from each point to the one it is defined from (`from`, by place in the list; `None` for a point
-/// by itself), and from the centre of each body to its points. A line is drawn once, and none from a point to itself.
+/// Lines that make a stick figure: from each point to the one it is defined from (`from`, by place in the
+/// list; `None` for a point by itself), and from the centre of each body to its points. A line is drawn once,
+/// and none from a point to itself.
 pub fn segments(from: &[Option<usize>], bodies: &[(usize, Vec<usize>)]) -> Vec<[usize; 2]> {
     let chain = from.iter().enumerate().filter_map(|(point, from)| from.map(|from| [from, point]));
     let spokes = bodies.iter().flat_map(|(centre, points)| points.iter().map(move |&point| [*centre, point]));

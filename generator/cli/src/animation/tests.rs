@@ -111,7 +111,8 @@ fn long_motions_are_thinned_but_for_their_events() {
     }
 }
 
-/// Time runs, the tip moves where the data say, keys and buttons do what they should, and no two names stand on each other.
+/// Time runs, the tip moves where the data say, keys and buttons do what they should, and no two names stand
+/// on each other.
 const MOTION: &str = r#"
 const data = JSON.parse(document.getElementById('data').textContent);
 const text = (id) => document.getElementById(id).textContent;

@@ -23,7 +23,8 @@ pub struct Arguments {
     /// derive nothing: name the derivations that are stale, damaged or missing, and exit 1 if there are any
     #[arg(long)]
     check: bool,
-    /// write nothing: derive again, name the derivations that are not what the model gives, and exit 1 if there are any
+    /// write nothing: derive again, name the derivations that are not what the model gives, and exit 1 if
+    /// there are any
     #[arg(long, conflicts_with = "check")]
     verify: bool,
     /// derive also where the derivation is fresh

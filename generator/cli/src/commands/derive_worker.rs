@@ -1,4 +1,5 @@
-//! The child process that uses the algebra engine. The engine prints to standard output; the result comes after that.
+//! The child process that uses the algebra engine. The engine prints to standard output; the result comes
+//! after that.
 
 use crate::stop::Outcome;
 

@@ -16,8 +16,8 @@ use crate::stop::{Outcome, Stop};
 pub struct Arguments {
     /// the model file
     model: PathBuf,
-    /// a method that gives several quantities at once, such as 'control(mass_matrix, forcing)': a name, and in parentheses the names of the methods
-    /// whose answers it gives; may be given several times
+    /// a method that gives several quantities at once, such as 'control(mass_matrix, forcing)': a name, and
+    /// in parentheses the names of the methods whose answers it gives; may be given several times
     #[arg(long, value_name = "SET")]
     evaluate: Vec<String>,
     #[command(flatten)]

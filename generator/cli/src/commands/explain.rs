@@ -15,7 +15,8 @@ use crate::output;
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
 
-/// Write the equations of a model: mass matrix, forcing, contacts, with intermediate symbols z1, z2 .. as in the paper
+/// Write the equations of a model: mass matrix, forcing, contacts, with intermediate symbols z1, z2 .. as in
+/// the paper
 ///
 /// `hodograph explain E062` says what a mistake of that code is, with a wrong and a right example.
 #[derive(Clone, Debug, clap::Args)]
@@ -25,7 +26,8 @@ pub struct Arguments {
     /// how to write them
     #[arg(long, value_enum, default_value_t = Style::Text)]
     format: Style,
-    /// only these quantities, as derivations call them (`mass_matrix`, `contact 0 reduced` ..) [default: the usual ones]
+    /// only these quantities, as derivations call them (`mass_matrix`, `contact 0 reduced` ..) [default: the
+    /// usual ones]
     #[arg(long, value_name = "NAME")]
     quantity: Vec<String>,
     /// instead of equations, the number of operations of each routine at each stage
@@ -104,7 +106,8 @@ fn code(path: &Path) -> Outcome<Option<String>> {
     }
 }
 
-/// Operations at construction, then per evaluation: multiplications, additions, divisions, sines and cosines, others, all.
+/// Operations at construction, then per evaluation: multiplications, additions, divisions, sines and cosines,
+/// others, all.
 pub fn row(cost: &Cost) -> String {
     let cells = |count: Count| {
         let Count { multiplications, additions, divisions, trigonometric, functions, .. } = count;

@@ -22,7 +22,8 @@ pub struct Arguments {
     /// numbers are `float` instead of `double`: for processors that have singles only
     #[arg(long)]
     single: bool,
-    /// the folder of the package `hodograph`, which the crate depends on [default: the published package of this tool's version]
+    /// the folder of the package `hodograph`, which the crate depends on [default: the published package of
+    /// this tool's version]
     #[arg(long, value_name = "FOLDER")]
     hodograph: Option<PathBuf>,
     #[command(flatten)]

@@ -19,9 +19,10 @@ const MAX_BYTES: usize = 64 << 20;
 ///
 ///   hodograph import robot.urdf > robot.mech
 ///
-/// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have becomes `_`. A root link
-/// that moves freely has the coordinates q_base_x .. z, the quaternion q_base_e0 .. e3 and the speeds u_base_x .. z and
-/// u_base_rx .. rz along its own axes. What is ignored is said on standard error.
+/// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have becomes
+/// `_`. A root link that moves freely has the coordinates q_base_x .. z, the quaternion q_base_e0 .. e3 and
+/// the speeds u_base_x .. z and u_base_rx .. rz along its own axes. What is ignored is said on standard
+/// error.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -69,7 +70,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
                 output::say(format_args!("note: {note}"));
             }
             output::text(&imported.model)?;
-            // What the model language refuses (a body that turns without inertia, say) is better said now than later.
+            // What the model language refuses (a body that turns without inertia, say) is better said now
+            // than later.
             let source = Source::file("the imported model", imported.model);
             let found = check(&source);
             if !found.diagnostics.is_empty() {

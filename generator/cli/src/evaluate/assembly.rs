@@ -8,17 +8,20 @@ use super::{Machine, listed};
 use crate::json::state::State;
 use crate::json::{Failure, Kind};
 
-/// Coordinates that need no larger correction than this (rad or m, relative to their own size above 1) are consistent.
+/// Coordinates that need no larger correction than this (rad or m, relative to their own size above 1) are
+/// consistent.
 const CONSISTENT: f64 = 1e-10;
 /// Points that are to be one may be this far apart, relative to their distance from O above 1 m.
 const OPEN: f64 = 1e-9;
-/// Where two configurations of a linkage meet, the residual grows with the square of the error, so that coordinates are known to the
-/// root of the rounding error only. Below this ratio of its singular values the Jacobian counts as singular.
+/// Where two configurations of a linkage meet, the residual grows with the square of the error, so that
+/// coordinates are known to the root of the rounding error only. Below this ratio of its singular values the
+/// Jacobian counts as singular.
 const FOLDED: f64 = 1e-7;
 /// Bound on the steps; from a sensible guess it takes less than ten.
 const STEPS: usize = 200;
 
-/// Finds the dependent coordinates by damped Newton steps, starting where they are. Consistent ones stay as they are.
+/// Finds the dependent coordinates by damped Newton steps, starting where they are. Consistent ones stay as
+/// they are.
 ///
 /// # Errors
 ///
@@ -83,7 +86,8 @@ struct Here {
     residual: DVector<f64>,
     /// the change of the dependent coordinates that would remove it
     step: DVector<f64>,
-    /// the same relative to the size of the coordinates above 1, at most; with what no step removes at a dead centre
+    /// the same relative to the size of the coordinates above 1, at most; with what no step removes at a
+    /// dead centre
     size: f64,
     /// whether the residual is no more than rounding.
     closed: bool,
@@ -153,8 +157,8 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
     Ok(Here { residual, step, size, closed, pivot })
 }
 
-/// The least over the largest singular value of the matrix whose columns are scaled to length 1, so that units of coordinates do not
-/// matter. Rows are not scaled: at a dead centre one of them vanishes.
+/// The least over the largest singular value of the matrix whose columns are scaled to length 1, so that
+/// units of coordinates do not matter. Rows are not scaled: at a dead centre one of them vanishes.
 fn conditioned(matrix: &DMatrix<f64>) -> f64 {
     let mut scaled = matrix.clone();
     for mut column in scaled.column_iter_mut() {

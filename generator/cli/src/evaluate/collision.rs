@@ -50,7 +50,8 @@ pub fn collide<'a>(
     let after = before.zip(responses).map(|(speed, response)| {
         speed + response.iter().zip(impulse.iter()).map(|(response, impulse)| response * impulse).sum::<f64>()
     });
-    // (24): the contact's work, less what prescribed motion at the contact takes, and what it does in the bodies
+    // (24): the contact's work, less what prescribed motion at the contact takes, and what it does in the
+    // bodies
     let prescribed: f64 = numbers
         .three(index, ContactQuantity::PrescribedWork)
         .iter()

@@ -17,8 +17,8 @@ use hodograph_interpreter::InterpretedMechanism;
 use crate::json::state::State;
 use crate::json::{Failure, Kind};
 
-/// A model and its program, before parameters are known: each state brings its own. Any quantity can be evaluated; [`Machine::interpreted`]
-/// fixes the parameters, and has the traits that a simulation needs.
+/// A model and its program, before parameters are known: each state brings its own. Any quantity can be
+/// evaluated; [`Machine::interpreted`] fixes the parameters, and has the traits that a simulation needs.
 #[derive(Clone, Debug)]
 pub struct Machine {
     /// the model
@@ -161,7 +161,8 @@ impl Machine {
         Ok(state)
     }
 
-    /// No body has a mass that is not positive, or some inertias: the generated constructor refuses the same parameters.
+    /// No body has a mass that is not positive, or some inertias: the generated constructor refuses the same
+    /// parameters.
     fn check_bodies(&self, state: &State) -> Result<(), Failure> {
         let impossible = impossible_bodies(&self.mechanism, &state.to_numeric());
         let Some(found) = impossible.first() else { return Ok(()) };

@@ -76,8 +76,8 @@ pub enum Scalar {
 /// A file of the crate: its path in the crate's folder, and its text.
 pub type File = (String, String);
 
-/// The files of the crate. `expanded` is the Rust text of the generated module, `dependency` what stands after `hodograph =` in the manifest, in braces.
-/// `None`: the text is no generated module.
+/// The files of the crate. `expanded` is the Rust text of the generated module, `dependency` what stands
+/// after `hodograph =` in the manifest, in braces. `None`: the text is no generated module.
 pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<File>> {
     let mut module = module::read(&syn::parse_file(expanded).ok()?)?;
     module.name = names::of(&module.path);

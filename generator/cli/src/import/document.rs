@@ -1,4 +1,5 @@
-//! The XML document of a robot description: places of its elements, and a report of the elements that are not used.
+//! The XML document of a robot description: places of its elements, and a report of the elements that are not
+//! used.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -117,7 +118,8 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
     Ok(Robot { file: file.to_owned(), robot, places })
 }
 
-/// An element has at most so many attributes: the robot description has none with ten, and to compare each with each takes time.
+/// An element has at most so many attributes: the robot description has none with ten, and to compare each
+/// with each takes time.
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Refuses elements with very many attributes. What is no XML is left to who reads it.

@@ -27,8 +27,8 @@ impl Names {
         Names { taken, folded: HashSet::new(), renamed: Vec::new() }
     }
 
-    /// A free name that is as like `wish` as can be. Names that differ only by case and underscores count as one, because
-    /// they may become one in generated code.
+    /// A free name that is as like `wish` as can be. Names that differ only by case and underscores count as
+    /// one, because they may become one in generated code.
     pub fn give(&mut self, wish: &str) -> String {
         let first = identifier(wish);
         let mut name = first.clone();

@@ -233,7 +233,8 @@ impl Writer<'_> {
         let spin = weighted(&moves.speeds[3..], &own(&axes));
         let within = if joint_axes.axes == "N" { String::new() } else { format!(" in {}", joint_axes.axes) };
         self.out.angular_velocities.push(format!("{axes}{within} = {spin};"));
-        // Relative to the ground a free link has its speeds along its own axes; on a link that moves, along that link's.
+        // Relative to the ground a free link has its speeds along its own axes; on a link that moves, along
+        // that link's.
         let directions = match carrier {
             None => {
                 let speed = weighted(&moves.speeds, &own(&axes));

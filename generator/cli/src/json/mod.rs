@@ -1,4 +1,5 @@
-//! The JSON interface: reading lines and states, writing answers and error objects (`docs/json.md` is the contract).
+//! The JSON interface: reading lines and states, writing answers and error objects (`docs/json.md` is the
+//! contract).
 
 pub mod answer;
 pub mod failure;

@@ -1,4 +1,5 @@
-//! JSON values with fields in the order of the text (including repeated ones) and numbers as the nearest double.
+//! JSON values with fields in the order of the text (including repeated ones) and numbers as the nearest
+//! double.
 
 use std::fmt;
 
@@ -28,8 +29,8 @@ impl Json {
     ///
     /// # Errors
     ///
-    /// `bad_json` with the place; `not_finite` where nothing but a number out of range (`1e999`) or a word for one
-    /// (`NaN`, `Infinity`) keeps the text from being JSON.
+    /// `bad_json` with the place; `not_finite` where nothing but a number out of range (`1e999`) or a word
+    /// for one (`NaN`, `Infinity`) keeps the text from being JSON.
     pub fn parse(text: &str) -> Result<Json, Failure> {
         serde_json::from_str(text).map_err(|error| match without_infinities(text) {
             Some((rest, word)) if serde_json::from_str::<Json>(&rest).is_ok() => Failure::new(

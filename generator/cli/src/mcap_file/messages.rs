@@ -51,7 +51,8 @@ impl From<UnitQuaternion<f64>> for Quaternion {
     }
 }
 
-/// The rotation that turns one direction into another; of opposite ones, about an axis at right angles to the first.
+/// The rotation that turns one direction into another; of opposite ones, about an axis at right angles to the
+/// first.
 pub fn turning(from: Vector3<f64>, to: Vector3<f64>) -> UnitQuaternion<f64> {
     UnitQuaternion::rotation_between(&from, &to).unwrap_or_else(|| {
         let beside = if from.x.abs() < 0.9 * from.norm() { Vector3::x() } else { Vector3::y() };

@@ -1,7 +1,8 @@
 //! Writes a motion as an MCAP file, which viewers of robots (Foxglove, Lichtblick, Rerun) open.
 //!
 //! [`bytes`] makes the file from an [`Animation`]: frames as `foxglove.FrameTransforms`, points, lines and arrows as `foxglove.SceneUpdate`,
-//! events as `foxglove.Log`, and curves as objects of numbers. Messages are JSON, each topic with its JSON schema.
+//! events as `foxglove.Log`, and curves as objects of numbers. Messages are JSON, each topic with its JSON
+//! schema.
 
 mod messages;
 mod scene;
@@ -26,7 +27,8 @@ pub const LAST: f64 = u32::MAX as f64;
 /// Level of a `foxglove.Log` that informs.
 const INFO: u8 = 2;
 
-/// The bytes of the file; `more` are curves over the same moments, beside those of the animation. The same motion gives the same bytes.
+/// The bytes of the file; `more` are curves over the same moments, beside those of the animation. The same
+/// motion gives the same bytes.
 ///
 /// # Errors
 ///

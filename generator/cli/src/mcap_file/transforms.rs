@@ -1,4 +1,5 @@
-//! Where the frames are: `world`, whose z points upwards, the inertial frame N in it, and the frames of bodies in N.
+//! Where the frames are: `world`, whose z points upwards, the inertial frame N in it, and the frames of
+//! bodies in N.
 
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 

@@ -1,4 +1,5 @@
-//! A backend of the library `plotters` that records shapes, in hundredths of a pixel; `svg` and `png` write them.
+//! A backend of the library `plotters` that records shapes, in hundredths of a pixel; `svg` and `png` write
+//! them.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -52,7 +53,8 @@ pub enum Shape {
     Polygon { points: Vec<[f64; 2]>, colour: Colour },
     /// a circle, filled or as a line of this width
     Circle { centre: [f64; 2], radius: f64, colour: Colour, width: Option<f64> },
-    /// marked text; `at` is on its line, and it is turned about that place by a quarter to the left if `upwards`
+    /// marked text; `at` is on its line, and it is turned about that place by a quarter to the left if
+    /// `upwards`
     Text { marked: String, at: [f64; 2], size: f64, colour: Colour, anchor: Anchor, upwards: bool },
 }
 

@@ -1,4 +1,5 @@
-//! The figure of a collision's course, as Fig. 3 of the paper: v_s over v_t, and v_n and the speed of slip over I_n.
+//! The figure of a collision's course, as Fig. 3 of the paper: v_s over v_t, and v_n and the speed of slip
+//! over I_n.
 
 use hodograph::Law;
 

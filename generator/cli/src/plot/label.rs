@@ -1,7 +1,7 @@
 //! Text of figures: words, symbols and their indices.
 //!
-//! A label is one string, so that it can go through `plotters`; characters of Unicode's private use area, which words never
-//! have, say where a symbol or an index begins.
+//! A label is one string, so that it can go through `plotters`; characters of Unicode's private use area,
+//! which words never have, say where a symbol or an index begins.
 
 /// How a piece of a label is set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

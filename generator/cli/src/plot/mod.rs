@@ -1,7 +1,8 @@
 //! Figures: panels with axes, curves, marks and a legend, written as SVG or PNG.
 //!
-//! [`figure`] says what is shown, [`layout`] where it stands. Drawing goes through the library `plotters` onto a [`canvas`] that keeps
-//! hundredths of a pixel, from which [`svg`] and [`png`] make what [`file`](mod@file) writes. [`collision`] is the figure of `hodograph plot`.
+//! [`figure`] says what is shown, [`layout`] where it stands. Drawing goes through the library `plotters`
+//! onto a [`canvas`] that keeps hundredths of a pixel, from which [`svg`] and [`png`] make what
+//! [`file`](mod@file) writes. [`collision`] is the figure of `hodograph plot`.
 
 mod canvas;
 pub mod collision;

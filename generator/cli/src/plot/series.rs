@@ -3,8 +3,8 @@
 use super::canvas::{Canvas, Colour, Shape};
 use super::figure::Sign;
 
-/// How curves look: colours that readers who do not see all colours tell apart (after Okabe and Ito, darkened where they are
-/// pale on white), and dashes, by which they are told apart in print.
+/// How curves look: colours that readers who do not see all colours tell apart (after Okabe and Ito, darkened
+/// where they are pale on white), and dashes, by which they are told apart in print.
 pub const STYLES: [Style; 6] = [
     Style { colour: Colour([0, 114, 178], 1.0), dashes: &[] },
     Style { colour: Colour([213, 94, 0], 1.0), dashes: &[8.0, 3.0] },

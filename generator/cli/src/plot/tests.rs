@@ -47,7 +47,8 @@ fn labels_keep_symbols_indices_and_powers_apart() {
     assert_eq!(Label::words("a\u{e001}b\nc").marked(), Label::words("abc").marked());
 }
 
-/// A parabola in data is one on the sheet: its second differences are the same to a few hundredths of a pixel.
+/// A parabola in data is one on the sheet: its second differences are the same to a few hundredths of a
+/// pixel.
 #[test]
 fn curves_keep_their_form_to_hundredths_of_a_pixel() {
     let figure = figure((0..=40).map(|i| f64::from(i) / 40.0).map(|t| [t, t * t]).collect());

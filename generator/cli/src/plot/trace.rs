@@ -63,7 +63,8 @@ pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Tra
 fn course(hodograph: &Hodograph<f64>) -> Vec<Sample> {
     let all = hodograph.normal_impulse();
     let stop = hodograph.impact().phases.slip_end.map_or(all, |sample| sample.impulse.x);
-    // Slip turns most where it is about to stop: the steps get smaller towards there. What follows is a straight line.
+    // Slip turns most where it is about to stop: the steps get smaller towards there. What follows is a
+    // straight line.
     let arc = (0..=SAMPLES).map(|index| {
         let left = 1.0 - index as f64 / SAMPLES as f64;
         hodograph.at(stop * (1.0 - left * left))

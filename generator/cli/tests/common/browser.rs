@@ -18,8 +18,8 @@ fn browser() -> PathBuf {
     )
 }
 
-/// Shows a page in windows of [`WIDTHS`] and runs `script` in each, where `page` is its window; `script` is the body of an
-/// asynchronous function and returns a list of complaints. Gives all complaints.
+/// Shows a page in windows of [`WIDTHS`] and runs `script` in each, where `page` is its window; `script` is
+/// the body of an asynchronous function and returns a list of complaints. Gives all complaints.
 pub fn complaints(page: &str, script: &str) -> Vec<String> {
     // A browser for each: without a window, it draws no second page at the times it should.
     WIDTHS.iter().flat_map(|&width| complaints_at(width, page, script)).collect()
@@ -75,7 +75,8 @@ fn complaints_at(width: u32, page: &str, script: &str) -> Vec<String> {
     serde_json::from_str(&result).unwrap_or_else(|error| panic!("{error}: {result}"))
 }
 
-/// Frames by the clock: without a window the browser need not draw any, and a page that waits for one would wait for ever.
+/// Frames by the clock: without a window the browser need not draw any, and a page that waits for one would
+/// wait for ever.
 const FRAMES: &str = "<script>window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);</script>";
 
 /// What holds for every page: nothing is wider than the window unless it scrolls by itself.

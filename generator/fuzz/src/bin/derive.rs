@@ -1,5 +1,6 @@
-//! `cargo run --bin derive --features derive -- [COUNT] [SEED]` in `generator/fuzz`: mutated models that the front end accepts are
-//! derived and lowered. A derivation must end with a result or an error; a panic is a failure, and its seed is printed.
+//! `cargo run --bin derive --features derive -- [COUNT] [SEED]` in `generator/fuzz`: mutated models that the
+//! front end accepts are derived and lowered. A derivation must end with a result or an error; a panic is a
+//! failure, and its seed is printed.
 
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -13,7 +14,8 @@ use hodograph_generator::{DerivationError, check::check, derive};
 /// Shipped models that are quick to derive.
 fn models() -> Vec<Vec<u8>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../models");
-    let mut paths: Vec<_> = std::fs::read_dir(folder).expect("models").filter_map(|e| Some(e.ok()?.path())).collect();
+    let mut paths: Vec<_> =
+        std::fs::read_dir(folder).expect("models").filter_map(|e| Some(e.ok()?.path())).collect();
     paths.retain(|path| path.extension().is_some_and(|e| e == "mech"));
     paths.sort();
     paths.iter().map(|path| std::fs::read(path).expect("a model")).filter(|text| text.len() < 4000).collect()

@@ -1,5 +1,6 @@
-//! `cargo run --release --bin seeded -- [COUNT] [SEED]` in `generator/fuzz`: mutated models, token soups and arbitrary bytes, the
-//! same for the same seed, on all cores. A failure names the seed of its input, which `-- 1 SEED` prints and repeats.
+//! `cargo run --release --bin seeded -- [COUNT] [SEED]` in `generator/fuzz`: mutated models, token soups and
+//! arbitrary bytes, the same for the same seed, on all cores. A failure names the seed of its input, which
+//! `-- 1 SEED` prints and repeats.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};

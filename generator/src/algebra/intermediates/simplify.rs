@@ -1,4 +1,5 @@
-//! Shortens expressions: multiplies products out, replaces squares of sines or cosines, and replaces names by what they stand for.
+//! Shortens expressions: multiplies products out, replaces squares of sines or cosines, and replaces names by
+//! what they stand for.
 
 use super::{Intermediates, Meaning};
 use crate::algebra::expr::{Expr, SymbolId, View};
@@ -62,7 +63,8 @@ fn reduce_square(expr: &Expr, symbol: SymbolId, square: &Expr) -> Expr {
     let mut rest = expr.clone();
     let mut factor = Expr::one();
     let mut order = 1i64;
-    // Taylor coefficients in `symbol`: exact for a polynomial; give up on anything of high degree or not polynomial.
+    // Taylor coefficients in `symbol`: exact for a polynomial; give up on anything of high degree or not
+    // polynomial.
     for power in 0..8u32 {
         let coefficient = rest.replace(symbol, &Expr::zero());
         let coefficient = coefficient.mul(&Expr::number(&Number::ratio(1, order)));

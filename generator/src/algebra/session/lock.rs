@@ -1,4 +1,5 @@
-//! The lock file: one for all processes of a user, even where their environment variables name different home and temporary directories.
+//! The lock file: one for all processes of a user, even where their environment variables name different home
+//! and temporary directories.
 
 use std::fs::{DirBuilder, File, OpenOptions, TryLockError};
 use std::io::{self, Write};
@@ -8,7 +9,8 @@ use std::time::Duration;
 
 use super::SessionError;
 
-/// The lock file. Its place depends on the user alone: two environments of one user must meet in it, two users must not.
+/// The lock file. Its place depends on the user alone: two environments of one user must meet in it, two
+/// users must not.
 pub fn lock_path() -> PathBuf {
     folder().join("algebra-engine.lock")
 }
@@ -46,7 +48,8 @@ fn open(path: &Path) -> io::Result<File> {
         builder.recursive(true).create(folder)?;
         belongs_to_user(folder)?;
     }
-    // a lock needs no more than the right to read, which is what is left of a file on a medium that is read-only
+    // a lock needs no more than the right to read, which is what is left of a file on a medium that is
+    // read-only
     let written = OpenOptions::new().create(true).append(true).open(path);
     written.or_else(|error| File::open(path).map_err(|_| error))
 }

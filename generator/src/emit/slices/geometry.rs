@@ -1,4 +1,5 @@
-//! Positions, velocities, accelerations and partial velocities of points, and orientations of frames, for the trait `Mechanism`.
+//! Positions, velocities, accelerations and partial velocities of points, and orientations of frames, for the
+//! trait `Mechanism`.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};

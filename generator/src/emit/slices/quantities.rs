@@ -1,4 +1,5 @@
-//! Quantities of the whole mechanism for the trait `Mechanism`: equations of motion, energies, configuration equations.
+//! Quantities of the whole mechanism for the trait `Mechanism`: equations of motion, energies, configuration
+//! equations.
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};

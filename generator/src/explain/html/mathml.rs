@@ -1,7 +1,7 @@
 //! Writes terms as MathML.
 //!
-//! A long right side is several `math` elements, one for each summand, between which a browser may begin a new line; MathML itself
-//! has no lines.
+//! A long right side is several `math` elements, one for each summand, between which a browser may begin a
+//! new line; MathML itself has no lines.
 
 use super::super::symbols::{Form, Symbol, Symbols, form};
 use super::super::{Left, Rank, Term};

@@ -1,6 +1,8 @@
-//! Writes equations as an HTML page with MathML, which browsers display without scripts and without a network.
+//! Writes equations as an HTML page with MathML, which browsers display without scripts and without a
+//! network.
 //!
-//! An equation is a row of three columns, so that the equal signs of a section are aligned. The page is also well-formed XML.
+//! An equation is a row of three columns, so that the equal signs of a section are aligned. The page is also
+//! well-formed XML.
 
 mod escape;
 mod mathml;

@@ -32,7 +32,8 @@ impl<'a> Block<'a> {
 }
 
 impl Columns {
-    /// Evaluates the states of these rows; `with` receives them block by block. Rows that the table does not have are left out.
+    /// Evaluates the states of these rows; `with` receives them block by block. Rows that the table does not
+    /// have are left out.
     pub fn for_each_block(&self, table: &Table<'_>, rows: Range<usize>, mut with: impl FnMut(Block<'_>)) {
         let mut scratch = Scratch::new(self);
         let end = rows.end.min(table.rows);
@@ -43,8 +44,8 @@ impl Columns {
         }
     }
 
-    /// Evaluates the states of these rows into `numbers` (rows x [`Columns::len`], by rows) and `failures` (rows). The numbers of a state that
-    /// fails are not numbers.
+    /// Evaluates the states of these rows into `numbers` (rows x [`Columns::len`], by rows) and `failures`
+    /// (rows). The numbers of a state that fails are not numbers.
     pub fn by_rows(
         &self,
         table: &Table<'_>,
@@ -71,8 +72,8 @@ impl Columns {
         });
     }
 
-    /// Evaluates the states of these rows into one column (rows) for each result, and `failures` (rows). The numbers of a state that fails are
-    /// not numbers.
+    /// Evaluates the states of these rows into one column (rows) for each result, and `failures` (rows). The
+    /// numbers of a state that fails are not numbers.
     pub fn by_columns(
         &self,
         table: &Table<'_>,

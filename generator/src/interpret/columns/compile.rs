@@ -1,4 +1,5 @@
-//! From a program to steps on slots: what depends on parameters alone is a number already, and a slot is used again when nobody reads it any more.
+//! From a program to steps on slots: what depends on parameters alone is a number already, and a slot is used
+//! again when nobody reads it any more.
 
 use std::collections::{HashMap, HashSet, VecDeque};
 use std::mem::discriminant;
@@ -9,8 +10,8 @@ use crate::program::graph::Input;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::{Program, Quantity};
 
-/// What a step does with the operands `a`, `b`, `c`. The letters at the end say for each of them whether it is in a slot (`S`) or the same for
-/// all states (`U`); factors and terms may have changed places.
+/// What a step does with the operands `a`, `b`, `c`. The letters at the end say for each of them whether it
+/// is in a slot (`S`) or the same for all states (`U`); factors and terms may have changed places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     Load(Input),
@@ -232,7 +233,8 @@ impl Compiler<'_> {
         let mut places = operation.operands().map(|operand| self.place(operand));
         let mut operands: [Option<Place>; 3] = std::array::from_fn(|_| places.next());
         drop(places);
-        // factors and terms that are the same for all states go last; of three operands, the first two are factors
+        // factors and terms that are the same for all states go last; of three operands, the first two are
+        // factors
         let exchangeable =
             matches!(operation, O::Add(..) | O::Mul(..) | O::MulAdd(..) | O::MulSub(..) | O::NegMulAdd(..));
         if exchangeable && matches!(operands[0], Some(Place::Uniform(_))) {
@@ -304,8 +306,9 @@ fn pick_of_five(codes: [Code; 5], uniform: [bool; 3]) -> Code {
 /// So many of the steps that wait are looked at for one that does the same as the last.
 const WINDOW: usize = 128;
 
-/// The steps in an order in which those that do the same follow each other where their operands allow it: the processor then foresees what the next
-/// one does. They stay near their place, so that few more numbers must be held at a time.
+/// The steps in an order in which those that do the same follow each other where their operands allow it: the
+/// processor then foresees what the next one does. They stay near their place, so that few more numbers must
+/// be held at a time.
 fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
     let mut waiting = VecDeque::from(drafts);
     let mut defined = HashSet::<Varying>::new();

@@ -4,8 +4,9 @@ use hodograph_arithmetic::trigonometry::{is_within, near_zero, reduced, turned};
 
 use crate::arithmetic::sin_cos;
 
-/// How many states a block has: so many that finding out what a step does costs little beside doing it, and so few that the slots of large mechanisms
-/// stay in a core's own cache. (Quadruped, 421 slots, 215 kB: 64 states take 0.80 of the time of 32 per state, 128 take 0.74.)
+/// How many states a block has: so many that finding out what a step does costs little beside doing it, and
+/// so few that the slots of large mechanisms stay in a core's own cache. (Quadruped, 421 slots, 215 kB: 64
+/// states take 0.80 of the time of 32 per state, 128 take 0.74.)
 pub const LANES: usize = 64;
 /// How many of them are computed before any result is stored: a result may then take the place of an operand.
 pub const WIDTH: usize = 8;

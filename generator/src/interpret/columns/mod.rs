@@ -4,9 +4,11 @@
 //! program -> steps on slots (`compile`) -> each step on a block of states (`run`) -> results by rows or by columns
 //! ```
 //!
-//! A slot holds one number of every state of a block and is used again as soon as nobody reads it, so that a block stays in a core's
-//! own caches. The steps are loops over groups of eight states without branches, which compilers turn into vector instructions. The bits of a state's results are
-//! those of [`super::Prepared`], whatever states stand beside it and however many there are; a state without result fails alone.
+//! A slot holds one number of every state of a block and is used again as soon as nobody reads it, so that a
+//! block stays in a core's own caches. The steps are loops over groups of eight states without branches,
+//! which compilers turn into vector instructions. The bits of a state's results are
+//! those of [`super::Prepared`], whatever states stand beside it and however many there are; a state without
+//! result fails alone.
 
 mod batch;
 mod compile;

@@ -81,7 +81,8 @@ impl Columns {
 }
 
 impl Scratch {
-    /// Notes the states in which a value vanishes beside a scale. What is checked first in [`crate::interpret::Prepared`] is reported.
+    /// Notes the states in which a value vanishes beside a scale. What is checked first in
+    /// [`crate::interpret::Prepared`] is reported.
     #[inline(always)]
     fn check<A: Operand, B: Operand>(&mut self, check: u32, value: A, scale: Option<B>) {
         let (mut values, mut bounds) = (ZERO, ZERO);

@@ -16,7 +16,8 @@ impl<'a> Column<'a> {
         Column { numbers, stride: 1 }
     }
 
-    /// Every `stride`-th of the numbers, as the columns of a matrix stand that is stored by rows. The stride 0 gives the first number to all rows.
+    /// Every `stride`-th of the numbers, as the columns of a matrix stand that is stored by rows. The stride
+    /// 0 gives the first number to all rows.
     pub fn strided(numbers: &'a [f64], stride: usize) -> Self {
         Column { numbers, stride }
     }
@@ -47,7 +48,8 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Many states. Numbers stand in the order of the model, in the units that it declares; columns that are missing hold no numbers.
+/// Many states. Numbers stand in the order of the model, in the units that it declares; columns that are
+/// missing hold no numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Table<'a> {
     /// how many states

@@ -1,4 +1,5 @@
-//! Passes forces and torques from the leaves to the ground while derivatives of speeds are eliminated: the inward pass of the articulated body algorithm.
+//! Passes forces and torques from the leaves to the ground while derivatives of speeds are eliminated: the
+//! inward pass of the articulated body algorithm.
 //!
 //! Theory: docs/theory.md, section 16.2.
 
@@ -45,7 +46,8 @@ impl Acting {
         }
     }
 
-    /// Leaves a force's work on the `u'` of its point's relation; `None` if more than one frame carries the point.
+    /// Leaves a force's work on the `u'` of its point's relation; `None` if more than one frame carries the
+    /// point.
     pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let Some(force) = self.force.get_mut(&point) else { return Some(()) };
         *force = linear_forms::name(&mut k.z, force.clone());

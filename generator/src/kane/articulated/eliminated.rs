@@ -1,4 +1,5 @@
-//! The formula of an eliminated derivative of a speed: u' as a linear form in the accelerations of its base, other u' and the load on it.
+//! The formula of an eliminated derivative of a speed: u' as a linear form in the accelerations of its base,
+//! other u' and the load on it.
 
 use super::super::elimination_order::Node;
 use crate::algebra::Expr;

@@ -1,4 +1,5 @@
-//! The quadratic form of Gauss's principle, while relations are inserted and derivatives of speeds are eliminated.
+//! The quadratic form of Gauss's principle, while relations are inserted and derivatives of speeds are
+//! eliminated.
 //!
 //! Theory: docs/theory.md, section 16.2.
 
@@ -22,7 +23,8 @@ use crate::kinematics::linear_forms::{self, Triple};
 use crate::model::mechanism::{FrameId, PointId};
 
 /// Coefficients of the quadratic form
-/// `1/2 sum da.m.da + sum da.X.dalpha + 1/2 sum dalpha.I.dalpha + sum u' da.p + sum u' dalpha.h + 1/2 sum M u' u'`.
+/// `1/2 sum da.m.da + sum da.X.dalpha + 1/2 sum dalpha.I.dalpha + sum u' da.p + sum u' dalpha.h + 1/2 sum M
+/// u' u'`.
 #[derive(Default)]
 pub struct Form {
     mass: BTreeMap<PointId, Symmetric>,
@@ -33,8 +35,9 @@ pub struct Form {
     matrix: Products,
 }
 
-/// A component is much smaller than another if their ratio exceeds this at common sizes of parameters. Forward dynamics of the
-/// seven-joint arm rounds the least from 1 to 4, and takes fewer operations the larger this is.
+/// A component is much smaller than another if their ratio exceeds this at common sizes of parameters.
+/// Forward dynamics of the seven-joint arm rounds the least from 1 to 4, and takes fewer operations the
+/// larger this is.
 const MUCH: f64 = 3.0;
 
 /// What stood beside the angular acceleration of a frame when it was inserted.
@@ -93,8 +96,8 @@ fn square(v: &Triple, scaled: &Triple) -> Symmetric {
     ENTRIES.map(|(i, j)| scaled_product(&v[i], &v[j], &scaled[i], &scaled[j]))
 }
 
-/// The same dyadic along other axes. What hinges leave of an inertia can be small in one direction and large in another, and the small
-/// part is what matters further in: it keeps its digits.
+/// The same dyadic along other axes. What hinges leave of an inertia can be small in one direction and large
+/// in another, and the small part is what matters further in: it keeps its digits.
 fn graded(k: &mut Kinematics<'_>, m: &Symmetric, from: AxesId, to: AxesId) -> Symmetric {
     let Kinematics { tree, z, samples, .. } = k;
     tree.convert_graded(z, m, from, to, |z, a, b| {
@@ -112,8 +115,8 @@ fn graded(k: &mut Kinematics<'_>, m: &Symmetric, from: AxesId, to: AxesId) -> Sy
     })
 }
 
-/// Takes the `u'` with these partial velocities out of a velocity: what it has by itself, its inertia and what it shares with other
-/// `u'`, is named and stays; the products go to the matrix.
+/// Takes the `u'` with these partial velocities out of a velocity: what it has by itself, its inertia and
+/// what it shares with other `u'`, is named and stays; the products go to the matrix.
 fn split<K: Ord + Copy>(
     k: &mut Kinematics<'_>,
     matrix: &mut Products,
@@ -158,7 +161,8 @@ impl Form {
         form
     }
 
-    /// Takes the `u'` out of a frame's relation, `dalpha = carried + sum a u'`: from now on `carried` is what the frame stands for.
+    /// Takes the `u'` out of a frame's relation, `dalpha = carried + sum a u'`: from now on `carried` is what
+    /// the frame stands for.
     pub fn split_frame(&mut self, k: &mut Kinematics<'_>, frame: FrameId) {
         let partials: Vec<_> = k.frames[frame.0].relative.terms.clone().into_iter().collect();
         split(k, &mut self.matrix, (frame, &partials), &mut self.inertia, &mut self.angular);
@@ -205,7 +209,8 @@ impl Form {
         stood
     }
 
-    /// Takes the `u'` out of a point's relation, `da = carried + sum b u'`: from now on `carried` is what the point stands for.
+    /// Takes the `u'` out of a point's relation, `da = carried + sum b u'`: from now on `carried` is what the
+    /// point stands for.
     pub fn split_point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<()> {
         let partials: Vec<_> = PointRelation::of(k, point)?.partials.into_iter().collect();
         split(k, &mut self.matrix, (point, &partials), &mut self.mass, &mut self.momentum);
@@ -219,7 +224,8 @@ impl Form {
         Some(())
     }
 
-    /// Inserts `carried = da_base + sum dalpha x r` for a point that has been split; `None` if more than one frame carries it.
+    /// Inserts `carried = da_base + sum dalpha x r` for a point that has been split; `None` if more than one
+    /// frame carries it.
     pub fn point(&mut self, k: &mut Kinematics<'_>, point: PointId) -> Option<OfPoint> {
         let mut stood = OfPoint { mass: None, moments: Vec::new(), momenta: Vec::new() };
         let PointRelation { home, base, arm, .. } = PointRelation::of(k, point)?;
@@ -272,8 +278,8 @@ impl Form {
         Some(stood)
     }
 
-    /// The point about which everything that a `u'` moves is one rigid body in space, if it is: that is cheaper to carry on than what an
-    /// elimination leaves of it. In a plane it is not.
+    /// The point about which everything that a `u'` moves is one rigid body in space, if it is: that is
+    /// cheaper to carry on than what an elimination leaves of it. In a plane it is not.
     pub fn rigid_about(&self, slot: usize) -> Option<PointId> {
         let in_space = |h: &Triple| h.iter().filter(|c| !c.is_zero()).count() > 1;
         let in_space = self.angular.iter().any(|(key, h)| key.1 == slot && in_space(h));

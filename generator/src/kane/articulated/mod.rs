@@ -1,13 +1,17 @@
-//! The articulated body algorithm (ABA) on the graph of velocities: factorises the mass matrix without forming it, in time linear in the number of bodies.
+//! The articulated body algorithm (ABA) on the graph of velocities: factorises the mass matrix without
+//! forming it, in time linear in the number of bodies.
 //!
-//! By Gauss's principle the accelerations minimise `1/2 sum m |a|^2 + .. - forces . accelerations`. The relations of the graph are inserted into that form
-//! from the leaves to the ground, as into the kinetic energy for the mass matrix, but each `u'` is eliminated (minimised over) as soon as no relation
-//! further in contains it; what remains of its subtree is an articulated inertia ([`Articulated::new`]). Forces passed inwards in the same way leave at
-//! each `u'` a load ([`Articulated::inwards`]). The loads are the half-solve with the factorised mass matrix: `f' M^-1 g` is the sum of load times load over
-//! articulated inertia. An outward pass gives the `u'` one after the other ([`Articulated::outwards`]).
+//! By Gauss's principle the accelerations minimise `1/2 sum m |a|^2 + .. - forces . accelerations`. The
+//! relations of the graph are inserted into that form from the leaves to the ground, as into the kinetic
+//! energy for the mass matrix, but each `u'` is eliminated (minimised over) as soon as no relation further in
+//! contains it; what remains of its subtree is an articulated inertia ([`Articulated::new`]). Forces passed
+//! inwards in the same way leave at each `u'` a load ([`Articulated::inwards`]). The loads are the half-solve
+//! with the factorised mass matrix: `f' M^-1 g` is the sum of load times load over articulated inertia. An
+//! outward pass gives the `u'` one after the other ([`Articulated::outwards`]).
 //!
-//! For long chains this takes fewer operations than factorising the mass matrix. For short chains it takes more, but keeps more digits: each pivot is
-//! computed as a sum of inertias and not as a small difference of composite inertias.
+//! For long chains this takes fewer operations than factorising the mass matrix. For short chains it takes
+//! more, but keeps more digits: each pivot is computed as a sum of inertias and not as a small difference of
+//! composite inertias.
 //!
 //! Theory: docs/theory.md, section 16.2.
 
@@ -30,7 +34,8 @@ use acting::Acting;
 use eliminated::Eliminated;
 use form::{Form, OfFrame, OfPoint};
 
-/// A factorised mechanism (the articulated-body algorithm, ABA): what is done to velocities and derivatives of speeds, from the leaves to the ground.
+/// A factorised mechanism (the articulated-body algorithm, ABA): what is done to velocities and derivatives
+/// of speeds, from the leaves to the ground.
 pub struct Articulated {
     steps: Vec<Step>,
 }
@@ -44,8 +49,8 @@ enum Step {
 }
 
 impl Articulated {
-    /// Eliminates every `u'`, with room for forces on further points and torques on further frames. `None` where the graph is no
-    /// tree, or constraints couple the speeds.
+    /// Eliminates every `u'`, with room for forces on further points and torques on further frames. `None`
+    /// where the graph is no tree, or constraints couple the speeds.
     pub fn new(
         k: &mut Kinematics<'_>,
         lumps: &BTreeMap<Seat, Lump>,
@@ -71,7 +76,8 @@ impl Articulated {
                 Node::Point(point) => form.split_point(k, point)?,
             }
             steps.push(Step::Split(*node));
-            // Before the rest is inserted: nothing resists a turn about the axis of a hinge any more, and zeros need not be turned.
+            // Before the rest is inserted: nothing resists a turn about the axis of a hinge any more, and
+            // zeros need not be turned.
             for slot in slots(k, node).into_iter().filter(|slot| last.get(slot) == Some(&at)) {
                 match next_point(k, &form, slot, node, &order[at + 1..]) {
                     Some(point) => waiting.push((point, slot)),
@@ -104,8 +110,9 @@ impl Articulated {
         self.eliminated().map(|step| (step.reciprocal.pow(-1), step.slot))
     }
 
-    /// What is left of forces when they reach each `u'`, in the order of elimination, on top of what the accelerations that each
-    /// relation has `apart` take; `None` if forces meet the graph where [`Articulated::new`] was not told of.
+    /// What is left of forces when they reach each `u'`, in the order of elimination, on top of what the
+    /// accelerations that each relation has `apart` take; `None` if forces meet the graph where
+    /// [`Articulated::new`] was not told of.
     pub fn inwards(
         &self,
         k: &mut Kinematics<'_>,
@@ -156,8 +163,8 @@ impl Articulated {
         k.z.name(Expr::sum(&terms))
     }
 
-    /// `u'` of all speeds from the loads that [`Articulated::inwards`] leaves, each from those before it, with what each relation
-    /// has `apart`.
+    /// `u'` of all speeds from the loads that [`Articulated::inwards`] leaves, each from those before it,
+    /// with what each relation has `apart`.
     pub fn outwards(
         &self,
         k: &mut Kinematics<'_>,
@@ -172,7 +179,8 @@ impl Articulated {
                 let da = if carried { outward.carried_point(k, *point) } else { outward.point(k, *point) };
                 sum = sum.sub(&linear_forms::dot(p, &da));
             }
-            // What is about the hinge's axis is divided by the pivot that it is multiplied by: it stays aside.
+            // What is about the hinge's axis is divided by the pivot that it is multiplied by: it stays
+            // aside.
             let mut aside: Vec<(FrameId, usize, Expr)> = Vec::new();
             if let Some((frame, h)) = &step.angular {
                 let carried = step.split == Node::Frame(*frame);
@@ -205,8 +213,8 @@ impl Articulated {
     }
 }
 
-/// The point to which a `u'` is carried on before it is eliminated: where all that it moves is one rigid body in space and that
-/// point is the next to be inserted, its frame's base left to turn.
+/// The point to which a `u'` is carried on before it is eliminated: where all that it moves is one rigid body
+/// in space and that point is the next to be inserted, its frame's base left to turn.
 fn next_point(k: &Kinematics<'_>, form: &Form, slot: usize, node: &Node, later: &[Node]) -> Option<PointId> {
     let Node::Frame(frame) = *node else { return None };
     let base = k.turning(k.frames[frame.0].base);
@@ -236,7 +244,8 @@ struct Outward<'a> {
     apart: Option<&'a mut Accelerations>,
     frames: BTreeMap<FrameId, Triple>,
     points: BTreeMap<PointId, Triple>,
-    /// components of angular accelerations that the load of a hinge determines by itself, with the hinge's slot
+    /// components of angular accelerations that the load of a hinge determines by itself, with the hinge's
+    /// slot
     totals: BTreeMap<(FrameId, usize), (usize, Expr)>,
     carried_frames: BTreeMap<FrameId, Triple>,
     carried_points: BTreeMap<PointId, Triple>,

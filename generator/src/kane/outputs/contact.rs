@@ -1,4 +1,5 @@
-//! Writes the quantities of contacts as nodes: bases, velocities, reduced matrices, and their directional derivatives.
+//! Writes the quantities of contacts as nodes: bases, velocities, reduced matrices, and their directional
+//! derivatives.
 
 use std::collections::HashMap;
 
@@ -116,7 +117,8 @@ impl Writer<'_, '_> {
         structure
     }
 
-    /// The velocity, its partial velocities and its remainder; returns the partial velocities by independent speeds, row by row.
+    /// The velocity, its partial velocities and its remainder; returns the partial velocities by independent
+    /// speeds, row by row.
     fn contact_velocity(&mut self, number: u32, forms: &ContactForms) -> Vec<Vec<Node>> {
         let of = |quantity| Quantity::Contact(number, quantity);
         let p = self.independent.len();
@@ -148,8 +150,8 @@ impl Writer<'_, '_> {
         partials
     }
 
-    /// The reduced matrix with its structure and the responses, by the factorised mass matrix or by articulated inertias: whichever
-    /// takes clearly fewer operations.
+    /// The reduced matrix with its structure and the responses, by the factorised mass matrix or by
+    /// articulated inertias: whichever takes clearly fewer operations.
     fn contact_responses(
         &mut self,
         forms: &ContactForms,
@@ -208,7 +210,8 @@ impl Writer<'_, '_> {
         dependent
     }
 
-    /// The derivative along a direction of what a collision is made of. Where time acts by itself it would not be all.
+    /// The derivative along a direction of what a collision is made of. Where time acts by itself it would
+    /// not be all.
     pub(super) fn contact_tangents(&mut self, rates: &Option<HashMap<Input, Node>>) {
         let Some(rates) = rates else { return };
         for number in 0..self.k.mechanism.contacts.len() as u32 {

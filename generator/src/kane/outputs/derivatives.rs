@@ -1,7 +1,9 @@
-//! Derivatives of the dynamics with respect to coordinates, speeds and named inputs; each is written together with its value as a separate derivation.
+//! Derivatives of the dynamics with respect to coordinates, speeds and named inputs; each is written together
+//! with its value as a separate derivation.
 //!
-//! With the inverse dynamics r(q, u, a, w) = M a - forcing, the accelerations a(q, u, w) satisfy r = 0, so that da/dx = -M^-1 dr/dx, where dr/dx is taken at
-//! constant a. So only r is differentiated, with any constraints, and one factorisation of M serves all columns.
+//! With the inverse dynamics r(q, u, a, w) = M a - forcing, the accelerations a(q, u, w) satisfy r = 0, so
+//! that da/dx = -M^-1 dr/dx, where dr/dx is taken at constant a. So only r is differentiated, with any
+//! constraints, and one factorisation of M serves all columns.
 
 use std::collections::HashMap;
 
@@ -13,9 +15,11 @@ use crate::program::passes::simplified;
 use crate::program::solve::Solve;
 use crate::program::{ContactQuantity, Derived, Guard, Inputs, Output, Program, Quantity};
 
-/// Up to this work every order of elimination goes through the passes, and the one with the fewest operations after them is taken.
+/// Up to this work every order of elimination goes through the passes, and the one with the fewest operations
+/// after them is taken.
 const COMPARED: usize = 2000;
-/// Solves that take more operations are no straight line any more: a dense mass matrix of 25 speeds with all columns.
+/// Solves that take more operations are no straight line any more: a dense mass matrix of 25 speeds with all
+/// columns.
 const LONGEST: usize = 50_000;
 /// Derivatives of a contact whose elimination takes more operations in all orders are left out.
 const LONGEST_OF_CONTACT: usize = 50_000;
@@ -67,7 +71,8 @@ impl Writer<'_, '_> {
         all
     }
 
-    /// What a collision is made of, of every contact that has a derivative along a direction, with its derivatives.
+    /// What a collision is made of, of every contact that has a derivative along a direction, with its
+    /// derivatives.
     fn contact_derivatives(&mut self, samples: &[Inputs]) -> Vec<Derived> {
         let directions = self.directions();
         let slopes: Vec<Node> = directions.iter().flatten().map(|&(_, slope)| slope).collect();
@@ -139,7 +144,8 @@ impl Writer<'_, '_> {
         (derived.graph, derived.guards, std::array::from_fn(|_| parts.next().unwrap_or_default()))
     }
 
-    /// Everything that is needed, sent through the passes on the graph together; `None` where a mechanism has no dynamics.
+    /// Everything that is needed, sent through the passes on the graph together; `None` where a mechanism has
+    /// no dynamics.
     fn pieces(&mut self) -> Option<Pieces> {
         let directions = self.directions();
         let of = |quantity| self.outputs.iter().find(|output| output.quantity == quantity);
@@ -190,8 +196,8 @@ impl Writer<'_, '_> {
         coordinates.chain(speeds).chain(inputs).map(along).collect()
     }
 
-    /// u' and the systems of equations of its derivatives, from the derivatives of the inverse dynamics for given u'; with what must not vanish. `None` where that is too
-    /// long for a straight line.
+    /// u' and the systems of equations of its derivatives, from the derivatives of the inverse dynamics for
+    /// given u'; with what must not vanish. `None` where that is too long for a straight line.
     #[allow(clippy::type_complexity)]
     fn accelerations_derivatives(
         &self,
@@ -227,7 +233,8 @@ impl Pieces {
     }
 }
 
-/// The Jacobian of some nodes, in a graph that has it, by the best of the orders of elimination; `None` where it takes more work than `most`.
+/// The Jacobian of some nodes, in a graph that has it, by the best of the orders of elimination; `None` where
+/// it takes more work than `most`.
 fn best(
     graph: &Graph,
     nodes: &[Node],

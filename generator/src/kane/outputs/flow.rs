@@ -1,4 +1,5 @@
-//! Accelerations of points and free accelerations of contacts, by differentiating velocities along the motion.
+//! Accelerations of points and free accelerations of contacts, by differentiating velocities along the
+//! motion.
 
 use std::collections::HashMap;
 
@@ -13,7 +14,8 @@ impl Writer<'_, '_> {
         self.outputs.iter().find(|output| output.quantity == quantity).map(|output| output.values.clone())
     }
 
-    /// How time, coordinates and independent speeds change in a second, for given rates of the speeds. Named inputs are held.
+    /// How time, coordinates and independent speeds change in a second, for given rates of the speeds. Named
+    /// inputs are held.
     fn motion(&mut self, accelerations: &[Node]) -> HashMap<Input, Node> {
         let one = self.graph.integer(1);
         let mut rates = HashMap::from([(Input::Time, one)]);

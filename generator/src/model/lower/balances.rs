@@ -1,4 +1,5 @@
-//! Records the places where two dimensions must be the same: those that agree, and those that contradict each other.
+//! Records the places where two dimensions must be the same: those that agree, and those that contradict each
+//! other.
 
 use std::collections::HashMap;
 

@@ -1,7 +1,8 @@
 //! Finds the declaration that is wrong where dimensions contradict each other.
 //!
-//! A name that is declared with a wrong unit contradicts all of its uses. If another dimension of one name resolves several contradictions, and no use
-//! agrees with the declared dimension, the declaration is taken for wrong and is reported once instead of all its uses.
+//! A name that is declared with a wrong unit contradicts all of its uses. If another dimension of one name
+//! resolves several contradictions, and no use agrees with the declared dimension, the declaration is taken
+//! for wrong and is reported once instead of all its uses.
 
 use std::collections::{HashMap, HashSet};
 
@@ -22,7 +23,8 @@ const MOST_USES: usize = 5;
 /// A declaration counts as wrong where this number of uses contradicts it for each use that agrees with it.
 const MAJORITY: usize = 4;
 
-/// A use that agrees with one declaration makes others in it trustworthy, and so on: at most this number of steps.
+/// A use that agrees with one declaration makes others in it trustworthy, and so on: at most this number of
+/// steps.
 const MOST_PASSES: usize = 8;
 
 /// A declaration that would resolve several contradictions if it were of another dimension.
@@ -205,8 +207,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Number of uses that agree with the declaration of each name. A use counts for a name if it contains no other name, or only names that
-/// other uses agree with.
+/// Number of uses that agree with the declaration of each name. A use counts for a name if it contains no
+/// other name, or only names that other uses agree with.
 fn evidence(agreements: &[Provenance]) -> HashMap<Symbol, usize> {
     let mut evidence: HashMap<Symbol, usize> = HashMap::new();
     for _ in 0..MOST_PASSES {

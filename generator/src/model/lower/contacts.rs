@@ -174,8 +174,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// The point of a frame that coincides with P: of its body if it has one, else of the frame itself, which turns about O or the
-    /// point that is named.
+    /// The point of a frame that coincides with P: of its body if it has one, else of the frame itself, which
+    /// turns about O or the point that is named.
     fn against_frame(
         &mut self,
         symbol: Symbol,

@@ -78,7 +78,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// `l1: m = 1, l1: m = 2` where `l2` is used: a declaration was copied, and its name not changed. That is one mistake.
+    /// `l1: m = 1, l1: m = 2` where `l2` is used: a declaration was copied, and its name not changed. That is
+    /// one mistake.
     pub(super) fn copied(&mut self) {
         let mut names = self.names.ambiguous();
         let (Some(twice), None) = (names.next(), names.next()) else { return };

@@ -1,4 +1,5 @@
-//! Checks dimensions: of terms in sums, of both sides of equations, and of values that must have a certain dimension.
+//! Checks dimensions: of terms in sums, of both sides of equations, and of values that must have a certain
+//! dimension.
 
 use std::collections::HashMap;
 
@@ -23,8 +24,8 @@ pub(super) fn quantity(dimension: Dimension) -> String {
     if dimension.is_none() { "a plain number".to_owned() } else { format!("a quantity in {dimension}") }
 }
 
-/// Of several things that must have one dimension, the one that the others are measured by: the first of the dimension that most
-/// have. Numbers have no vote where there are names.
+/// Of several things that must have one dimension, the one that the others are measured by: the first of the
+/// dimension that most have. Numbers have no vote where there are names.
 pub(super) fn model_of<'t>(things: impl Iterator<Item = &'t Typed> + Clone) -> Option<&'t Typed> {
     let mut votes: HashMap<Dimension, usize> = HashMap::new();
     for thing in things.clone().filter(|thing| !thing.provenance.is_empty()) {
@@ -121,7 +122,8 @@ impl Lowering<'_> {
         false
     }
 
-    /// The quantity or definition that an expression is, alone or with a factor that is a number, and its place.
+    /// The quantity or definition that an expression is, alone or with a factor that is a number, and its
+    /// place.
     fn declaration(&self, typed: &Typed) -> Option<(String, Span)> {
         let definition = match &typed.value {
             TypedValue::Poison => return None,

@@ -34,7 +34,8 @@ use crate::syntax::tree::{Declaration, Tree};
 use crate::syntax::units::Unit;
 use balances::Balances;
 
-/// Lowers a tree. The mechanism is complete only if no error was reported; what of it can be relied on otherwise is said beside it.
+/// Lowers a tree. The mechanism is complete only if no error was reported; what of it can be relied on
+/// otherwise is said beside it.
 pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable, Vec<Diagnostic>) {
     let mut diagnostics = diagnostics;
     if let Some(error) = tree.name.as_ref().and_then(super::names::reserved) {
@@ -187,7 +188,8 @@ impl<'a> Lowering<'a> {
         }
     }
 
-    /// How many mistakes there are so far that leave the meaning of something open: what adds one is not to be relied on.
+    /// How many mistakes there are so far that leave the meaning of something open: what adds one is not to
+    /// be relied on.
     pub fn mistakes(&self) -> usize {
         self.diagnostics.iter().filter(|diagnostic| diagnostic.hides_meaning()).count()
     }

@@ -1,4 +1,5 @@
-//! Finds the coordinates whose rates appear in the kinematical equations, and adds `d(q..)/dt = u..` for the others.
+//! Finds the coordinates whose rates appear in the kinematical equations, and adds `d(q..)/dt = u..` for the
+//! others.
 
 use std::collections::HashMap;
 
@@ -132,7 +133,8 @@ impl Lowering<'_> {
 }
 
 impl Lowering<'_> {
-    /// Coordinates of whose rates nothing is said, with the speeds to which they might be equal: mostly one statement is missing.
+    /// Coordinates of whose rates nothing is said, with the speeds to which they might be equal: mostly one
+    /// statement is missing.
     fn without_rate(&mut self, missing: &[(usize, Option<String>)]) {
         let Some(((first, _), others)) = missing.split_first() else { return };
         let coordinates: Vec<&Variable> = missing.iter().map(|(i, _)| &self.out.coordinates[*i]).collect();
@@ -169,8 +171,8 @@ impl Lowering<'_> {
     }
 }
 
-/// Walks expressions; what is behind a name is found once. Chains of frames and points may be long, so it is found with a stack
-/// of its own, in `get`.
+/// Walks expressions; what is behind a name is found once. Chains of frames and points may be long, so it is
+/// found with a stack of its own, in `get`.
 struct Walk<'a> {
     mechanism: &'a Mechanism,
     known: HashMap<Key, Set>,
@@ -265,8 +267,9 @@ impl Walk<'_> {
         }
     }
 
-    /// Rates in the derivative of a vector: those of all its coordinates, or where a frame's angular velocity is declared, those
-    /// that its declaration speaks of. Taking both errs on the side of not adding an equation only where one is stated.
+    /// Rates in the derivative of a vector: those of all its coordinates, or where a frame's angular velocity
+    /// is declared, those that its declaration speaks of. Taking both errs on the side of not adding an
+    /// equation only where one is stated.
     fn moving(&self, vector: &Vector, out: &mut Set, needs: &mut Vec<Key>) {
         self.vector(vector, false, out, needs);
     }

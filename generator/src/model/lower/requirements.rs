@@ -1,4 +1,5 @@
-//! Checks what a place in the model requires of an expression: to be a scalar or a vector, free of speeds, linear in them, or to have a known rate.
+//! Checks what a place in the model requires of an expression: to be a scalar or a vector, free of speeds,
+//! linear in them, or to have a known rate.
 
 use super::super::mechanism::{Scalar, Vector};
 use super::super::typed::{Typed, TypedValue};

@@ -1,5 +1,6 @@
-//! The sensitivity of the outputs of a program to rounding errors of its operations: evaluates the program at sample states and differentiates backwards
-//! (adjoints), relative to the largest entry of each output. The numbers are the same on every machine.
+//! The sensitivity of the outputs of a program to rounding errors of its operations: evaluates the program at
+//! sample states and differentiates backwards (adjoints), relative to the largest entry of each output. The
+//! numbers are the same on every machine.
 
 use crate::arithmetic::reproducible::Reproducible;
 use crate::program::inputs::Inputs;
@@ -9,7 +10,8 @@ use crate::program::straight_line::Program;
 
 /// Sums of answers with random signs that stand for all of them.
 const MIXTURES: u64 = 4;
-/// An answer that is at most this times the largest of all numbers is one that vanishes identically: nothing is relative to it.
+/// An answer that is at most this times the largest of all numbers is one that vanishes identically: nothing
+/// is relative to it.
 const NOTHING: f64 = 1e-24;
 
 /// A sample state.

@@ -1,4 +1,5 @@
-//! Shares parts of sums and products: x y z and x y w become (x y) z and (x y) w, and a + b - c and c - a - b the same sum.
+//! Shares parts of sums and products: x y z and x y w become (x y) z and (x y) w, and a + b - c and c - a - b
+//! the same sum.
 //!
 //! What is known at construction counts as one factor or term, for it becomes one hoisted value.
 
@@ -47,7 +48,8 @@ enum Kind {
     Product,
 }
 
-/// Negative numbers in front become a product with -1 around the positive product, so that both signs share it.
+/// Negative numbers in front become a product with -1 around the positive product, so that both signs share
+/// it.
 fn separate_signs(derived: &Derived) -> Derived {
     let survey = Survey::new(derived);
     rewrite(derived, &survey, |graph, old, renamed| {
@@ -177,7 +179,8 @@ impl Parts {
         items
     }
 
-    /// The new node of an item. Its parts are old nodes that are renamed already, for they come before whatever lists them.
+    /// The new node of an item. Its parts are old nodes that are renamed already, for they come before
+    /// whatever lists them.
     fn build(&mut self, graph: &mut Graph, renamed: &Renamed, id: u32) -> Node {
         let Some(part) = id.checked_sub(self.first).and_then(|index| self.parts.get(index as usize)) else {
             return renamed.of(Node(id));

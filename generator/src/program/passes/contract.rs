@@ -1,4 +1,5 @@
-//! Contracts a * b + c to one operation where the product is used in sums only, so that no product is computed twice.
+//! Contracts a * b + c to one operation where the product is used in sums only, so that no product is
+//! computed twice.
 
 use std::collections::HashMap;
 

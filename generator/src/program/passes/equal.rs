@@ -1,7 +1,8 @@
-//! Computes values once that are identically equal although their operations differ: two factored forms of one sum, or the same quantity in programs
-//! that went through the passes on their own.
+//! Computes values once that are identically equal although their operations differ: two factored forms of
+//! one sum, or the same quantity in programs that went through the passes on their own.
 //!
-//! Values are compared modulo a prime ([`super::modular`]). The first of equal values stays, so that operands stay before their use.
+//! Values are compared modulo a prime ([`super::modular`]). The first of equal values stays, so that operands
+//! stay before their use.
 
 use std::collections::HashMap;
 
@@ -9,8 +10,9 @@ use super::modular::Residues;
 use crate::program::operation::{Operation, Value};
 use crate::program::straight_line::Program;
 
-/// The program in which no routine computes a value twice. A value takes the place of another only where every routine that needs the other computes it
-/// too, so that none becomes longer. Values that are checked stay, since others need not be checked.
+/// The program in which no routine computes a value twice. A value takes the place of another only where
+/// every routine that needs the other computes it too, so that none becomes longer. Values that are checked
+/// stay, since others need not be checked.
 pub fn share(program: &Program) -> Program {
     let count = program.operations.len();
     let words = program.outputs.len().div_ceil(64);
@@ -29,7 +31,8 @@ pub fn share(program: &Program) -> Program {
     renamed(program, &first_equal(program, may))
 }
 
-/// For each value the first that is equal to it, itself if there is none. `may` tells whether the first may stand for the second.
+/// For each value the first that is equal to it, itself if there is none. `may` tells whether the first may
+/// stand for the second.
 fn first_equal(program: &Program, may: impl Fn(Value, Value) -> bool) -> Vec<Value> {
     let stages = program.stages();
     let mut found: HashMap<Residues, Vec<Value>> = HashMap::new();
@@ -50,7 +53,8 @@ fn first_equal(program: &Program, may: impl Fn(Value, Value) -> bool) -> Vec<Val
     first
 }
 
-/// The program with other operands in the place of some, and with one value for operations that are the same then. Values keep their numbers.
+/// The program with other operands in the place of some, and with one value for operations that are the same
+/// then. Values keep their numbers.
 fn renamed(program: &Program, first: &[Value]) -> Program {
     let mut known: HashMap<Operation, Value> = HashMap::new();
     let mut names: Vec<Value> = Vec::with_capacity(first.len());

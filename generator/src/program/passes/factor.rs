@@ -1,7 +1,7 @@
 //! Takes common factors out of sums: a b + a c -> a (b + c), where the products are used in this sum only.
 //!
-//! Factors known at construction (parameters and numbers) count as one coefficient, for their product is computed once. So
-//! m1 l c + m2 l c becomes (m1 l + m2 l) c, whose bracket costs nothing at run time.
+//! Factors known at construction (parameters and numbers) count as one coefficient, for their product is
+//! computed once. So m1 l c + m2 l c becomes (m1 l + m2 l) c, whose bracket costs nothing at run time.
 
 use std::collections::BTreeMap;
 

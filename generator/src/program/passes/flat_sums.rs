@@ -187,7 +187,8 @@ impl Operations {
     }
 }
 
-/// Adds terms in this order: the sum, and whether its opposite is meant. A sum of negative terms is kept as the opposite.
+/// Adds terms in this order: the sum, and whether its opposite is meant. A sum of negative terms is kept as
+/// the opposite.
 fn add_up(terms: &[Term], of: &impl Fn(Value) -> Value, operations: &mut Operations) -> (Value, bool) {
     let mut sum: Option<(Value, bool)> = None;
     for term in terms {

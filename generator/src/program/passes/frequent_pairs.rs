@@ -1,4 +1,5 @@
-//! Finds pairs of items that occur in several lists, the most frequent first: the common parts of sums and products.
+//! Finds pairs of items that occur in several lists, the most frequent first: the common parts of sums and
+//! products.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet, BinaryHeap};
@@ -33,7 +34,8 @@ impl Pair {
 /// Longer lists are left as they are: the search would take longer than it saves.
 const LONGEST: usize = 1000;
 
-/// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` names the item of a pair.
+/// Replaces every pair that occurs in two lists or more by a new item, most frequent first. `new` names the
+/// item of a pair.
 pub fn extract(lists: &mut [Vec<Item>], mut new: impl FnMut(Pair) -> u32) {
     let mut found = Found::default();
     for (index, list) in lists.iter().enumerate() {

@@ -1,7 +1,8 @@
-//! Replaces nodes that are identically 0, 1 or another simple number although their form does not show it: cos^2 + sin^2, or a term and its opposite in
-//! different forms.
+//! Replaces nodes that are identically 0, 1 or another simple number although their form does not show it:
+//! cos^2 + sin^2, or a term and its opposite in different forms.
 //!
-//! Nodes are evaluated modulo a prime at arbitrary inputs ([`super::modular`]): one with the same simple number at all of them is that number.
+//! Nodes are evaluated modulo a prime at arbitrary inputs ([`super::modular`]): one with the same simple
+//! number at all of them is that number.
 
 use std::collections::HashMap;
 

@@ -1,5 +1,5 @@
-//! The passes that optimise a program, in one list. No pass changes what an output means: tests compare the interpreter's results before and
-//! after each.
+//! The passes that optimise a program, in one list. No pass changes what an output means: tests compare the
+//! interpreter's results before and after each.
 //!
 //! The first passes work on the graph of a derivation; one lowers it to operations; the others work on those.
 

@@ -1,7 +1,8 @@
 //! Adds the terms of a sum in the order with the least rounding error.
 //!
-//! The rounding error of a partial sum is proportional to its size. A sum that is used in one other sum only is merged into it. Of all orders of the terms that
-//! take the fewest operations, the one is chosen whose partial sums are smallest in the mean over the sample states, each state being weighted by the effect
+//! The rounding error of a partial sum is proportional to its size. A sum that is used in one other sum only
+//! is merged into it. Of all orders of the terms that take the fewest operations, the one is chosen whose
+//! partial sums are smallest in the mean over the sample states, each state being weighted by the effect
 //! of an error on the outputs. Terms that cancel are thereby added early.
 
 use super::adjoint::Weighed;
@@ -12,15 +13,19 @@ use crate::program::inputs::Inputs;
 use crate::program::operation::{Stage, Value};
 use crate::program::straight_line::Program;
 
-/// Up to this number of terms all orders are compared; of more, the order is chosen from the end, term by term.
+/// Up to this number of terms all orders are compared; of more, the order is chosen from the end, term by
+/// term.
 const MOST: usize = 10;
 /// Beyond this number of terms the order stays: the work grows with their square.
 const MANY: usize = 1000;
-/// A sum that is at most this times its largest term at all states is what rounding leaves: its order is its meaning.
+/// A sum that is at most this times its largest term at all states is what rounding leaves: its order is its
+/// meaning.
 const ROUNDING: f64 = 1e-10;
-/// An order must cost less than this part of another to count as better: so the choice does not depend on the last digits of samples.
+/// An order must cost less than this part of another to count as better: so the choice does not depend on the
+/// last digits of samples.
 const BETTER: f64 = 1.0 - 1e-6;
-/// The order in which terms stand is given up for one that costs less than this part of it; some dozen samples do not tell more.
+/// The order in which terms stand is given up for one that costs less than this part of it; some dozen
+/// samples do not tell more.
 const WORTH: f64 = 0.9;
 
 /// A swept program with the terms of its sums in the order that loses least at the sample states.
@@ -57,7 +62,8 @@ impl Sum {
         })
     }
 
-    /// Whether the sum may begin with this term. A product would take an operation of its own, unless all are products.
+    /// Whether the sum may begin with this term. A product would take an operation of its own, unless all are
+    /// products.
     fn begins(&self, term: usize) -> bool {
         !self.terms[term].is_product() || self.terms.iter().all(Term::is_product)
     }
@@ -136,7 +142,8 @@ impl Sum {
         std::iter::once(first).chain(rest).collect()
     }
 
-    /// From the end, the term without which the rest is smallest; as they stand where there are too many to compare.
+    /// From the end, the term without which the rest is smallest; as they stand where there are too many to
+    /// compare.
     fn good(&self, samples: &[(f64, Vec<f64>)]) -> Vec<usize> {
         if self.terms.len() > MANY {
             return self.present();

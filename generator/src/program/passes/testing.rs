@@ -1,4 +1,5 @@
-//! Common code of the tests of passes: small and random derivations, and comparison of programs by the interpreter.
+//! Common code of the tests of passes: small and random derivations, and comparison of programs by the
+//! interpreter.
 
 use super::lower;
 use crate::arithmetic::Function;

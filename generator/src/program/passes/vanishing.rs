@@ -1,7 +1,8 @@
-//! Removes operations whose result is identically 0, 1 or -1, as partial sums may be after reassociation: terms that cancel, or the squares of a sine and a
-//! cosine.
+//! Removes operations whose result is identically 0, 1 or -1, as partial sums may be after reassociation:
+//! terms that cancel, or the squares of a sine and a cosine.
 //!
-//! Operations are evaluated modulo a prime ([`super::modular`]). The computed rounding error of a sum of angles is 0 in exact arithmetic; it is kept.
+//! Operations are evaluated modulo a prime ([`super::modular`]). The computed rounding error of a sum of
+//! angles is 0 in exact arithmetic; it is kept.
 
 use super::modular::multiple_of;
 use crate::program::build::Builder;

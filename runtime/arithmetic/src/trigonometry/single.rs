@@ -1,15 +1,17 @@
-//! Sine and cosine of a single together, to 1.001 units in the last place, in single precision and integers alone: a processor
-//! whose unit knows singles only computes no doubles. No operation is fused and nothing is asked of the system, so that the bits are the
-//! same on every machine.
+//! Sine and cosine of a single together, to 1.001 units in the last place, in single precision and integers
+//! alone: a processor whose unit knows singles only computes no doubles. No operation is fused and nothing is
+//! asked of the system, so that the bits are the same on every machine.
 //!
-//! Angles up to 128 rad are reduced by multiples of pi/2 in three parts, larger ones by integers with as many digits of 2/pi as the
-//! largest single needs. Sine and cosine of the rest are polynomials of least relative error on [0, pi/4]: 2^-26.8 and 2^-32.7.
+//! Angles up to 128 rad are reduced by multiples of pi/2 in three parts, larger ones by integers with as many
+//! digits of 2/pi as the largest single needs. Sine and cosine of the rest are polynomials of least relative
+//! error on [0, pi/4]: 2^-26.8 and 2^-32.7.
 
 /// Angles up to here are reduced in singles, rad: the multiples of pi/2 have at most seven bits.
 const LARGEST: f32 = 128.0;
 /// 1.5 * 2^23: adding it rounds to an integer, whose last bits are then those of the sum.
 const ROUNDER: f32 = 12582912.0;
-/// pi/2 in three parts to 2^-63; the first two have 17 bits, so that their products with a multiple are exact.
+/// pi/2 in three parts to 2^-63; the first two have 17 bits, so that their products with a multiple are
+/// exact.
 const HALF_PI: [f32; 3] = [1.5708008, -4.4544577e-6, 2.563344e-12];
 
 /// (sin r / r - 1) / r^2 in powers of r^2.
@@ -74,11 +76,13 @@ fn beyond(x: f32) -> (f32, f32) {
     turned(near_zero(r, low), turns)
 }
 
-/// What a finite angle from 1 rad on is beside the nearest multiple of pi/2, in two parts, and the multiple, of which the last two bits count.
+/// What a finite angle from 1 rad on is beside the nearest multiple of pi/2, in two parts, and the multiple,
+/// of which the last two bits count.
 ///
-/// The angle is m 2^e with an integer m of 24 bits. Of 2/pi times 2^e, bits worth 4 and more turn full circles: the 96 bits
-/// from that worth 2 down are multiplied with m, and of the product 2 bits before the point and 62 behind it are kept. What is left out is
-/// less than 2^-61 right angles; the single nearest to a multiple of them is 2^-29.8 away.
+/// The angle is m 2^e with an integer m of 24 bits. Of 2/pi times 2^e, bits worth 4 and more turn full
+/// circles: the 96 bits from that worth 2 down are multiplied with m, and of the product 2 bits before the
+/// point and 62 behind it are kept. What is left out is less than 2^-61 right angles; the single nearest to a
+/// multiple of them is 2^-29.8 away.
 fn reduced(x: f32) -> (f32, f32, u32) {
     let bits = x.to_bits();
     let m = u64::from(bits & 0x7f_ffff | 0x80_0000);
@@ -144,8 +148,9 @@ mod tests {
         assert!(error < 1.001, "{error}");
     }
 
-    /// The two reductions agree where both are good, and the integers take the singles that are nearest to a multiple of pi/2 (found by
-    /// continued fractions of 2^e 2/pi; sines and cosines computed with 80 digits).
+    /// The two reductions agree where both are good, and the integers take the singles that are nearest to a
+    /// multiple of pi/2 (found by continued fractions of 2^e 2/pi; sines and cosines computed with 80
+    /// digits).
     #[test]
     fn large_angles() {
         for k in 0..40_000u32 {

@@ -1,7 +1,9 @@
-//! Integrates one stretch of the sliding arc with sixteen Gauss nodes: impulses, v_n, work, w and sigma at its end.
+//! Integrates one stretch of the sliding arc with sixteen Gauss nodes: impulses, v_n, work, w and sigma at
+//! its end.
 //!
-//! Along a stretch w is proportional to ((1 + s t) / (1 - s t))^8, a rational function close to an exponential; the nodes are those of t in [-1, 1].
-//! ln(sigma w) is integrated by collocation; the errors of all integrals over the whole stretch fall like rho^-32, those up to a node like rho^-16.
+//! Along a stretch w is proportional to ((1 + s t) / (1 - s t))^8, a rational function close to an
+//! exponential; the nodes are those of t in [-1, 1]. ln(sigma w) is integrated by collocation; the errors of
+//! all integrals over the whole stretch fall like rho^-32, those up to a node like rho^-16.
 //!
 //! The loops run over short arrays so that the compiler turns each into a few vector instructions.
 //!
@@ -29,7 +31,8 @@ struct Nodes<T> {
     behind: [T; HALF],
 }
 
-/// Quantities at the nodes of a stretch. w is divided by its value in the middle, and quadratics in w are divided by w.
+/// Quantities at the nodes of a stretch. w is divided by its value in the middle, and quadratics in w are
+/// divided by w.
 pub(super) struct Panel<T> {
     w: Nodes<T>,
     /// (dlambda/dt) / q.
@@ -40,7 +43,8 @@ pub(super) struct Panel<T> {
     log: Nodes<T>,
     /// sigma w over its value in the middle.
     grown: Nodes<T>,
-    /// The changes of ln(sigma w) from the middle to both ends, each twice to fill the lanes; afterwards their exponentials.
+    /// The changes of ln(sigma w) from the middle to both ends, each twice to fill the lanes; afterwards
+    /// their exponentials.
     ends: Lanes<T>,
     /// w and sigma w in the middle.
     middle: T,
@@ -50,7 +54,8 @@ pub(super) struct Panel<T> {
 }
 
 impl<T: Real> Panel<T> {
-    /// A panel whose contents mean nothing yet: `step` overwrites all of them. `any` is any number that depends on the input.
+    /// A panel whose contents mean nothing yet: `step` overwrites all of them. `any` is any number that
+    /// depends on the input.
     #[inline]
     pub fn new(any: T, quadratures: u32) -> Self {
         let nodes = Nodes { ahead: [any; HALF], behind: [any; HALF] };
@@ -83,7 +88,8 @@ impl<T: Real> Panel<T> {
 }
 
 impl<T: Real> SlidingArc<T> {
-    /// Fills a panel whose middle is at w = `middle` (`unit` is its inverse). `s` is the parameter of the map from t to w.
+    /// Fills a panel whose middle is at w = `middle` (`unit` is its inverse). `s` is the parameter of the map
+    /// from t to w.
     #[inline(always)]
     fn survey(&self, [middle, unit]: [T; 2], s: T, panel: &mut Panel<T>) {
         let one = T::one();
@@ -123,7 +129,8 @@ impl<T: Real> SlidingArc<T> {
         }
     }
 
-    /// Sets `to` to the point that lies `length` further in lambda, with its work, which is that of the balance of energy or, if `fast`, integrated directly.
+    /// Sets `to` to the point that lies `length` further in lambda, with its work, which is that of the
+    /// balance of energy or, if `fast`, integrated directly.
     #[inline(always)]
     pub fn step(
         &self,
@@ -160,7 +167,8 @@ impl<T: Real> SlidingArc<T> {
         let unit = one / middle;
         self.survey([middle, unit], s, panel);
         let [begin, end] = integrals(&panel.rate, &mut panel.log);
-        // Exponentials of positive numbers only, and their inverses where needed: small exponentials would lose digits.
+        // Exponentials of positive numbers only, and their inverses where needed: small exponentials would
+        // lose digits.
         panel.ends = [begin.abs(), end.abs(), begin.abs(), end.abs()];
         Self::total(panel);
         let [before, after, ..] = panel.ends;
@@ -181,7 +189,8 @@ impl<T: Real> SlidingArc<T> {
         to.since = from.since + done;
     }
 
-    /// The work of the normal impulse between two points, from the balance of energy and the loss by friction `rubbed` (theory, 4.16).
+    /// The work of the normal impulse between two points, from the balance of energy and the loss by friction
+    /// `rubbed` (theory, 4.16).
     #[inline(always)]
     fn balance(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, rubbed: T) -> T {
         let slips = self.slip(from) + self.slip(to);
@@ -197,7 +206,8 @@ impl<T: Real> SlidingArc<T> {
         )
     }
 
-    /// The same work by integrating v_n over I_n (theory, 4.17): accurate also where the work is small beside the energies.
+    /// The same work by integrating v_n over I_n (theory, 4.17): accurate also where the work is small beside
+    /// the energies.
     #[cold]
     #[inline(never)]
     fn direct(&self, from: &ArcPoint<T>, to: &ArcPoint<T>, panel: &mut Panel<T>) -> T {
@@ -232,7 +242,8 @@ impl<T: Real> SlidingArc<T> {
         fma(from.state.velocity, to.state.normal - from.state.normal, *central * *central * pushed)
     }
 
-    /// Forms the terms of four sums, one for each pair of nodes: sigma e / q times 1, w and w^2, and sigma^2 e^3 / q, where sigma w = 1 in the middle.
+    /// Forms the terms of four sums, one for each pair of nodes: sigma e / q times 1, w and w^2, and sigma^2
+    /// e^3 / q, where sigma w = 1 in the middle.
     ///
     /// 1 / w at one node of a pair is w at the other.
     #[inline(always)]

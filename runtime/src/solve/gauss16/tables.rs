@@ -1,7 +1,7 @@
 //! Nodes, weights and integration matrices of Gauss-Legendre quadrature and collocation with sixteen nodes.
 //!
-//! The nodes come in pairs +-t; the tables hold the positive ones. They were computed with 50 digits; the tests compare them with integrals of
-//! powers.
+//! The nodes come in pairs +-t; the tables hold the positive ones. They were computed with 50 digits; the
+//! tests compare them with integrals of powers.
 //!
 //! Theory: docs/theory.md, section 5.2.
 
@@ -35,7 +35,8 @@ pub(super) const WEIGHTS: Pairs = [
     0.027152459411754096,
 ];
 
-/// Half the integral from 0 to t_i (within a row) of the even function that is one at +-t_j and zero at the other nodes.
+/// Half the integral from 0 to t_i (within a row) of the even function that is one at +-t_j and zero at the
+/// other nodes.
 pub(super) const EVEN: [Pairs; HALF] = [
     [
         0.05581068603480481,

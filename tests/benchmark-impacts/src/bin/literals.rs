@@ -1,8 +1,11 @@
-//! Examines every literal of the impact solver: `cargo run --release --bin literals [NAME or SECTION] [COLLISIONS]`.
+//! Examines every literal of the impact solver: `cargo run --release --bin literals [NAME or SECTION]
+//! [COLLISIONS]`.
 //!
-//! Writes a copy of the runtime below `target/literals` in which a function stands in the place of each literal of `literals/list.txt`, and runs a program with it that
-//! multiplies one literal after the other by factors from 1/64 to 64. Shown are, over hard collisions of eighteen families, the errors above the bound of the tests (with a floor of
-//! 2e-14 or, for some families, more), the worst of them, the geometric mean of the errors and the work. docs/theory.md, section 18, says what was seen.
+//! Writes a copy of the runtime below `target/literals` in which a function stands in the place of each
+//! literal of `literals/list.txt`, and runs a program with it that multiplies one literal after the other by
+//! factors from 1/64 to 64. Shown are, over hard collisions of eighteen families, the errors above the bound
+//! of the tests (with a floor of 2e-14 or, for some families, more), the worst of them, the geometric mean of
+//! the errors and the work. docs/theory.md, section 18, says what was seen.
 
 use std::{
     error::Error,

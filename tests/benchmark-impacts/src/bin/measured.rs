@@ -1,5 +1,6 @@
-//! The program that valgrind executes: runs every method, or the one named, once over every collision of a set; or selects modes of closed contacts.
-//! With `times`, by itself: the time of every method over that of the exact solver.
+//! The program that valgrind executes: runs every method, or the one named, once over every collision of a
+//! set; or selects modes of closed contacts. With `times`, by itself: the time of every method over that of
+//! the exact solver.
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

@@ -1,7 +1,7 @@
 //! Computes how much stack the solver needs: `cargo run --release --bin stack`, for x86-64 (needs `objdump`).
 //!
-//! Builds `tests/freestanding`, and adds the frames on the deepest way of calls from each of its functions: return address, saved registers, and what is
-//! taken off the stack pointer.
+//! Builds `tests/freestanding`, and adds the frames on the deepest way of calls from each of its functions:
+//! return address, saved registers, and what is taken off the stack pointer.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -74,7 +74,8 @@ fn functions(text: &str) -> BTreeMap<String, Function> {
     all
 }
 
-/// The bytes of the deepest way from a function, and the frames on it. There is no recursion; `on` guards against a wrong reading.
+/// The bytes of the deepest way from a function, and the frames on it. There is no recursion; `on` guards
+/// against a wrong reading.
 fn deepest<'a>(
     all: &'a BTreeMap<String, Function>,
     name: &'a str,

@@ -1,6 +1,7 @@
 //! Times of the generated routines as ratios to those of C code generated with CasADi, in the same process.
 //!
-//! The scripts in `peer/` write the C code; gcc compiles it for the same target, and one program calls both in turns.
+//! The scripts in `peer/` write the C code; gcc compiles it for the same target, and one program calls both
+//! in turns.
 
 mod program;
 
@@ -217,7 +218,8 @@ fn agree(built: &Built, derivation: &Derivation<'_>, peers: &[Peer]) -> Result<(
     Ok(())
 }
 
-/// The turns of our contact basis about the normal N.z: of which row of ours each row of the peer is, and its sign.
+/// The turns of our contact basis about the normal N.z: of which row of ours each row of the peer is, and its
+/// sign.
 const TURNS: [([usize; 3], [f64; 3]); 4] = [
     ([0, 1, 2], [1.0, -1.0, 1.0]),
     ([0, 1, 2], [1.0, 1.0, -1.0]),
@@ -225,7 +227,8 @@ const TURNS: [([usize; 3], [f64; 3]); 4] = [
     ([0, 2, 1], [1.0, -1.0, -1.0]),
 ];
 
-/// Values and their derivatives (by columns) with respect to all motions and all speeds, in the order of the speeds of the state. A motion is what a speed does.
+/// Values and their derivatives (by columns) with respect to all motions and all speeds, in the order of the
+/// speeds of the state. A motion is what a speed does.
 fn of_motions(numbers: &[f64], names: &Names, state: &State) -> Vec<f64> {
     let rows = names.speeds.len();
     let column = |at: usize| -> Vec<f64> {

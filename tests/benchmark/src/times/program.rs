@@ -1,4 +1,5 @@
-//! The text of the programs: C functions around the peer's, and the Rust program that calls them and ours in turns.
+//! The text of the programs: C functions around the peer's, and the Rust program that calls them and ours in
+//! turns.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -23,8 +24,9 @@ pub struct Peer {
 const MOST: usize = 8;
 
 impl Peer {
-    /// The C functions `own_..`, with one `sincos` of the system for each angle, and `shared_..`, with the sines and cosines of our runtime. The compiler
-    /// knows that no pointer is null, so that the tests in CasADi's code vanish.
+    /// The C functions `own_..`, with one `sincos` of the system for each angle, and `shared_..`, with the
+    /// sines and cosines of our runtime. The compiler knows that no pointer is null, so that the tests in
+    /// CasADi's code vanish.
     pub fn calls(&self) -> String {
         let name = &self.name;
         let count = self.angles.iter().map(|(place, _)| place + 1).max().unwrap_or(1);
@@ -82,7 +84,8 @@ pub fn build(folder: &Path) -> String {
     )
 }
 
-/// The program: `numbers` prints what all answer at the states, `times` the least time of each, a number repeats all that often at its states.
+/// The program: `numbers` prints what all answer at the states, `times` the least time of each, a number
+/// repeats all that often at its states.
 pub fn main(derivation: &Derivation<'_>, peers: &[Peer]) -> String {
     let case = derivation.case;
     let (module, mechanism) = (harness::module_name(derivation), harness::type_name(derivation));

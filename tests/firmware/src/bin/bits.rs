@@ -1,5 +1,5 @@
-//! Every shipped model at 100 states and the reference collisions: one line per model, routine and type with a digest of all bits. Two
-//! machines that print the same have computed the same.
+//! Every shipped model at 100 states and the reference collisions: one line per model, routine and type with
+//! a digest of all bits. Two machines that print the same have computed the same.
 //!
 //! With the feature `double` in doubles, else in singles.
 

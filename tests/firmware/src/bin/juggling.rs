@@ -1,7 +1,9 @@
-//! A controller in an interrupt of 1 kHz that juggles a ball: in singles, or in doubles with the feature `double`. The machine itself runs beside it, in doubles
-//! and with other parameters; while it moves the clock stands.
+//! A controller in an interrupt of 1 kHz that juggles a ball: in singles, or in doubles with the feature
+//! `double`. The machine itself runs beside it, in doubles and with other parameters; while it moves the
+//! clock stands.
 //!
-//! Prints each top of the ball's flight, a digest of the motion, and, on a board, deadlines that were missed and the longest time that a sample took.
+//! Prints each top of the ball's flight, a digest of the motion, and, on a board, deadlines that were missed
+//! and the longest time that a sample took.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

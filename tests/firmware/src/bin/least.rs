@@ -1,5 +1,5 @@
-//! The least program that uses a model: nothing without the feature of a model; accelerations with it, and what the other features name. Its size is what that
-//! costs, and its symbols show what is in it.
+//! The least program that uses a model: nothing without the feature of a model; accelerations with it, and
+//! what the other features name. Its size is what that costs, and its symbols show what is in it.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 #![allow(unused_imports, dead_code, reason = "without any model")]

@@ -1,8 +1,10 @@
-//! Every routine of every shipped model at random states, many of them hard, and the solver within several budgets: the emulator counts the instructions of each
-//! call. A line says how many calls of a routine there were.
+//! Every routine of every shipped model at random states, many of them hard, and the solver within several
+//! budgets: the emulator counts the instructions of each call. A line says how many calls of a routine there
+//! were.
 //!
-//! On this machine all states are called, as many as `HODOGRAPH_STATES` says; on a board those that were chosen here, named in the file `HODOGRAPH_CHOSEN`
-//! when the program was built. A state depends on its number alone.
+//! On this machine all states are called, as many as `HODOGRAPH_STATES` says; on a board those that were
+//! chosen here, named in the file `HODOGRAPH_CHOSEN` when the program was built. A state depends on its
+//! number alone.
 
 #![cfg_attr(target_os = "none", no_std, no_main)]
 

@@ -1,4 +1,5 @@
-//! The program that valgrind executes: every routine of a shipped model once, or the solver over the nine collisions of the paper and random ones.
+//! The program that valgrind executes: every routine of a shipped model once, or the solver over the nine
+//! collisions of the paper and random ones.
 
 use std::hint::black_box;
 
@@ -120,7 +121,8 @@ mod solver {
     }
 }
 
-/// What a controller asks for, in one call and in one call each: for the arm and the bicycle, at their initial states.
+/// What a controller asks for, in one call and in one call each: for the arm and the bicycle, at their
+/// initial states.
 mod sets {
     use super::black_box;
 

@@ -21,7 +21,8 @@ pub struct PictureFiles {
     /// a page for browsers in which the mechanism moves: needs neither scripts from elsewhere nor a network
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
-    /// a recording for viewers of robots, such as Foxglove: frames, points, contact forces, impulses, events, curves
+    /// a recording for viewers of robots, such as Foxglove: frames, points, contact forces, impulses,
+    /// events, curves
     #[arg(long, value_name = "FILE")]
     mcap: Option<PathBuf>,
 }
@@ -31,7 +32,8 @@ impl PictureFiles {
     ///
     /// # Errors
     ///
-    /// [`Stop::Call`] where a figure has no known format or two files are one; [`Stop::Fault`] where a file cannot be written.
+    /// [`Stop::Call`] where a figure has no known format or two files are one; [`Stop::Fault`] where a file
+    /// cannot be written.
     pub fn check(&self) -> Outcome {
         Format::of(None, self.plot.as_deref())?;
         let files: Vec<&Path> =
@@ -102,12 +104,13 @@ impl<'m> Pictures<'m> {
         }
     }
 
-    /// Writes the files and returns how the simulation ended, or why a file could not be written. Where the motion never began, files stay
-    /// as they are.
+    /// Writes the files and returns how the simulation ended, or why a file could not be written. Where the
+    /// motion never began, files stay as they are.
     ///
     /// # Errors
     ///
-    /// That of the simulation; else that of the first file that cannot be written. The others are told on standard error.
+    /// That of the simulation; else that of the first file that cannot be written. The others are told on
+    /// standard error.
     pub fn save(self, files: &PictureFiles, simulated: Outcome) -> Outcome {
         if !self.begun {
             return simulated;

@@ -1,8 +1,10 @@
 //! Sines, cosines and exponentials of residues, which obey their addition theorems.
 //!
-//! An argument is written as a sum of multiples c x of values x that are no sums. To each x belongs an arbitrary residue z(x) that stands for e^(i x / D), so
-//! that e^(i c x) is z(x)^(c D) where c D is an integer, and the product of these is that of the sum. For a multiple of pi it is a root of unity. Then
-//! cos = (z + 1/z) / 2 and sin = (z - 1/z) / (2 i), where i is a root of -1. The real exponential is made in the same way from residues of its own.
+//! An argument is written as a sum of multiples c x of values x that are no sums. To each x belongs an
+//! arbitrary residue z(x) that stands for e^(i x / D), so that e^(i c x) is z(x)^(c D) where c D is an
+//! integer, and the product of these is that of the sum. For a multiple of pi it is a root of unity. Then cos
+//! = (z + 1/z) / 2 and sin = (z - 1/z) / (2 i), where i is a root of -1. The real exponential is made in the
+//! same way from residues of its own.
 
 use std::collections::BTreeMap;
 

@@ -1,10 +1,13 @@
-//! Exact evaluation modulo a prime at arbitrary inputs: it tells which values are identically equal, whatever their form.
+//! Exact evaluation modulo a prime at arbitrary inputs: it tells which values are identically equal, whatever
+//! their form.
 //!
-//! Two expressions that agree at arbitrary residues of their inputs are equal as rational functions, but for a probability of about their degree over 2^64 at
-//! each of the two places (Schwartz and Zippel). No size matters: what is attenuated by a factor of 1e-30 is as visible as anything else.
+//! Two expressions that agree at arbitrary residues of their inputs are equal as rational functions, but for
+//! a probability of about their degree over 2^64 at each of the two places (Schwartz and Zippel). No size
+//! matters: what is attenuated by a factor of 1e-30 is as visible as anything else.
 //!
-//! Sines, cosines and exponentials follow their addition theorems ([`functions`]). Functions with branches (roots, magnitudes, arc functions) count as unknowns, which are equal
-//! where their arguments are. An unknown hides some identities; it never shows a false one.
+//! Sines, cosines and exponentials follow their addition theorems ([`functions`]). Functions with branches
+//! (roots, magnitudes, arc functions) count as unknowns, which are equal where their arguments are. An
+//! unknown hides some identities; it never shows a false one.
 
 mod functions;
 mod graph;

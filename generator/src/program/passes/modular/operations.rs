@@ -123,7 +123,8 @@ impl Values for Operations<'_> {
     }
 }
 
-/// Whether it is a part of what rounding takes from a sum, `a - (t - (t - a))` where t is a sum with a, however its operations are fused.
+/// Whether it is a part of what rounding takes from a sum, `a - (t - (t - a))` where t is a sum with a,
+/// however its operations are fused.
 fn is_rounding(program: &Program, operation: Operation) -> bool {
     let (first, second) = match operation {
         Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),

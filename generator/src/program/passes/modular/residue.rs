@@ -8,7 +8,8 @@ use num_traits::ToPrimitive;
 
 use crate::number::Number;
 
-/// The prime, 2^64 - 2^32 + 1. What it is less 1 has the factors 2^32, 3 and 5, so that there are roots of unity for the usual fractions of pi.
+/// The prime, 2^64 - 2^32 + 1. What it is less 1 has the factors 2^32, 3 and 5, so that there are roots of
+/// unity for the usual fractions of pi.
 pub const PRIME: u64 = 0xffff_ffff_0000_0001;
 /// Its powers are all residues but 0.
 const GENERATOR: Residue = Residue(7);

@@ -1,4 +1,5 @@
-//! RTIC 2: the controller is a local resource of the timer's interrupt; what it finds is shared with a task of lower priority.
+//! RTIC 2: the controller is a local resource of the timer's interrupt; what it finds is shared with a task
+//! of lower priority.
 
 #![no_std]
 #![no_main]
