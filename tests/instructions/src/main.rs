@@ -31,14 +31,17 @@ fn main() -> ExitCode {
 fn run() -> Result<bool, String> {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("counts.txt");
     let counted = count()?;
-    if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
-        let lines: Vec<String> = counted.iter().map(|(name, count)| format!("{name} {count:.0}\n")).collect();
-        std::fs::write(&table, lines.concat()).map_err(|error| format!("{}: {error}", table.display()))?;
-        println!("{} counts written to {}", counted.len(), table.display());
-        return Ok(true);
-    }
     let stored = std::fs::read_to_string(&table).map_err(|error| format!("{}: {error}", table.display()))?;
     let stored: Counts = stored.lines().filter_map(entry).collect();
+    if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
+        // What could not be counted keeps the count that it had.
+        let mut all = stored;
+        all.extend(counted);
+        let lines: Vec<String> = all.iter().map(|(name, count)| format!("{name} {count:.0}\n")).collect();
+        std::fs::write(&table, lines.concat()).map_err(|error| format!("{}: {error}", table.display()))?;
+        println!("{} counts written to {}", all.len(), table.display());
+        return Ok(true);
+    }
     let mut right = true;
     let missing: Vec<&str> =
         stored.keys().filter(|name| !counted.contains_key(*name)).map(String::as_str).collect();
@@ -100,17 +103,20 @@ fn count() -> Result<Counts, String> {
                 .arg(&measured)
                 .arg(subject),
         );
-        match counted {
-            Ok(_) => {}
+        // the routines that valgrind did not execute to their end
+        let unfinished: Vec<String> = match counted {
+            Ok(_) => Vec::new(),
             // what was counted before it is kept
             Err(message) if message.contains("Unrecognised instruction") || message.contains("SIGILL") => {
                 println!("{subject}: counted in part, for valgrind does not know one of its instructions");
+                let calls = message.lines().filter(|line| line.contains(" at 0x") || line.contains(" by 0x"));
+                calls.filter_map(routine).collect()
             }
             Err(message) => return Err(message),
-        }
+        };
         let profile =
             std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
-        counts.extend(per_call(&profile));
+        counts.extend(per_call(&profile).into_iter().filter(|(name, _)| !unfinished.contains(name)));
     }
     if counts.is_empty() { Err("valgrind counted none of the routines".to_owned()) } else { Ok(counts) }
 }

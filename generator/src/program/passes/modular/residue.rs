@@ -94,7 +94,7 @@ impl Residue {
     /// What stands for e^(i pi n / d): a power of a root of unity. `None` if there is no root of this order.
     pub fn root_of_unity(n: i128, d: u64) -> Option<Self> {
         let order = d.checked_mul(2)?;
-        (order > 0 && (PRIME - 1) % order == 0)
+        (order > 0 && (PRIME - 1).is_multiple_of(order))
             .then(|| GENERATOR.power(i128::from((PRIME - 1) / order)).power(n))
     }
 }
@@ -141,7 +141,7 @@ mod tests {
         let mut left = PRIME - 1;
         for factor in factors {
             assert_ne!(GENERATOR.power(i128::from((PRIME - 1) / factor)), Residue::ONE, "{factor}");
-            while left % factor == 0 {
+            while left.is_multiple_of(factor) {
                 left /= factor;
             }
         }
