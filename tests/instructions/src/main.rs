@@ -30,12 +30,13 @@ fn main() -> ExitCode {
 /// Whether nothing is above the table.
 fn run() -> Result<bool, String> {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("counts.txt");
-    let counted = count()?;
+    let (counted, in_part) = count()?;
     let stored = std::fs::read_to_string(&table).map_err(|error| format!("{}: {error}", table.display()))?;
     let stored: Counts = stored.lines().filter_map(entry).collect();
     if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
         // What could not be counted keeps the count that it had.
-        let mut all = stored;
+        let is_in_part = |name: &str| in_part.iter().any(|subject| name.split("::").next() == Some(subject));
+        let mut all: Counts = stored.into_iter().filter(|(name, _)| is_in_part(name)).collect();
         all.extend(counted);
         let lines: Vec<String> = all.iter().map(|(name, count)| format!("{name} {count:.0}\n")).collect();
         std::fs::write(&table, lines.concat()).map_err(|error| format!("{}: {error}", table.display()))?;
@@ -79,7 +80,8 @@ fn entry(line: &str) -> Option<(String, f64)> {
     Some((name.to_owned(), count.trim().parse().ok()?))
 }
 
-fn count() -> Result<Counts, String> {
+/// Instructions of the routines, and the subjects of which not all were counted.
+fn count() -> Result<(Counts, Vec<String>), String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let target = here.join("target/measured");
     execute(
@@ -93,7 +95,7 @@ fn count() -> Result<Counts, String> {
     )?;
     let measured = target.join("release/measured");
     let subjects = execute(&mut Command::new(&measured))?;
-    let mut counts = Counts::new();
+    let (mut counts, mut in_part) = (Counts::new(), Vec::new());
     for subject in subjects.lines() {
         let profile = target.join("callgrind.out");
         let counted = execute(
@@ -109,6 +111,7 @@ fn count() -> Result<Counts, String> {
             // what was counted before it is kept
             Err(message) if message.contains("Unrecognised instruction") || message.contains("SIGILL") => {
                 println!("{subject}: counted in part, for valgrind does not know one of its instructions");
+                in_part.push(subject.to_owned());
                 let calls = message.lines().filter(|line| line.contains(" at 0x") || line.contains(" by 0x"));
                 calls.filter_map(routine).collect()
             }
@@ -118,7 +121,11 @@ fn count() -> Result<Counts, String> {
             std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
         counts.extend(per_call(&profile).into_iter().filter(|(name, _)| !unfinished.contains(name)));
     }
-    if counts.is_empty() { Err("valgrind counted none of the routines".to_owned()) } else { Ok(counts) }
+    if counts.is_empty() {
+        Err("valgrind counted none of the routines".to_owned())
+    } else {
+        Ok((counts, in_part))
+    }
 }
 
 /// What a command prints.

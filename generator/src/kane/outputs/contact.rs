@@ -46,7 +46,9 @@ impl Writer<'_, '_> {
             forms.partials[row].get(&slot).is_none_or(Expr::is_zero)
         };
         let mut all = (0..self.k.speeds.len()).flat_map(|slot| (0..3).map(move |row| (row, slot)));
-        let sees_as_much = all.all(|(row, slot)| !vanishes(&usual, row, slot) || vanishes(&other, row, slot));
+        let sees_as_much = all.all(|(row, slot)| !vanishes(&usual, row, slot) || vanishes(&other, row, slot))
+            && (0..3).all(|row| !usual.remainder[row].is_zero() || other.remainder[row].is_zero())
+            && (!usual.planar || other.planar);
         if other_cost < cost && sees_as_much && usual.basis == other.basis { other } else { usual }
     }
 

@@ -1,14 +1,16 @@
 //! Contracts a * b + c to one operation where the product is used in sums only, so that no product is
 //! computed twice.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::straight_line::Program;
 
-/// Marks fused operations; the products that go into them are left for [`super::dead_code`].
+/// Marks fused operations; the products that go into them are left for [`super::dead_code`]. A product whose
+/// sum is followed by what rounding takes from it stays: that is told from the rounded product.
 pub fn contract(program: &Program) -> Program {
     let stages = program.stages();
+    let rounded = terms_told_from_their_sum(program);
     let mut uses: HashMap<Value, Uses> = HashMap::new();
     for operation in &program.operations {
         let in_sum = matches!(operation, Operation::Add(..) | Operation::Sub(..));
@@ -27,7 +29,7 @@ pub fn contract(program: &Program) -> Program {
     let factors = |value: Value| match program.operation(value) {
         Operation::Mul(a, b) if stages[value.index()] > Stage::Parameter => {
             let uses = uses.get(&value)?;
-            (uses.all == uses.sums).then_some((a, b))
+            (uses.all == uses.sums && !rounded.contains(&value)).then_some((a, b))
         }
         _ => None,
     };
@@ -48,6 +50,20 @@ pub fn contract(program: &Program) -> Program {
         };
     }
     Program { operations, ..program.clone() }
+}
+
+/// The terms a and b of sums t = a + b or a - b of which t - a is computed too, as in Knuth's two-sum.
+fn terms_told_from_their_sum(program: &Program) -> HashSet<Value> {
+    let mut terms = HashSet::new();
+    for &operation in &program.operations {
+        if let Operation::Sub(total, term) = operation
+            && let Operation::Add(a, b) | Operation::Sub(a, b) = program.operation(total)
+            && (term == a || term == b)
+        {
+            terms.extend([a, b]);
+        }
+    }
+    terms
 }
 
 #[derive(Default)]

@@ -1,12 +1,12 @@
 //! Replaces nodes that are identically 0, 1 or another simple number although their form does not show it:
 //! cos^2 + sin^2, or a term and its opposite in different forms.
 //!
-//! Nodes are evaluated modulo a prime at arbitrary inputs ([`super::modular`]): one with the same simple
+//! Nodes are evaluated modulo primes at arbitrary inputs ([`super::modular`]): one with the same simple
 //! number at all of them is that number.
 
 use std::collections::HashMap;
 
-use super::modular::{PLACES, Residue, Residues, multiple_of};
+use super::modular::Residues;
 use super::rewrite::{Survey, rebuild, rewrite};
 use crate::number::Number;
 use crate::program::derivation::Derived;
@@ -29,7 +29,7 @@ pub fn replace(derived: &Derived) -> Derived {
         let kind = derived.graph.kind(old);
         let known = survey.stage(old) == Stage::Constant;
         if let Some(number) =
-            at(old).and_then(|at| number_of(&at)).filter(|_| !known && !matches!(kind, NodeKind::Input(_)))
+            at(old).and_then(number_of).filter(|_| !known && !matches!(kind, NodeKind::Input(_)))
         {
             return graph.number(number);
         }
@@ -46,8 +46,8 @@ pub fn replace(derived: &Derived) -> Derived {
 }
 
 /// The simple number that a node is identically, if it is one.
-fn number_of(at: &Residues) -> Option<Number> {
-    let numerator = multiple_of(at, DENOMINATOR, LARGEST)?;
+fn number_of(at: Residues) -> Option<Number> {
+    let numerator = at.multiple_of(DENOMINATOR, LARGEST)?;
     Some(Number::ratio(numerator, i64::from(DENOMINATOR)))
 }
 
@@ -57,7 +57,7 @@ fn without_cancelled(terms: &[Option<Residues>]) -> Vec<usize> {
     let mut open: HashMap<Residues, Vec<usize>> = HashMap::new();
     for (index, term) in terms.iter().enumerate() {
         let Some(term) = term else { continue };
-        match open.get_mut(&term.map(|residue| -residue)).and_then(Vec::pop) {
+        match open.get_mut(&term.opposite()).and_then(Vec::pop) {
             Some(opposite) => left.retain(|&kept| kept != index && kept != opposite),
             None => open.entry(*term).or_default().push(index),
         }
@@ -74,9 +74,8 @@ fn three(terms: &[Option<Residues>], left: &[usize]) -> Option<[usize; 3]> {
         return None;
     }
     let cancel = |a: usize, b: usize, c: usize| {
-        let all = [terms[a], terms[b], terms[c]];
-        let [Some(a), Some(b), Some(c)] = all else { return false };
-        (0..PLACES).all(|place| a[place] + b[place] + c[place] == Residue::ZERO)
+        let [Some(a), Some(b), Some(c)] = [terms[a], terms[b], terms[c]] else { return false };
+        Residues::cancel(&[a, b, c])
     };
     for (i, &a) in left.iter().enumerate() {
         for (j, &b) in left.iter().enumerate().skip(i + 1) {

@@ -59,7 +59,7 @@ pub const PASSES: [Pass; 13] = [
     Pass { name: "dead code", work: Work::Operations(dead_code::remove) },
     Pass { name: "reassociate", work: Work::Weighed(reassociate::reassociate) },
     Pass { name: "vanishing", work: Work::Operations(vanishing::drop) },
-    Pass { name: "equal values", work: Work::Operations(equal::share) },
+    Pass { name: "equal values", work: Work::Weighed(equal::share) },
     Pass { name: "dead code again", work: Work::Operations(dead_code::remove) },
 ];
 

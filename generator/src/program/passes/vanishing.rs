@@ -1,10 +1,9 @@
 //! Removes operations whose result is identically 0, 1 or -1, as partial sums may be after reassociation:
 //! terms that cancel, or the squares of a sine and a cosine.
 //!
-//! Operations are evaluated modulo a prime ([`super::modular`]). The computed rounding error of a sum of
+//! Operations are evaluated modulo primes ([`super::modular`]). The computed rounding error of a sum of
 //! angles is 0 in exact arithmetic; it is kept.
 
-use super::modular::multiple_of;
 use crate::program::build::Builder;
 use crate::program::operation::{Operation, Value};
 use crate::program::straight_line::Program;
@@ -25,7 +24,7 @@ pub fn drop(program: &Program) -> Program {
                 | Operation::NegMulAdd(..)
         );
         let residues = residues[value.index()].filter(|_| is_made)?;
-        multiple_of(&residues, 1, 1).map(|number| number as f64)
+        residues.multiple_of(1, 1).map(|number| number as f64)
     };
     if (0..program.operations.len()).all(|index| number(Value(index as u32)).is_none()) {
         return program.clone();

@@ -2,7 +2,7 @@
 //!
 //! An argument is written as a sum of multiples c x of values x that are no sums. To each x belongs an
 //! arbitrary residue z(x) that stands for e^(i x / D), so that e^(i c x) is z(x)^(c D) where c D is an
-//! integer, and the product of these is that of the sum. For a multiple of pi it is a root of unity. Then cos
+//! integer, and the product of these is that of the sum. Then cos
 //! = (z + 1/z) / 2 and sin = (z - 1/z) / (2 i), where i is a root of -1. The real exponential is made in the
 //! same way from residues of its own.
 
@@ -18,59 +18,56 @@ use crate::number::Number;
 
 /// D: multiples of 1 / D of a value are seen to belong to it.
 const DENOMINATOR: i64 = 5040;
+/// Beyond this magnitude a multiple c D of a value counts as a value by itself: powers of a residue repeat.
+const GREATEST: i128 = 1 << 48;
 /// An argument with more parts counts as one value.
 const LARGEST: usize = 4096;
 
 /// What an argument of a function is a sum of.
-pub enum Parts {
+pub enum Parts<const P: u64> {
     /// multiples of other values
     Sum(Vec<(Number, usize)>),
     /// this multiple of a value with this residue
-    Multiple(Number, Residue),
-    /// pi
-    Pi,
+    Multiple(Number, Residue<P>),
 }
 
 /// Values, as their functions see them.
-pub trait Values {
+pub trait Values<const P: u64> {
     /// The residue of a value.
-    fn residue(&self, value: usize) -> Option<Residue>;
+    fn residue(&self, value: usize) -> Option<Residue<P>>;
 
     /// What the value is a sum of; `None` where that is not known.
-    fn parts(&self, value: usize) -> Option<Parts>;
-}
-
-/// What is no sum.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Term {
-    Pi,
-    Value(Residue),
+    fn parts(&self, value: usize) -> Option<Parts<P>>;
 }
 
 /// A function of one value at a place. Of a function with branches it is an unknown.
-pub fn call(values: &impl Values, function: Function, value: usize, place: u64) -> Option<Residue> {
+pub fn call<const P: u64>(
+    values: &impl Values<P>,
+    function: Function,
+    value: usize,
+    place: u64,
+) -> Option<Residue<P>> {
     use Function::*;
     let half = Residue::integer(2).reciprocal()?;
-    let circle = || {
+    let circular = || {
         let z = exponential(values, value, true, place)?;
-        let inverse = z.reciprocal()?;
-        let imaginary = Residue::root_of_unity(1, 2)?;
-        Some(((z + inverse) * half, (z - inverse) * half * imaginary.reciprocal()?))
+        let (inverse, i) = (z.reciprocal()?, Residue::imaginary());
+        Some(((z + inverse) * half, (z - inverse) * half * i.reciprocal()?))
     };
-    let line = || {
+    let hyperbolic = || {
         let e = exponential(values, value, false, place)?;
         let inverse = e.reciprocal()?;
         Some(((e + inverse) * half, (e - inverse) * half))
     };
-    let quotient = |(cosine, sine): (Residue, Residue)| Some(sine * cosine.reciprocal()?);
+    let quotient = |(cosine, sine): (Residue<P>, Residue<P>)| Some(sine * cosine.reciprocal()?);
     match function {
-        Sin => circle().map(|(_, sine)| sine),
-        Cos => circle().map(|(cosine, _)| cosine),
-        Tan => circle().and_then(quotient),
+        Sin => circular().map(|(_, sine)| sine),
+        Cos => circular().map(|(cosine, _)| cosine),
+        Tan => circular().and_then(quotient),
         Exp => exponential(values, value, false, place),
-        Sinh => line().map(|(_, sine)| sine),
-        Cosh => line().map(|(cosine, _)| cosine),
-        Tanh => line().and_then(quotient),
+        Sinh => hyperbolic().map(|(_, sine)| sine),
+        Cosh => hyperbolic().map(|(cosine, _)| cosine),
+        Tanh => hyperbolic().and_then(quotient),
         Asin | Acos | Atan | Atan2 | Sqrt | Log | Abs | Sign | Min | Max => {
             Some(unknown(function, &[values.residue(value)?], place))
         }
@@ -78,32 +75,30 @@ pub fn call(values: &impl Values, function: Function, value: usize, place: u64) 
 }
 
 /// An unknown that belongs to a function and its arguments.
-pub fn unknown(function: Function, arguments: &[Residue], place: u64) -> Residue {
+pub fn unknown<const P: u64>(function: Function, arguments: &[Residue<P>], place: u64) -> Residue<P> {
     let mut seed = vec![place, 1 << 32 | function as u64];
     seed.extend(arguments.iter().map(|argument| argument.number()));
     Residue::arbitrary(&seed)
 }
 
 /// What stands for e^(i x) or e^x.
-fn exponential(values: &impl Values, value: usize, imaginary: bool, place: u64) -> Option<Residue> {
+fn exponential<const P: u64>(
+    values: &impl Values<P>,
+    value: usize,
+    imaginary: bool,
+    place: u64,
+) -> Option<Residue<P>> {
     let mut product = Residue::ONE;
-    for (term, multiple) in terms(values, value)? {
+    for (residue, multiple) in terms(values, value)? {
         let whole = &multiple * BigInt::from(DENOMINATOR);
-        let factor = match term {
-            _ if multiple.is_zero() => Residue::ONE,
-            Term::Pi if imaginary => {
-                Residue::root_of_unity(multiple.numer().to_i128()?, multiple.denom().to_u64()?)?
-            }
-            Term::Pi => return None,
-            Term::Value(Residue::ZERO) => Residue::ONE,
-            Term::Value(residue) => {
-                match whole.is_integer().then(|| whole.to_integer().to_i128()).flatten() {
-                    Some(exponent) => of_value(residue, imaginary, place).power(exponent),
-                    None => {
-                        let of_its_own = Residue::rational(&Number(multiple))? * residue;
-                        of_value(of_its_own, imaginary, place).power(i128::from(DENOMINATOR))
-                    }
-                }
+        let exponent = whole.is_integer().then(|| whole.to_integer().to_i128()).flatten();
+        let factor = match exponent.filter(|exponent| exponent.abs() <= GREATEST) {
+            _ if multiple.is_zero() || residue == Residue::ZERO => Residue::ONE,
+            Some(exponent) => of_value(residue, imaginary, place).power(exponent),
+            // the multiple is a value by itself
+            None => {
+                let itself = Residue::rational(&Number(multiple))? * residue;
+                of_value(itself, imaginary, place).power(i128::from(DENOMINATOR))
             }
         };
         product = product * factor;
@@ -112,30 +107,30 @@ fn exponential(values: &impl Values, value: usize, imaginary: bool, place: u64) 
 }
 
 /// z(x) of a value x: that of -x is its reciprocal.
-fn of_value(residue: Residue, imaginary: bool, place: u64) -> Residue {
+fn of_value<const P: u64>(residue: Residue<P>, imaginary: bool, place: u64) -> Residue<P> {
     let positive = residue.min(-residue);
     let z = Residue::arbitrary(&[place, 2 << 32 | u64::from(imaginary), positive.number()]);
     if positive == residue { z } else { z.power(-1) }
 }
 
-/// A value as a sum of multiples; of one and the same value, and of its opposite, there is one multiple.
-fn terms(values: &impl Values, value: usize) -> Option<BTreeMap<Term, BigRational>> {
-    let mut sum: BTreeMap<Term, BigRational> = BTreeMap::new();
+/// A value as a sum of multiples of values that are no sums, which stand for themselves by their residues; of
+/// one and the same value, and of its opposite, there is one multiple.
+fn terms<const P: u64>(values: &impl Values<P>, value: usize) -> Option<BTreeMap<Residue<P>, BigRational>> {
+    let mut sum: BTreeMap<Residue<P>, BigRational> = BTreeMap::new();
     let mut open = vec![(BigRational::one(), value)];
     let mut seen = 0;
     while let Some((multiple, part)) = open.pop() {
         seen += 1;
         if seen > LARGEST {
-            return Some(BTreeMap::from([(Term::Value(values.residue(value)?), BigRational::one())]));
+            return Some(BTreeMap::from([(values.residue(value)?, BigRational::one())]));
         }
         let (term, own) = match values.parts(part)? {
             Parts::Sum(parts) => {
                 open.extend(parts.into_iter().map(|(factor, part)| (&multiple * factor.0, part)));
                 continue;
             }
-            Parts::Multiple(Number(own), residue) if residue > -residue => (Term::Value(-residue), -own),
-            Parts::Multiple(Number(own), residue) => (Term::Value(residue), own),
-            Parts::Pi => (Term::Pi, BigRational::one()),
+            Parts::Multiple(Number(own), residue) if residue > -residue => (-residue, -own),
+            Parts::Multiple(Number(own), residue) => (residue, own),
         };
         *sum.entry(term).or_insert_with(BigRational::zero) += multiple * own;
     }
@@ -144,16 +139,17 @@ fn terms(values: &impl Values, value: usize) -> Option<BTreeMap<Term, BigRationa
 
 #[cfg(test)]
 mod tests {
+    use super::super::residue::FIRST_PRIME;
     use super::*;
     use crate::program::graph::{Graph, Input, Node};
 
     /// The residues of nodes that are made of two angles.
-    fn residues(build: impl FnOnce(&mut Graph, Node, Node) -> Vec<Node>) -> Vec<Residue> {
+    fn residues(build: impl FnOnce(&mut Graph, Node, Node) -> Vec<Node>) -> Vec<Residue<FIRST_PRIME>> {
         let mut graph = Graph::new();
         let [x, y] = [0, 1].map(|index| graph.input(Input::Coordinate(index)));
         let nodes = build(&mut graph, x, y);
         let residues = graph.residues();
-        nodes.into_iter().map(|node| residues[node.0 as usize].expect("a residue")[0]).collect()
+        nodes.into_iter().map(|node| residues[node.0 as usize].expect("a residue").0).collect()
     }
 
     /// A multiple of a node.
@@ -194,33 +190,27 @@ mod tests {
     }
 
     #[test]
-    fn fractions_of_pi_have_their_values() {
+    fn large_multiples_are_not_lost() {
+        // 2^60 - 1 and more: powers of a residue repeat
         let found = residues(|graph, x, _| {
-            let pi = graph.pi();
-            let [sixth, right] = [6, 2].map(|d| times(graph, 1, d, pi));
-            let shifted = graph.sum([x, right]);
-            vec![
-                of(graph, Function::Sin, sixth),
-                of(graph, Function::Cos, right),
-                of(graph, Function::Sin, shifted),
-                of(graph, Function::Cos, x),
-            ]
+            let multiples = [(1 << 60) - 1, i64::MAX, 76_861_433_622_560_768];
+            multiples.map(|n| times(graph, n, 1, x)).map(|angle| of(graph, Function::Cos, angle)).to_vec()
         });
-        assert_eq!(found[0] * Residue::integer(2), Residue::ONE);
-        assert_eq!(found[1], Residue::ZERO);
-        assert_eq!(found[2], found[3]);
+        for (i, a) in found.iter().enumerate() {
+            assert!(*a != Residue::ONE && found[..i].iter().all(|b| a != b), "{i}");
+        }
     }
 
     #[test]
     fn what_is_not_known_spreads() {
         let mut graph = Graph::new();
-        let (x, pi) = (graph.input(Input::Coordinate(0)), graph.pi());
-        let seventh = times(&mut graph, 1, 7, pi);
-        let sine = of(&mut graph, Function::Sin, seventh);
-        let sum = graph.sum([sine, x]);
+        let (x, zero) = (graph.input(Input::Coordinate(0)), graph.integer(0));
+        let infinite = graph.intern(crate::program::graph::NodeKind::Power(zero, -1));
+        let sine = of(&mut graph, Function::Sin, infinite);
+        let sum = graph.intern(crate::program::graph::NodeKind::Sum(vec![sine, x]));
         let residues = graph.residues();
-        assert!(residues[seventh.0 as usize].is_some());
-        assert!(residues[sine.0 as usize].is_none() && residues[sum.0 as usize].is_none());
+        assert!([infinite, sine, sum].iter().all(|node| residues[node.0 as usize].is_none()));
+        assert!(residues[x.0 as usize].is_some());
     }
 
     #[test]

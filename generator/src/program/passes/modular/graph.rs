@@ -2,32 +2,36 @@
 
 use super::functions::{Parts, Values, call, unknown};
 use super::residue::Residue;
-use super::{Residues, at_all_places};
+use super::{Evaluate, Residues};
 use crate::number::Number;
 use crate::program::graph::{Graph, Node, NodeKind};
 
 impl Graph {
     /// What every node is at arbitrary inputs.
     pub(in crate::program::passes) fn residues(&self) -> Vec<Option<Residues>> {
-        at_all_places(|place| {
-            let mut nodes = Nodes { graph: self, residues: Vec::with_capacity(self.kinds().len()) };
-            for kind in self.kinds() {
-                let residue = nodes.of(kind, place);
-                nodes.residues.push(residue);
-            }
-            nodes.residues
-        })
+        self.at_both()
+    }
+}
+
+impl Evaluate for Graph {
+    fn at<const P: u64>(&self, place: u64) -> Vec<Option<Residue<P>>> {
+        let mut nodes = Nodes { graph: self, residues: Vec::with_capacity(self.kinds().len()) };
+        for kind in self.kinds() {
+            let residue = nodes.of(kind, place);
+            nodes.residues.push(residue);
+        }
+        nodes.residues
     }
 }
 
 /// The first nodes of a graph.
-struct Nodes<'a> {
+struct Nodes<'a, const P: u64> {
     graph: &'a Graph,
-    residues: Vec<Option<Residue>>,
+    residues: Vec<Option<Residue<P>>>,
 }
 
-impl Nodes<'_> {
-    fn of(&self, kind: &NodeKind, place: u64) -> Option<Residue> {
+impl<const P: u64> Nodes<'_, P> {
+    fn of(&self, kind: &NodeKind, place: u64) -> Option<Residue<P>> {
         let at = |node: &Node| self.residues[node.0 as usize];
         match kind {
             NodeKind::Number(number) => Residue::rational(number),
@@ -45,7 +49,7 @@ impl Nodes<'_> {
             NodeKind::Call(function, arguments) => match arguments[..] {
                 [argument] => call(self, *function, argument.0 as usize, place),
                 _ => {
-                    let arguments: Option<Vec<Residue>> = arguments.iter().map(at).collect();
+                    let arguments: Option<Vec<Residue<P>>> = arguments.iter().map(at).collect();
                     Some(unknown(*function, &arguments?, place))
                 }
             },
@@ -53,19 +57,18 @@ impl Nodes<'_> {
     }
 }
 
-impl Values for Nodes<'_> {
-    fn residue(&self, value: usize) -> Option<Residue> {
+impl<const P: u64> Values<P> for Nodes<'_, P> {
+    fn residue(&self, value: usize) -> Option<Residue<P>> {
         self.residues[value]
     }
 
-    fn parts(&self, value: usize) -> Option<Parts> {
+    fn parts(&self, value: usize) -> Option<Parts<P>> {
         let number = |node: &Node| match self.graph.kind(*node) {
             NodeKind::Number(number) => Some(number.clone()),
             _ => None,
         };
         Some(match &self.graph.kinds()[value] {
             NodeKind::Number(number) => Parts::Multiple(number.clone(), Residue::ONE),
-            NodeKind::Pi => Parts::Pi,
             NodeKind::Sum(terms) => {
                 Parts::Sum(terms.iter().map(|term| (Number::integer(1), term.0 as usize)).collect())
             }

@@ -1,36 +1,56 @@
-//! Exact evaluation modulo a prime at arbitrary inputs: it tells which values are identically equal, whatever
-//! their form.
+//! Evaluation modulo primes at arbitrary inputs: it tells which values are identically equal, whatever their
+//! form.
 //!
-//! Two expressions that agree at arbitrary residues of their inputs are equal as rational functions, but for
-//! a probability of about their degree over 2^64 at each of the two places (Schwartz and Zippel). No size
-//! matters: what is attenuated by a factor of 1e-30 is as visible as anything else.
+//! Two rational functions that differ agree at arbitrary residues of their inputs with a probability of about
+//! their degree over 2^64 (Schwartz and Zippel), if the prime does not divide their difference. Two places
+//! with a prime each leave no room for chance. No size matters: what is attenuated by a factor of 1e-30 is
+//! as visible as anything else.
 //!
 //! Sines, cosines and exponentials follow their addition theorems ([`functions`]). Functions with branches
 //! (roots, magnitudes, arc functions) count as unknowns, which are equal where their arguments are. An
-//! unknown hides some identities; it never shows a false one.
+//! unknown hides some identities and makes up none.
 
 mod functions;
 mod graph;
 mod operations;
 mod residue;
 
-pub use residue::Residue;
+use residue::{FIRST_PRIME, Residue, SECOND_PRIME};
 
-/// Number of places at which values are evaluated.
-pub const PLACES: usize = 2;
+/// A value at both places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Residues(Residue<FIRST_PRIME>, Residue<SECOND_PRIME>);
 
-/// A value at all places.
-pub type Residues = [Residue; PLACES];
+impl Residues {
+    /// The opposite.
+    pub fn opposite(self) -> Self {
+        Residues(-self.0, -self.1)
+    }
 
-/// What every value is at all places: `None` where it is not known, as behind a division by zero.
-fn at_all_places(evaluate: impl Fn(u64) -> Vec<Option<Residue>>) -> Vec<Option<Residues>> {
-    let [first, second] = [evaluate(0), evaluate(1)];
-    first.into_iter().zip(second).map(|(a, b)| Some([a?, b?])).collect()
+    /// Whether values add up to nothing.
+    pub fn cancel(values: &[Residues]) -> bool {
+        let first = values.iter().fold(Residue::ZERO, |sum, value| sum + value.0);
+        let second = values.iter().fold(Residue::ZERO, |sum, value| sum + value.1);
+        (first, second) == (Residue::ZERO, Residue::ZERO)
+    }
+
+    /// The numerator n if the value is n / `denominator` and the magnitude of n at most `largest`.
+    pub fn multiple_of(self, denominator: u32, largest: u32) -> Option<i64> {
+        let denominator = i64::from(denominator);
+        let first = (self.0 * Residue::integer(denominator)).small(largest)?;
+        let second = (self.1 * Residue::integer(denominator)).small(largest)?;
+        (first == second).then_some(first)
+    }
 }
 
-/// The multiple of 1 / `denominator` that a value is at all places, if its numerator is at most `largest`.
-pub fn multiple_of(residues: &Residues, denominator: u32, largest: u32) -> Option<i64> {
-    let numerators =
-        residues.map(|residue| (residue * Residue::integer(i64::from(denominator))).small(largest));
-    numerators[0].filter(|_| numerators.iter().all(|other| *other == numerators[0]))
+/// What can be evaluated modulo a prime.
+trait Evaluate {
+    /// Every value at a place: `None` where it is not known, as behind a division by zero.
+    fn at<const P: u64>(&self, place: u64) -> Vec<Option<Residue<P>>>;
+
+    /// Every value at both places.
+    fn at_both(&self) -> Vec<Option<Residues>> {
+        let (first, second) = (self.at(0), self.at(1));
+        first.into_iter().zip(second).map(|(a, b)| Some(Residues(a?, b?))).collect()
+    }
 }

@@ -4,7 +4,7 @@ use num_rational::BigRational;
 
 use super::functions::{Parts, Values, call, unknown};
 use super::residue::Residue;
-use super::{Residues, at_all_places};
+use super::{Evaluate, Residues};
 use crate::arithmetic::Function;
 use crate::number::Number;
 use crate::program::graph::Input;
@@ -13,7 +13,7 @@ use crate::program::straight_line::Program;
 
 impl Input {
     /// What stands for it at a place.
-    pub(super) fn residue(self, place: u64) -> Residue {
+    pub(super) fn residue<const P: u64>(self, place: u64) -> Residue<P> {
         let (kind, index) = match self {
             Input::Time => (0, 0),
             Input::Parameter(index) => (1, index),
@@ -30,31 +30,35 @@ impl Input {
 impl Program {
     /// What every operation is at arbitrary inputs, of a pair of sine and cosine the angle.
     ///
-    /// What rounding takes from a sum of angles is 0 in exact arithmetic; it is kept as an unknown.
+    /// What rounding takes from a sum of angles is 0 in exact arithmetic; it and what it is computed from are
+    /// kept as unknowns.
     pub(in crate::program::passes) fn residues(&self) -> Vec<Option<Residues>> {
-        at_all_places(|place| {
-            let mut values =
-                Operations { program: self, residues: Vec::with_capacity(self.operations.len()) };
-            for (index, &operation) in self.operations.iter().enumerate() {
-                let residue = match is_rounding(self, operation) {
-                    true => Some(Residue::arbitrary(&[place, 4 << 32, index as u64])),
-                    false => values.of(operation, place),
-                };
-                values.residues.push(residue);
-            }
-            values.residues
-        })
+        self.at_both()
+    }
+}
+
+impl Evaluate for Program {
+    fn at<const P: u64>(&self, place: u64) -> Vec<Option<Residue<P>>> {
+        let mut values = Operations { program: self, residues: Vec::with_capacity(self.operations.len()) };
+        for (index, &operation) in self.operations.iter().enumerate() {
+            let residue = match is_rounding(self, operation) {
+                true => Some(Residue::arbitrary(&[place, 4 << 32, index as u64])),
+                false => values.of(operation, place),
+            };
+            values.residues.push(residue);
+        }
+        values.residues
     }
 }
 
 /// The first operations of a program.
-struct Operations<'a> {
+struct Operations<'a, const P: u64> {
     program: &'a Program,
-    residues: Vec<Option<Residue>>,
+    residues: Vec<Option<Residue<P>>>,
 }
 
-impl Operations<'_> {
-    fn of(&self, operation: Operation, place: u64) -> Option<Residue> {
+impl<const P: u64> Operations<'_, P> {
+    fn of(&self, operation: Operation, place: u64) -> Option<Residue<P>> {
         let at = |value: Value| self.residues[value.index()];
         let function = |function: Function, value: Value| call(self, function, value.index(), place);
         match operation {
@@ -86,12 +90,12 @@ impl Operations<'_> {
     }
 }
 
-impl Values for Operations<'_> {
-    fn residue(&self, value: usize) -> Option<Residue> {
+impl<const P: u64> Values<P> for Operations<'_, P> {
+    fn residue(&self, value: usize) -> Option<Residue<P>> {
         self.residues[value]
     }
 
-    fn parts(&self, value: usize) -> Option<Parts> {
+    fn parts(&self, value: usize) -> Option<Parts<P>> {
         let operation = self.program.operations[value];
         let times = |sign: i64, value: Value| (Number::integer(sign), value.index());
         // a multiple by a constant
@@ -123,21 +127,25 @@ impl Values for Operations<'_> {
     }
 }
 
-/// Whether it is a part of what rounding takes from a sum, `a - (t - (t - a))` where t is a sum with a,
-/// however its operations are fused.
+/// Whether it belongs to the computation of what rounding takes from a sum t = a + b (Knuth's two-sum): the part
+/// of b in t, t - a, or what is left of a and of b, `a - (t - (t - a))` and `b - (t - a)`. Their operations are
+/// not fused ([`super::super::contract`]).
 fn is_rounding(program: &Program, operation: Operation) -> bool {
     let (first, second) = match operation {
         Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),
-        Operation::MulAdd(_, _, c) | Operation::MulSub(_, _, c) | Operation::NegMulAdd(_, _, c) => (c, c),
         _ => return false,
     };
-    let returns = |term: Value, part: Value| match program.operation(part) {
+    let is_term = |term: Value, total: Value| match program.operation(total) {
+        Operation::Add(a, b) | Operation::Sub(a, b) => term == a || term == b,
+        _ => false,
+    };
+    let is_part = matches!(operation, Operation::Sub(..)) && is_term(second, first);
+    let is_left = |term: Value, part: Value| match program.operation(part) {
         Operation::Sub(total, other) => {
-            let mut parts = program.operation(total).operands();
             let again = matches!(program.operation(other), Operation::Sub(t, _) if t == total);
-            again || parts.any(|part| part == term || part == other)
+            again || is_term(term, total) || is_term(other, total)
         }
         _ => false,
     };
-    returns(first, second) || returns(second, first)
+    is_part || is_left(first, second) || is_left(second, first)
 }

@@ -8,31 +8,31 @@ use num_traits::ToPrimitive;
 
 use crate::number::Number;
 
-/// The prime, 2^64 - 2^32 + 1. What it is less 1 has the factors 2^32, 3 and 5, so that there are roots of
-/// unity for the usual fractions of pi.
-pub const PRIME: u64 = 0xffff_ffff_0000_0001;
-/// Its powers are all residues but 0.
-const GENERATOR: Residue = Residue(7);
+/// The greatest prime below 2^64 that is 4 q + 1 with a prime q: it has a root of -1, and powers of a residue
+/// repeat after q of them or after at most four.
+pub const FIRST_PRIME: u64 = 0xffff_ffff_ffff_f40d;
+/// The next smaller one.
+pub const SECOND_PRIME: u64 = 0xffff_ffff_ffff_ddd5;
 
-/// A residue modulo [`PRIME`].
+/// A residue modulo the prime P.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Residue(u64);
+pub struct Residue<const P: u64>(u64);
 
-impl Residue {
+impl<const P: u64> Residue<P> {
     /// 0
-    pub const ZERO: Residue = Residue(0);
+    pub const ZERO: Self = Residue(0);
     /// 1
-    pub const ONE: Residue = Residue(1);
+    pub const ONE: Self = Residue(1);
 
     /// An integer.
     pub fn integer(n: i64) -> Self {
-        Residue(i128::from(n).rem_euclid(i128::from(PRIME)) as u64)
+        Residue(i128::from(n).rem_euclid(i128::from(P)) as u64)
     }
 
     /// A rational number; `None` if the prime divides the denominator.
     pub fn rational(number: &Number) -> Option<Self> {
         let of = |n: &BigInt| {
-            let prime = BigInt::from(PRIME);
+            let prime = BigInt::from(P);
             Residue((((n % &prime) + &prime) % &prime).to_u64().unwrap_or(0))
         };
         Some(of(number.0.numer()) * of(number.0.denom()).reciprocal()?)
@@ -52,7 +52,7 @@ impl Residue {
             bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
             bits ^= bits >> 31;
         }
-        Residue(1 + bits % (PRIME - 1))
+        Residue(1 + bits % (P - 1))
     }
 
     /// The residue as a number from 0.
@@ -65,14 +65,14 @@ impl Residue {
         let largest = u64::from(largest);
         match self.0 {
             n if n <= largest => Some(n as i64),
-            n if PRIME - n <= largest => Some(-((PRIME - n) as i64)),
+            n if P - n <= largest => Some(-((P - n) as i64)),
             _ => None,
         }
     }
 
     /// Its power. A negative power of 0 counts as 0.
     pub fn power(self, exponent: i128) -> Self {
-        let mut left = exponent.rem_euclid(i128::from(PRIME - 1)) as u64;
+        let mut left = exponent.rem_euclid(i128::from(P - 1)) as u64;
         // the exponent of 0 may not be reduced
         let mut power = if self == Residue::ZERO && exponent != 0 { Residue::ZERO } else { Residue::ONE };
         let mut square = self;
@@ -88,26 +88,26 @@ impl Residue {
 
     /// 1 / a; `None` of 0.
     pub fn reciprocal(self) -> Option<Self> {
-        (self != Residue::ZERO).then(|| self.power(i128::from(PRIME) - 2))
+        (self != Residue::ZERO).then(|| self.power(i128::from(P) - 2))
     }
 
-    /// What stands for e^(i pi n / d): a power of a root of unity. `None` if there is no root of this order.
-    pub fn root_of_unity(n: i128, d: u64) -> Option<Self> {
-        let order = d.checked_mul(2)?;
-        (order > 0 && (PRIME - 1).is_multiple_of(order))
-            .then(|| GENERATOR.power(i128::from((PRIME - 1) / order)).power(n))
+    /// A root of -1: the power (P - 1) / 4 of the least residue that is no square.
+    pub fn imaginary() -> Self {
+        let is_square = |n: &Self| n.power(i128::from((P - 1) / 2)) == Residue::ONE;
+        let found = (2..).map(Residue).find(|n| !is_square(n));
+        found.unwrap_or(Residue::ONE).power(i128::from((P - 1) / 4))
     }
 }
 
-impl Add for Residue {
+impl<const P: u64> Add for Residue<P> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Residue(((u128::from(self.0) + u128::from(other.0)) % u128::from(PRIME)) as u64)
+        Residue(((u128::from(self.0) + u128::from(other.0)) % u128::from(P)) as u64)
     }
 }
 
-impl Sub for Residue {
+impl<const P: u64> Sub for Residue<P> {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -115,19 +115,19 @@ impl Sub for Residue {
     }
 }
 
-impl Neg for Residue {
+impl<const P: u64> Neg for Residue<P> {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Residue(if self.0 == 0 { 0 } else { PRIME - self.0 })
+        Residue(if self.0 == 0 { 0 } else { P - self.0 })
     }
 }
 
-impl Mul for Residue {
+impl<const P: u64> Mul for Residue<P> {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
-        Residue((u128::from(self.0) * u128::from(other.0) % u128::from(PRIME)) as u64)
+        Residue((u128::from(self.0) * u128::from(other.0) % u128::from(P)) as u64)
     }
 }
 
@@ -135,55 +135,69 @@ impl Mul for Residue {
 mod tests {
     use super::*;
 
-    #[test]
-    fn all_residues_but_zero_are_powers_of_the_generator() {
-        let factors = [2, 3, 5, 17, 257, 65537];
-        let mut left = PRIME - 1;
-        for factor in factors {
-            assert_ne!(GENERATOR.power(i128::from((PRIME - 1) / factor)), Residue::ONE, "{factor}");
-            while left.is_multiple_of(factor) {
-                left /= factor;
+    /// Whether a number is prime: Miller and Rabin's test, which decides below 2^64 with these bases.
+    fn is_prime(n: u64) -> bool {
+        let times = |a: u64, b: u64| (u128::from(a) * u128::from(b) % u128::from(n)) as u64;
+        let power = |mut a: u64, mut exponent: u64| {
+            let mut power = 1;
+            while exponent > 0 {
+                power = if exponent & 1 == 1 { times(power, a) } else { power };
+                (a, exponent) = (times(a, a), exponent >> 1);
             }
-        }
-        assert_eq!(left, 1, "all prime factors are in the list");
+            power
+        };
+        let twos = (n - 1).trailing_zeros();
+        [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37].iter().all(|&base| {
+            let mut at = power(base, (n - 1) >> twos);
+            let passes = |at: u64| at == n - 1;
+            at == 1
+                || (0..twos).any(|_| {
+                    let found = passes(at);
+                    at = times(at, at);
+                    found
+                })
+        })
     }
 
     #[test]
-    fn it_is_a_field() {
+    fn the_primes_are_primes_of_the_form_that_is_claimed() {
+        for prime in [FIRST_PRIME, SECOND_PRIME] {
+            assert!(is_prime(prime) && prime % 4 == 1 && is_prime((prime - 1) / 4), "{prime}");
+        }
+        assert!(!is_prime(FIRST_PRIME - 2) && !is_prime(561));
+    }
+
+    fn is_a_field<const P: u64>() {
         for seed in 0..200 {
-            let [a, b, c] = [0, 1, 2].map(|which| Residue::arbitrary(&[seed, which]));
+            let [a, b, c] = [0, 1, 2].map(|which| Residue::<P>::arbitrary(&[seed, which]));
             assert_eq!((a + b) * c, a * c + b * c);
             assert_eq!(a - b + b, a);
             assert_eq!(a * a.reciprocal().unwrap(), Residue::ONE);
             assert_eq!(a.power(-3) * a.power(5), a * a);
         }
-        assert_eq!(Residue::ZERO.reciprocal(), None);
-        assert_eq!(Residue::ZERO.power(0), Residue::ONE);
-        assert_eq!(Residue::ZERO.power(i128::from(PRIME - 1)), Residue::ZERO);
+        let zero = Residue::<P>::ZERO;
+        assert_eq!(zero.reciprocal(), None);
+        assert_eq!(zero.power(0), Residue::ONE);
+        assert_eq!(zero.power(i128::from(P - 1)), zero);
+        let i = Residue::<P>::imaginary();
+        assert_eq!(i * i, Residue::integer(-1));
+    }
+
+    #[test]
+    fn both_are_fields_with_a_root_of_minus_one() {
+        is_a_field::<FIRST_PRIME>();
+        is_a_field::<SECOND_PRIME>();
     }
 
     #[test]
     fn numbers_keep_their_meaning() {
-        let third = Residue::rational(&Number::ratio(-1, 3)).unwrap();
+        type First = Residue<FIRST_PRIME>;
+        let third = First::rational(&Number::ratio(-1, 3)).unwrap();
         assert_eq!(third * Residue::integer(3), Residue::integer(-1));
-        assert_eq!(Residue::double(-0.375).unwrap() * Residue::integer(8), Residue::integer(-3));
-        assert_ne!(
-            Residue::double(0.1).unwrap() * Residue::integer(10),
-            Residue::ONE,
-            "a double is no tenth"
-        );
-        assert!(Residue::double(f64::INFINITY).is_none() && Residue::double(5e-324).is_some());
-        assert_eq!([Residue::integer(-12), Residue::integer(12)].map(|n| n.small(12)), [Some(-12), Some(12)]);
-        assert_eq!(Residue::integer(13).small(12), None);
-    }
-
-    #[test]
-    fn roots_of_unity_belong_together() {
-        let minus = Residue::integer(-1);
-        assert_eq!(Residue::root_of_unity(1, 1), Some(minus));
-        let [sixth, third] = [6, 3].map(|d| Residue::root_of_unity(1, d).unwrap());
-        assert_eq!(sixth * sixth, third);
-        assert_eq!(third.power(3), minus);
-        assert_eq!(Residue::root_of_unity(1, 7), None);
+        assert_eq!(First::double(-0.375).unwrap() * Residue::integer(8), Residue::integer(-3));
+        assert_ne!(First::double(0.1).unwrap() * Residue::integer(10), Residue::ONE, "a double is no tenth");
+        assert!(First::double(f64::INFINITY).is_none() && First::double(5e-324).is_some());
+        assert_eq!([-12, 12].map(|n| First::integer(n).small(12)), [Some(-12), Some(12)]);
+        assert_eq!(First::integer(13).small(12), None);
     }
 }
