@@ -24,8 +24,8 @@ pub struct Arguments {
     contact: Option<String>,
     #[command(flatten)]
     surface: SurfaceArguments,
-    /// quadratures that the collision may take; if it needs more, the error is `budget_exceeded` [default:
-    /// no limit but the solver's own]
+    /// quadratures that the collision may take; if it needs more, the error is `budget_exceeded`
+    /// [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
     budget: Option<u32>,
     /// a file with the state, `-` for standard input, or the state itself

@@ -12,8 +12,9 @@ use crate::stop::Outcome;
 ///
 ///   hodograph eval models/two_sleds.mech --state '{"q":{"q3":0.8},"u":{"u1":1,"u4":1}}'
 ///
-/// A state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes the file's
-/// value, else 0. Dependent coordinates of closed loops are completed from the values given as a guess.
+/// A state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes the
+/// file's value, else 0. Dependent coordinates of closed loops are completed from the values given
+/// as a guess.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {

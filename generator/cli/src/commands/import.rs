@@ -19,16 +19,17 @@ const MAX_BYTES: usize = 64 << 20;
 ///
 ///   hodograph import robot.urdf > robot.mech
 ///
-/// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have becomes
-/// `_`. A root link that moves freely has the coordinates q_base_x .. z, the quaternion q_base_e0 .. e3 and
-/// the speeds u_base_x .. z and u_base_rx .. rz along its own axes. What is ignored is said on standard
-/// error.
+/// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have
+/// becomes `_`. A root link that moves freely has the coordinates q_base_x .. z, the quaternion
+/// q_base_e0 .. e3 and the speeds u_base_x .. z and u_base_rx .. rz along its own axes. What is
+/// ignored is said on standard error.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
     /// the URDF file
     file: PathBuf,
-    /// make a contact of the origin of this link with the plane through O across N.z (may be repeated)
+    /// make a contact of the origin of this link with the plane through O across N.z (may be
+    /// repeated)
     #[arg(long, value_name = "LINK")]
     contact: Vec<String>,
     /// whether the root link is fixed to the ground or free [default: free if it has an inertia]

@@ -17,14 +17,14 @@ use crate::plot::file::Format;
 use crate::plot::trace::{Trace, trace};
 use crate::stop::{Outcome, Stop};
 
-/// Draw the course of a collision: the hodograph v_s over v_t, and v_n and the slip s over I_n, as in Fig. 3
-/// of the paper
+/// Draw the course of a collision: v_s over v_t, v_n and the slip s over I_n, as the paper's Fig. 3
 ///
 ///   hodograph plot models/two_sleds.mech --mu 0.6,1.1,1.6 --e 0.8 --output sleds.svg
 ///   echo '{"m":[..],"v":[..]}' | hodograph plot --mu 0.6 --e 0.8 > one.svg
 ///
-/// Arrowheads show the direction of a curve, a dot its beginning; a circle marks where Newton's law ends the
-/// collision, a cross Poisson's, a square Stronge's. The file's name decides the format: .svg or .png.
+/// Arrowheads show the direction of a curve, a dot its beginning; a circle marks where Newton's law
+/// ends the collision, a cross Poisson's, a square Stronge's. The file's name decides the format:
+/// .svg or .png.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {

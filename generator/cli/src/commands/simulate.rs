@@ -30,9 +30,9 @@ use crate::stop::{Outcome, Stop};
 ///
 ///   hodograph simulate models/free_box_corner.mech --until 1 --step 0.01 --mu 0.3 --e 0.5 --law stronge
 ///
-/// Lines are {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..} and so on
-/// at each event: collision, impact_without_collision, contact, lift_off, slip, stick, rest. Times of events
-/// do not depend on --step.
+/// Lines are {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
+/// and so on at each event: collision, impact_without_collision, contact, lift_off, slip, stick,
+/// rest. Times of events do not depend on --step.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -47,11 +47,12 @@ pub struct Arguments {
     /// a line each so many seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 0.01, allow_hyphen_values = true)]
     step: f64,
-    /// relative and absolute tolerance of the integration; bounces lower than it, in metres, end in contact
+    /// relative and absolute tolerance of the integration; bounces lower than it, in metres, end in
+    /// contact
     #[arg(long, value_name = "NUMBER", default_value_t = 1e-12, allow_hyphen_values = true)]
     tolerance: f64,
-    /// greatest step of the integration, s: without it 0.05 where something depends on time by itself, else
-    /// unbounded; inputs must not pass faster
+    /// greatest step of the integration, s: without it 0.05 where something depends on time by
+    /// itself, else unbounded; inputs must not pass faster
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     max_step: Option<f64>,
     #[command(flatten)]
@@ -59,15 +60,16 @@ pub struct Arguments {
     /// an input as a function of the time `t`, as `F = 2*sin(3*t)`; may be given several times
     #[arg(long, value_name = "NAME=EXPRESSION")]
     input: Vec<String>,
-    /// a CSV file with a column `t` and a column for each input, between whose rows inputs are interpolated
+    /// a CSV file with a column `t` and a column for each input, between whose rows inputs are
+    /// interpolated
     #[arg(long, value_name = "FILE")]
     inputs: Option<PathBuf>,
-    /// contacts that are struck together answer one after the other, all at once by their stiffnesses, or
-    /// the simulation stops
+    /// contacts that are struck together answer one after the other, all at once by their
+    /// stiffnesses, or the simulation stops
     #[arg(long, value_name = "WAY", default_value = "sequential")]
     together: TogetherArgument,
-    /// of --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and contacts not
-    /// named have 1
+    /// of --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and contacts
+    /// not named have 1
     #[arg(long, value_name = "CONTACT=NUMBER")]
     stiffness: Vec<String>,
     /// how lines are written
@@ -84,7 +86,8 @@ pub struct Arguments {
 enum TogetherArgument {
     /// one after the other, the fastest first
     Sequential,
-    /// all at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction only
+    /// all at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction
+    /// only
     Lzb,
     /// an error
     Stop,
@@ -94,8 +97,8 @@ enum TogetherArgument {
 ///
 /// # Errors
 ///
-/// An error object for what is wrong with the state or a surface; [`Stop::Fault`] where the motion cannot be
-/// followed: the lines before are written.
+/// An error object for what is wrong with the state or a surface; [`Stop::Fault`] where the motion
+/// cannot be followed: the lines before are written.
 pub fn run(arguments: &Arguments) -> Outcome {
     let (until, step) = (arguments.until, arguments.step);
     let positive = |number: f64| number.is_finite() && number > 0.0;

@@ -1,4 +1,5 @@
-//! `hodograph solve`: solves collisions given as JSON lines, and writes their outcomes as JSON lines.
+//! `hodograph solve`: solves collisions given as JSON lines, and writes their outcomes as JSON
+//! lines.
 
 use std::io::{self, BufRead, IsTerminal};
 
@@ -23,9 +24,9 @@ const LONGEST_LINE: usize = 1 << 20;
 ///   {"m":[nn,nt,ns,tt,ts,ss],"v":[n,t,s],"mu":0.6,"e":0.8,"law":"stronge"}
 ///
 /// Its answer is
-/// {"impulse":[n,t,s],"v":[n,t,s],"dE":..,"dEn":..,"path":[..],"compressions":1,"sensitivity":[]} or
-/// {"error":{"kind":"..","message":".."}}. Blank lines are skipped, other fields are left alone. Exit 0 if
-/// every line was solved, 1 if one had an error.
+/// {"impulse":[n,t,s],"v":[n,t,s],"dE":..,"dEn":..,"path":[..],"compressions":1,"sensitivity":[]}
+/// or {"error":{"kind":"..","message":".."}}. Blank lines are skipped, other fields are left alone.
+/// Exit 0 if every line was solved, 1 if one had an error.
 // the brackets are JSON, as the help shows it
 #[allow(rustdoc::broken_intra_doc_links)]
 #[derive(Clone, Debug, clap::Args)]
@@ -34,15 +35,16 @@ pub struct Arguments {
     /// how to solve; all but `exact` are for comparison
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     pub method: Method,
-    /// `sum`, `irs`: steps to an impulse of -v_n1 / (4 m_nn), the paper's refinement k [default: 50]
+    /// `sum`, `irs`: steps to an impulse of -v_n1 / (4 m_nn), the paper's refinement k [default:
+    /// 50]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub steps: Option<u32>,
-    /// `integrate`, and `irs` instead of steps: error allowed per step, relative, 1e-14 to 0.1 [default:
-    /// 1e-10]
+    /// `integrate`, and `irs` instead of steps: error allowed per step, relative, 1e-14 to 0.1
+    /// [default: 1e-10]
     #[arg(long, value_parser = tolerance, conflicts_with = "steps")]
     pub tolerance: Option<f64>,
-    /// `exact`: quadratures that a collision may take; one that needs more has the error `budget_exceeded`
-    /// [default: no limit but the solver's own]
+    /// `exact`: quadratures that a collision may take; one that needs more has the error
+    /// `budget_exceeded` [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
     pub budget: Option<u32>,
 }
@@ -116,7 +118,8 @@ impl Arguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a line had an error, [`Stop::Call`] for an option that the method does not have.
+/// [`Stop::Said`] if a line had an error, [`Stop::Call`] for an option that the method does not
+/// have.
 pub fn run(arguments: &Arguments) -> Outcome {
     arguments.check()?;
     let mut input = io::stdin().lock();
