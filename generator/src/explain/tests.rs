@@ -323,5 +323,5 @@ fn what_mends_the_rounding_of_angles_is_left_out() {
         let turned = g.product([u, time]);
         g.sum([q, turned])
     });
-    assert_eq!(turned, sines("u1·time + q1"));
+    assert_eq!(turned, sines("q1 + u1·time"));
 }
