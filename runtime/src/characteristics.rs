@@ -12,6 +12,21 @@ use crate::{ReducedMatrix, Scalar, solve::Contact};
 ///
 /// They depend on the reduced matrix and mu, not on the velocity of approach. Angles are in radians from t
 /// towards s.
+///
+/// | quantity | equation |
+/// | --- | --- |
+/// | c_n | (m_tt m_ss - m_ts^2) / det M (41a) |
+/// | c_t | (m_ns m_ts - m_nt m_ss) / det M (41b) |
+/// | c_s | (m_nt m_ts - m_ns m_tt) / det M (41c); M (c_n, c_t, c_s) = (1, 0, 0) (41d) |
+/// | mu_c | sqrt(c_t^2 + c_s^2) / c_n (43) |
+/// | phi_c | atan2(-c_s, -c_t) (43) |
+/// | mu_s | m_ns / m_ts (end of section 3.3) |
+/// | phi_hat | h(mu, phi_hat) = 0 and g(mu, phi_hat) > 0 (section 3.3) |
+/// | f_hat, g_hat | f(mu, phi_hat) (31), g(mu, phi_hat) (32) |
+///
+/// [`phi_bar`](crate::phi_bar) is the direction in which slip stops (section 3.2). What happens at the end of
+/// compression and where slip stops, I_nC, E_nC, I_nS, v_nS and E_nS, depends on the approach:
+/// [`Phases`](crate::Phases).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -25,8 +40,8 @@ pub struct Characteristics<T> {
     pub phi_c: T,
     /// m_ns / m_ts, the friction at which slip along t stays along t; `None` if m_ts is zero.
     pub mu_s: Option<T>,
-    /// dI_n / dv_n, dI_t / dv_n, dI_s / dv_n while sticking (41); `None` if the contact cannot move along n
-    /// while it sticks.
+    /// c_n, c_t and c_s (41): dI_n / dv_n, dI_t / dv_n and dI_s / dv_n while sticking (40), in kg; `None` if
+    /// the contact cannot move along n while it sticks.
     pub sticking: Option<[T; 3]>,
     /// Renewed sliding, if mu < mu_c.
     pub renewal: Option<Renewal<T>>,
@@ -44,6 +59,10 @@ pub struct Renewal<T> {
     pub f_hat: T,
     /// ds / dI_n there (32), positive.
     pub g_hat: T,
+    /// dh / dphi there, in 1/kg. It is below -g_hat, because h' + g = -mu d'.T d' (docs/theory.md, 2.8). Slip
+    /// that deviates from phi_hat by a small angle turns back: its angle is multiplied by s^(dh_hat / g_hat)
+    /// as the slip s grows (34). So phi_hat is stable.
+    pub dh_hat: T,
 }
 
 impl<T: Scalar> Characteristics<T> {
@@ -63,7 +82,9 @@ impl<T: Scalar> Characteristics<T> {
         let renewal = (mu < mu_c).then(|| {
             let d: Vector2<T> = c.renewal();
             let [f, g, _] = c.rates(&d);
-            Renewal { phi_hat: d.y.atan2(d.x), f_hat: f * matrix.nn, g_hat: g * matrix.nn }
+            let dh = c.convergence(&d) - g;
+            let [f_hat, g_hat, dh_hat] = [f, g, dh].map(|rate| rate * matrix.nn);
+            Renewal { phi_hat: d.y.atan2(d.x), f_hat, g_hat, dh_hat }
         });
         Self {
             mu_c,

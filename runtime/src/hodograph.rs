@@ -3,7 +3,7 @@
 use nalgebra::{Vector2, Vector3};
 
 use crate::{
-    Impact, ImpactError, Motion, ReducedMatrix, Scalar, Snapshot, Surface,
+    Impact, ImpactError, Law, Motion, ReducedMatrix, Scalar, Snapshot, Surface,
     scalar::constant,
     solve::{Contact, Restitution, Slide, State, Terminal, Units, checked, collide, slide, slips},
 };
@@ -73,7 +73,7 @@ impl<T: Scalar> Hodograph<T> {
     }
 
     /// All quantities at the normal impulse `normal_impulse`, in N s: at 0 and below the approach, at I_n2
-    /// and above the outcome.
+    /// and above the outcome. [`snapshot_at`] goes on beyond the end of the collision.
     #[inline]
     pub fn at(&self, normal_impulse: T) -> Snapshot<T> {
         let zero = T::zero();
@@ -110,15 +110,8 @@ impl<T: Scalar> Hodograph<T> {
             },
         };
         let Some((push, gain, rate)) = self.terminal else { return self.end(after) };
-        let impulse = stop - from.normal;
-        let velocity = from.velocity + rate * impulse;
-        let state = State {
-            normal: stop,
-            tangential: from.tangential - push * impulse,
-            velocity,
-            work: from.work + (from.velocity + velocity) * impulse * constant(0.5),
-        };
-        units.snapshot(&state, &(gain * impulse), after)
+        let (state, slip) = from.after(&push, &gain, rate, stop);
+        units.snapshot(&state, &slip, after)
     }
 
     /// `count` snapshots at equal steps of the normal impulse, from the approach to the outcome; if `count`
@@ -151,5 +144,97 @@ impl<T: Scalar> Hodograph<T> {
             velocity: snapshot.velocity.x / speed,
             work: snapshot.normal_work / (scale * speed),
         }
+    }
+}
+
+/// All quantities at a normal impulse, in N s, that is known (sections 3.1 to 3.3 of the paper: "suppose that
+/// I_n2 is known"): without any law of restitution, and so also beyond the end that a law would set, as if the
+/// bodies stayed in contact. At 0 and below it is the approach.
+///
+/// ```
+/// # use hodograph::{ReducedMatrix, snapshot_at};
+/// # use nalgebra::Vector3;
+/// let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
+/// let approach = Vector3::new(-0.946108022, 1.06306701, 0.0);
+/// // At mu = 1.6 slip stops at 2.328 N s, and the contact sticks: v_n rises by 1 / c_n (45c).
+/// let [a, b] = [3.0_f64, 30.0].map(|impulse| snapshot_at(&matrix, &approach, 1.6, impulse));
+/// assert!(((b?.velocity.x - a?.velocity.x) * 42.592 - 27.0).abs() < 1e-3);
+/// # Ok::<(), hodograph::ImpactError<f64>>(())
+/// ```
+///
+/// # Errors
+/// As [`crate::solve`] for what is wrong with the input, [`ImpactError::NotFinite`] for an impulse that is
+/// not finite or a velocity beyond the range of the number type, and [`ImpactError::BudgetExceeded`] where
+/// the sliding arc takes more stretches than the solver makes.
+pub fn snapshot_at<T: Scalar>(
+    matrix: &ReducedMatrix<T>,
+    approach: &Vector3<T>,
+    mu: T,
+    normal_impulse: T,
+) -> Result<Snapshot<T>, ImpactError<T>> {
+    let zero = T::zero();
+    // No law ends the arc: which one is named does not matter.
+    let surface = Surface { mu, e: zero, law: Law::Poisson };
+    let matrix = &checked(matrix, approach, &surface)?.unwrap_or(*matrix);
+    if !normal_impulse.is_finite() {
+        return Err(ImpactError::NotFinite { value: normal_impulse });
+    }
+    let (contact, share) = Contact::limited(matrix, mu);
+    let speed = -approach.x;
+    let scale = speed / matrix.nn;
+    let units = Units { approach, scale, speed, contact: &contact };
+    let tangential = Vector2::new(approach.y, approach.z) / speed;
+    let (slip, stop) = (tangential.norm(), normal_impulse / scale);
+    let slides = slips(slip);
+    let Terminal { sticks, push, gain, rate, .. } = Terminal::of(&contact);
+    let after = if sticks { Motion::Sticking } else { Motion::Renewal };
+    let first = if slides { Motion::Sliding } else { after };
+    let snapshot = if normal_impulse <= zero {
+        units.snapshot(&State::before(-T::one()), &tangential, first)
+    } else {
+        let arc = slides.then(|| {
+            let mut restitution = Restitution::until(stop / share);
+            (slide(&contact, tangential, slip, &mut restitution), restitution.quadratures)
+        });
+        match arc {
+            Some((Slide::Ended(state, velocity), _)) => {
+                units.snapshot(&state.in_units(share, T::one()), &velocity, first)
+            }
+            Some((Slide::Endless(state) | Slide::OverBudget(state), quadratures)) => {
+                let normal_velocity = state.velocity * speed;
+                return Err(ImpactError::BudgetExceeded { quadratures, normal_velocity });
+            }
+            Some((Slide::Stopped(state), _)) => {
+                let from = state.in_units(share, T::one());
+                let (state, slip) = from.after(&push, &gain, rate, stop);
+                units.snapshot(&state, &slip, after)
+            }
+            None => {
+                let (state, slip) = State::before(-T::one()).after(&push, &gain, rate, stop);
+                units.snapshot(&state, &slip, after)
+            }
+        }
+    };
+    let Snapshot { impulse, velocity, contact_work, normal_work, .. } = snapshot;
+    let numbers = impulse.iter().chain(velocity.iter()).copied().chain([contact_work, normal_work]);
+    match numbers.into_iter().find(|value| !value.is_finite()) {
+        Some(value) => Err(ImpactError::NotFinite { value }),
+        None => Ok(snapshot),
+    }
+}
+
+impl<T: Scalar> State<T> {
+    /// The state on a terminal arc (45), (46) that begins here, at a later normal impulse, and the tangential
+    /// velocity there.
+    fn after(&self, push: &Vector2<T>, gain: &Vector2<T>, rate: T, normal: T) -> (Self, Vector2<T>) {
+        let impulse = normal - self.normal;
+        let velocity = self.velocity + rate * impulse;
+        let state = Self {
+            normal,
+            tangential: self.tangential - push * impulse,
+            velocity,
+            work: self.work + (self.velocity + velocity) * impulse * constant(0.5),
+        };
+        (state, gain * impulse)
     }
 }

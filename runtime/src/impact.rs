@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{Motion, Phases, Sensitivity};
+use crate::{Motion, Phases, Scalar, Sensitivity, scalar::constant};
 
 /// The phases of a collision in order. A phase without impulse is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -62,6 +62,8 @@ impl core::fmt::Display for Path {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Impact<T: nalgebra::Scalar> {
+    /// Velocity of approach (n, t, s) as given, in m/s.
+    pub approach: Vector3<T>,
     /// Impulse (n, t, s) on the striking point, in N s.
     pub impulse: Vector3<T>,
     /// Velocity of separation (n, t, s), in m/s.
@@ -80,10 +82,37 @@ pub struct Impact<T: nalgebra::Scalar> {
     pub sensitivity: Sensitivity,
 }
 
-impl<T: crate::Scalar> Impact<T> {
-    /// The energy that the collision gained, in J, if it did; that happens under Newton's hypothesis only.
+impl<T: Scalar> Impact<T> {
+    /// The energy that the collision gained, in J, if it did: the work (23) where it is positive by more than
+    /// its rounding, see [`energy_gained`].
+    ///
+    /// Newton's hypothesis can gain energy. Stronge's cannot. For Poisson's no proof is known, and no
+    /// collision that gains.
     #[inline]
     pub fn energy_gained(&self) -> Option<T> {
-        (self.contact_work > T::zero()).then_some(self.contact_work)
+        energy_gained(&self.impulse, &self.approach, &self.velocity)
     }
+}
+
+/// The roundings of the terms of the work that are no gain.
+const ROUNDINGS: f64 = 64.0;
+
+/// The energy that a collision gained, in J, if it did, from its impulse (N s), velocity of approach and
+/// velocity of separation (m/s), each along n, t, s.
+///
+/// It is the work I.(v1 + v2) / 2 of the impulse (23), if that is greater than 64 roundings of its terms,
+/// (|I_n| (|v_n1| + |v_n2|) + |I_t| (|v_t1| + |v_t2|) + |I_s| (|v_s1| + |v_s2|)) / 2. A collision that loses
+/// nothing, as without friction for e = 1, has a work of some such roundings instead of zero.
+///
+/// Theory: docs/theory.md, sections 9.6 and 18.8.
+#[inline]
+pub fn energy_gained<T: Scalar>(
+    impulse: &Vector3<T>,
+    approach: &Vector3<T>,
+    separation: &Vector3<T>,
+) -> Option<T> {
+    let half = constant::<T>(0.5);
+    let work = impulse.dot(&(separation + approach)) * half;
+    let terms = impulse.abs().dot(&(separation.abs() + approach.abs())) * half;
+    (work > constant::<T>(ROUNDINGS) * T::default_epsilon() * terms).then_some(work)
 }

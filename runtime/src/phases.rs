@@ -70,7 +70,8 @@ impl<T: Scalar> Snapshot<T> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Phases<T: nalgebra::Scalar> {
-    /// The end of the first compression: v_n = 0 (index C in the paper).
+    /// The end of the first compression: v_n = 0 (index C in the paper). Its normal impulse is I_nC (49), its
+    /// normal work E_nC (52).
     ///
     /// Under Newton's hypothesis the outcome does not depend on it while slip lasts: [`crate::solve`] then
     /// does not locate it and leaves `None`; [`crate::Hodograph`] always locates it.
@@ -78,6 +79,7 @@ pub struct Phases<T: nalgebra::Scalar> {
     /// The end of the latest compression, the one the law counts from; the same as the first unless the
     /// bodies approached again.
     pub last_compression_end: Option<Snapshot<T>>,
-    /// Where slip stopped (index S in the paper); `None` if it never did, or there was none at the start.
+    /// Where slip stopped (index S in the paper); `None` if it never did, or there was none at the start. Its
+    /// normal impulse is I_nS, its normal velocity v_nS, its normal work E_nS (sections 6.2 and 6.3).
     pub slip_end: Option<Snapshot<T>>,
 }

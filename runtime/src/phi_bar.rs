@@ -1,4 +1,4 @@
-//! phi_bar, the direction in which slip stops.
+//! phi_bar, the direction in which slip stops, and all directions that slip keeps.
 //!
 //! Theory: docs/theory.md, section 12.
 
@@ -46,6 +46,41 @@ pub fn phi_bar<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, phi: T) -> Option<T>
     (g < T::zero()).then_some(found)
 }
 
+/// The invariant directions of slip, from t towards s, in radians: the zeros of h(mu, phi) (33) at which it
+/// changes its sign, two or four, in order in (-pi, pi].
+///
+/// Slip that has one of them keeps it. They are the directions in which the circle of radius mu meets the
+/// hyperbola h = 0 of Appendix B. Where h is zero everywhere, every direction is one, and there is no answer.
+///
+/// Like [`phi_bar`] it finds zeros by bisection, some 20 000 operations.
+pub fn invariant_directions<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T) -> [Option<T>; 4] {
+    let mut found = [None; 4];
+    let (mut count, mut wrapped) = (0, 0);
+    // Not at an axis, where symmetric contacts have zeros: one at the end of a range may be found twice.
+    let start = constant::<T>(BEGIN) - T::pi();
+    for quarter in 0..4 {
+        let base = start + T::frac_pi_2() * constant::<T>(f64::from(quarter));
+        let (zeros, many) = zeros(&polynomial(matrix, mu, base, T::one()));
+        for x in zeros.into_iter().take(many) {
+            let angle = base + constant::<T>(2.0) * x.atan();
+            let beyond = angle > T::pi();
+            if let Some(slot) = found.get_mut(count) {
+                *slot = Some(if beyond { angle - T::two_pi() } else { angle });
+                count += 1;
+                wrapped += usize::from(beyond);
+            }
+        }
+    }
+    // Those beyond pi come last and are the least.
+    if let Some(all) = found.get_mut(..count) {
+        all.rotate_right(wrapped);
+    }
+    found
+}
+
+/// Where the search for invariant directions begins, in radians.
+const BEGIN: f64 = 0.123_456_789;
+
 impl<T: Scalar> Characteristics<T> {
     /// [`phi_bar`] for slip along t, the paper's case.
     #[inline]
@@ -67,6 +102,12 @@ fn polynomial<T: Scalar>(matrix: &ReducedMatrix<T>, mu: T, base: T, side: T) -> 
 
 /// The first zero in (0, 1] of a polynomial that is not negative at 0.
 fn first_zero<T: Scalar>(p: &[T; 5]) -> Option<T> {
+    let ([first, ..], count) = zeros(p);
+    (count > 0).then_some(first)
+}
+
+/// The zeros in (0, 1] of a polynomial at which its sign changes, in order, and their number.
+fn zeros<T: Scalar>(p: &[T; 5]) -> ([T; 5], usize) {
     // Zeros of the fourth to the first derivative, and of the polynomial itself, in order; one is the end of
     // the range.
     let mut ends = [T::one(); 5];
@@ -86,8 +127,7 @@ fn first_zero<T: Scalar>(p: &[T; 5]) -> Option<T> {
         }
         (ends, count) = (next, found);
     }
-    let [first, ..] = ends;
-    (count > 0).then_some(first)
+    (ends, count)
 }
 
 /// A derivative of the polynomial at x.

@@ -17,7 +17,8 @@ pub struct Sensitivity {
     /// begins again, or the law ends the collision: beyond that the outcome jumps.
     pub grazing: bool,
     /// The slip of approach lies within 0.001 rad of a direction from which it turns away to either side (h
-    /// = 0, h' > 0).
+    /// = 0, h' > 0). Not set where slip cannot turn because nothing moves the contact across it: in planar
+    /// systems.
     pub unstable_direction: bool,
     /// There was no slip at the start, or so little (below the root of the rounding unit, over the speed of
     /// approach) that its direction means nothing.

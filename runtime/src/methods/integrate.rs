@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    MethodError,
+    MethodError, Solution,
     equations::{I_N, I_S, I_T, NORMAL_WORK, PHI, Problem, S, State, Terminal, V_N, WORK},
     law::{Ending, Event},
     runge_kutta::step,
 };
-use crate::{Impact, Path, ReducedMatrix, Surface};
+use crate::{Path, ReducedMatrix, Surface};
 
 /// When lambda of (55) leaves zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -16,8 +16,8 @@ pub enum Switch {
     /// Where slip stops. Below the threshold the equations (34) are integrated over the variable tau, dI_n =
     /// s dtau, in which they have no singular point, so the threshold has no effect on the result.
     AtRest,
-    /// Where slip falls below the threshold, as the paper says: what slip is left is dropped, and the result
-    /// is off in proportion to it.
+    /// Where slip falls below the threshold, as the paper says (section 4, step 2): what slip is left is
+    /// dropped, and the result is off in proportion to it.
     AtThreshold,
 }
 
@@ -27,7 +27,8 @@ pub struct Integration {
     /// Error allowed per step, relative to the approach (in its own units of velocity, impulse and work);
     /// 1e-14 to 0.1.
     pub tolerance: f64,
-    /// The paper's eps_s, as a part of the slip at the start; above 0, below 1.
+    /// The paper's eps_s, as a part of the slip at the start; above 0, below 1. With [`Switch::AtThreshold`] it
+    /// may be greater: then all slip is dropped at the start.
     pub slip_threshold: f64,
     /// What happens at the threshold.
     pub switch: Switch,
@@ -51,7 +52,8 @@ impl Integration {
         if !(1e-14..=0.1).contains(&self.tolerance) {
             return Err(MethodError::BadOption { name: "tolerance", value: self.tolerance });
         }
-        if !(self.slip_threshold > 0.0 && self.slip_threshold < 1.0) {
+        let drops = self.switch == Switch::AtThreshold;
+        if !(self.slip_threshold > 0.0 && (drops || self.slip_threshold < 1.0)) {
             return Err(MethodError::BadOption { name: "slip_threshold", value: self.slip_threshold });
         }
         Ok(())
@@ -76,12 +78,14 @@ pub fn integrate(
     approach: &Vector3<f64>,
     surface: &Surface<f64>,
     options: &Integration,
-) -> Result<Impact<f64>, MethodError> {
+) -> Result<Solution, MethodError> {
     let problem = Problem::new(matrix, approach, surface)?;
     let mut ending = Ending::new(surface);
     let mut walk = Walk { problem: &problem, options, made: 0 };
     let at = match slide(&mut walk, &mut ending)? {
-        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, &ending)),
+        Slid::Ended(end) => {
+            return Ok(problem.outcome(approach, (&end, Path::Sliding), &ending, walk.made));
+        }
         Slid::Stopped(at) => ending.slip_stopped(&problem, at),
     };
     let arc = problem.terminal();
@@ -93,7 +97,8 @@ pub fn integrate(
     } else {
         ending.close(&problem, &arc, at, options.slack())?
     };
-    Ok(problem.outcome(&end, arc.path(problem.start()[S] > 0.0), &ending))
+    let path = arc.path(problem.start()[S] > 0.0);
+    Ok(problem.outcome(approach, (&end, path), &ending, walk.made))
 }
 
 /// How sliding ended.
@@ -114,6 +119,9 @@ pub(super) fn slide(walk: &mut Walk<'_>, ending: &mut Ending) -> Result<Slid, Me
         return Ok(Slid::Stopped(at));
     }
     let threshold = walk.options.slip_threshold * start;
+    if start < threshold && walk.options.switch == Switch::AtThreshold {
+        return Ok(Slid::Stopped(at));
+    }
     let rest = walk.options.tolerance / problem.pace();
     let mut first = 0.01 * (1.0 / problem.pace()).min(start / problem.turn().max(f64::MIN_POSITIVE));
     let mut branch = Branch::Impulse;

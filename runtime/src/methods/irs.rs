@@ -4,13 +4,13 @@
 use nalgebra::Vector3;
 
 use super::{
-    Integration, MethodError, Summation,
+    Integration, MethodError, Solution, Summation,
     equations::{Problem, S},
     integrate::{self, Slid, Walk},
     law::Ending,
     sum,
 };
-use crate::{Impact, Path, ReducedMatrix, Surface};
+use crate::{Path, ReducedMatrix, Surface};
 
 /// The method for the sliding arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,17 +32,20 @@ pub fn irs(
     approach: &Vector3<f64>,
     surface: &Surface<f64>,
     options: &Partial,
-) -> Result<Impact<f64>, MethodError> {
+) -> Result<Solution, MethodError> {
     let problem = Problem::new(matrix, approach, surface)?;
     let mut ending = Ending::new(surface);
+    let mut steps = 0;
     let (slid, slack) = match options {
         Partial::Sum(options) => {
             let d = options.step(&problem)?;
-            (sum::slide(&problem, d, &mut ending, &mut 0)?, d * problem.pace())
+            (sum::slide(&problem, d, &mut ending, &mut steps)?, d * problem.pace())
         }
         Partial::Integrate(options) => {
             let mut walk = Walk { problem: &problem, options, made: 0 };
-            (integrate::slide(&mut walk, &mut ending)?, options.slack())
+            let slid = integrate::slide(&mut walk, &mut ending)?;
+            steps = walk.made;
+            (slid, options.slack())
         }
     };
     let (end, path) = match slid {
@@ -54,5 +57,5 @@ pub fn irs(
             (end, arc.path(problem.start()[S] > 0.0))
         }
     };
-    Ok(problem.outcome(&end, path, &ending))
+    Ok(problem.outcome(approach, (&end, path), &ending, steps))
 }

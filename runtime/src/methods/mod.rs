@@ -12,6 +12,8 @@
 //!
 //! They return the phases of a collision, but set none of the flags of [`crate::Sensitivity`].
 //!
+//! Each answers a [`Solution`]: the outcome, and the number of steps it took.
+//!
 //! # What is corrected
 //!
 //! * (56f): the terms of renewal and sticking are v_n(i-1) + f_hat D(i) and v_n(i-1) + D(i) / c_n; (56h): the
@@ -42,7 +44,18 @@ pub use self::{
     stability::{Stability, stability},
     sum::{Summation, sum},
 };
-use crate::ImpactError;
+use crate::{Impact, ImpactError};
+
+/// What a method answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Solution {
+    /// The outcome of the collision.
+    pub impact: Impact<f64>,
+    /// Steps made: of the summation (i of (56)), the last one included, or tried by the integration. What is
+    /// evaluated in closed form takes none.
+    pub steps: u32,
+}
 
 /// Why a method has no result.
 #[derive(Clone, Copy, Debug, PartialEq)]

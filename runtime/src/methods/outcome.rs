@@ -3,14 +3,21 @@
 use nalgebra::Vector3;
 
 use super::{
+    Solution,
     equations::{I_N, I_S, I_T, NORMAL_WORK, PHI, Problem, S, State, V_N, WORK},
     law::Ending,
 };
 use crate::{Impact, Motion, Path, Phases, Sensitivity, Snapshot};
 
 impl Problem {
-    /// The outcome in the units of the input.
-    pub fn outcome(&self, end: &State, path: Path, ending: &Ending) -> Impact<f64> {
+    /// The outcome in the units of the input, after so many steps.
+    pub fn outcome(
+        &self,
+        approach: &Vector3<f64>,
+        (end, path): (&State, Path),
+        ending: &Ending,
+        steps: u32,
+    ) -> Solution {
         let after = path.last();
         let compression = |state: State| {
             let slides = ending.slip_end.is_none_or(|end| state[I_N] < end[I_N]) && self.slip > 0.0;
@@ -20,7 +27,8 @@ impl Problem {
         let compression_end = ending.first.map(compression);
         let last_compression_end =
             if ending.compressions == 1 { compression_end } else { ending.latest.map(compression) };
-        Impact {
+        let impact = Impact {
+            approach: *approach,
             impulse,
             velocity,
             contact_work,
@@ -36,7 +44,8 @@ impl Problem {
                 }),
             },
             sensitivity: Sensitivity::default(),
-        }
+        };
+        Solution { impact, steps }
     }
 
     fn snapshot(&self, at: &State, motion: Motion) -> Snapshot<f64> {

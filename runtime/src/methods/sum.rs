@@ -3,12 +3,12 @@
 use nalgebra::Vector3;
 
 use super::{
-    MethodError,
+    MethodError, Solution,
     equations::{I_N, I_S, I_T, NORMAL_WORK, PHI, Problem, S, State, V_N, WORK, between},
     integrate::Slid,
     law::{Ending, Event},
 };
-use crate::{Impact, Path, ReducedMatrix, Surface};
+use crate::{Path, ReducedMatrix, Surface};
 
 /// Steps after which a summation gives up.
 const STEPS: u32 = 1_000_000;
@@ -57,13 +57,13 @@ pub fn sum(
     approach: &Vector3<f64>,
     surface: &Surface<f64>,
     options: &Summation,
-) -> Result<Impact<f64>, MethodError> {
+) -> Result<Solution, MethodError> {
     let problem = Problem::new(matrix, approach, surface)?;
     let d = options.step(&problem)?;
     let mut ending = Ending::new(surface);
     let mut made = 0;
     let mut at = match slide(&problem, d, &mut ending, &mut made)? {
-        Slid::Ended(end) => return Ok(problem.outcome(&end, Path::Sliding, &ending)),
+        Slid::Ended(end) => return Ok(problem.outcome(approach, (&end, Path::Sliding), &ending, made)),
         Slid::Stopped(at) => ending.slip_stopped(&problem, at),
     };
     let arc = problem.terminal();
@@ -71,7 +71,7 @@ pub fn sum(
     at = arc.entered(at);
     if arc.v_n <= 0.0 {
         let end = ending.close(&problem, &arc, at, d * problem.pace())?;
-        return Ok(problem.outcome(&end, path, &ending));
+        return Ok(problem.outcome(approach, (&end, path), &ending, made));
     }
     loop {
         count(&mut made, &problem, &at)?;
@@ -88,7 +88,7 @@ pub fn sum(
             at[I_N] + d,
         ];
         if let Some(end) = events(&mut ending, &at, &to) {
-            return Ok(problem.outcome(&end, path, &ending));
+            return Ok(problem.outcome(approach, (&end, path), &ending, made));
         }
         at = to;
     }

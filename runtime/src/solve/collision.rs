@@ -141,6 +141,7 @@ pub(crate) fn collide<T: Real>(
         in_range(&impulse, &separation, [contact_work, normal_work])?;
     }
     Ok(Impact {
+        approach: *approach,
         impulse,
         velocity: separation,
         contact_work,

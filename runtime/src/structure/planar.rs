@@ -16,6 +16,8 @@ impl Shape for Planar {
     #[inline(always)]
     fn impose<T: Real>(m: &mut ReducedMatrix<T>, v: &mut Vector3<T>, _: &mut Surface<T>) {
         (m.ns, m.ts, v.z) = (T::zero(), T::zero(), T::zero());
+        // Nothing moves out of the plane: slip cannot turn.
+        m.ss = T::zero();
     }
 
     #[inline(always)]
