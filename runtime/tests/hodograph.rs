@@ -166,7 +166,7 @@ fn integration_meets_the_course_on_its_way() {
             }
             let surface = Surface { mu: case.surface.mu, e, law: Law::Poisson };
             let options = Integration::with_tolerance(1e-11);
-            let theirs = integrate(&case.matrix, &case.approach, &surface, &options).unwrap();
+            let theirs = integrate(&case.matrix, &case.approach, &surface, &options).unwrap().impact;
             let ours = whole.at(theirs.impulse.x);
             let size = whole.impact().impulse.amax();
             let speed = whole.impact().velocity.amax() + case.approach.amax();

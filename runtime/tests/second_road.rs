@@ -368,7 +368,7 @@ fn repeated_compression() {
         }
         // Chosen by another method than the one under test.
         let Ok(other) = integrate(&m, &v, &surface, &Integration::with_tolerance(1e-6)) else { continue };
-        if other.compressions > 1 {
+        if other.impact.compressions > 1 {
             tally.compare(&m, &v, &surface);
         }
         if tally.count == 25 {

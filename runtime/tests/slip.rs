@@ -68,7 +68,7 @@ proptest! {
                 return Ok(());
             }
         };
-        let ours = ok(integrate(&m, &v, &surface, &Integration::with_tolerance(1e-11)))?;
+        let ours = ok(integrate(&m, &v, &surface, &Integration::with_tolerance(1e-11)))?.impact;
         // What a small change of the input does to the exact answer, for it may be ill-conditioned.
         let mut moved = 0.0_f64;
         for change in [1.0 - 1e-7, 1.0 + 1e-7] {

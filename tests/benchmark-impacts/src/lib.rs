@@ -10,7 +10,7 @@ pub mod times;
 
 use std::hint::black_box;
 
-use hodograph::methods::{Integration, MethodError, Partial, Summation, integrate, irs, sum};
+use hodograph::methods::{Integration, MethodError, Partial, Solution, Summation, integrate, irs, sum};
 use hodograph::{Impact, Law, ReducedMatrix, Surface, solve};
 use nalgebra::Vector3;
 use serde_json::Value;
@@ -149,8 +149,8 @@ methods! {
     "`ode_solvers`, 1e-10", measured_crate_10: |m, v, s| ode::solve(m, v, s, 1e-10);
 }
 
-fn plain(hit: Result<Impact<f64>, MethodError>) -> Answer {
-    hit.ok().map(Outcome::from)
+fn plain(hit: Result<Solution, MethodError>) -> Answer {
+    hit.ok().map(|found| Outcome::from(found.impact))
 }
 
 /// The set of collisions of a name: `nine`, `nine and the last again`, `random`, `all` or `hostile`.

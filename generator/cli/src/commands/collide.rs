@@ -2,8 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::commands::solve::characteristics_of;
 use crate::derivation::{self, Limits};
 use crate::evaluate::collision::collide;
+use crate::json::characteristics::Form;
 use crate::model;
 use crate::output;
 use crate::stop::Outcome;
@@ -28,6 +30,10 @@ pub struct Arguments {
     /// [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
     budget: Option<u32>,
+    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and what belongs to the end of
+    /// compression and of slip: in the answer, or as a table instead of it
+    #[arg(long, value_enum, value_name = "FORM", num_args = 0..=1, require_equals = true, default_missing_value = "json")]
+    characteristics: Option<Form>,
     /// a file with the state, `-` for standard input, or the state itself
     #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
     state: Option<String>,
@@ -46,5 +52,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let surface = arguments.surface.surface()?.within(arguments.budget.unwrap_or(u32::MAX));
     let index = machine.contact(arguments.contact.as_deref())?;
     let state = machine.state(text.as_deref())?;
-    output::json(&collide(&machine, &state, index, &surface)?)
+    let (mut collision, found) = collide(&machine, &state, index, &surface)?;
+    match arguments.characteristics {
+        None => output::json(&collision),
+        Some(form) => {
+            let found = characteristics_of(&found.reduced.into(), &found.slip, &surface.surface)?;
+            if form == Form::Table {
+                return output::text(&found.table());
+            }
+            collision.answer.characteristics = Some(found);
+            output::json(&collision)
+        }
+    }
 }

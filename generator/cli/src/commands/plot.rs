@@ -3,21 +3,28 @@
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use hodograph::ReducedMatrix;
+use clap::ValueEnum;
+use hodograph::{ReducedMatrix, snapshot_at};
 use hodograph_generator::program::Quantity;
 use hodograph_generator::reading;
+use nalgebra::Vector3;
 
 use crate::derivation::{self, Limits};
 use crate::evaluate::contact::{self, Contact};
-use crate::json::{Fields, Json};
+use crate::json::{Failure, Fields, Json};
 use crate::model;
 use crate::output;
 use crate::plot::collision::figure;
+use crate::plot::figure::{Figure, Panel};
 use crate::plot::file::Format;
 use crate::plot::trace::{Trace, trace};
+use crate::plot::{conics, portrait};
 use crate::stop::{Outcome, Stop};
 
 /// Draw the course of a collision: v_s over v_t, v_n and the slip s over I_n, as the paper's Fig. 3
+///
+/// Here s = n x t; the paper takes s = t x n in its example, so that its Fig. 3 is the mirror image.
+/// A ray shows phi_bar, the direction in which slip stops.
 ///
 ///   hodograph plot models/two_sleds.mech --mu 0.6,1.1,1.6 --e 0.8 --output sleds.svg
 ///   echo '{"m":[..],"v":[..]}' | hodograph plot --mu 0.6 --e 0.8 > one.svg
@@ -25,6 +32,10 @@ use crate::stop::{Outcome, Stop};
 /// Arrowheads show the direction of a curve, a dot its beginning; a circle marks where Newton's law
 /// ends the collision, a cross Poisson's, a square Stronge's. The file's name decides the format:
 /// .svg or .png.
+///
+/// --figure conics draws Appendix B of the paper, its Fig. 4, for the contact: the ellipse g = 0, the
+/// hyperbola h = 0, a circle of radius mu, and the points A, B, C and D. --figure portrait draws
+/// the hodographs of many directions of approach, a panel for each coefficient of friction.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -45,9 +56,15 @@ pub struct Arguments {
         allow_hyphen_values = true
     )]
     mu: Vec<f64>,
-    /// coefficient of restitution, between 0 and 1
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    e: f64,
+    /// coefficient of restitution, between 0 and 1; `conics` needs none
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, required_unless_present = "figure")]
+    e: Option<f64>,
+    /// what to draw
+    #[arg(long, value_enum, default_value_t = Kind::Course)]
+    figure: Kind,
+    /// `portrait`: how many hodographs [default: 24]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u16).range(1..=360))]
+    starts: Option<u16>,
     /// where to write [default: standard output]
     #[arg(long, short, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -56,6 +73,17 @@ pub struct Arguments {
     format: Option<Format>,
     #[command(flatten)]
     limits: Limits,
+}
+
+/// The figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// the course of one collision: Fig. 3
+    Course,
+    /// ellipse, hyperbola and circles: Appendix B, Fig. 4
+    Conics,
+    /// hodographs of many directions of approach
+    Portrait,
 }
 
 /// Runs the command.
@@ -68,28 +96,82 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if format == Format::Png && arguments.output.is_none() && std::io::stdout().is_terminal() {
         return Err(Stop::Call("a picture is not for a terminal: give --output FILE.png".to_owned()));
     }
-    let (title, matrix, velocity) = collision(arguments)?;
-    let traces: Vec<Trace> =
-        arguments.mu.iter().map(|&mu| trace(&matrix, velocity, mu, arguments.e)).collect();
-    for failure in traces.iter().flat_map(|trace| &trace.failures) {
-        output::say(format_args!("note: {failure}"));
+    let e = match (arguments.figure, arguments.e) {
+        (Kind::Conics, None) => 0.0,
+        (_, Some(e)) if arguments.figure != Kind::Conics => e,
+        (Kind::Conics, Some(_)) => return Err(Stop::Call("--figure conics needs no --e".to_owned())),
+        _ => return Err(Stop::Call("--e is missing: the coefficient of restitution".to_owned())),
+    };
+    if arguments.starts.is_some() && arguments.figure != Kind::Portrait {
+        return Err(Stop::Call("--starts is for --figure portrait".to_owned()));
     }
-    if traces.iter().all(|trace| trace.samples.is_empty()) {
-        return Err(Stop::Fault("there is nothing to draw: no collision has an outcome".to_owned()));
-    }
-    let figure = figure(&title, &traces);
+    let Drawn { title, matrix, velocity } = collision(arguments)?;
+    let figure = match arguments.figure {
+        Kind::Course => course(&format!("{title}e = {e}"), &matrix, velocity, &arguments.mu, e)?,
+        Kind::Conics => {
+            check_conics(&matrix, &arguments.mu)?;
+            let [_, v_t, v_s] = velocity;
+            conics::figure(&format!("{title}Appendix B"), &matrix, &arguments.mu, v_s.atan2(v_t))
+        }
+        Kind::Portrait => {
+            let starts = usize::from(arguments.starts.unwrap_or(24));
+            let title = format!("{title}e = {e}");
+            let (figure, failures) = portrait::figure(&title, &matrix, velocity, (&arguments.mu, e), starts);
+            for failure in &failures {
+                output::say(format_args!("note: {failure}"));
+            }
+            let directed = |panel: &Panel| panel.series.iter().any(|s| s.directed && !s.points.is_empty());
+            if !figure.panels.iter().any(directed) {
+                return Err(nothing());
+            }
+            figure
+        }
+    };
     match &arguments.output {
         Some(path) => figure.save(path, format),
         None => output::bytes(&figure.bytes(format)?),
     }
 }
 
+fn nothing() -> Stop {
+    Stop::Fault("there is nothing to draw: no collision has an outcome".to_owned())
+}
+
+/// The course of one collision for each coefficient of friction.
+fn course(title: &str, m: &ReducedMatrix<f64>, velocity: [f64; 3], mu: &[f64], e: f64) -> Outcome<Figure> {
+    let traces: Vec<Trace> = mu.iter().map(|&mu| trace(m, velocity, mu, e)).collect();
+    for failure in traces.iter().flat_map(|trace| &trace.failures) {
+        output::say(format_args!("note: {failure}"));
+    }
+    if traces.iter().all(|trace| trace.samples.is_empty()) {
+        return Err(nothing());
+    }
+    Ok(figure(title, &traces))
+}
+
+/// Refuses a matrix or friction as `solve` does.
+fn check_conics(matrix: &ReducedMatrix<f64>, mu: &[f64]) -> Outcome {
+    let approach = Vector3::new(-1.0, 0.0, 0.0);
+    for &mu in mu {
+        if let Err(error) = snapshot_at(matrix, &approach, mu, 0.0) {
+            return Err(Failure::from(error).into());
+        }
+    }
+    Ok(())
+}
+
+/// What is drawn: the beginning of a title, the reduced matrix and the velocity of approach.
+struct Drawn {
+    title: String,
+    matrix: ReducedMatrix<f64>,
+    velocity: [f64; 3],
+}
+
 /// Largest size of a collision in JSON, in bytes.
 const MAX_BYTES: usize = 1 << 20;
 
-/// What collides: a title, the reduced matrix and the velocity of approach.
-fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64; 3])> {
-    let e = arguments.e;
+/// What collides.
+fn collision(arguments: &Arguments) -> Outcome<Drawn> {
     let Some(path) = &arguments.model else {
         let unreadable =
             |error: String| Stop::Call(format!("cannot read the collision from standard input: {error}"));
@@ -98,8 +180,12 @@ fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64
         let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
         let case = Fields::new(Json::parse(&text)?, "a collision")?;
         let matrix = case.numbers::<6>("m", "the six numbers nn, nt, ns, tt, ts, ss")?;
-        let velocity = case.numbers::<3>("v", "the three numbers n, t, s")?;
-        return Ok((format!("e = {e}"), matrix.into(), velocity));
+        let velocity = match arguments.figure {
+            // Slip along t, as in the paper, where nothing else is said.
+            Kind::Conics if case.get("v").is_none() => [-1.0, 1.0, 0.0],
+            _ => case.numbers::<3>("v", "the three numbers n, t, s")?,
+        };
+        return Ok(Drawn { title: String::new(), matrix: matrix.into(), velocity });
     };
     let machine = derivation::machine(path, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
@@ -108,6 +194,6 @@ fn collision(arguments: &Arguments) -> Outcome<(String, ReducedMatrix<f64>, [f64
     let wanted = contact::QUANTITIES.map(|quantity| Quantity::Contact(index as u32, quantity));
     let contact = Contact::new(&machine.evaluate(&state, &wanted)?, index, &state.speeds);
     let mechanism = &machine.mechanism;
-    let title = format!("{}, {}, e = {e}", mechanism.name, mechanism.contacts[index].name);
-    Ok((title, contact.reduced.into(), contact.slip.into()))
+    let title = format!("{}, {}, ", mechanism.name, mechanism.contacts[index].name);
+    Ok(Drawn { title, matrix: contact.reduced.into(), velocity: contact.slip.into() })
 }

@@ -4,11 +4,12 @@
 use std::io::{self, BufRead, IsTerminal};
 
 use clap::ValueEnum;
-use hodograph::methods::{self, Integration, Partial, Summation};
-use hodograph::{ReducedMatrix, Surface};
+use hodograph::methods::{self, Integration, Partial, Solution, Summation, Switch};
+use hodograph::{Hodograph, ReducedMatrix, Surface, snapshot_at};
 use nalgebra::Vector3;
 
-use crate::json::answer::Answer;
+use crate::json::answer::{Answer, At};
+use crate::json::characteristics::{Characteristics, Form};
 use crate::json::{Failure, Fields, Json};
 use crate::output;
 use crate::stop::{Outcome, Stop};
@@ -35,14 +36,27 @@ pub struct Arguments {
     /// how to solve; all but `exact` are for comparison
     #[arg(long, value_enum, default_value_t = Method::Exact)]
     pub method: Method,
-    /// `sum`, `irs`: steps to an impulse of -v_n1 / (4 m_nn), the paper's refinement k [default:
-    /// 50]
+    /// `sum`, `irs`: steps to a unit of impulse, the paper's refinement k [default: 50]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub steps: Option<u32>,
+    /// `sum`, `irs`: the unit of impulse, N s; the paper's is 1 [default: -v_n1 / (4 m_nn)]
+    #[arg(long, value_name = "N s", value_parser = positive, conflicts_with = "tolerance")]
+    pub unit: Option<f64>,
     /// `integrate`, and `irs` instead of steps: error allowed per step, relative, 1e-14 to 0.1
     /// [default: 1e-10]
     #[arg(long, value_parser = tolerance, conflicts_with = "steps")]
     pub tolerance: Option<f64>,
+    /// `integrate`, and `irs` with --tolerance: the paper's epsilon_s, the slip below which what is
+    /// left of it is dropped, m/s [default: slip is followed to its end]
+    #[arg(long, value_name = "m/s", value_parser = positive)]
+    pub threshold: Option<f64>,
+    /// `exact`: also the state at these normal impulses, N s, beyond the end of the collision too
+    #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true)]
+    pub at: Vec<f64>,
+    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and what belongs to the end of
+    /// compression and of slip: in the answer, or as a table instead of it
+    #[arg(long, value_enum, value_name = "FORM", num_args = 0..=1, require_equals = true, default_missing_value = "json")]
+    pub characteristics: Option<Form>,
     /// `exact`: quadratures that a collision may take; one that needs more has the error
     /// `budget_exceeded` [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
@@ -69,6 +83,13 @@ fn tolerance(text: &str) -> Result<f64, String> {
     }
 }
 
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value.is_finite() => Ok(value),
+        _ => Err("it must be a number greater than 0".to_owned()),
+    }
+}
+
 impl Arguments {
     /// Names an option that the method does not have.
     fn check(&self) -> Outcome {
@@ -77,6 +98,12 @@ impl Arguments {
             Method::Exact if self.steps.is_some() => "--steps",
             Method::Exact | Method::Sum if self.tolerance.is_some() => "--tolerance",
             Method::Integrate if self.steps.is_some() => "--steps",
+            Method::Exact | Method::Integrate if self.unit.is_some() => "--unit",
+            Method::Exact | Method::Sum if self.threshold.is_some() => "--threshold",
+            Method::Irs if self.threshold.is_some() && self.tolerance.is_none() => {
+                "--threshold without --tolerance"
+            }
+            Method::Integrate | Method::Sum | Method::Irs if !self.at.is_empty() => "--at",
             _ => return Ok(()),
         };
         let method =
@@ -84,12 +111,20 @@ impl Arguments {
         Err(Stop::Call(format!("--method {method} has no option {misfit}: see `hodograph solve --help`")))
     }
 
-    fn integration(&self) -> Integration {
-        self.tolerance.map_or_else(Integration::default, Integration::with_tolerance)
+    fn integration(&self, approach: &Vector3<f64>) -> Integration {
+        let options = self.tolerance.map_or_else(Integration::default, Integration::with_tolerance);
+        let slip = approach.y.hypot(approach.z);
+        match self.threshold {
+            // Without slip there is nothing to drop.
+            Some(threshold) if slip > 0.0 => {
+                Integration { slip_threshold: threshold / slip, switch: Switch::AtThreshold, ..options }
+            }
+            _ => options,
+        }
     }
 
     fn summation(&self) -> Summation {
-        Summation::new(self.steps.unwrap_or(50))
+        Summation { unit: self.unit, ..Summation::new(self.steps.unwrap_or(50)) }
     }
 
     fn solve(
@@ -97,21 +132,61 @@ impl Arguments {
         matrix: &ReducedMatrix<f64>,
         approach: &Vector3<f64>,
         surface: &Surface<f64>,
-    ) -> Result<hodograph::Impact<f64>, Failure> {
+    ) -> Result<Answer, Failure> {
+        let integration = self.integration(approach);
         let partial = if self.tolerance.is_some() {
-            Partial::Integrate(self.integration())
+            Partial::Integrate(integration)
         } else {
             Partial::Sum(self.summation())
         };
-        Ok(match self.method {
-            Method::Exact => {
-                hodograph::solve(matrix, approach, &surface.within(self.budget.unwrap_or(u32::MAX)))?
-            }
-            Method::Integrate => methods::integrate(matrix, approach, surface, &self.integration())?,
+        let Solution { impact, steps, .. } = match self.method {
+            Method::Exact => return self.solve_exactly(matrix, approach, surface),
+            Method::Integrate => methods::integrate(matrix, approach, surface, &integration)?,
             Method::Sum => methods::sum(matrix, approach, surface, &self.summation())?,
             Method::Irs => methods::irs(matrix, approach, surface, &partial)?,
-        })
+        };
+        let characteristics = self.characteristics.map(|_| {
+            let slip = [approach.y, approach.z];
+            Characteristics::of_contact(matrix)
+                .with_friction(matrix, surface.mu, slip)
+                .with_phases(&impact.phases)
+        });
+        Ok(Answer { steps: Some(steps), characteristics, ..Answer::try_from(&impact)? })
     }
+
+    fn solve_exactly(
+        &self,
+        matrix: &ReducedMatrix<f64>,
+        approach: &Vector3<f64>,
+        surface: &Surface<f64>,
+    ) -> Result<Answer, Failure> {
+        let impact = hodograph::solve(matrix, approach, &surface.within(self.budget.unwrap_or(u32::MAX)))?;
+        let at =
+            self.at.iter().map(|&impulse| snapshot_at(matrix, approach, surface.mu, impulse).map(At::from));
+        let at = at.collect::<Result<_, _>>()?;
+        let characteristics = match self.characteristics {
+            Some(_) => Some(characteristics_of(matrix, approach, surface)?),
+            None => None,
+        };
+        Ok(Answer { at, characteristics, ..Answer::try_from(&impact)? })
+    }
+}
+
+/// All characteristic quantities of a collision.
+///
+/// # Errors
+///
+/// Those of the solver.
+pub fn characteristics_of(
+    matrix: &ReducedMatrix<f64>,
+    approach: &Vector3<f64>,
+    surface: &Surface<f64>,
+) -> Result<Characteristics, Failure> {
+    // Unlike `solve` it locates the end of compression under every law.
+    let whole = Hodograph::new(matrix, approach, surface)?;
+    Ok(Characteristics::of_contact(matrix)
+        .with_friction(matrix, surface.mu, [approach.y, approach.z])
+        .with_phases(&whole.impact().phases))
 }
 
 /// Runs the command.
@@ -142,6 +217,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         };
         all_solved &= answer.is_ok();
         let written = match answer {
+            Ok(Answer { characteristics: Some(found), .. })
+                if arguments.characteristics == Some(Form::Table) =>
+            {
+                output::text(&found.table())
+            }
             Ok(answer) => output::json(&answer),
             Err(failure) => output::line(&failure.to_line()),
         };
@@ -202,5 +282,5 @@ fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {
     let surface = Surface { mu, e, law };
     let matrix = ReducedMatrix::from(matrix);
     let velocity = Vector3::from(velocity);
-    Answer::try_from(&arguments.solve(&matrix, &velocity, &surface)?)
+    arguments.solve(&matrix, &velocity, &surface)
 }

@@ -23,7 +23,7 @@ pub struct Collision<'a> {
     pub kinetic_energy_change: f64,
 }
 
-/// Solves the collision of a contact.
+/// Solves the collision of a contact; also the contact.
 ///
 /// # Errors
 ///
@@ -33,7 +33,7 @@ pub fn collide<'a>(
     state: &State,
     index: usize,
     surface: &Budgeted<f64>,
-) -> Result<Collision<'a>, Failure> {
+) -> Result<(Collision<'a>, Contact), Failure> {
     let more =
         [ContactQuantity::Response, ContactQuantity::DependentResponse, ContactQuantity::PrescribedWork];
     let of_contact = contact::QUANTITIES.into_iter().chain(more);
@@ -58,9 +58,10 @@ pub fn collide<'a>(
         .zip(impulse.iter())
         .map(|(a, b)| a * b)
         .sum();
-    Ok(Collision {
+    let collision = Collision {
         answer: Answer::try_from(&impact)?,
         u_after: named(&machine.mechanism.speeds, after),
         kinetic_energy_change: impact.contact_work - contact.remainder.dot(&impact.impulse) + prescribed,
-    })
+    };
+    Ok((collision, contact))
 }

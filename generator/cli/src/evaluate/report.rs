@@ -7,6 +7,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use super::contact::{self, Contact};
 use super::{Machine, Numbers};
 use crate::json::Failure;
+use crate::json::characteristics::Characteristics;
 use crate::json::state::State;
 
 /// Values under names, in their order.
@@ -57,6 +58,37 @@ struct ContactReport {
     remainder: [f64; 3],
     reduced: [f64; 6],
     v: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    characteristics: Option<Characteristics>,
+}
+
+impl ContactReport {
+    /// The characteristic quantities of the contact, with those that depend on friction if that is given.
+    fn found(&self, mu: Option<f64>) -> Characteristics {
+        let matrix = self.reduced.into();
+        let found = Characteristics::of_contact(&matrix);
+        let [_, v_t, v_s] = self.v;
+        match mu {
+            Some(mu) => found.with_friction(&matrix, mu, [v_t, v_s]),
+            None => found,
+        }
+    }
+}
+
+impl Report<'_> {
+    /// Adds the characteristic quantities of all contacts.
+    pub fn characterise(&mut self, mu: Option<f64>) {
+        for (_, contact) in &mut self.contacts.0 {
+            contact.characteristics = Some(contact.found(mu));
+        }
+    }
+
+    /// The characteristic quantities as tables, one for each contact.
+    pub fn tables(&self, mu: Option<f64>) -> String {
+        let table =
+            |(name, contact): &(&str, ContactReport)| format!("{name}\n{}", contact.found(mu).table());
+        self.contacts.0.iter().map(table).collect::<Vec<_>>().join("\n")
+    }
 }
 
 impl From<Contact> for ContactReport {
@@ -74,6 +106,7 @@ impl From<Contact> for ContactReport {
             remainder: plain(contact.remainder),
             reduced: contact.reduced.map(|number| number + 0.0),
             v: plain(contact.slip),
+            characteristics: None,
         }
     }
 }

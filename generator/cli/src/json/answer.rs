@@ -1,8 +1,9 @@
 //! Writes an impact as JSON for `solve` and `collide`.
 
-use hodograph::Impact;
+use hodograph::{Impact, Motion, Snapshot};
 use serde::Serialize;
 
+use super::characteristics::Characteristics;
 use super::{Failure, Kind};
 
 /// The outcome of an impact.
@@ -24,6 +25,48 @@ pub struct Answer {
     pub compressions: u32,
     /// why a little change of the input may change the outcome by much
     pub sensitivity: Vec<&'static str>,
+    /// the steps that a method other than the exact one took
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u32>,
+    /// the states at the normal impulses that were asked for
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at: Vec<At>,
+    /// the characteristic quantities, if they were asked for
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub characteristics: Option<Characteristics>,
+}
+
+/// The state at a normal impulse.
+#[derive(Clone, Debug, Serialize)]
+pub struct At {
+    /// impulse so far along n, t, s, N s
+    pub impulse: [f64; 3],
+    /// velocity along n, t, s, m/s
+    pub v: [f64; 3],
+    /// work of the contact impulse so far, J
+    #[serde(rename = "dE")]
+    pub contact_work: f64,
+    /// work of the normal impulse so far, J
+    #[serde(rename = "dEn")]
+    pub normal_work: f64,
+    /// what the contact does
+    pub motion: &'static str,
+}
+
+impl From<Snapshot<f64>> for At {
+    fn from(snapshot: Snapshot<f64>) -> Self {
+        At {
+            impulse: snapshot.impulse.map(|number| number + 0.0).into(),
+            v: snapshot.velocity.map(|number| number + 0.0).into(),
+            contact_work: snapshot.contact_work + 0.0,
+            normal_work: snapshot.normal_work + 0.0,
+            motion: match snapshot.motion {
+                Motion::Sliding => "sliding",
+                Motion::Sticking => "sticking",
+                Motion::Renewal => "renewal",
+            },
+        }
+    }
 }
 
 impl TryFrom<&Impact<f64>> for Answer {
@@ -50,6 +93,9 @@ impl TryFrom<&Impact<f64>> for Answer {
             path: impact.path.phases(),
             compressions: impact.compressions,
             sensitivity: impact.sensitivity.names().collect(),
+            steps: None,
+            at: Vec::new(),
+            characteristics: None,
         })
     }
 }

@@ -2,6 +2,7 @@
 //! contract).
 
 pub mod answer;
+pub mod characteristics;
 pub mod failure;
 pub mod fields;
 pub mod state;

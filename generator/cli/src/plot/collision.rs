@@ -1,5 +1,7 @@
 //! The figure of a collision's course, as Fig. 3 of the paper: v_s over v_t, and v_n and the speed of slip
 //! over I_n.
+//!
+//! The paper draws its Fig. 3 with s = t x n; here s = n x t, so that the first panel is its mirror image.
 
 use hodograph::Law;
 
@@ -20,7 +22,7 @@ pub fn figure(title: &str, traces: &[Trace]) -> Figure {
     let impulse = || Axis::new(Label::symbol("I", "n"), "N\u{b7}s");
     let slip = Axis::new(Label::words("speed of slip ").with("s", ""), "m/s");
     let panels: [(&str, Panel, Pick); 3] = [
-        ("hodograph of slip", Panel::new(velocity("t"), velocity("s")), |sample| {
+        ("hodograph", Panel::new(velocity("t"), velocity("s")), |sample| {
             [sample.velocity[1], sample.velocity[2]]
         }),
         ("normal velocity", Panel::new(impulse(), velocity("n")), |sample| {
@@ -33,9 +35,31 @@ pub fn figure(title: &str, traces: &[Trace]) -> Figure {
     panels.into_iter().fold(empty, |figure, (caption, mut panel, pick)| {
         panel.equal = caption.starts_with("hodograph");
         panel.title = Label::words(caption);
+        if panel.equal {
+            panel.title = Label::words("hodograph of slip, ")
+                .with("s", "")
+                .then(" = ")
+                .with("n", "")
+                .then(" \u{d7} ")
+                .with("t", "");
+            directions(&mut panel, traces);
+        }
         fill(&mut panel, traces, pick);
         figure.panel(panel)
     })
+}
+
+/// Rays in the directions phi_bar in which slip stops (section 3.2).
+fn directions(panel: &mut Panel, traces: &[Trace]) {
+    for (index, trace) in traces.iter().enumerate() {
+        let (Some(phi), Some(first)) = (trace.phi_bar, trace.samples.first()) else { continue };
+        // It shows the direction of the curve near the origin.
+        let length = 0.3 * first.slip();
+        // 0 turns -0 into 0.
+        let label = Label::symbol("\u{3c6}\u{304}", "").then(&format!(" = {:.3} rad", phi + 0.0));
+        let ray = vec![[0.0, 0.0], [length * phi.cos(), length * phi.sin()]];
+        panel.series.push(Series::new(label, index + 6, ray));
+    }
 }
 
 fn fill(panel: &mut Panel, traces: &[Trace], pick: Pick) {

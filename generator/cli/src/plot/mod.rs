@@ -2,10 +2,12 @@
 //!
 //! [`figure`] says what is shown, [`layout`] where it stands. Drawing goes through the library `plotters`
 //! onto a [`canvas`] that keeps hundredths of a pixel, from which [`svg`] and [`png`] make what
-//! [`file`](mod@file) writes. [`collision`] is the figure of `hodograph plot`.
+//! [`file`](mod@file) writes. [`collision`], [`conics`] and [`portrait`] are the
+//! figures of `hodograph plot`.
 
 mod canvas;
 pub mod collision;
+pub mod conics;
 pub mod figure;
 pub mod file;
 mod font;
@@ -13,6 +15,7 @@ pub mod label;
 mod layout;
 mod legend;
 mod png;
+pub mod portrait;
 mod series;
 pub mod svg;
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Samples the course of a collision over the normal impulse, densely enough to be drawn.
 
-use hodograph::{Hodograph, Law, ReducedMatrix, Surface};
+use hodograph::{Hodograph, Law, ReducedMatrix, Surface, phi_bar};
 
 /// A sample of a collision.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,6 +33,8 @@ pub struct Trace {
     pub samples: Vec<Sample>,
     /// where each law ends, in the order of [`Law::ALL`]; `None`: it has no outcome
     pub ends: Vec<Option<Sample>>,
+    /// the direction in which slip stops, if it stops by itself, rad
+    pub phi_bar: Option<f64>,
     /// why a law has no outcome
     pub failures: Vec<String>,
 }
@@ -57,7 +59,10 @@ pub fn trace(m: &ReducedMatrix<f64>, approach: [f64; 3], mu: f64, e: f64) -> Tra
         }
     }
     let samples = longest.as_ref().map_or(Vec::new(), course);
-    Trace { mu, samples, ends, failures }
+    let [_, v_t, v_s] = approach;
+    let slips = !samples.is_empty() && (v_t != 0.0 || v_s != 0.0);
+    let phi_bar = slips.then(|| phi_bar(m, mu, v_s.atan2(v_t))).flatten();
+    Trace { mu, samples, ends, phi_bar, failures }
 }
 
 fn course(hodograph: &Hodograph<f64>) -> Vec<Sample> {
@@ -92,6 +97,12 @@ mod tests {
             assert_eq!(trace.samples[0].velocity, V);
             assert_eq!(trace.samples.last(), trace.ends[0].as_ref(), "Newton's is the longest");
             assert!(trace.samples.windows(2).all(|pair| pair[0].impulse < pair[1].impulse));
+            // Slip stops along phi_bar: the last points before lie in its direction (paper: 0.432, 0.598).
+            let near = trace.samples.iter().rev().find(|sample| sample.slip() > 0.0 && sample.slip() < 1e-4);
+            if let (Some(phi), Some(near)) = (trace.phi_bar.filter(|_| mu > 1.3), near) {
+                assert!((near.velocity[2].atan2(near.velocity[1]) - phi).abs() < 1e-2, "{phi}");
+            }
+            assert_eq!(trace.phi_bar.is_some(), mu > 1.0);
             // Slip stops exactly where it does.
             assert_eq!(trace.samples.iter().any(|sample| sample.slip() == 0.0), mu > 1.0);
             // No corner that is not there: neighbours are close.
