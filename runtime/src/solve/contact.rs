@@ -92,6 +92,20 @@ impl<T: Real> Contact<T> {
         -dot(fma(self.mu_tt, d.y, -twice * d.x), d.y, self.mu_ss * d.x, d.x)
     }
 
+    /// Whether an impulse moves the contact across this direction by more than so many roundings of the largest
+    /// diagonal entry. If not, slip along it cannot turn, whatever h' is: so it is in planar systems
+    /// (Appendix C of the paper).
+    #[cold]
+    #[inline(never)]
+    pub fn moves_across(&self, d: &Vector2<T>, roundings: f64) -> bool {
+        let noise =
+            constant::<T>(roundings) * T::default_epsilon() * larger(larger(self.nn, self.tt), self.ss);
+        let coupled = dot(self.b.y, d.x, -self.b.x, d.y);
+        let along = dot(self.ts, d.x, -self.tt, d.y);
+        let across = dot(self.ss, d.x, -self.ts, d.y);
+        coupled.abs() > noise || along.abs() > noise || across.abs() > noise
+    }
+
     /// mu T x.
     #[inline]
     pub fn dragged(&self, x: &Vector2<T>) -> Vector2<T> {

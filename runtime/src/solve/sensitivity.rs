@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{
     Law, Sensitivity,
-    scalar::{Real, constant, dot, larger, length},
+    scalar::{Real, constant, length},
 };
 
 /// The bound below which a flag is set, of |mu / mu_c - 1|, of v_n over the speed of approach, and of an
@@ -70,16 +70,5 @@ fn unstable<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
     // h'
     let slope = c.convergence(d) - g;
     let noise = constant::<T>(64.0) * T::default_epsilon() * c.slip_size();
-    slope > noise && h.abs() <= constant::<T>(NEAR) * slope && !cannot_turn(c, d)
-}
-
-/// Whether no impulse moves the contact across this direction of slip, up to rounding of the entries: then
-/// slip cannot turn, although h' > 0. So it is in planar systems (Appendix C of the paper).
-#[cold]
-fn cannot_turn<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
-    let across = Vector2::new(-d.y, d.x);
-    let moved = Vector2::new(dot(c.tt, across.x, c.ts, across.y), dot(c.ts, across.x, c.ss, across.y));
-    let noise = constant::<T>(NOISE) * T::default_epsilon() * larger(larger(c.nn, c.tt), c.ss);
-    let coupled = dot(c.b.x, across.x, c.b.y, across.y);
-    coupled.abs() <= noise && moved.x.abs() <= noise && moved.y.abs() <= noise
+    slope > noise && h.abs() <= constant::<T>(NEAR) * slope && c.moves_across(d, NOISE)
 }

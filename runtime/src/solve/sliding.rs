@@ -24,6 +24,10 @@ const STRETCHES: u32 = 512;
 /// `perturbed` is tried first.
 const NEARLY: f64 = 131_072.0;
 
+/// Where nothing moves the contact across the slip by more than so many roundings of the largest diagonal
+/// entry, slip keeps its direction: a planar contact in axes that are turned.
+const PLANAR: f64 = 16.0;
+
 /// Follows the sliding arc from the tangential velocity `from` of length `speed`, for a contact whose rates
 /// are neither very large nor very small.
 #[inline]
@@ -39,7 +43,7 @@ pub(super) fn arc<T: Real>(
     let direction = from / speed;
     let [.., h] = c.rates(&direction);
     if h.abs() <= noise * constant(NEARLY) {
-        if h.abs() <= noise * constant(4.0) {
+        if h.abs() <= noise * constant(4.0) || !c.moves_across(&direction, PLANAR) {
             return straight(c, direction, speed, restitution.start(), restitution);
         }
         if let Some(slide) = perturbed(c, &direction, speed, restitution) {

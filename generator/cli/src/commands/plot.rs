@@ -111,7 +111,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Kind::Conics => {
             check_conics(&matrix, &arguments.mu)?;
             let [_, v_t, v_s] = velocity;
-            conics::figure(&format!("{title}Appendix B"), &matrix, &arguments.mu, v_s.atan2(v_t))
+            conics::figure(&format!("{title}Appendix B of the paper"), &matrix, &arguments.mu, v_s.atan2(v_t))
         }
         Kind::Portrait => {
             let starts = usize::from(arguments.starts.unwrap_or(24));

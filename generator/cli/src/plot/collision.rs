@@ -56,7 +56,8 @@ fn directions(panel: &mut Panel, traces: &[Trace]) {
         // It shows the direction of the curve near the origin.
         let length = 0.3 * first.slip();
         // 0 turns -0 into 0.
-        let label = Label::symbol("\u{3c6}\u{304}", "").then(&format!(" = {:.3} rad", phi + 0.0));
+        let label = Label::symbol("\u{3c6}\u{304}", "")
+            .then(&format!(" = {:.3} rad", phi + 0.0).replace('-', "\u{2212}"));
         let ray = vec![[0.0, 0.0], [length * phi.cos(), length * phi.sin()]];
         panel.series.push(Series::new(label, index + 6, ray));
     }

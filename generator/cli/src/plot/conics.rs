@@ -120,6 +120,7 @@ pub fn figure(title: &str, m: &ReducedMatrix<f64>, mu: &[f64], phi: f64) -> Figu
     };
     let mut panel = Panel::new(axis(" cos "), axis(" sin "));
     panel.equal = true;
+    panel.title = Label::symbol("s", "").then(" = ").with("n", "").then(" \u{d7} ").with("t", "");
     let curve = |symbol: &str, words: &str| Label::symbol(symbol, "").then(words);
     panel.series.push(Series::new(curve("g", " = 0: inside, slip grows"), 0, conics.ellipse()));
     panel.series.push(Series::new(curve("h", " = 0, near branch"), 1, near));
@@ -150,6 +151,8 @@ pub fn figure(title: &str, m: &ReducedMatrix<f64>, mu: &[f64], phi: f64) -> Figu
     }
     let label = Label::words("D: ").with("\u{3bc}", "c").then(", ").with("\u{3c6}", "c");
     panel.marks.push(Mark { label, sign: Sign::Dot, style: None, at: conics.place(found.mu_c, found.phi_c) });
+    // The legend follows the letters.
+    panel.marks.sort_by(|a, b| a.label.plain().cmp(&b.label.plain()));
     Figure { panel_size: [560.0, 560.0], ..Figure::new(title) }.panel(panel)
 }
 
@@ -164,8 +167,9 @@ mod tests {
         let mut count = 0;
         for [u, v] in points.iter().filter(|point| point.iter().all(|number| number.is_finite())) {
             let (mu, phi) = (u.hypot(*v), v.atan2(*u));
-            let found = rates(m, mu, phi)[which];
-            assert!(found.abs() <= 1e-12 * (1.0 + mu), "{u} {v}: {found}");
+            // (69), (70): at the origin there is no direction.
+            let found = mu * rates(m, mu, phi)[which];
+            assert!(found.abs() <= 1e-12 * (1.0 + mu) * (1.0 + mu), "{u} {v}: {found}");
             count += 1;
         }
         count
