@@ -1,7 +1,8 @@
-//! Searches for collisions that gain energy under Poisson's hypothesis, and measures by how much rounding alone makes
-//! the work of collisions positive that gain none.
+//! Searches for collisions that gain energy under Poisson's hypothesis, and measures by how much rounding
+//! alone makes the work of collisions positive that gain none.
 //!
-//! `cargo run --release -p hodograph --example energy [STARTS] [COUNT]`, 40 000 starts and 3000 collisions without loss by default.
+//! `cargo run --release -p hodograph --example energy [STARTS] [COUNT]`: 40 000 starts of the search and 3000
+//! collisions without loss, if nothing else is said.
 
 use hodograph::nalgebra::{Matrix3, Vector3};
 use hodograph::{Impact, Law, ReducedMatrix, Surface, solve};
@@ -40,8 +41,8 @@ fn terms(hit: &Impact<f64>) -> f64 {
     0.5 * hit.impulse.abs().dot(&(hit.approach.abs() + hit.velocity.abs()))
 }
 
-/// The work under Poisson's hypothesis over its terms, and the normal work over what friction takes. Energy is
-/// gained if the first is positive, or the second greater than one.
+/// The work under Poisson's hypothesis over its terms, and the normal work over what friction takes. Energy
+/// is gained if the first is positive, or the second greater than one.
 fn gains(place: &Place) -> Option<[f64; 2]> {
     let (matrix, approach, mu, e) = collision(place);
     let hit = solve(&matrix, &approach, &Surface { mu, e, law: Law::Poisson }).ok()?;
@@ -111,10 +112,8 @@ fn main() {
     let count = argument(2).unwrap_or(3000) as u32;
     for &law in Law::ALL {
         let (positive, gain, most) = lossless(count, law);
-        println!(
-            "{count} collisions with mu = 0 and e = 1 under {}: the work of {positive} is positive, at most {most:.1} roundings of its terms; {gain} gain energy",
-            law.name()
-        );
+        print!("{count} collisions with mu = 0 and e = 1 under {}: the work of {positive} ", law.name());
+        println!("is positive, at most {most:.1} roundings of its terms; {gain} gain energy");
     }
     let Found { solved, work, quotient } = search(starts);
     println!("{starts} starts, {solved} collisions under poisson: greatest work over its terms {work:.2e}");

@@ -1,5 +1,5 @@
-//! Recursive summation (56) of the paper's example with the paper's unit of impulse, 1 N s: its steps, and how far it is
-//! from the exact outcome, beside the agreement that section 6.1 of the paper states.
+//! Recursive summation (56) of the paper's example with the paper's unit of impulse, 1 N s: its steps, and
+//! how far it is from the exact outcome, beside the agreement that section 6.1 of the paper states.
 //!
 //! `cargo run --release -p hodograph --example summation`
 
@@ -42,9 +42,9 @@ pub fn errors(mu: f64, k: u32) -> Vec<Error> {
 
 /// The table of all errors.
 pub fn table() -> String {
-    let mut out = String::from(
-        "| mu | k | agreement, paper | steps: Newton, Poisson, Stronge | error of v_n2 | error of the impulse |\n| --- | --- | --- | --- | --- | --- |\n",
-    );
+    let mut out =
+        String::from("| mu | k | agreement, paper | steps: Newton, Poisson, Stronge | error of v_n2 ");
+    out += "| error of the impulse |\n| --- | --- | --- | --- | --- | --- |\n";
     for (mu, k, printed) in PRINTED {
         let errors = errors(mu, k);
         let list = |of: &dyn Fn(&Error) -> String| errors.iter().map(of).collect::<Vec<_>>().join(", ");

@@ -148,8 +148,8 @@ impl<T: Scalar> Hodograph<T> {
 }
 
 /// All quantities at a normal impulse, in N s, that is known (sections 3.1 to 3.3 of the paper: "suppose that
-/// I_n2 is known"): without any law of restitution, and so also beyond the end that a law would set, as if the
-/// bodies stayed in contact. At 0 and below it is the approach.
+/// I_n2 is known"): without any law of restitution, and so also beyond the end that a law would set, as if
+/// the bodies stayed in contact. At 0 and below it is the approach.
 ///
 /// ```
 /// # use hodograph::{ReducedMatrix, snapshot_at};

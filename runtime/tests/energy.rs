@@ -1,5 +1,5 @@
-//! The search for gains of energy, and the agreement of summation, as the examples print them and docs/paper.md shows
-//! them.
+//! The search for gains of energy, and the agreement of summation, as the examples print them and
+//! docs/paper.md shows them.
 #![cfg(feature = "std")]
 
 #[path = "../examples/energy.rs"]
@@ -18,6 +18,16 @@ fn no_gain_is_found_under_poissons_hypothesis() {
     assert!(found.solved > 30_000);
     assert!(found.work <= 64.0 * f64::EPSILON, "{found:?}");
     assert!(found.quotient > 0.9 && found.quotient <= 1.0, "{found:?}");
+}
+
+/// The numbers of the page, by the search of the page.
+#[test]
+#[ignore = "two and a half million collisions; `cargo test --release -p hodograph --test energy -- --ignored`"]
+fn the_whole_search_is_that_of_the_page() {
+    let found = energy::search(40_000);
+    for shown in [format!("{:.1e}", found.work), format!("{:.5}", found.quotient)] {
+        assert!(PAGE.contains(&shown), "{found:?}");
+    }
 }
 
 #[test]

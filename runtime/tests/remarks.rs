@@ -33,8 +33,8 @@ fn off(at: &Snapshot<f64>, v_n1: f64) -> f64 {
     (at.normal_work - mean).abs() / (at.impulse.x * (at.velocity.x.abs() + v_n1.abs()))
 }
 
-/// After (35): Delta E_n = I_n (v_n + v_n1) / 2 "is not the case with 2D systems, except in sliding", nor with
-/// 3D systems.
+/// After (35): Delta E_n = I_n (v_n + v_n1) / 2 "is not the case with 2D systems, except in sliding", nor
+/// with 3D systems.
 #[test]
 fn normal_work_is_that_of_the_mean_velocity_in_planar_sliding_alone() {
     let mut random = Random(1);
@@ -240,7 +240,8 @@ fn the_remote_branch_misses_the_ellipse() {
                 assert!(rates(&m, mu, phi).y < 0.0, "the remote branch is outside");
                 remote += 1;
             }
-            // Along the ellipse, from the origin and back to it, h changes its sign where it meets the hyperbola.
+            // Along the ellipse, from the origin and back to it, h changes its sign where it meets the
+            // hyperbola.
             if mu_e > 0.0 {
                 let sign = rates(&m, mu_e, phi).z > 0.0;
                 changes += usize::from(last.is_some_and(|last| last != sign));
@@ -361,9 +362,9 @@ fn the_state_at_any_impulse_does_not_depend_on_a_law() {
     assert!((snapshot_at(&wedge, &w, 2.0, 500.0).unwrap().velocity.x + 0.3226_f64).abs() < 1e-3);
 }
 
-/// Appendix C: in planar systems slip cannot leave its line, c_n has the limit m_tt / (m_nn m_tt - m_nt^2), c_t
-/// = -m_nt / (..), c_s = 0, and phi_hat is 0 or pi by the sign of m_nt. Recognised from the numbers: no flag, no
-/// quadrature, and the bits of the closed form; the same, but for the bits, in turned axes.
+/// Appendix C: in planar systems slip cannot leave its line, c_n has the limit m_tt / (m_nn m_tt - m_nt^2),
+/// c_t = -m_nt / (..), c_s = 0, and phi_hat is 0 or pi by the sign of m_nt. Recognised from the numbers: no
+/// flag, no quadrature, and the bits of the closed form; the same, but for the bits, in turned axes.
 #[test]
 fn planar_contacts_are_recognised_from_their_numbers() {
     let mut random = Random(9);

@@ -88,7 +88,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let before = sleds.kinetic_energy(&q, &u)?;
         let after = sleds.kinetic_energy(&q, &hit.speeds)?;
         let course = integrate::course(&contact, *mu, hit.impulse.x);
-        let note = if hit.energy_change > 0.0 { "  Newton's hypothesis gains energy" } else { "" };
+        let note =
+            if hit.impact.energy_gained().is_some() { "  Newton's hypothesis gains energy" } else { "" };
         let law = format!("{law:?}");
         println!(
             " {mu:4}  {law:8} {:+14.10} {:+24.10} {:+31.10}{note}",

@@ -27,8 +27,8 @@ pub struct Integration {
     /// Error allowed per step, relative to the approach (in its own units of velocity, impulse and work);
     /// 1e-14 to 0.1.
     pub tolerance: f64,
-    /// The paper's eps_s, as a part of the slip at the start; above 0, below 1. With [`Switch::AtThreshold`] it
-    /// may be greater: then all slip is dropped at the start.
+    /// The paper's eps_s, as a part of the slip at the start; above 0, below 1. With [`Switch::AtThreshold`]
+    /// it may be greater: then all slip is dropped at the start.
     pub slip_threshold: f64,
     /// What happens at the threshold.
     pub switch: Switch,

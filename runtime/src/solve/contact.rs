@@ -92,8 +92,8 @@ impl<T: Real> Contact<T> {
         -dot(fma(self.mu_tt, d.y, -twice * d.x), d.y, self.mu_ss * d.x, d.x)
     }
 
-    /// Whether an impulse moves the contact across this direction by more than so many roundings of the largest
-    /// diagonal entry. If not, slip along it cannot turn, whatever h' is: so it is in planar systems
+    /// Whether an impulse moves the contact across this direction by more than so many roundings of the
+    /// largest diagonal entry. If not, slip along it cannot turn, whatever h' is: so it is in planar systems
     /// (Appendix C of the paper).
     #[cold]
     #[inline(never)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use crate::commands::solve::characteristics_of;
 use crate::derivation::{self, Limits};
 use crate::evaluate::collision::collide;
-use crate::json::characteristics::Form;
+use crate::json::characteristics::{Asked, Form};
 use crate::model;
 use crate::output;
 use crate::stop::Outcome;
@@ -30,10 +30,8 @@ pub struct Arguments {
     /// [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
     budget: Option<u32>,
-    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and what belongs to the end of
-    /// compression and of slip: in the answer, or as a table instead of it
-    #[arg(long, value_enum, value_name = "FORM", num_args = 0..=1, require_equals = true, default_missing_value = "json")]
-    characteristics: Option<Form>,
+    #[command(flatten)]
+    characteristics: Asked,
     /// a file with the state, `-` for standard input, or the state itself
     #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
     state: Option<String>,
@@ -53,7 +51,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let index = machine.contact(arguments.contact.as_deref())?;
     let state = machine.state(text.as_deref())?;
     let (mut collision, found) = collide(&machine, &state, index, &surface)?;
-    match arguments.characteristics {
+    match arguments.characteristics.form {
         None => output::json(&collision),
         Some(form) => {
             let found = characteristics_of(&found.reduced.into(), &found.slip, &surface.surface)?;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use crate::derivation::{self, Limits};
 use crate::evaluate::report::report;
-use crate::json::characteristics::Form;
+use crate::json::characteristics::{Asked, Form};
 use crate::model;
 use crate::output;
 use crate::stop::Outcome;
@@ -21,13 +21,17 @@ use crate::stop::Outcome;
 pub struct Arguments {
     /// the model file
     model: PathBuf,
-    /// also c_n, c_t, c_s, mu_c, phi_c and mu_s of each contact: in its object, or as a table instead
-    /// of the answer
-    #[arg(long, value_enum, value_name = "FORM", num_args = 0..=1, require_equals = true, default_missing_value = "json")]
-    characteristics: Option<Form>,
+    #[command(flatten)]
+    characteristics: Asked,
     /// with --characteristics: Coulomb's coefficient of friction, on which phi_hat, f_hat, g_hat and
     /// phi_bar depend
-    #[arg(long, value_name = "NUMBER", value_parser = friction, allow_hyphen_values = true, requires = "characteristics")]
+    #[arg(
+        long,
+        value_name = "NUMBER",
+        value_parser = friction,
+        allow_hyphen_values = true,
+        requires = "characteristics"
+    )]
     mu: Option<f64>,
     /// a file with the state, `-` for standard input, or the state itself
     #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
@@ -53,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let text = model::state_text(arguments.state.as_deref())?;
     let state = machine.state(text.as_deref())?;
     let mut report = report(&machine, &state)?;
-    match arguments.characteristics {
+    match arguments.characteristics.form {
         None => output::json(&report),
         Some(Form::Json) => {
             report.characterise(arguments.mu);

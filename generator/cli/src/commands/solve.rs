@@ -9,7 +9,7 @@ use hodograph::{Hodograph, ReducedMatrix, Surface, snapshot_at};
 use nalgebra::Vector3;
 
 use crate::json::answer::{Answer, At};
-use crate::json::characteristics::{Characteristics, Form};
+use crate::json::characteristics::{Asked, Characteristics, Form};
 use crate::json::{Failure, Fields, Json};
 use crate::output;
 use crate::stop::{Outcome, Stop};
@@ -53,10 +53,8 @@ pub struct Arguments {
     /// `exact`: also the state at these normal impulses, N s, beyond the end of the collision too
     #[arg(long, value_name = "N s,..", value_delimiter = ',', allow_hyphen_values = true)]
     pub at: Vec<f64>,
-    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and what belongs to the end of
-    /// compression and of slip: in the answer, or as a table instead of it
-    #[arg(long, value_enum, value_name = "FORM", num_args = 0..=1, require_equals = true, default_missing_value = "json")]
-    pub characteristics: Option<Form>,
+    #[command(flatten)]
+    pub characteristics: Asked,
     /// `exact`: quadratures that a collision may take; one that needs more has the error
     /// `budget_exceeded` [default: no limit but the solver's own]
     #[arg(long, value_name = "QUADRATURES")]
@@ -145,7 +143,7 @@ impl Arguments {
             Method::Sum => methods::sum(matrix, approach, surface, &self.summation())?,
             Method::Irs => methods::irs(matrix, approach, surface, &partial)?,
         };
-        let characteristics = self.characteristics.map(|_| {
+        let characteristics = self.characteristics.form.map(|_| {
             let slip = [approach.y, approach.z];
             Characteristics::of_contact(matrix)
                 .with_friction(matrix, surface.mu, slip)
@@ -164,7 +162,7 @@ impl Arguments {
         let at =
             self.at.iter().map(|&impulse| snapshot_at(matrix, approach, surface.mu, impulse).map(At::from));
         let at = at.collect::<Result<_, _>>()?;
-        let characteristics = match self.characteristics {
+        let characteristics = match self.characteristics.form {
             Some(_) => Some(characteristics_of(matrix, approach, surface)?),
             None => None,
         };
@@ -218,7 +216,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         all_solved &= answer.is_ok();
         let written = match answer {
             Ok(Answer { characteristics: Some(found), .. })
-                if arguments.characteristics == Some(Form::Table) =>
+                if arguments.characteristics.form == Some(Form::Table) =>
             {
                 output::text(&found.table())
             }

@@ -15,6 +15,23 @@ pub enum Form {
     Table,
 }
 
+/// The option that asks for them.
+#[derive(Clone, Copy, Debug, clap::Args)]
+pub struct Asked {
+    /// also c_n, c_t, c_s, mu_c, phi_c, mu_s, phi_hat, phi_bar and what belongs to the end of
+    /// compression and of slip: in the answer, or as a table instead of it
+    #[arg(
+        id = "characteristics",
+        long,
+        value_enum,
+        value_name = "FORM",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "json"
+    )]
+    pub form: Option<Form>,
+}
+
 /// A quantity. Where it does not exist it has no value.
 #[derive(Clone, Debug)]
 struct Row {

@@ -1,6 +1,6 @@
-//! The figure of Appendix B of the paper, its Fig. 4: the ellipse g = 0, the hyperbola h = 0 and circles of radius
-//! mu in the plane of mu cos phi and mu sin phi, and the directions of slip that can be read from where they
-//! meet.
+//! The figure of Appendix B of the paper, its Fig. 4: the ellipse g = 0, the hyperbola h = 0 and circles of
+//! radius mu in the plane of mu cos phi and mu sin phi, and the directions of slip that can be read from
+//! where they meet.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -10,7 +10,7 @@ use super::figure::{Axis, Figure, Mark, Panel, Series, Sign};
 use super::label::Label;
 
 /// Points of a curve.
-const POINTS: usize = 2000;
+const POINTS: usize = 720;
 /// How far the figure reaches beyond circles and ellipse, and how far it follows the ellipse of a contact
 /// that is hardly moved in some direction: parts of the largest radius.
 const MARGIN: f64 = 1.15;
@@ -67,7 +67,8 @@ impl Conics<'_> {
         let size = self.m.tt + self.m.ss;
         let reference = self.drag(ahead)[1];
         if reference.abs() <= NONE * size || self.m.nt.hypot(self.m.ns) <= NONE * size.max(self.m.nn) {
-            // A line along b, or along both principal axes of T; and across b another line, if T is not a circle.
+            // A line along b, or along both principal axes of T; and across b another line, if T is not a
+            // circle.
             let axis = 0.5 * (2.0 * self.m.ts).atan2(self.m.tt - self.m.ss);
             let straight = |phi: f64| [-1.0, 1.0].map(|end| self.ray(end, phi));
             let balanced = self.m.nt.hypot(self.m.ns) <= NONE * size.max(self.m.nn);
