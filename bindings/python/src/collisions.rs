@@ -44,7 +44,7 @@ pub fn number_of_path(path: Path) -> u8 {
 }
 
 /// What is told of each row beside the speeds, and how many numbers that are.
-const FIELDS: [(&str, usize); 11] = [
+const FIELDS: [(&str, usize); 12] = [
     ("normal", 3),
     ("tangent", 3),
     ("binormal", 3),
@@ -56,6 +56,7 @@ const FIELDS: [(&str, usize); 11] = [
     ("energy_change", 1),
     ("contact_work", 1),
     ("normal_work", 1),
+    ("energy_gained", 1),
 ];
 
 /// Rows of numbers, and why rows have none.
@@ -128,7 +129,8 @@ fn write(numbers: &mut Vec<f64>, outcome: &CollisionOutcome<f64>, speeds: &[f64]
     put(&impact.impulse);
     put(&impact.velocity);
     put(&outcome.impulse_on_point);
-    numbers.extend([outcome.energy_change, impact.contact_work, impact.normal_work]);
+    let gained = impact.energy_gained().unwrap_or(0.0);
+    numbers.extend([outcome.energy_change, impact.contact_work, impact.normal_work, gained]);
 }
 
 /// Solves the collisions of all rows.

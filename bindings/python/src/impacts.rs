@@ -1,7 +1,9 @@
 //! Collisions by themselves: the reduced matrix and the velocity of approach are given.
 
 use hodograph::nalgebra::{SMatrix, Vector3};
-use hodograph::{Hodograph, ImpactError, Motion, ReducedMatrix, Surface};
+use hodograph::{
+    Characteristics, Hodograph, ImpactError, Motion, ReducedMatrix, Surface, phi_bar, snapshot_at,
+};
 use hodograph_interpreter::columns::{Column, Impacts, over_rows};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -9,7 +11,14 @@ use pyo3::types::PyDict;
 use crate::arguments::{Rows, Surfaces, array, common, raises, rows};
 use crate::collisions::{Answers, impact_error, number_of_path};
 
-const FIELDS: [(&str, usize); 4] = [("impulse", 3), ("velocity", 3), ("contact_work", 1), ("normal_work", 1)];
+const FIELDS: [(&str, usize); 5] =
+    [("impulse", 3), ("velocity", 3), ("contact_work", 1), ("normal_work", 1), ("energy_gained", 1)];
+
+/// The characteristic quantities of a collision, by the paper's names; NaN where one does not exist.
+const CHARACTERISTICS: [&str; 16] = [
+    "c_n", "c_t", "c_s", "mu_c", "phi_c", "mu_s", "phi_hat", "f_hat", "g_hat", "dh_hat", "phi_bar", "I_nC",
+    "E_nC", "I_nS", "v_nS", "E_nS",
+];
 
 /// The arguments of a collision.
 struct Given<'py> {
@@ -96,12 +105,13 @@ pub fn solve_rows<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let given = Given::new(py, matrix, velocity, (mu, e, law))?;
     let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
-    let answers = answered(py, given.rows, raises(py, errors)?, 8, |row, answers| {
+    let answers = answered(py, given.rows, raises(py, errors)?, 9, |row, answers| {
         let mut outcome = Ok(());
         impacts.solve(&surface, row..row + 1, &mut |_, impact| match impact {
             Ok(impact) => {
                 answers.numbers.extend(impact.impulse.iter().chain(impact.velocity.iter()));
-                answers.numbers.extend([impact.contact_work, impact.normal_work]);
+                let gained = impact.energy_gained().unwrap_or(0.0);
+                answers.numbers.extend([impact.contact_work, impact.normal_work, gained]);
                 answers.paths.push(number_of_path(impact.path));
             }
             Err(error) => outcome = Err(error),
@@ -138,7 +148,46 @@ pub fn derivative_rows<'py>(
     answers.into_fields(py, given.rows, &[("impulse", 33), ("velocity", 33), ("smooth", 1)])
 }
 
-/// The course of one collision: snapshots at equal steps of the normal impulse.
+/// Characteristic quantities of contacts and of their collisions.
+#[pyfunction]
+#[pyo3(name = "characteristics")]
+pub fn characteristics_rows<'py>(
+    py: Python<'py>,
+    matrix: &Bound<'py, PyAny>,
+    velocity: &Bound<'py, PyAny>,
+    mu: &Bound<'py, PyAny>,
+    e: &Bound<'py, PyAny>,
+    law: &str,
+    errors: &str,
+) -> PyResult<Bound<'py, PyDict>> {
+    let given = Given::new(py, matrix, velocity, (mu, e, law))?;
+    let (impacts, surface) = (given.impacts(), given.surfaces.of_rows());
+    let width = CHARACTERISTICS.len();
+    let answers = answered(py, given.rows, raises(py, errors)?, width, |row, answers| {
+        let (matrix, velocity) = input(&impacts, row);
+        let surface = surface(row);
+        // It locates the end of compression under every law.
+        let impact = *Hodograph::new(&matrix, &velocity, &surface)?.impact();
+        let found = Characteristics::of(&matrix, surface.mu);
+        let slips = velocity.y != 0.0 || velocity.z != 0.0;
+        let stop = slips.then(|| phi_bar(&matrix, surface.mu, velocity.z.atan2(velocity.y))).flatten();
+        let renewal = found.renewal.map(|hat| [hat.phi_hat, hat.f_hat, hat.g_hat, hat.dh_hat]);
+        let end = impact.phases.last_compression_end.map(|at| [at.impulse.x, at.normal_work]);
+        let slip = impact.phases.slip_end.map(|at| [at.impulse.x, at.velocity.x, at.normal_work]);
+        let or_none = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        answers.numbers.extend(found.sticking.unwrap_or([f64::NAN; 3]));
+        answers.numbers.extend([found.mu_c, found.phi_c, or_none(found.mu_s)]);
+        answers.numbers.extend(renewal.unwrap_or([f64::NAN; 4]));
+        answers.numbers.push(or_none(stop));
+        answers.numbers.extend(end.unwrap_or([f64::NAN; 2]));
+        answers.numbers.extend(slip.unwrap_or([f64::NAN; 3]));
+        answers.paths.push(number_of_path(impact.path));
+        Ok(())
+    })?;
+    answers.into_fields(py, given.rows, &CHARACTERISTICS.map(|name| (name, 1)))
+}
+
+/// The course of one collision: snapshots at equal steps of the normal impulse, or at given normal impulses.
 #[pyfunction]
 #[pyo3(name = "hodograph")]
 pub fn course<'py>(
@@ -149,6 +198,7 @@ pub fn course<'py>(
     e: &Bound<'py, PyAny>,
     law: &str,
     count: usize,
+    impulses: Option<Vec<f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let given = Given::new(py, matrix, velocity, (mu, e, law))?;
     if given.rows.is_some() {
@@ -159,7 +209,13 @@ pub fn course<'py>(
     let surface: Surface<f64> = given.surfaces.of_rows()(0);
     let found =
         Hodograph::new(&matrix, &velocity, &surface).map_err(|error| impact_error(py, &error, None))?;
-    let points: Vec<_> = found.points(count).collect();
+    let points = match impulses {
+        None => found.points(count).collect(),
+        Some(impulses) => {
+            let at = impulses.iter().map(|&impulse| snapshot_at(&matrix, &velocity, surface.mu, impulse));
+            at.collect::<Result<Vec<_>, _>>().map_err(|error| impact_error(py, &error, None))?
+        }
+    };
     let rows = Some(points.len());
     let all = PyDict::new(py);
     let impulses = points.iter().flat_map(|point| point.impulse.iter().copied().collect::<Vec<_>>());

@@ -23,6 +23,7 @@ fn hodograph_native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(model::evaluate_numerically, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::solve_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::derivative_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(impacts::characteristics_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::course, module)?)?;
     module.add("KINDS", collisions::KINDS)?;
     module.add("PATHS", collisions::PATHS.map(|path| path.to_string()))?;

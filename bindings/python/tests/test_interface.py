@@ -78,6 +78,40 @@ def test_solve_derivative_hodograph():
     assert course._repr_html_().count("<svg") == 2 and "nan" not in course._repr_html_()
 
 
+def test_characteristics_are_those_of_the_paper():
+    found = SLEDS.characteristics("BcAc", mu=1.1, e=0.8, law="newton")
+    # section 5 and the end of section 6 of the paper; s = n x t, there t x n
+    printed = dict(c_n=42.59, c_t=37.3, c_s=-35.8, mu_c=1.21, mu_s=1.086, f_hat=0.0425, phi_bar=-0.432, E_nC=-1.295, E_nS=-1.291, v_nS=0.0533)
+    for name, value in printed.items():
+        assert getattr(found, name) == pytest.approx(value, rel=5e-3), name
+    assert found.dh_hat < -found.g_hat < 0 and found.path == "sliding, then renewal" and found.kind == ""
+    hit = SLEDS.collide("BcAc", mu=1.1, e=0.8, law="newton")
+    assert hit.energy_gained == hit.contact_work > 1
+    many = hodograph.characteristics(hit.reduced, hit.approach, mu=[0.6, 1.1, 1.6], e=0.8, law="stronge")
+    assert many.mu_c.shape == (3,) and many.mu_c[1] == found.mu_c
+    np.testing.assert_array_equal(np.isnan(many.phi_hat), [False, False, True])
+    np.testing.assert_array_equal(np.isnan(many.v_nS), [True, False, False])
+    away = hodograph.characteristics(hit.reduced, -hit.approach, mu=1.1, e=0.8, law="stronge", errors="nan")
+    assert away.kind == "not_approaching" and np.isnan(away.mu_c)
+
+
+def test_states_at_given_impulses():
+    hit = SLEDS.collide("BcAc", mu=1.6, e=0.8, law="stronge")
+    course = hodograph.hodograph(hit.reduced, hit.approach, mu=1.6, e=0.8, law="stronge", impulses=[0.0, hit.impulse[0], 100.0])
+    np.testing.assert_array_equal(course.velocity[0], hit.approach)
+    np.testing.assert_allclose(course.velocity[1], hit.velocity, atol=1e-12)
+    assert course.motion == ["sliding", "sticking", "sticking"] and course.velocity[2, 0] > course.velocity[1, 0]
+
+
+def test_rounding_is_no_gain_of_energy():
+    random = np.random.default_rng(1)
+    b = random.normal(size=(3000, 3, 3))
+    m = b @ b.transpose(0, 2, 1)
+    matrix = np.stack([m[:, 0, 0], m[:, 0, 1], m[:, 0, 2], m[:, 1, 1], m[:, 1, 2], m[:, 2, 2]], axis=1)
+    hits = hodograph.solve(matrix, [-1.0, 0.5, 0.2], mu=0.0, e=1.0, law="stronge")
+    assert np.count_nonzero(hits.contact_work > 0) > 100 and not hits.energy_gained.any()
+
+
 def test_simulate():
     m = model("planar_double_pendulum")
     motion = m.simulate(0.2, 0.01, mu=0.3, e=0.5, law="stronge")

@@ -24,12 +24,12 @@ from .errors import (
     StateError,
 )
 from .mechanism import Contact, Derivatives, Linearisation, Mechanism, NumericMechanism, Quantity
-from .results import Collision, Event, Hodograph, Impact, ImpactDerivative, Simulation
+from .results import Characteristics, Collision, Event, Hodograph, Impact, ImpactDerivative, Simulation
 
 __all__ = [
-    "ArgumentError", "Collision", "Contact", "DerivationError", "Derivatives", "Diagnostic", "Event", "Hodograph", "HodographError",
+    "ArgumentError", "Characteristics", "Collision", "Contact", "DerivationError", "Derivatives", "Diagnostic", "Event", "Hodograph", "HodographError",
     "Impact", "ImpactDerivative", "ImpactError", "Linearisation", "Mechanism", "ModelError", "NumericMechanism", "ParameterError",
-    "Quantity", "Simulation", "SimulationError", "StateError", "check", "derivative", "hodograph", "load", "solve",
+    "Quantity", "Simulation", "SimulationError", "StateError", "characteristics", "check", "derivative", "hodograph", "load", "solve",
 ]  # fmt: skip
 
 
@@ -85,9 +85,16 @@ def derivative(matrix, velocity, *, mu, e, law, errors="raise"):
     return ImpactDerivative(_native.derivative(matrix, velocity, mu, e, law, errors))
 
 
-def hodograph(matrix, velocity, *, mu, e, law, points=201):
-    """The course of one collision at equal steps of the normal impulse; the arguments are those of :func:`solve`. Returns :class:`Hodograph`."""
-    return Hodograph(_native.hodograph(matrix, velocity, mu, e, law, points))
+def characteristics(matrix, velocity, *, mu, e, law, errors="raise"):
+    """Characteristic quantities of collisions; the arguments are those of :func:`solve`. Returns :class:`Characteristics`."""
+    return Characteristics(_native.characteristics(matrix, velocity, mu, e, law, errors))
+
+
+def hodograph(matrix, velocity, *, mu, e, law, points=201, impulses=None):
+    """The course of one collision at equal steps of the normal impulse, or at the normal ``impulses`` (k,), N s, beyond the end by the law, too; the
+    other arguments are those of :func:`solve`. Returns :class:`Hodograph`."""
+    impulses = None if impulses is None else [float(impulse) for impulse in np.atleast_1d(impulses)]
+    return Hodograph(_native.hodograph(matrix, velocity, mu, e, law, points, impulses))
 
 
 def _text(model):

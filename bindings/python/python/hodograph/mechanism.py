@@ -9,7 +9,7 @@ import numpy as np
 
 from . import hodograph_native as _native
 from .errors import ArgumentError, HodographError
-from .results import Collision, Simulation
+from .results import Characteristics, Collision, Simulation
 
 
 class Quantity(NamedTuple):
@@ -230,6 +230,14 @@ class Mechanism(_native.Mechanism):
         """Collisions of a contact (its name), as :class:`Collision`. ``mu``, ``e``: numbers or (k,); ``law``: 'newton', 'poisson', 'stronge'."""
         index = _index("contact", contact, self.contacts)
         return Collision(self._collide(index, (q, u, inputs, time), mu, e, law, errors))
+
+    def characteristics(self, contact, q=None, u=None, inputs=None, time=None, *, mu, e, law, errors="raise"):
+        """Characteristic quantities of the collisions of :meth:`collide`, along its n, t, s, as :class:`Characteristics`."""
+        hit = self.collide(contact, q, u, inputs, time, mu=mu, e=e, law=law, errors=errors)
+        found = Characteristics(_native.characteristics(hit.reduced, hit.approach, mu, e, law, errors))
+        # A state without a collision has the reason of the collision.
+        found.kind = hit.kind
+        return found
 
     def simulate(
         self, until, step, q=None, u=None, inputs=None, time=None, *, mu=0.0, e=0.0, law="poisson", tolerance=1e-10,

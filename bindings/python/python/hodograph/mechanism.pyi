@@ -3,7 +3,7 @@ from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from .results import Collision, Simulation
+from .results import Characteristics, Collision, Simulation
 
 Floats = NDArray[np.float64]
 Rows = Union[Floats, Sequence[float], None]
@@ -94,6 +94,19 @@ class Mechanism:
         law: str,
         errors: str = ...,
     ) -> Collision: ...
+    def characteristics(
+        self,
+        contact: str,
+        q: Rows = ...,
+        u: Rows = ...,
+        inputs: Rows = ...,
+        time: Optional[Column] = ...,
+        *,
+        mu: Column,
+        e: Column,
+        law: str,
+        errors: str = ...,
+    ) -> Characteristics: ...
     def simulate(
         self,
         until: float,

@@ -35,7 +35,7 @@ def _words(names, codes, none):
 
 class Impact(_Answer):
     """Outcomes of collisions along n, t, s: ``impulse`` N s, ``velocity`` of separation m/s, (3,) or (n, 3); ``contact_work``, ``normal_work`` J;
-    ``path`` the phases gone through; ``kind`` why there is no outcome, '' where there is one."""
+    ``energy_gained`` J, 0 where none is, beyond rounding; ``path`` the phases gone through; ``kind`` why there is no outcome, '' where there is one."""
 
     _names = ("impulse", "velocity", "contact_work", "normal_work", "path")
 
@@ -43,7 +43,7 @@ class Impact(_Answer):
 class Collision(_Answer):
     """Outcomes of collisions of a mechanism: ``speeds`` after them, (p,) or (k, p); ``normal``, ``tangent``, ``binormal``, ``impulse_on_point`` along
     N.x, N.y, N.z; ``approach``, ``velocity`` (of separation), ``impulse``, ``reduced`` (nn, nt, ns, tt, ts, ss) along n, t, s; ``energy_change``,
-    ``contact_work``, ``normal_work`` J; ``path``; ``kind``, '' where there is an outcome."""
+    ``contact_work``, ``normal_work``, ``energy_gained`` J; ``path``; ``kind``, '' where there is an outcome."""
 
     _names = ("speeds", "impulse", "velocity", "energy_change", "path")
 
@@ -60,6 +60,14 @@ class ImpactDerivative(_Answer):
             found[name] = flat.reshape(flat.shape[:-1] + (3, 11))
         found["smooth"] = found["smooth"] == 1.0
         super().__init__(found)
+
+
+class Characteristics(_Answer):
+    """Characteristic quantities of collisions by the paper's names, numbers or (n,), NaN where one does not exist: ``c_n``, ``c_t``, ``c_s`` (41) kg;
+    ``mu_c``, ``phi_c`` (43); ``mu_s``; ``phi_hat`` rad with ``f_hat``, ``g_hat`` (46) and ``dh_hat`` = dh/dphi there, 1/kg; ``phi_bar`` rad; ``I_nC``
+    N s and ``E_nC`` J at the end of the latest compression; ``I_nS`` N s, ``v_nS`` m/s and ``E_nS`` J where slip stops; ``path``; ``kind``."""
+
+    _names = ("c_n", "c_t", "c_s", "mu_c", "phi_c", "mu_s", "phi_hat", "phi_bar", "I_nC", "E_nC", "I_nS", "v_nS", "E_nS")
 
 
 class Hodograph:

@@ -11,6 +11,27 @@ class Impact:
     velocity: Floats
     contact_work: Floats
     normal_work: Floats
+    energy_gained: Floats
+    path: Words
+    kind: Words
+
+class Characteristics:
+    c_n: Floats
+    c_t: Floats
+    c_s: Floats
+    mu_c: Floats
+    phi_c: Floats
+    mu_s: Floats
+    phi_hat: Floats
+    f_hat: Floats
+    g_hat: Floats
+    dh_hat: Floats
+    phi_bar: Floats
+    I_nC: Floats
+    E_nC: Floats
+    I_nS: Floats
+    v_nS: Floats
+    E_nS: Floats
     path: Words
     kind: Words
 
