@@ -87,7 +87,7 @@ def test_characteristics_are_those_of_the_paper():
     assert found.dh_hat < -found.g_hat < 0 and found.path == "sliding, then renewal" and found.kind == ""
     hit = SLEDS.collide("BcAc", mu=1.1, e=0.8, law="newton")
     assert hit.energy_gained == hit.contact_work > 1
-    many = hodograph.characteristics(hit.reduced, hit.approach, mu=[0.6, 1.1, 1.6], e=0.8, law="stronge")
+    many = hodograph.characteristics(hit.reduced, hit.approach, mu=np.array([0.6, 1.1, 1.6]), e=0.8, law="stronge")
     assert many.mu_c.shape == (3,) and many.mu_c[1] == found.mu_c
     np.testing.assert_array_equal(np.isnan(many.phi_hat), [False, False, True])
     np.testing.assert_array_equal(np.isnan(many.v_nS), [True, False, False])
