@@ -3,7 +3,7 @@ SELECT mu, count(*) AS collisions, count(*) FILTER (WHERE c['kind'] = 'ok') AS s
   count(*) FILTER (WHERE c['path'] = 'sliding') AS slides,
   count(*) FILTER (WHERE c['path'] = 'sliding, then sticking') AS sticks,
   count(*) FILTER (WHERE c['path'] = 'sliding, then renewal') AS renews,
-  count(*) FILTER (WHERE c['contact_work'] > 0.0) AS gains_energy,
+  count(*) FILTER (WHERE energy_gained(c) > 0.0) AS gains_energy,
   checksum(outcome_hash(c)) AS checksum
 FROM (
   SELECT mu, two_sleds_collide(named_struct('mu', mu, 'e', 0.8, 'law', 'newton', 'u1', 1.0 + uniform(i, 0, 1),

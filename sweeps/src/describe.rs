@@ -11,6 +11,8 @@ const OTHERS: &str = "\
 rows(n)                                table of the row numbers 0 to n - 1, column i
 solve(nn, nt, ns, tt, ts, ss, vn, vt, vs, mu, e, law)
                                        a collision by itself: reduced matrix (1/kg), velocity of approach (m/s), surface
+energy_gained(answer)                  the energy gained by the collision of a model, J; 0 where none is, beyond rounding
+energy_gained(answer, vn, vt, vs)      the same for the answer of solve
 uniform(row, dimension, seed)          uniform in [0, 1), by Philox 4x32-10
 normal(row, dimension, seed)           of the standard normal distribution
 sobol(row, dimension, seed)            scrambled Sobol points, dimensions 0 to 255; a new sequence every 65536 rows

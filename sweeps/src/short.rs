@@ -119,7 +119,7 @@ const COUNTS: [(&str, &str); 6] = [
     ("slides", "c['path'] = 'sliding'"),
     ("sticks", "c['path'] IN ('sticking', 'sliding, then sticking')"),
     ("renews", "c['path'] IN ('renewal', 'sliding, then renewal')"),
-    ("gains_energy", "c['contact_work'] > 0.0"),
+    ("gains_energy", "energy_gained(c) > 0.0"),
 ];
 
 impl Short<'_> {

@@ -212,3 +212,33 @@ async fn aggregates_agree_with_plain_sql() {
     assert_eq!(again.column(0).as_primitive::<UInt64Type>().value(0), whole);
     let _: Arc<dyn Array> = Arc::clone(again.column(0));
 }
+
+/// A positive work counts as a gain beyond its rounding only: Stronge's hypothesis gains nothing for e = 1 without
+/// friction, Newton's much. The one function of the runtime decides.
+#[tokio::test]
+async fn rounding_is_no_gain_of_energy() {
+    let found = query(
+        "SELECT law, mu, c['contact_work'], energy_gained(c), energy_gained(s, c['approach_n'], c['approach_t'], c['approach_s'])
+         FROM (SELECT law, mu, c, solve(1.0, 0.1, 0.2, 1.0, 0.1, 1.0, c['approach_n'], c['approach_t'], c['approach_s'], 0.0, 1.0, law) AS s
+               FROM (SELECT law, mu, two_sleds_collide(named_struct('mu', mu, 'e', 1.0, 'law', law, 'u1', 1.0 + uniform(i, 0, 1),
+                       'u3', 0.2 * uniform(i, 1, 1), 'u4', 1.0 + uniform(i, 2, 1), 'u6', 0.2 * uniform(i, 3, 1))) AS c
+                   FROM (SELECT i, CASE i % 2 WHEN 0 THEN 'newton' ELSE 'stronge' END AS law, CASE i % 4 WHEN 2 THEN 1.6 ELSE 0.0 END AS mu
+                       FROM rows(4000))))",
+    )
+    .await;
+    let laws = texts(&found, 0);
+    let [mu, works, gains, others] = [1, 2, 3, 4].map(|index| numbers(&found, index));
+    let (mut positive, mut gained) = (0, 0);
+    for row in 0..found.num_rows() {
+        let (work, gain) = (works[row].unwrap(), gains[row].unwrap());
+        assert_eq!(others[row], Some(0.0));
+        if mu[row] == Some(0.0) {
+            positive += u32::from(work > 0.0);
+            assert_eq!(gain, 0.0, "{:?}: {work:e}", laws[row]);
+        } else {
+            assert!(gain == work || (gain == 0.0 && work < 1e-12));
+            gained += u32::from(gain > 0.0);
+        }
+    }
+    assert!(positive > 50 && gained > 500, "{positive} {gained}");
+}

@@ -3,6 +3,7 @@
 mod answers;
 mod batch;
 mod checksum;
+mod energy;
 mod hash;
 mod histogram;
 mod model;
@@ -51,10 +52,11 @@ fn of_length(array: &ArrayRef, rows: usize) -> Result<ArrayRef> {
     Ok(take(array, &all_first, None)?)
 }
 
-/// The scalar functions: `solve`, samplers, hashes, and three for each model.
+/// The scalar functions: `solve`, `energy_gained`, samplers, hashes, and three for each model.
 pub fn scalar_functions(models: &[Arc<Model>]) -> Vec<Arc<ScalarUDF>> {
     let mut all = vec![
         ScalarUDF::from(solve::Solve::default()),
+        ScalarUDF::from(energy::EnergyGained::default()),
         ScalarUDF::from(hash::OutcomeHash::default()),
         ScalarUDF::from(samplers::Linspace::default()),
     ];

@@ -153,7 +153,7 @@ pub fn figure(title: &str, m: &ReducedMatrix<f64>, mu: &[f64], phi: f64) -> Figu
     let label = Label::words("D: ").with("\u{3bc}", "c").then(", ").with("\u{3c6}", "c");
     panel.marks.push(Mark { label, sign: Sign::Dot, style: None, at: conics.place(found.mu_c, found.phi_c) });
     // The legend follows the letters.
-    panel.marks.sort_by(|a, b| a.label.plain().cmp(&b.label.plain()));
+    panel.marks.sort_by_key(|mark| mark.label.plain());
     Figure { panel_size: [560.0, 560.0], ..Figure::new(title) }.panel(panel)
 }
 
