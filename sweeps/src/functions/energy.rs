@@ -61,7 +61,11 @@ impl ScalarUDFImpl for EnergyGained {
     fn coerce_types(&self, types: &[DataType]) -> Result<Vec<DataType>> {
         let (DataType::Struct(given), rest) = (match types {
             [first, rest @ ..] if rest.is_empty() || rest.len() == 3 => (first, rest),
-            _ => return plan_err!("energy_gained takes the answer of a collision, or that of solve and vn, vt, vs"),
+            _ => {
+                return plan_err!(
+                    "energy_gained takes the answer of a collision, or that of solve and vn, vt, vs"
+                );
+            }
         }) else {
             return plan_err!("energy_gained takes the answer of a collision; {} is given", types[0]);
         };
@@ -89,7 +93,8 @@ impl ScalarUDFImpl for EnergyGained {
         let own = NEEDED.iter().filter_map(|name| collision.column_by_name(name));
         let columns: Vec<ArrayRef> =
             own.take(if approach.is_empty() { 9 } else { 6 }).chain(approach).map(Arc::clone).collect();
-        let columns: Vec<&Float64Array> = columns.iter().map(|column| column.as_primitive::<Float64Type>()).collect();
+        let columns: Vec<&Float64Array> =
+            columns.iter().map(|column| column.as_primitive::<Float64Type>()).collect();
         let gained = (0..rows).map(|row| {
             if collision.is_null(row) || columns.iter().any(|column| column.is_null(row)) {
                 return None;
