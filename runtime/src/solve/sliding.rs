@@ -33,6 +33,17 @@ pub(super) fn arc<T: Real>(
     speed: T,
     restitution: &mut Restitution<T>,
 ) -> Slide<T> {
+    arc_here(c, from, speed, restitution)
+}
+
+/// [`arc`] as a part of the caller.
+#[inline(always)]
+pub(super) fn arc_here<T: Real>(
+    c: &Contact<T>,
+    from: Vector2<T>,
+    speed: T,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
     let eps = T::default_epsilon();
     // The rounding error of h.
     let noise = eps * c.slip_size();
@@ -61,7 +72,7 @@ pub(super) fn arc<T: Real>(
         let fast = restitution.fast(c, slip);
         // The series needs no rates, unless v_n may turn.
         if stops && !fast && arc.settles(&at, slip / speed) && !arc.turns_ahead(&at) {
-            let (stop, since) = arc.stop(&at);
+            let (stop, since) = if T::INLINED { arc.stop_here::<true>(&at) } else { arc.stop(&at) };
             if restitution.passes(&at.state, &stop, c.together(stop.normal)) {
                 restitution.since(&stop, since);
                 return Slide::Stopped(stop);

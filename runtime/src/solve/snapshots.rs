@@ -37,6 +37,23 @@ impl<T: Real> Units<'_, T> {
         }
     }
 
+    /// The snapshot of an end of compression.
+    #[inline(always)]
+    fn compression(&self, state: &State<T>, slip_end: Option<&State<T>>, path: Path) -> Snapshot<T> {
+        let after = path.last();
+        let slides = match slip_end {
+            Some(end) => state.normal < end.normal,
+            None => path == Path::Sliding,
+        };
+        if slides {
+            self.snapshot(state, &self.tangential(state), Motion::Sliding)
+        } else if after == Motion::Renewal {
+            self.snapshot(state, &self.tangential(state), after)
+        } else {
+            self.snapshot(state, &Vector2::zeros(), after)
+        }
+    }
+
     /// The tangential velocity that the impulses give: (21), (22).
     #[inline]
     fn tangential(&self, state: &State<T>) -> Vector2<T> {
@@ -57,22 +74,13 @@ pub(super) fn phases<T: Real>(
     path: Path,
 ) -> Phases<T> {
     let after = path.last();
-    let compression = |state: State<T>| {
-        let slides = match &slip_end {
-            Some(end) => state.normal < end.normal,
-            None => path == Path::Sliding,
-        };
-        if slides {
-            units.snapshot(&state, &units.tangential(&state), Motion::Sliding)
-        } else if after == Motion::Renewal {
-            units.snapshot(&state, &units.tangential(&state), after)
-        } else {
-            units.snapshot(&state, &Vector2::zeros(), after)
-        }
+    let compression = |state: &Option<State<T>>| match state {
+        Some(state) => Some(units.compression(state, slip_end.as_ref(), path)),
+        None => None,
     };
-    let compression_end = restitution.first.map(compression);
+    let compression_end = compression(&restitution.first);
     let last_compression_end =
-        if restitution.compressions == 1 { compression_end } else { restitution.latest.map(compression) };
+        if restitution.compressions == 1 { compression_end } else { compression(&restitution.latest) };
     Phases {
         compression_end,
         last_compression_end,

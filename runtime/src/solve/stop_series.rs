@@ -34,7 +34,7 @@ struct Taps<T> {
 
 impl<T: Real> SlidingArc<T> {
     /// Whether 64 terms of the series suffice from here, where slip is `share` of the slip at the start.
-    #[inline]
+    #[inline(always)]
     pub fn settles(&self, point: &ArcPoint<T>, share: T) -> bool {
         let ratio = point.w / self.outer;
         if ratio <= constant(1.3) {
@@ -61,6 +61,12 @@ impl<T: Real> SlidingArc<T> {
     /// The state where slip stops (g < 0 at the stable end), and the normal work since compression ended.
     #[inline(never)]
     pub fn stop(&self, point: &ArcPoint<T>) -> (State<T>, T) {
+        self.stop_here::<false>(point)
+    }
+
+    /// [`Self::stop`] as a part of the caller, and with `HERE` its blocks likewise.
+    #[inline(always)]
+    pub fn stop_here<const HERE: bool>(&self, point: &ArcPoint<T>) -> (State<T>, T) {
         let (zero, one, three) = (T::zero(), T::one(), constant::<T>(3.0));
         let u = one / point.w;
         let (uu, middle) = (u * u, self.middle * u);
@@ -95,7 +101,11 @@ impl<T: Real> SlidingArc<T> {
         let before = point.state.normal / tau;
         let worked = point.state.work.abs() / (tau * tau * self.mu);
         for _ in 0..BLOCKS {
-            block(&mut rows, &mut sources, &mut taps, &mut total);
+            if HERE {
+                block_here(&mut rows, &mut sources, &mut taps, &mut total);
+            } else {
+                block(&mut rows, &mut sources, &mut taps, &mut total);
+            }
             let [[a, b, c, d], [a1, b1, c1, d1], ..] = rows;
             let [sum, .., rubbed] = total;
             // The last two terms, compared with the whole impulse and the whole work since the start.
@@ -130,6 +140,17 @@ impl<T: Real> SlidingArc<T> {
 /// calls.
 #[inline(never)]
 fn block<T: Real>(
+    rows: &mut [Row<T>; BLOCK + 2],
+    sources: &mut [Row<T>; BLOCK],
+    taps: &mut Taps<T>,
+    total: &mut Row<T>,
+) {
+    block_here(rows, sources, taps, total);
+}
+
+/// [`block`] as a part of the caller.
+#[inline(always)]
+fn block_here<T: Real>(
     rows: &mut [Row<T>; BLOCK + 2],
     sources: &mut [Row<T>; BLOCK],
     taps: &mut Taps<T>,
