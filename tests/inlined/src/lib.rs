@@ -1,42 +1,45 @@
-//! Collisions of the two sleds, of the planar double pendulum and of the arm, each as one routine.
+//! Collisions of the two sleds, of the planar double pendulum and of the arm, each as one routine, and two as
+//! usual to compare with.
 #![no_std]
 
-/// The number type: doubles on this machine, singles on a processor that has these only.
-#[cfg(target_pointer_width = "64")]
+/// The number type.
+#[cfg(not(feature = "single"))]
 pub type Number = f64;
-#[cfg(not(target_pointer_width = "64"))]
+/// The number type.
+#[cfg(feature = "single")]
 pub type Number = f32;
 
-type Answer<C> = Result<C, hodograph::CollisionError<Number>>;
+hodograph::mechanism!(
+    "../../models/two_sleds.mech",
+    specialise newton(bc_ac, law = Newton),
+    specialise poisson(bc_ac, law = Poisson),
+    specialise stronge(bc_ac, law = Stronge, budget = 8),
+    specialise any_law(bc_ac),
+);
+hodograph::mechanism!("../../models/planar_double_pendulum.mech", specialise poisson(tip_wall, law = Poisson));
+hodograph::mechanism!("../../models/arm_7dof.mech", specialise fixed(tool_plane, law = Newton, mu = 0.3, e = 0.5));
 
-hodograph::mechanism!("../../models/two_sleds.mech", specialise strike(bc_ac, law = Stronge));
-hodograph::mechanism!("../../models/planar_double_pendulum.mech", specialise strike(tip_wall, law = Poisson));
-hodograph::mechanism!("../../models/arm_7dof.mech", specialise strike(tool_plane, law = Newton, mu = 0.3, e = 0.5));
-
-pub fn sleds(
-    m: &two_sleds::TwoSleds<Number>,
-    q: &two_sleds::Coordinates<Number>,
-    u: &two_sleds::Speeds<Number>,
-    mu: Number,
-    e: Number,
-) -> Answer<two_sleds::Collision<Number>> {
-    m.strike(q, u, mu, e)
+macro_rules! compiled {
+    ($($name:ident: $module:ident $machine:ident $method:ident($($argument:ident: $of_type:ty),*);)*) => {$(
+        #[allow(missing_docs)]
+        pub fn $name(
+            machine: &$module::$machine<Number>,
+            q: &$module::Coordinates<Number>,
+            u: &$module::Speeds<Number>,
+            $($argument: $of_type),*
+        ) -> Result<$module::Collision<Number>, hodograph::CollisionError<Number>> {
+            machine.$method(q, u, $($argument),*)
+        }
+    )*};
 }
 
-pub fn pendulum(
-    m: &planar_double_pendulum::PlanarDoublePendulum<Number>,
-    q: &planar_double_pendulum::Coordinates<Number>,
-    u: &planar_double_pendulum::Speeds<Number>,
-    mu: Number,
-    e: Number,
-) -> Answer<planar_double_pendulum::Collision<Number>> {
-    m.strike(q, u, mu, e)
-}
-
-pub fn arm(
-    m: &arm_7dof::Arm7dof<Number>,
-    q: &arm_7dof::Coordinates<Number>,
-    u: &arm_7dof::Speeds<Number>,
-) -> Answer<arm_7dof::Collision<Number>> {
-    m.strike(q, u)
+compiled! {
+    sleds_newton: two_sleds TwoSleds newton(mu: Number, e: Number);
+    sleds_poisson: two_sleds TwoSleds poisson(mu: Number, e: Number);
+    sleds_stronge: two_sleds TwoSleds stronge(mu: Number, e: Number);
+    sleds_any_law: two_sleds TwoSleds any_law(mu: Number, e: Number, law: hodograph::Law);
+    sleds_shared: two_sleds TwoSleds collide_bc_ac(surface: &hodograph::Surface<Number>);
+    pendulum_poisson: planar_double_pendulum PlanarDoublePendulum poisson(mu: Number, e: Number);
+    arm_fixed: arm_7dof Arm7dof fixed();
+    arm_shared: arm_7dof Arm7dof collide_tool_plane(surface: &hodograph::Surface<Number>);
 }
