@@ -137,7 +137,8 @@ fn own_cargo() -> PathBuf {
 
 /// A cargo whose compiler has the core library for Cortex-M.
 fn cargo_for_cortex_m() -> Option<PathBuf> {
-    let folder = Command::new("rustc").args(["--print", "target-libdir", "--target", CORTEX_M]).output().ok()?;
+    let folder =
+        Command::new("rustc").args(["--print", "target-libdir", "--target", CORTEX_M]).output().ok()?;
     let folder = PathBuf::from(String::from_utf8_lossy(&folder.stdout).trim());
     let has_core = |folder: &Path| {
         let mut files = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -179,8 +180,8 @@ fn a_specialised_collision_calls_no_function_on_x86_64() {
     one_routine_each(&listing(&own_cargo(), "here", &["--features", "std"], ""), |_| false);
 }
 
-/// Without the standard library square roots are functions on these processors, as division of doubles is on
-/// others (docs/real-time.md).
+/// Without the standard library square roots are functions on these processors (docs/real-time.md). The reduction
+/// of angles beyond 128 rad is one of another package, whose section this listing does not show.
 #[test]
 fn a_specialised_collision_calls_square_roots_alone_on_cortex_m() {
     let Some(cargo) = cargo_for_cortex_m() else {
@@ -189,11 +190,11 @@ fn a_specialised_collision_calls_square_roots_alone_on_cortex_m() {
         );
         return;
     };
-    let is_root = |name: &str| name.contains("sqrt");
+    let allowed = |name: &str| name.contains("sqrt") || name.contains("6single6beyond");
     for (processor, features) in [("cortex-m4", "single"), ("cortex-m7", "")] {
         let arguments = ["--target", CORTEX_M, "--features", features];
         let listing = listing(&cargo, processor, &arguments, &format!("-Ctarget-cpu={processor}"));
-        one_routine_each(&listing, is_root);
+        one_routine_each(&listing, allowed);
     }
 }
 

@@ -141,8 +141,11 @@ fn far<T: Scalar, const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
 
 #[inline(always)]
 fn one_by_one<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
-    let pairs = angles.map(sin_cos);
-    (pairs.map(|(sine, _)| sine), pairs.map(|(_, cosine)| cosine))
+    let (mut sines, mut cosines) = (angles, angles);
+    for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
+        (*sine, *cosine) = sin_cos(*sine);
+    }
+    (sines, cosines)
 }
 
 #[cfg(test)]

@@ -196,7 +196,7 @@ pub(super) fn long<T: Real>(v: &Vector2<T>) -> T {
 }
 
 /// Whether slip counts as present, in units where v_n1 = -1.
-#[inline]
+#[inline(always)]
 pub(crate) fn slips<T: Real>(slip: T) -> bool {
     let eps = T::default_epsilon();
     slip > eps * eps * eps * eps
@@ -211,8 +211,34 @@ fn stop_together<T: Real>(restitution: &mut Restitution<T>, state: &State<T>) ->
 }
 
 /// Follows the arc after slip has stopped, to the end of the collision; `None` if the law never ends it.
-#[inline]
+#[inline(always)]
 fn after_slip<T: Real>(
+    contact: &Contact<T>,
+    state: &mut State<T>,
+    slips: bool,
+    restitution: &mut Restitution<T>,
+    sensitivity: &mut Sensitivity,
+) -> Option<(State<T>, Vector2<T>, Path)> {
+    if T::INLINED {
+        after_slip_here(contact, state, slips, restitution, sensitivity)
+    } else {
+        after_slip_apart(contact, state, slips, restitution, sensitivity)
+    }
+}
+
+#[inline]
+fn after_slip_apart<T: Real>(
+    contact: &Contact<T>,
+    state: &mut State<T>,
+    slips: bool,
+    restitution: &mut Restitution<T>,
+    sensitivity: &mut Sensitivity,
+) -> Option<(State<T>, Vector2<T>, Path)> {
+    after_slip_here(contact, state, slips, restitution, sensitivity)
+}
+
+#[inline(always)]
+fn after_slip_here<T: Real>(
     contact: &Contact<T>,
     state: &mut State<T>,
     slips: bool,

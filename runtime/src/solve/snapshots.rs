@@ -24,7 +24,7 @@ pub(crate) struct Units<'a, T: Real> {
 
 impl<T: Real> Units<'_, T> {
     /// The snapshot of a state with its tangential velocity.
-    #[inline]
+    #[inline(always)]
     pub fn snapshot(&self, state: &State<T>, tangential: &Vector2<T>, motion: Motion) -> Snapshot<T> {
         let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * self.scale;
         let velocity = Vector3::new(state.velocity, tangential.x, tangential.y) * self.speed;
@@ -55,7 +55,7 @@ impl<T: Real> Units<'_, T> {
     }
 
     /// The tangential velocity that the impulses give: (21), (22).
-    #[inline]
+    #[inline(always)]
     fn tangential(&self, state: &State<T>) -> Vector2<T> {
         let c = self.contact;
         let i = &state.tangential;
@@ -66,8 +66,32 @@ impl<T: Real> Units<'_, T> {
 }
 
 /// The snapshots of the states that the solver recorded.
-#[inline]
+#[inline(always)]
 pub(super) fn phases<T: Real>(
+    units: &Units<'_, T>,
+    restitution: &Restitution<T>,
+    slip_end: Option<State<T>>,
+    path: Path,
+) -> Phases<T> {
+    if T::INLINED {
+        phases_here(units, restitution, slip_end, path)
+    } else {
+        phases_apart(units, restitution, slip_end, path)
+    }
+}
+
+#[inline]
+fn phases_apart<T: Real>(
+    units: &Units<'_, T>,
+    restitution: &Restitution<T>,
+    slip_end: Option<State<T>>,
+    path: Path,
+) -> Phases<T> {
+    phases_here(units, restitution, slip_end, path)
+}
+
+#[inline(always)]
+fn phases_here<T: Real>(
     units: &Units<'_, T>,
     restitution: &Restitution<T>,
     slip_end: Option<State<T>>,

@@ -7,7 +7,7 @@
 //!
 //! Theory: docs/theory.md, section 6.
 
-use core::cell::Cell;
+use core::{cell::Cell, hint::black_box};
 
 use super::{
     restitution::State,
@@ -67,7 +67,9 @@ impl<T: Real> SlidingArc<T> {
     /// [`Self::stop`] as a part of the caller, and with `HERE` its blocks likewise.
     #[inline(always)]
     pub fn stop_here<const HERE: bool>(&self, point: &ArcPoint<T>) -> (State<T>, T) {
-        let (zero, one, three) = (T::zero(), T::one(), constant::<T>(3.0));
+        // Where the compiler knows that it is zero, it may call a function that fills memory.
+        let zero = if HERE { black_box(T::zero()) } else { T::zero() };
+        let (one, three) = (T::one(), constant::<T>(3.0));
         let u = one / point.w;
         let (uu, middle) = (u * u, self.middle * u);
         let [q0, q1, q2] = self.q;
@@ -102,7 +104,7 @@ impl<T: Real> SlidingArc<T> {
         let worked = point.state.work.abs() / (tau * tau * self.mu);
         for _ in 0..BLOCKS {
             if HERE {
-                block_here(&mut rows, &mut sources, &mut taps, &mut total);
+                block_here(&mut rows, &mut sources, &mut taps, &mut total, zero);
             } else {
                 block(&mut rows, &mut sources, &mut taps, &mut total);
             }
@@ -145,7 +147,7 @@ fn block<T: Real>(
     taps: &mut Taps<T>,
     total: &mut Row<T>,
 ) {
-    block_here(rows, sources, taps, total);
+    block_here(rows, sources, taps, total, T::zero());
 }
 
 /// [`block`] as a part of the caller.
@@ -155,12 +157,13 @@ fn block_here<T: Real>(
     sources: &mut [Row<T>; BLOCK],
     taps: &mut Taps<T>,
     total: &mut Row<T>,
+    zero: T,
 ) {
     let [p, q, r] = taps.base;
     let [dp, dq, dr] = taps.slope;
     let cells = Cell::from_mut(rows.as_mut_slice()).as_slice_of_cells();
     let one = [T::one(); 4];
-    let mut n = [T::zero(); 4];
+    let mut n = [zero; 4];
     for (window, source) in cells.windows(3).zip(sources.iter()) {
         let [before, last, out] = window else { return };
         let sum = mul_add(mul_add(n, dq, q), last.get(), *source);
@@ -181,7 +184,7 @@ fn block_here<T: Real>(
     let [first, second, ..] = rows;
     (*first, *second) = (a, b);
     for source in sources {
-        *source = [T::zero(); 4];
+        *source = [zero; 4];
     }
     let length = [constant::<T>(BLOCK as f64); 4];
     let [p, q, r] = &mut taps.base;
