@@ -226,7 +226,7 @@ fn after_slip<T: Real>(
     }
 }
 
-#[inline]
+#[inline(never)]
 fn after_slip_apart<T: Real>(
     contact: &Contact<T>,
     state: &mut State<T>,

@@ -34,7 +34,7 @@ impl<T: Real> Grazing<T> {
         if T::INLINED { self.moved_here(to) } else { self.moved_apart(to) }
     }
 
-    #[inline]
+    #[inline(never)]
     fn moved_apart(&mut self, to: T) {
         self.moved_here(to);
     }

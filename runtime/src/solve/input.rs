@@ -38,7 +38,7 @@ pub(crate) fn checked<T: Real>(
     if T::INLINED { checked_here(m, v, surface) } else { checked_apart(m, v, surface) }
 }
 
-#[inline]
+#[inline(never)]
 fn checked_apart<T: Real>(
     m: &ReducedMatrix<T>,
     v: &Vector3<T>,

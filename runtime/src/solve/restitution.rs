@@ -163,7 +163,7 @@ impl<T: Real> Restitution<T> {
         if T::INLINED { self.compressed_here(at) } else { self.compressed_apart(at) }
     }
 
-    #[inline]
+    #[inline(never)]
     fn compressed_apart(&mut self, at: &State<T>) -> bool {
         self.compressed_here(at)
     }
@@ -327,7 +327,7 @@ impl<T: Real> Restitution<T> {
     }
 
     /// [`Self::follow_linear`] as a function of its own.
-    #[inline]
+    #[inline(never)]
     pub fn follow_linear_apart(
         &mut self,
         from: &State<T>,

@@ -31,7 +31,7 @@ impl Sensitivity {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn of_start_apart<T: Real>(contact: &Contact<T>, tangential: &Vector2<T>, slip: T) -> Self {
         Self::of_start_here(contact, tangential, slip)
     }
@@ -69,7 +69,7 @@ impl Sensitivity {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn ended_apart<T: Real>(
         &mut self,
         contact: &Contact<T>,

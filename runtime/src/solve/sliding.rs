@@ -26,7 +26,7 @@ const NEARLY: f64 = 131_072.0;
 
 /// Follows the sliding arc from the tangential velocity `from` of length `speed`, for a contact whose rates
 /// are neither very large nor very small.
-#[inline]
+#[inline(never)]
 pub(super) fn arc<T: Real>(
     c: &Contact<T>,
     from: Vector2<T>,

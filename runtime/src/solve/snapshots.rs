@@ -80,7 +80,7 @@ pub(super) fn phases<T: Real>(
     }
 }
 
-#[inline]
+#[inline(never)]
 fn phases_apart<T: Real>(
     units: &Units<'_, T>,
     restitution: &Restitution<T>,

@@ -50,7 +50,7 @@ pub(crate) fn straight<T: Real>(
 }
 
 /// [`straight`] as a function of its own.
-#[inline]
+#[inline(never)]
 pub(super) fn straight_apart<T: Real>(
     c: &Contact<T>,
     d: Vector2<T>,

@@ -51,7 +51,7 @@ impl<T: Real> Contact<T> {
         if T::INLINED { self.renewal_here() } else { self.renewal_apart() }
     }
 
-    #[inline]
+    #[inline(never)]
     fn renewal_apart(&self) -> Vector2<T> {
         self.renewal_here()
     }

@@ -59,7 +59,7 @@ impl<T: Real> Restitution<T> {
         }
     }
 
-    #[inline]
+    #[inline(never)]
     fn verify_apart(
         &self,
         c: &Contact<T>,

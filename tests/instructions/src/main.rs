@@ -89,7 +89,8 @@ fn entry(line: &str) -> Option<(String, f64)> {
 
 /// Prints instructions and times of the usual collisions and of specialised ones.
 fn specialised() -> Result<(), String> {
-    let measured = build()?;
+    // As programs are built that ask for nothing.
+    let measured = build("plain", "")?;
     let (counts, unfinished) = profile(&measured, "specialised")?;
     if !unfinished.is_empty() {
         return Err(format!("valgrind does not know an instruction of {}", unfinished.join(", ")));
@@ -118,25 +119,25 @@ fn specialised() -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the program that is measured.
-fn build() -> Result<PathBuf, String> {
+/// Builds the program that is measured, in a folder of its own for these flags of the compiler.
+fn build(folder: &str, flags: &str) -> Result<PathBuf, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let target = here.join("target/measured");
+    let target = here.join("target").join(folder);
     execute(
         Command::new("cargo")
             .args(["build", "--release", "--locked", "--package", "measured", "--manifest-path"])
             .arg(here.join("Cargo.toml"))
             .arg("--target-dir")
             .arg(&target)
-            // valgrind executes no AVX-512.
-            .env("RUSTFLAGS", "-C target-cpu=x86-64-v3"),
+            .env("RUSTFLAGS", flags),
     )?;
     Ok(target.join("release/measured"))
 }
 
 /// Instructions of the routines, and the subjects of which not all were counted.
 fn count() -> Result<(Counts, Vec<String>), String> {
-    let measured = build()?;
+    // valgrind executes no AVX-512.
+    let measured = build("measured", "-C target-cpu=x86-64-v3")?;
     let subjects = execute(&mut Command::new(&measured))?;
     let (mut counts, mut in_part) = (Counts::new(), Vec::new());
     for subject in subjects.lines() {
@@ -217,6 +218,6 @@ fn routine(function: &str) -> Option<String> {
     let mut parts = rest.split("::").map(|part| part.split([' ', '\'']).next().unwrap_or(part));
     let (model, name) = (parts.next()?, parts.next()?);
     // What stands deeper is called by routines.
-    (parts.next().is_none() && model != "Bench" && !matches!(name, "run" | "{{closure}}"))
+    (parts.next().is_none() && model != "Bench" && !matches!(name, "run" | "states" | "times" | "{{closure}}"))
         .then(|| format!("{model}::{name}"))
 }
