@@ -5,7 +5,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use hodograph_generator::emit::{self, Options};
+use hodograph_generator::emit::{self, Options, Requests};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::rust_names::{self, snake_case};
 use hodograph_generator::source::Source;
@@ -35,7 +35,7 @@ fn main() {
             krate: "hodograph".parse().expect("a path"),
             module: module.clone(),
             tracked: vec![],
-            sets: vec![],
+            requests: Requests::default(),
         };
         let Ok(tokens) = emit::module(&mechanism, &artifact.program, &options) else { continue };
         write_module(&mut text, &module, &mechanism, &tokens.to_string());

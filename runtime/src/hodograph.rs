@@ -5,7 +5,7 @@ use nalgebra::{Vector2, Vector3};
 use crate::{
     Impact, ImpactError, Law, Motion, ReducedMatrix, Scalar, Snapshot, Surface,
     scalar::constant,
-    solve::{Contact, Restitution, Slide, State, Terminal, Units, checked, collide, slide, slips},
+    solve::{AnyArc, Contact, Restitution, Slide, State, Terminal, Units, checked, collide, slide, slips},
 };
 
 /// A solved collision that can be evaluated at any normal impulse: the curve of v_s over v_t that the paper
@@ -52,7 +52,7 @@ impl<T: Scalar> Hodograph<T> {
         let matrix = &checked(matrix, approach, surface)?.unwrap_or(*matrix);
         let mut restitution = Restitution::new(surface.law, surface.e);
         restitution.thorough = true;
-        let impact = collide(matrix, approach, -approach.x, surface, restitution, slide)?;
+        let impact = collide::<AnyArc, T>(matrix, approach, -approach.x, surface, restitution)?;
         let terminal = (impact.path.last() != Motion::Sliding).then(|| {
             let Terminal { push, gain, rate, .. } = Terminal::of(&Contact::new(matrix, surface.mu));
             (push, gain, rate)

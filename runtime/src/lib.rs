@@ -75,6 +75,7 @@ mod saltation;
 mod scalar;
 mod sensitivity;
 mod solve;
+mod specialised;
 pub mod structure;
 mod surface;
 mod tangential_block;

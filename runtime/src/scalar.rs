@@ -13,6 +13,8 @@ use nalgebra::{
 };
 use num_traits::{One, Zero};
 
+use crate::Law;
+
 /// A real scalar the solver works in: `f64`, `f32`, or a dual number that carries derivatives.
 ///
 /// Implemented for every `Copy` type with nalgebra's [`RealField`]; there is nothing to implement by hand.
@@ -41,6 +43,12 @@ pub(crate) trait Real:
     + MulAssign
     + DivAssign
 {
+    /// The law of restitution of all collisions of this number type, where there is but one.
+    const LAW: Option<Law> = None;
+    /// Whether the solver becomes a part of the routine that calls it. Else its longer functions are shared by
+    /// all contacts.
+    const INLINED: bool = false;
+
     /// Whether the numbers may carry derivatives: then iterations go on until these have settled too.
     fn refined() -> bool;
 

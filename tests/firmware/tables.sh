@@ -103,5 +103,8 @@ and collisions of a second contact|rolling_disc,second|solver
 two sleds and rolling disc: accelerations and collisions|two_sleds,rolling_disc,collide|solver
 arm of seven joints: accelerations|arm_7dof|accelerations
 and collisions|arm_7dof,collide|solver
+two sleds: accelerations, and collisions as one routine, Stronge's law|two_sleds,one_routine|solver
+planar double pendulum: accelerations, and collisions as one routine|planar_double_pendulum,one_routine|closed
+arm of seven joints: accelerations, and collisions as one routine|arm_7dof,one_routine|solver
 ROWS
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use hodograph_generator::expand::Sets;
+use hodograph_generator::expand::Arguments;
 use hodograph_generator::reading;
 use hodograph_generator::source::Source;
 use proc_macro2::{TokenStream, TokenTree};
@@ -52,12 +52,12 @@ pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
             let TokenTree::Group(group) = tree else { continue };
             if index >= 2 && is_invocation(&trees[index - 2], &trees[index - 1]) {
                 let (from, to) = (group.span_open().byte_range().end, group.span_close().byte_range().start);
-                let sets = Sets::take(group.stream().into_iter().collect());
-                match sets.rest.into_iter().next() {
+                let arguments = Arguments::take(group.stream().into_iter().collect());
+                match arguments.rest.into_iter().next() {
                     Some(TokenTree::Ident(_) | TokenTree::Punct(_)) => {
-                        let of_sets: Vec<Range<usize>> =
-                            sets.taken.iter().filter_map(|set| places(set)).collect();
-                        let source = Source::file(name.clone(), blanked(&text, from..to, &of_sets));
+                        let taken: Vec<Range<usize>> =
+                            arguments.taken.iter().filter_map(|argument| places(argument)).collect();
+                        let source = Source::file(name.clone(), blanked(&text, from..to, &taken));
                         sources.push((from, Invocation::Inline(source)));
                     }
                     Some(TokenTree::Literal(literal)) => {
@@ -123,7 +123,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("lib.rs");
         let text = "// mechanism! { no }\nhodograph::mechanism! {\n    mechanism Té;\n}\nmod a { mechanism!(\"b.mech\", evaluate x(é)); \
-                    mechanism! { evaluate é(forcing); mechanism B; evaluate y(é) } }\nfn f() -> &'static str { \"mechanism! { no }\" }\n";
+                    mechanism! { evaluate é(forcing); mechanism B; evaluate y(é); specialise z(é, e = 1) } }\nfn f() -> &'static str { \"mechanism! { no }\" }\n";
         std::fs::write(&path, text).unwrap();
         let found = models(&path).unwrap();
         let [Invocation::Inline(first), Invocation::File(file), Invocation::Inline(last)] = &found[..] else {

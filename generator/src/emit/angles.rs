@@ -55,6 +55,7 @@ impl Emitter<'_> {
     /// The statements that compute these pairs.
     pub fn sines_and_cosines(&self, pairs: &[Value]) -> TokenStream {
         let krate = self.krate;
+        let function = if self.inlined { quote!(sines_cosines_inlined) } else { quote!(sines_cosines) };
         let groups = pairs.chunks(MOST).map(|group| {
             if let [pair] = *group {
                 return self.statement(pair, Place::Method).unwrap_or_default();
@@ -63,7 +64,7 @@ impl Emitter<'_> {
             let sines = group.iter().map(|&pair| local(pair));
             let cosines = group.iter().map(|&pair| format_ident!("{}c", local(pair)));
             quote! {
-                let ([#(#sines),*], [#(#cosines),*]) = #krate::generated::sines_cosines([#(#angles),*]);
+                let ([#(#sines),*], [#(#cosines),*]) = #krate::generated::#function([#(#angles),*]);
             }
         });
         groups.collect()

@@ -191,18 +191,15 @@ impl Emitter<'_> {
              exists (Painleve's paradox). The normal velocity is taken for zero; the speeds change as in `{collide}`. Where f > 0 or without slip \
              a finite force exists, and the error is `NoImpact`."
         ));
-        // What the symbols of the reduced matrix show selects a closed form.
-        let closed = |marker: TokenStream| quote!(#krate::generated::resolve_structured::<#krate::structure::#marker, T>);
-        let resolve = match self.program.structures.get(contact) {
-            Some(Structure::Planar) => closed(quote!(Planar)),
-            Some(Structure::Balanced) => closed(quote!(Balanced)),
-            Some(Structure::Diagonal) => closed(quote!(Diagonal)),
-            Some(Structure::Isotropic) => closed(quote!(Isotropic)),
-            Some(Structure::General) | None => quote!(#krate::generated::resolve),
+        let resolve = match self.structure(contact) {
+            Some(marker) => {
+                quote!(#krate::generated::resolve_structured::<#krate::structure::#marker, T>)
+            }
+            None => quote!(#krate::generated::resolve),
         };
         let arguments = self.collision_arguments(contact);
         let (signature, passed) = (self.signature(arguments), self.passed(arguments));
-        let body = self.struck(contact);
+        let body = self.struck(contact, &quote!(resolve(&contact)));
         let result = quote!(::core::result::Result<Collision<T>, #krate::CollisionError<T>>);
         quote! {
             #docs
@@ -229,8 +226,20 @@ impl Emitter<'_> {
         }
     }
 
-    /// The statements from a state to a solved collision; `resolve` solves it.
-    fn struck(&self, contact: usize) -> TokenStream {
+    /// The closed form that the symbols of the reduced matrix allow.
+    pub fn structure(&self, contact: usize) -> Option<TokenStream> {
+        match self.program.structures.get(contact) {
+            Some(Structure::Planar) => Some(quote!(Planar)),
+            Some(Structure::Balanced) => Some(quote!(Balanced)),
+            Some(Structure::Diagonal) => Some(quote!(Diagonal)),
+            Some(Structure::Isotropic) => Some(quote!(Isotropic)),
+            Some(Structure::General) | None => None,
+        }
+    }
+
+    /// The statements from a state to a solved collision; `solved` is the expression that solves that of
+    /// `contact`.
+    pub fn struck(&self, contact: usize, solved: &TokenStream) -> TokenStream {
         let known = self.known_contact(contact);
         let speeds: Vec<TokenStream> = self.speeds.fields().map(|field| quote!(u.#field)).collect();
         let speeds = self.after(speeds, self.contact_output(contact, ContactQuantity::Response));
@@ -246,7 +255,7 @@ impl Emitter<'_> {
         quote! {
             #body
             let contact = #known;
-            let hit = resolve(&contact)?;
+            let hit = #solved?;
             let [[i0, i1, i2]] = hit.impulse.data.0;
             ::core::result::Result::Ok(Collision {
                 speeds: #speeds,

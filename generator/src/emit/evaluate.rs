@@ -8,10 +8,9 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
-use super::Emitter;
 use super::routine::Routine;
-use crate::model::mechanism::Mechanism;
-use crate::program::{Program, Quantity};
+use super::{Emitter, Requests};
+use crate::program::Quantity;
 use crate::rust_names::{RECORDS, docs, is_keyword, pascal_case};
 use crate::suggest::nearest;
 
@@ -32,15 +31,6 @@ impl Set {
     pub fn type_name(&self) -> String {
         pascal_case(&self.name.to_string())
     }
-}
-
-/// What is wrong with sets, each with its place. Sets without mistakes are emitted by [`super::module`].
-pub fn mistakes(mechanism: &Mechanism, program: &Program, sets: &[Set]) -> Vec<(Span, String)> {
-    if super::fits(mechanism, program).is_err() {
-        return Vec::new();
-    }
-    let krate = quote!(hodograph);
-    Emitter::new(mechanism, program, &krate).mistakes_of(sets)
 }
 
 impl Emitter<'_> {
@@ -112,9 +102,10 @@ impl Emitter<'_> {
         (record, method)
     }
 
-    /// What is wrong with sets.
-    pub fn mistakes_of(&self, sets: &[Set]) -> Vec<(Span, String)> {
-        if sets.is_empty() {
+    /// What is wrong with requests.
+    pub fn mistakes_of(&self, requests: &Requests) -> Vec<(Span, String)> {
+        let Requests { sets, specialised } = requests;
+        if sets.is_empty() && specialised.is_empty() {
             return Vec::new();
         }
         let routines: BTreeSet<String> =
@@ -135,18 +126,41 @@ impl Emitter<'_> {
                 }
             }
         }
+        for (number, collision) in specialised.iter().enumerate() {
+            let name = &collision.name;
+            let before = sets.iter().map(|set| &set.name);
+            let mut before = before.chain(specialised[..number].iter().map(|other| &other.name));
+            if let Some(message) = self.method_mistake(name, &taken, "collision") {
+                found.push((name.span(), message));
+            } else if before.any(|other| other == name) {
+                let message =
+                    format!("there is a method `{name}` already: choose another name for the collision");
+                found.push((name.span(), message));
+            }
+            found.extend(self.contact_mistake(collision));
+        }
         found
+    }
+
+    /// What is wrong with the name of a method, which `what` asks for.
+    fn method_mistake(&self, name: &Ident, taken: &BTreeSet<String>, what: &str) -> Option<String> {
+        let (name, machine) = (name.to_string(), &self.name);
+        let starts_well = pascal_case(&name).starts_with(|c: char| c.is_alphabetic());
+        if is_keyword(&name) || name.starts_with("r#") || !starts_well {
+            Some(format!("`{name}` cannot be the name of a method: choose another name for the {what}"))
+        } else if taken.contains(&name) {
+            Some(format!("`{machine}` has a method `{name}` already: choose another name for the {what}"))
+        } else {
+            None
+        }
     }
 
     /// What is wrong with the name of a set.
     fn name_mistake(&self, set: &Set, before: &[Set], taken: &BTreeSet<String>) -> Option<String> {
         let (name, of_type) = (set.name.to_string(), set.type_name());
-        let machine = &self.name;
-        let records = RECORDS.contains(&of_type.as_str()) || *machine == of_type;
-        if is_keyword(&name) || name.starts_with("r#") || !of_type.starts_with(|c: char| c.is_alphabetic()) {
-            Some(format!("`{name}` cannot be the name of a method: choose another name for the set"))
-        } else if taken.contains(&name) {
-            Some(format!("`{machine}` has a method `{name}` already: choose another name for the set"))
+        let records = RECORDS.contains(&of_type.as_str()) || self.name == of_type;
+        if let Some(message) = self.method_mistake(&set.name, taken, "set") {
+            Some(message)
         } else if records {
             Some(format!(
                 "the set `{name}` gives a struct `{of_type}`, and the module has a type of this name already: choose another name"

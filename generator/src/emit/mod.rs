@@ -23,12 +23,13 @@ mod record;
 mod routine;
 mod saltation;
 mod slices;
+mod specialised;
 mod split;
 mod stub;
 mod validation;
 mod values;
 
-use proc_macro2::{Ident, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::model::mechanism::Mechanism;
@@ -40,7 +41,8 @@ use crate::rust_names;
 use record::Record;
 
 pub use conformance::fits;
-pub use evaluate::{Set, mistakes};
+pub use evaluate::Set;
+pub use specialised::{LAWS, Specialised};
 pub use stub::stub;
 
 /// How a module is emitted.
@@ -52,8 +54,26 @@ pub struct Options {
     pub module: String,
     /// expressions of type `&'static str`, each the path of a file that the module depends on
     pub tracked: Vec<TokenStream>,
-    /// sets of quantities that get a method each; [`mistakes`] finds what is wrong with them
+    /// the methods that the user asks for; [`mistakes`] finds what is wrong with them
+    pub requests: Requests,
+}
+
+/// Methods that the user asks for beside those of every module.
+#[derive(Clone, Debug, Default)]
+pub struct Requests {
+    /// sets of quantities
     pub sets: Vec<Set>,
+    /// specialised collisions
+    pub specialised: Vec<Specialised>,
+}
+
+/// What is wrong with requests, each with its place. Those without mistakes are emitted by [`module`].
+pub fn mistakes(mechanism: &Mechanism, program: &Program, requests: &Requests) -> Vec<(Span, String)> {
+    if fits(mechanism, program).is_err() {
+        return Vec::new();
+    }
+    let krate = quote!(hodograph);
+    Emitter::new(mechanism, program, &krate).mistakes_of(requests)
 }
 
 /// The module of a mechanism. The error says why the program is not one of this mechanism.
@@ -70,7 +90,7 @@ fn module_in_parts(
 ) -> Result<TokenStream, String> {
     conformance::fits(mechanism, program)?;
     let emitter = Emitter { longest, ..Emitter::new(mechanism, program, &options.krate) };
-    if let Some((_, mistake)) = emitter.mistakes_of(&options.sets).into_iter().next() {
+    if let Some((_, mistake)) = emitter.mistakes_of(&options.requests).into_iter().next() {
         return Err(mistake);
     }
     let krate = &options.krate;
@@ -90,7 +110,8 @@ fn module_in_parts(
     let derivatives = emitter.derivatives_record();
     let contact_derivatives = emitter.contact_derivatives_record();
     let traits = emitter.traits();
-    let (of_sets, sets) = emitter.sets(&options.sets);
+    let (of_sets, sets) = emitter.sets(&options.requests.sets);
+    let specialised = emitter.specialised(&options.requests.specialised);
     let name = &emitter.name;
     Ok(quote! {
         #docs
@@ -114,6 +135,7 @@ fn module_in_parts(
                 #methods
                 #contacts
                 #sets
+                #specialised
             }
 
             #traits
@@ -141,6 +163,8 @@ struct Emitter<'a> {
     kinematic_inputs: bool,
     /// the greatest number of operations in one function
     longest: usize,
+    /// whether what other routines call becomes part of them
+    inlined: bool,
 }
 
 impl<'a> Emitter<'a> {
@@ -173,6 +197,7 @@ impl<'a> Emitter<'a> {
             uses_time,
             kinematic_inputs: false,
             longest: split::LONGEST,
+            inlined: false,
         };
         emitter.unit_quaternions();
         emitter.kinematic_inputs = emitter.find_kinematic_inputs();

@@ -1,6 +1,6 @@
 //! A small module under review, and the properties that every module has.
 
-use super::{Options, Program, module, module_in_parts};
+use super::{Options, Program, Requests, module, module_in_parts};
 use quote::quote;
 
 use crate::arithmetic::Function;
@@ -149,7 +149,8 @@ fn derived() -> Derived {
 
 fn emitted() -> String {
     let krate = quote!(::hodograph);
-    let options = Options { krate, module: "pendulum".into(), tracked: vec![], sets: vec![] };
+    let options =
+        Options { krate, module: "pendulum".into(), tracked: vec![], requests: Requests::default() };
     let tokens = module(&mechanism(), &Program::new(&derived()), &options).unwrap();
     prettyplease::unparse(&syn::parse2(tokens).expect("generated code is Rust"))
 }
@@ -174,8 +175,12 @@ fn the_module_is_the_reviewed_one() {
 fn structure_selects_the_closed_form() {
     let call = |structure| {
         let derived = Derived { structures: vec![structure], ..derived() };
-        let options =
-            Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], sets: vec![] };
+        let options = Options {
+            krate: quote!(::hodograph),
+            module: "pendulum".into(),
+            tracked: vec![],
+            requests: Requests::default(),
+        };
         module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string()
     };
     for (structure, marker) in [
@@ -201,8 +206,12 @@ fn a_guard_is_checked_where_all_of_it_is_known() {
     let coordinate = g.input(Input::Coordinate(0));
     let scale = g.sum([derived.guards[0].value, coordinate]);
     derived.guards[0].scale = Some(scale);
-    let options =
-        Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], sets: vec![] };
+    let options = Options {
+        krate: quote!(::hodograph),
+        module: "pendulum".into(),
+        tracked: vec![],
+        requests: Requests::default(),
+    };
     let text = module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string();
     let (before, check) = text.split_once("fn check (").expect("a check");
     let (check, after) = check.split_once("impl").expect("more");
@@ -229,8 +238,12 @@ fn only_results_that_no_other_depends_on_are_checked() {
         columns: 1,
         values: vec![first, second, third],
     });
-    let options =
-        Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], sets: vec![] };
+    let options = Options {
+        krate: quote!(::hodograph),
+        module: "pendulum".into(),
+        tracked: vec![],
+        requests: Requests::default(),
+    };
     let text = module(&mechanism(), &Program::new(&derived), &options).unwrap().to_string();
     let (_, method) = text.split_once("pub fn velocity_p (").expect("the method");
     let (_, check) = method.split_once("all_finite ([").expect("a check");
@@ -250,7 +263,7 @@ fn long_routines_come_in_parts() {
         krate: quote!(::hodograph),
         module: "pendulum_in_parts".into(),
         tracked: vec![],
-        sets: vec![],
+        requests: Requests::default(),
     };
     let tokens = module_in_parts(&mechanism(), &Program::new(&derived()), &options, 3).unwrap();
     reviewed("pendulum_in_parts.rs", &prettyplease::unparse(&syn::parse2(tokens).expect("parts are Rust")));
@@ -271,7 +284,12 @@ fn the_same_program_gives_the_same_code() {
 fn a_foreign_program_is_refused() {
     let mut mechanism = mechanism();
     mechanism.coordinates.clear();
-    let options = Options { krate: quote!(::hodograph), module: "x".into(), tracked: vec![], sets: vec![] };
+    let options = Options {
+        krate: quote!(::hodograph),
+        module: "x".into(),
+        tracked: vec![],
+        requests: Requests::default(),
+    };
     let error = module(&mechanism, &Program::new(&derived()), &options).unwrap_err();
     assert!(error.contains("Coordinate(0)"), "{error}");
 }

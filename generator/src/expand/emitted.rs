@@ -1,27 +1,27 @@
-//! Emits the module of a mechanism with its sets, or tells what is wrong with these.
+//! Emits the module of a mechanism with what its arguments ask for, or tells what is wrong with these.
 
 use proc_macro2::{Span, TokenStream};
 
+use super::arguments::Arguments;
 use super::report;
-use super::sets::Sets;
 use crate::emit::{self, Options};
 use crate::model::mechanism::Mechanism;
 use crate::program::Program;
 
-/// The module of a mechanism whose program `found` finds, or the errors: those about sets where they stand,
+/// The module of a mechanism whose program `found` finds, or the errors: those about arguments where they stand,
 /// others at `at`.
 pub fn emitted(
     mechanism: &Mechanism,
-    sets: &Sets,
+    arguments: &Arguments,
     at: Span,
     options: &Options,
     found: impl FnOnce() -> Result<Program, String>,
 ) -> Result<TokenStream, TokenStream> {
-    if let Some(errors) = sets.errors(&[]) {
+    if let Some(errors) = arguments.errors(&[]) {
         return Err(errors);
     }
     let program = found().map_err(|message| report::error(at, at, &message))?;
-    if let Some(errors) = sets.errors(&emit::mistakes(mechanism, &program, &sets.sets)) {
+    if let Some(errors) = arguments.errors(&emit::mistakes(mechanism, &program, &arguments.requests)) {
         return Err(errors);
     }
     emit::module(mechanism, &program, options).map_err(|message| report::error(at, at, &message))

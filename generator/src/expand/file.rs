@@ -2,17 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
-use proc_macro2::{Span, TokenStream, TokenTree};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::quote;
+use syn::ext::IdentExt;
+use syn::parse::{Parse, ParseStream, Parser};
+use syn::{Error, LitStr, Result, Token};
 
+use super::arguments::{Arguments, WORDS};
 use super::emitted::emitted;
-use super::sets::Sets;
 use super::{derivation, report};
 use crate::check::check;
 use crate::compiler;
 use crate::emit;
 use crate::rust_names;
 use crate::source::Source;
+use crate::suggest::nearest;
 use crate::syntax::token::TokenKind;
 
 /// The path that the user wrote, and where.
@@ -21,25 +25,36 @@ pub struct ModelPath {
     span: Span,
 }
 
-/// The path, if the input is one: a string, perhaps with a comma.
-pub fn path(trees: &[TokenTree]) -> Option<ModelPath> {
-    let literal = match trees {
-        [literal] => literal,
-        [literal, TokenTree::Punct(comma)] if comma.as_char() == ',' => literal,
-        _ => return None,
+/// A string, perhaps with a comma. Who writes more is told which arguments there are.
+impl Parse for ModelPath {
+    fn parse(input: ParseStream) -> Result<Self> {
+        let path = input.parse::<LitStr>()?;
+        let path = ModelPath { text: path.value(), span: path.span() };
+        let separated = input.parse::<Option<Token![,]>>()?.is_some();
+        if input.is_empty() {
+            return Ok(path);
+        }
+        let words = WORDS.map(|word| format!("`{word}`")).join(" and ");
+        let message = match input.fork().call(Ident::parse_any).ok().map(|word| word.to_string()) {
+            Some(word) if separated => match nearest(&word, WORDS.into_iter()) {
+                Some(meant) => format!("there is no argument `{word}`; did you mean `{meant}`?"),
+                None => format!("there is no argument `{word}`: the path is followed by {words}"),
+            },
+            _ if separated => format!("after the path of a model there are only the arguments {words}"),
+            _ => "expected a comma after the path of the model".to_owned(),
+        };
+        Err(Error::new_spanned(input.parse::<TokenStream>()?, message))
+    }
+}
+
+/// The path, if the input begins with a string.
+pub fn path(trees: &[TokenTree]) -> Option<Result<ModelPath>> {
+    let tokens: TokenStream = trees.iter().cloned().collect();
+    let begins = |input: ParseStream| {
+        let begins = input.peek(LitStr);
+        input.parse::<TokenStream>().map(|_| begins)
     };
-    // A literal that another macro passed on stands in an invisible group.
-    let literal = match literal {
-        TokenTree::Group(group) => group.stream().into_iter().next()?,
-        literal => literal.clone(),
-    };
-    let TokenTree::Literal(literal) = literal else { return None };
-    let quoted = literal.to_string();
-    let text = match quoted.strip_prefix('r') {
-        Some(raw) => raw.trim_matches('#').strip_prefix('"')?.strip_suffix('"')?.to_string(),
-        None => quoted.strip_prefix('"')?.strip_suffix('"')?.replace("\\\\", "\\").replace("\\\"", "\""),
-    };
-    Some(ModelPath { text, span: literal.span() })
+    begins.parse2(tokens.clone()).is_ok_and(|begins| begins).then(|| syn::parse2(tokens))
 }
 
 /// A file that was found, and the expression that names it in generated code.
@@ -49,7 +64,7 @@ struct Place {
     in_package: bool,
 }
 
-fn find(path: &ModelPath, package: &Path) -> Result<Place, String> {
+fn find(path: &ModelPath, package: &Path) -> std::result::Result<Place, String> {
     let in_package = package.join(&path.text);
     if in_package.is_file() {
         return Ok(Place { path: in_package, in_package: true });
@@ -77,7 +92,7 @@ fn tracked(text: &str, in_package: bool) -> TokenStream {
 }
 
 /// The module of a model in a file.
-pub fn expand(path: &ModelPath, sets: &Sets, krate: &TokenStream, package: &Path) -> TokenStream {
+pub fn expand(path: &ModelPath, arguments: &Arguments, krate: &TokenStream, package: &Path) -> TokenStream {
     let stem = Path::new(&path.text)
         .file_stem()
         .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
@@ -89,7 +104,7 @@ pub fn expand(path: &ModelPath, sets: &Sets, krate: &TokenStream, package: &Path
             return if stem.is_empty() {
                 error
             } else {
-                emit::stub(&module, &stem, &error, &[], &sets.types())
+                emit::stub(&module, &stem, &error, &[], &arguments.types())
             };
         }
     };
@@ -97,7 +112,7 @@ pub fn expand(path: &ModelPath, sets: &Sets, krate: &TokenStream, package: &Path
     let source = Source::read_as(path.text.clone(), &place.path);
     let name = name(&source).unwrap_or(stem);
     let failed = |error: &TokenStream, tracked: &[TokenStream]| {
-        emit::stub(&module, &name, error, tracked, &sets.types())
+        emit::stub(&module, &name, error, tracked, &arguments.types())
     };
     let checked = check(&source);
     let Some(mechanism) = checked.mechanism else {
@@ -109,10 +124,10 @@ pub fn expand(path: &ModelPath, sets: &Sets, krate: &TokenStream, package: &Path
     if kept.is_file() {
         tracked_files.push(tracked(&shown, place.in_package));
     }
-    let (krate, files, sets_asked) = (krate.clone(), tracked_files.clone(), sets.sets.clone());
-    let options = emit::Options { krate, module: module.clone(), tracked: files, sets: sets_asked };
+    let (krate, files, requests) = (krate.clone(), tracked_files.clone(), arguments.requests.clone());
+    let options = emit::Options { krate, module: module.clone(), tracked: files, requests };
     let found = || derivation::find(&source, &mechanism, &kept, &shown, &command);
-    let result = emitted(&mechanism, sets, path.span, &options, found);
+    let result = emitted(&mechanism, arguments, path.span, &options, found);
     result.unwrap_or_else(|errors| failed(&errors, &tracked_files))
 }
 

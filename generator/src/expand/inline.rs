@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
+use super::arguments::Arguments;
 use super::emitted::emitted;
-use super::sets::Sets;
 use super::{derivation, report};
 use crate::check::check;
 use crate::compiler;
@@ -16,7 +16,7 @@ use crate::rust_names;
 use crate::source::Source;
 
 /// The module of an inline model.
-pub fn expand(model: TokenStream, sets: &Sets, krate: &TokenStream, package: &Path) -> TokenStream {
+pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, package: &Path) -> TokenStream {
     // The tokens are the user's; the call itself stands in the wrapper of the runtime.
     let first = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
     let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
@@ -24,7 +24,7 @@ pub fn expand(model: TokenStream, sets: &Sets, krate: &TokenStream, package: &Pa
     let checked = check(&source);
     let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let failed = |error: &TokenStream, tracked: &[TokenStream]| match &name {
-        Some(name) => emit::stub(&module, name, error, tracked, &sets.types()),
+        Some(name) => emit::stub(&module, name, error, tracked, &arguments.types()),
         // what has no name nobody refers to
         None => error.clone(),
     };
@@ -38,10 +38,10 @@ pub fn expand(model: TokenStream, sets: &Sets, krate: &TokenStream, package: &Pa
     let tracked =
         path.is_file().then(|| quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative)));
     let tracked: Vec<TokenStream> = tracked.into_iter().collect();
-    let (krate, files, sets_asked) = (krate.clone(), tracked.clone(), sets.sets.clone());
-    let options = emit::Options { krate, module: module.clone(), tracked: files, sets: sets_asked };
+    let (krate, files, requests) = (krate.clone(), tracked.clone(), arguments.requests.clone());
+    let options = emit::Options { krate, module: module.clone(), tracked: files, requests };
     let found = || derivation::find(&source, &mechanism, &path, &shown, &command);
-    let result = emitted(&mechanism, sets, at, &options, found);
+    let result = emitted(&mechanism, arguments, at, &options, found);
     result.unwrap_or_else(|errors| failed(&errors, &tracked))
 }
 

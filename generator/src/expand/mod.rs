@@ -2,12 +2,12 @@
 //! in the compiler and in macro servers of editors, which run for a long time and expand often, from several
 //! threads.
 
+mod arguments;
 mod derivation;
 mod emitted;
 mod file;
 mod inline;
 mod report;
-mod sets;
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use quote::quote;
 
 use crate::syntax::tree::Section;
 
-pub use sets::Sets;
+pub use arguments::Arguments;
 
 /// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is
 /// `($crate) "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime
@@ -44,11 +44,12 @@ fn module(input: TokenStream, package: &Path) -> TokenStream {
         }
         _ => quote!(::hodograph),
     };
-    let mut sets = Sets::take(trees);
-    let trees = std::mem::take(&mut sets.rest);
+    let mut arguments = Arguments::take(trees);
+    let trees = std::mem::take(&mut arguments.rest);
     match file::path(&trees) {
-        Some(path) => file::expand(&path, &sets, &krate, package),
-        None if is_model(&trees) => inline::expand(trees.into_iter().collect(), &sets, &krate, package),
+        Some(Ok(path)) => file::expand(&path, &arguments, &krate, package),
+        Some(Err(error)) => error.to_compile_error(),
+        None if is_model(&trees) => inline::expand(trees.into_iter().collect(), &arguments, &krate, package),
         None => {
             let first = trees.first().map_or_else(Span::call_site, TokenTree::span);
             let last = trees.last().map_or(first, TokenTree::span);

@@ -20,6 +20,18 @@ const VECTORS: bool = cfg!(any(
 /// Sines and cosines of up to eight angles, each the same bits as [`sin_cos`] gives.
 #[inline(always)]
 pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+    several::<T, N, false>(angles)
+}
+
+/// [`sines_cosines`] as a part of the caller.
+#[inline(always)]
+pub fn sines_cosines_inlined<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
+    several::<T, N, true>(angles)
+}
+
+/// Sines and cosines, with `HERE` as a part of the caller.
+#[inline(always)]
+fn several<T: Scalar, const N: usize, const HERE: bool>(angles: [T; N]) -> ([T; N], [T; N]) {
     // Known at compile time; the conversions of a double to a double vanish.
     if !VECTORS || TypeId::of::<T>() != TypeId::of::<f64>() {
         return one_by_one(angles);
@@ -28,6 +40,9 @@ pub fn sines_cosines<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; 
     let angle = |lane: usize| angles[lane.min(N - 1)];
     let (sines, cosines) = match N {
         0 | 1 => one_by_one(angles),
+        2 if HERE => first(of_doubles([angle(0), angle(1)], far::<T, 2>)),
+        3 | 4 if HERE => first(of_doubles(from_fn(angle), far::<T, 4>)),
+        5..=8 if HERE => first(of_doubles(from_fn(angle), far::<T, 8>)),
         2 => first(of_two(angle(0), angle(1))),
         3 | 4 => first(of_four(angle(0), angle(1), angle(2), angle(3))),
         5..=8 => {
@@ -52,23 +67,26 @@ fn first<const N: usize, const LANES: usize>(
 
 #[inline(never)]
 fn of_two(a: f64, b: f64) -> ([f64; 2], [f64; 2]) {
-    of_doubles([a, b])
+    of_doubles([a, b], beyond)
 }
 
 #[inline(never)]
 fn of_four(a: f64, b: f64, c: f64, d: f64) -> ([f64; 4], [f64; 4]) {
-    of_doubles([a, b, c, d])
+    of_doubles([a, b, c, d], beyond)
 }
 
 #[inline(never)]
 #[allow(clippy::too_many_arguments, reason = "as many as there are registers")]
 fn of_eight(a: f64, b: f64, c: f64, d: f64, e: f64, f: f64, g: f64, h: f64) -> ([f64; 8], [f64; 8]) {
-    of_doubles([a, b, c, d, e, f, g, h])
+    of_doubles([a, b, c, d, e, f, g, h], beyond)
 }
 
 /// Part of functions of their own: inside a long function, compilers do not vectorise all of the loops.
 #[inline(always)]
-fn of_doubles<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+fn of_doubles<const N: usize>(
+    angles: [f64; N],
+    beyond: impl FnOnce([f64; N]) -> ([f64; N], [f64; N]),
+) -> ([f64; N], [f64; N]) {
     // Of two angles the sum is looked at: one comparison.
     let within = match angles[..] {
         [a, b] => is_within(a.abs() + b.abs()),
@@ -114,10 +132,20 @@ fn beyond<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     one_by_one(angles)
 }
 
+/// [`beyond`], compiled with the routine that calls it.
+#[cold]
+#[inline(never)]
+fn far<T: Scalar, const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
+    one_by_one(angles)
+}
+
 #[inline(always)]
 fn one_by_one<T: Scalar, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
-    let pairs = angles.map(sin_cos);
-    (pairs.map(|(sine, _)| sine), pairs.map(|(_, cosine)| cosine))
+    let (mut sines, mut cosines) = (angles, angles);
+    for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
+        (*sine, *cosine) = sin_cos(*sine);
+    }
+    (sines, cosines)
 }
 
 #[cfg(test)]

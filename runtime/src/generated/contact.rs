@@ -6,7 +6,8 @@ use nalgebra::{Vector2, Vector3};
 use super::number;
 use crate::{
     ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar, impact_without_collision, solve,
-    structure::{Structure, solve_structured},
+    specialised::{KnownLaw, solve_inlined},
+    structure::{General, Structure, solve_structured},
 };
 
 /// The quantities of a contact in a state of the mechanism. The contact basis is `normal`, `first`, `second`,
@@ -54,7 +55,7 @@ pub struct Resolved<T: nalgebra::Scalar> {
 
 /// Cosine and sine of the angle from `first` to t. t lies along the slip of approach; without slip it is the
 /// projection of the first of N.x, N.y, N.z that is not within 30 degrees of the normal.
-#[inline]
+#[inline(always)]
 pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
     let along = |direction: Vector2<T>| {
         let length = (direction.x * direction.x + direction.y * direction.y).sqrt();
@@ -85,13 +86,35 @@ pub fn resolve<T: Scalar>(
     contact: &Contact<T>,
     surface: &impl ContactSurface<T>,
 ) -> Result<Resolved<T>, ImpactError<T>> {
-    let (cos, sin) = contact_axes(contact);
+    let axes = contact_axes(contact);
+    let (reduced, approach) = along_slip(contact, axes);
+    let impact = solve(&reduced, &approach, surface)?;
+    Ok(resolved(contact, axes, reduced, approach, impact))
+}
+
+/// [`resolve`] as a part of the caller, under the law that `L` knows.
+///
+/// # Errors
+///
+/// Those of [`solve`].
+#[inline(always)]
+pub fn resolve_inlined<L: KnownLaw, T: Scalar>(
+    contact: &Contact<T>,
+    surface: &impl ContactSurface<T>,
+) -> Result<Resolved<T>, ImpactError<T>> {
+    let axes = contact_axes(contact);
+    let (reduced, approach) = along_slip(contact, axes);
+    let impact = solve_inlined::<General, L, T>(&reduced, &approach, surface)?;
+    Ok(resolved(contact, axes, reduced, approach, impact))
+}
+
+/// Reduced matrix and velocity of approach along n, t and s, t being the direction of slip.
+#[inline(always)]
+fn along_slip<T: Scalar>(contact: &Contact<T>, (cos, sin): (T, T)) -> (ReducedMatrix<T>, Vector3<T>) {
     let Contact { velocity, .. } = contact;
     let reduced = contact.reduced.turned(cos, sin);
     let slip = (velocity.y * velocity.y + velocity.z * velocity.z).sqrt();
-    let approach = Vector3::new(velocity.x, slip, T::zero());
-    let impact = solve(&reduced, &approach, surface)?;
-    Ok(resolved(contact, (cos, sin), reduced, approach, impact))
+    (reduced, Vector3::new(velocity.x, slip, T::zero()))
 }
 
 /// Solves the impact without collision of a contact; its normal velocity counts as zero.
@@ -123,17 +146,38 @@ pub fn resolve_structured<S: Structure, T: Scalar>(
     contact: &Contact<T>,
     surface: &impl ContactSurface<T>,
 ) -> Result<Resolved<T>, ImpactError<T>> {
-    let (cos, sin) = contact_axes(contact);
-    let mut impact = solve_structured::<S, T>(&contact.reduced, &contact.velocity, surface)?;
+    let axes = contact_axes(contact);
+    let impact = solve_structured::<S, T>(&contact.reduced, &contact.velocity, surface)?;
+    Ok(from_basis(contact, axes, impact))
+}
+
+/// [`resolve_structured`] as a part of the caller, under the law that `L` knows.
+///
+/// # Errors
+///
+/// Those of [`solve`].
+#[inline(always)]
+pub fn resolve_structured_inlined<S: Structure, L: KnownLaw, T: Scalar>(
+    contact: &Contact<T>,
+    surface: &impl ContactSurface<T>,
+) -> Result<Resolved<T>, ImpactError<T>> {
+    let axes = contact_axes(contact);
+    let impact = solve_inlined::<S, L, T>(&contact.reduced, &contact.velocity, surface)?;
+    Ok(from_basis(contact, axes, impact))
+}
+
+/// Converts an outcome along the contact basis.
+#[inline(always)]
+fn from_basis<T: Scalar>(contact: &Contact<T>, (cos, sin): (T, T), mut impact: Impact<T>) -> Resolved<T> {
     let turned = |v: &Vector3<T>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
     impact.impulse = turned(&impact.impulse);
     impact.velocity = turned(&impact.velocity);
     let approach = turned(&contact.velocity);
-    Ok(resolved(contact, (cos, sin), contact.reduced.turned(cos, sin), approach, impact))
+    resolved(contact, (cos, sin), contact.reduced.turned(cos, sin), approach, impact)
 }
 
 /// Converts an outcome along n, t, s to the contact basis and to N.
-#[inline]
+#[inline(always)]
 fn resolved<T: Scalar>(
     contact: &Contact<T>,
     (cos, sin): (T, T),

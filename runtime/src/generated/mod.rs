@@ -18,18 +18,24 @@ mod slices;
 pub use crate::mechanism::slices::{array, check_length, write};
 pub use crate::mechanism::{ClosedContactError, CollisionError, ParameterError, StateError};
 #[doc(hidden)]
-pub use angles::sines_cosines;
+pub use angles::{sines_cosines, sines_cosines_inlined};
 #[doc(hidden)]
 pub use arithmetic::*;
 #[doc(hidden)]
 pub use checks::*;
 #[doc(hidden)]
 pub use closed::{closed_contact, kept_contact, slip_noise};
-pub use contact::{Contact, Resolved, contact_axes, resolve, resolve_structured, resolve_without_collision};
+pub use contact::{
+    Contact, Resolved, contact_axes, resolve, resolve_inlined, resolve_structured,
+    resolve_structured_inlined, resolve_without_collision,
+};
 #[doc(hidden)]
 pub use saltation::{by_coordinate, by_coordinates, reset, salted, state};
 #[doc(hidden)]
 pub use slices::{Description, normalize_quaternions, write_array, write_rows};
+
+#[doc(hidden)]
+pub use crate::specialised::{AnyLaw, KnownLaw, Newton, Poisson, Stronge, solve_inlined};
 
 #[cfg(feature = "defmt")]
 #[doc(hidden)]

@@ -8,10 +8,10 @@ use nalgebra::{Vector2, Vector3};
 use super::{
     contact::Contact,
     input::checked,
-    range::slide,
+    range::AnyArc,
     restitution::{LinearArc, Restitution, State},
     snapshots::{Units, phases},
-    straight::Slide,
+    straight::{Slide, Slides},
     terminal::Terminal,
 };
 use crate::{
@@ -70,19 +70,18 @@ pub(crate) fn solve_real<T: Real>(
         }
     };
     let restitution = Restitution::new(surface.law, surface.e).within(quadratures);
-    collide(matrix, approach, -approach.x, surface, restitution, slide)
+    collide::<AnyArc, T>(matrix, approach, -approach.x, surface, restitution)
 }
 
-/// Solves an impact whose input has been checked. Velocities are divided by `speed`; `slide` follows the
-/// sliding arc.
+/// Solves an impact whose input has been checked. Velocities are divided by `speed`; `A` follows the sliding
+/// arc.
 #[inline(always)]
-pub(crate) fn collide<T: Real>(
+pub(crate) fn collide<A: Slides, T: Real>(
     matrix: &ReducedMatrix<T>,
     approach: &Vector3<T>,
     speed: T,
     surface: &Surface<T>,
     mut restitution: Restitution<T>,
-    slide: impl FnOnce(&Contact<T>, Vector2<T>, T, &mut Restitution<T>) -> Slide<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
     let (contact, share) = Contact::limited(matrix, surface.mu);
     let tangential = Vector2::new(approach.y, approach.z) / speed;
@@ -96,7 +95,7 @@ pub(crate) fn collide<T: Real>(
     let mut ended = None;
     let (mut stops, mut endless) = (false, false);
     if slips {
-        match slide(&contact, tangential, slip, &mut restitution) {
+        match A::slide(&contact, tangential, slip, &mut restitution) {
             Slide::Ended(end, velocity) => ended = Some((end, velocity, Path::Sliding)),
             Slide::Stopped(stopped) => {
                 restitution.grazing.moved(stopped.velocity);
@@ -198,7 +197,7 @@ pub(super) fn long<T: Real>(v: &Vector2<T>) -> T {
 }
 
 /// Whether slip counts as present, in units where v_n1 = -1.
-#[inline]
+#[inline(always)]
 pub(crate) fn slips<T: Real>(slip: T) -> bool {
     let eps = T::default_epsilon();
     slip > eps * eps * eps * eps
@@ -213,8 +212,34 @@ fn stop_together<T: Real>(restitution: &mut Restitution<T>, state: &State<T>) ->
 }
 
 /// Follows the arc after slip has stopped, to the end of the collision; `None` if the law never ends it.
-#[inline]
+#[inline(always)]
 fn after_slip<T: Real>(
+    contact: &Contact<T>,
+    state: &mut State<T>,
+    slips: bool,
+    restitution: &mut Restitution<T>,
+    sensitivity: &mut Sensitivity,
+) -> Option<(State<T>, Vector2<T>, Path)> {
+    if T::INLINED {
+        after_slip_here(contact, state, slips, restitution, sensitivity)
+    } else {
+        after_slip_apart(contact, state, slips, restitution, sensitivity)
+    }
+}
+
+#[inline(never)]
+fn after_slip_apart<T: Real>(
+    contact: &Contact<T>,
+    state: &mut State<T>,
+    slips: bool,
+    restitution: &mut Restitution<T>,
+    sensitivity: &mut Sensitivity,
+) -> Option<(State<T>, Vector2<T>, Path)> {
+    after_slip_here(contact, state, slips, restitution, sensitivity)
+}
+
+#[inline(always)]
+fn after_slip_here<T: Real>(
     contact: &Contact<T>,
     state: &mut State<T>,
     slips: bool,

@@ -23,7 +23,7 @@ pub(crate) enum Event<T> {
 
 impl<T: Real> Event<T> {
     /// The event that ends restitution under the law, once compression has ended.
-    #[inline]
+    #[inline(always)]
     pub fn end(restitution: &Restitution<T>) -> Self {
         match restitution.law() {
             Law::Newton => Self::Velocity(restitution.target),
@@ -72,7 +72,7 @@ impl<T: Real> Event<T> {
 
     /// The normal impulse from here to the event if f is linear in I_n with the rate `bend`; zero or less if
     /// the event does not come then.
-    #[inline]
+    #[inline(always)]
     fn impulse(&self, point: &ArcPoint<T>, slope: T, bend: T) -> T {
         let zero = T::zero();
         let missing = -self.at(point);
@@ -99,7 +99,7 @@ impl<T: Real> Event<T> {
     /// A first guess of the length in lambda from here to the event (theory, 8.3); negative if none is
     /// expected. Slip is taken for a quadratic in I_n, and the length is the integral of (q / e) / s over
     /// I_n.
-    #[inline]
+    #[inline(always)]
     pub(super) fn guess(&self, arc: &SlidingArc<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
         let (zero, one, half) = (T::zero(), T::one(), constant::<T>(0.5));
         let slip = point.sigma * rates.e;
@@ -158,7 +158,7 @@ pub(super) struct Correction<T> {
 }
 
 impl<T: Real> Correction<T> {
-    #[inline]
+    #[inline(always)]
     pub fn new(event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> Self {
         let (one, half) = (T::one(), constant::<T>(0.5));
         let (slope, bend) = event.slope(&point.state, rates);
@@ -181,7 +181,7 @@ impl<T: Real> Correction<T> {
 
     /// Estimates of the errors of `second_order_step` (of third order in the length) and of
     /// `third_order_step` (of fourth order).
-    #[inline]
+    #[inline(always)]
     pub fn errors(&self, event: &Event<T>, point: &ArcPoint<T>, rates: &Rates<T>) -> (T, T) {
         let length = self.step.primal().abs();
         let steepest =
@@ -196,7 +196,7 @@ impl<T: Real> Correction<T> {
     }
 
     /// The step to the event with an error of fourth order (theory, end of 8.5).
-    #[inline]
+    #[inline(always)]
     pub fn refined(
         &self,
         event: &Event<T>,
@@ -222,7 +222,7 @@ impl<T: Real> Correction<T> {
 
 /// The step to the zero of the parabola with the same value, slope and curvature: `newton` is Newton's step
 /// x, `bent` is x (ln y')'.
-#[inline]
+#[inline(always)]
 fn square<T: Real>(newton: T, bent: T) -> T {
     let one = T::one();
     let under = larger(one + bent + bent, T::zero());
@@ -230,7 +230,7 @@ fn square<T: Real>(newton: T, bent: T) -> T {
 }
 
 /// ln(1 + x) with a relative error of about one per cent between -0.999 and 1000: enough for a first guess.
-#[inline]
+#[inline(always)]
 fn rough_ln_1p<T: Real>(x: T) -> T {
     let y = T::one() + x;
     if x < constant(-0.85) || x > constant(8.0) {

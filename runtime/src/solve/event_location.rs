@@ -37,7 +37,7 @@ pub(super) struct EventLocation<'a, T: Real> {
 impl<T: Real> EventLocation<'_, T> {
     /// Follows the arc to the next event or to the end of the stretch, and sets `to` to that point; true if
     /// the law ends the collision there. Once the panel is over its budget, neither means anything.
-    #[inline]
+    #[inline(always)]
     pub fn follow(&mut self, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
         let zero = T::zero();
         let mut limit = self.reach;
@@ -48,14 +48,17 @@ impl<T: Real> EventLocation<'_, T> {
         let law = restitution.law();
         self.fast = self.fast || restitution.delicate();
         let target = restitution.target;
-        if let Some(stop) = restitution.stop {
+        if let Some(stop) = restitution.stop() {
             return self.find(&Event::Impulse(stop), T::one(), limit, to).is_some();
         }
         if !self.rising {
             return self.falling(limit, restitution, to);
         }
+        if T::INLINED {
+            return self.rising(limit, restitution, to);
+        }
         // Newton's target does not depend on where compression ends.
-        if v >= zero || (law == Law::Newton && target > zero && !restitution.thorough) {
+        if v >= zero || (law == Law::Newton && target > zero && !restitution.thorough()) {
             let ended = self.find(&Event::end(restitution), T::one(), limit, to).is_some();
             if v < zero && to.state.velocity >= zero {
                 restitution.compressed_somewhere();
@@ -63,6 +66,32 @@ impl<T: Real> EventLocation<'_, T> {
             return ended;
         }
         if self.find(&Event::Velocity(zero), T::one(), limit, to).is_none() {
+            return false;
+        }
+        if restitution.compressed(&to.state) {
+            return true;
+        }
+        to.state.velocity = zero;
+        to.since = zero;
+        false
+    }
+
+    /// [`Self::follow`] where v_n rises, with one search for whichever event it is: the search becomes a part
+    /// of the caller.
+    #[inline(always)]
+    fn rising(&mut self, limit: T, restitution: &mut Restitution<T>, to: &mut ArcPoint<T>) -> bool {
+        let zero = T::zero();
+        let v = self.from.state.velocity;
+        let ends = v >= zero || (restitution.law() == Law::Newton && restitution.target > zero);
+        let event = if ends { Event::end(restitution) } else { Event::Velocity(zero) };
+        let found = self.find_here::<true>(&event, T::one(), limit, to).is_some();
+        if ends {
+            if v < zero && to.state.velocity >= zero {
+                restitution.compressed_somewhere();
+            }
+            return found;
+        }
+        if !found {
             return false;
         }
         if restitution.compressed(&to.state) {
@@ -106,7 +135,14 @@ impl<T: Real> EventLocation<'_, T> {
         if !self.panel.spend() {
             return;
         }
-        self.arc.step(&self.from, length, self.fast, self.panel, to);
+        self.arc.step::<false>(&self.from, length, self.fast, self.panel, to);
+    }
+
+    /// [`Self::whole`] as a function of its own.
+    #[cold]
+    #[inline(never)]
+    fn whole_apart(&mut self, length: T, to: &mut ArcPoint<T>) {
+        self.whole(length, to);
     }
 
     /// Sets `to` to the event, where the residual rises (`sign` = 1) or falls (-1) through zero, and returns
@@ -117,6 +153,18 @@ impl<T: Real> EventLocation<'_, T> {
     /// third order inside a bracket. The last steps are short and start from the last trial.
     #[inline(never)]
     fn find(&mut self, event: &Event<T>, sign: T, limit: T, to: &mut ArcPoint<T>) -> Option<T> {
+        self.find_here::<false>(event, sign, limit, to)
+    }
+
+    /// [`Self::find`] as a part of the caller, and with `HERE` all that it calls likewise.
+    #[inline(always)]
+    fn find_here<const HERE: bool>(
+        &mut self,
+        event: &Event<T>,
+        sign: T,
+        limit: T,
+        to: &mut ArcPoint<T>,
+    ) -> Option<T> {
         if event.at(&self.from) * sign >= T::zero() {
             *to = self.from;
             return Some(T::zero());
@@ -131,7 +179,7 @@ impl<T: Real> EventLocation<'_, T> {
             if !self.panel.spend() {
                 return None;
             }
-            self.arc.step(&self.from, x, self.fast, self.panel, to);
+            self.arc.step::<HERE>(&self.from, x, self.fast, self.panel, to);
             let y = event.at(to);
             if y * sign < T::zero() {
                 if x >= limit {
@@ -156,7 +204,7 @@ impl<T: Real> EventLocation<'_, T> {
                     *to = self.from;
                     return Some(T::zero());
                 }
-                return Some(x + self.polish(event, rates, correction, to));
+                return Some(x + self.polish::<HERE>(event, rates, correction, to));
             }
             let next = (x + correction.step).primal();
             // Where the second trial still lies before the event, the end of the stretch decides whether
@@ -171,14 +219,18 @@ impl<T: Real> EventLocation<'_, T> {
                 (lo + hi) * half
             };
         }
-        self.whole(x, to);
+        if HERE {
+            self.whole_apart(x, to)
+        } else {
+            self.whole(x, to)
+        }
         Some(x)
     }
 
     /// Takes the last short steps, each from where the one before ended, and returns the sum of their
     /// lengths.
-    #[inline]
-    fn polish(
+    #[inline(always)]
+    fn polish<const HERE: bool>(
         &self,
         event: &Event<T>,
         rates: Rates<T>,
@@ -194,7 +246,11 @@ impl<T: Real> EventLocation<'_, T> {
                 break;
             }
             let step = correction.step.primal();
-            self.arc.short_step(to, &rates, step);
+            if HERE {
+                self.arc.short_step_here::<HERE>(to, &rates, step);
+            } else {
+                self.arc.short_step(to, &rates, step);
+            }
             length += step;
             rates = self.arc.rates(to);
             correction = Correction::new(event, to, &rates);
@@ -206,7 +262,11 @@ impl<T: Real> EventLocation<'_, T> {
         }
         let rate_changes = self.arc.rate_changes(to, &rates);
         let step = correction.refined(event, to, &rates, &rate_changes);
-        to.third_order_step(self.arc, &rates, &rate_changes, step);
+        if HERE {
+            to.third_order_step_here(self.arc, &rates, &rate_changes, step);
+        } else {
+            to.third_order_step(self.arc, &rates, &rate_changes, step);
+        }
         length + step.primal()
     }
 }

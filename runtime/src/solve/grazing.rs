@@ -29,8 +29,18 @@ impl<T: Real> Grazing<T> {
     }
 
     /// v_n changed to `to` without a turning point on the way.
-    #[inline]
+    #[inline(always)]
     pub fn moved(&mut self, to: T) {
+        if T::INLINED { self.moved_here(to) } else { self.moved_apart(to) }
+    }
+
+    #[inline(never)]
+    fn moved_apart(&mut self, to: T) {
+        self.moved_here(to);
+    }
+
+    #[inline(always)]
+    fn moved_here(&mut self, to: T) {
         let from = self.last;
         self.last = to;
         if to == from || (to > from) == self.rising {

@@ -29,8 +29,26 @@ pub(crate) fn check<T: Real>(
 
 /// An error that says what is wrong with the input of a collision, if anything is. Where rounding alone makes
 /// the matrix indefinite, the matrix to use instead.
-#[inline]
+#[inline(always)]
 pub(crate) fn checked<T: Real>(
+    m: &ReducedMatrix<T>,
+    v: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<Option<ReducedMatrix<T>>, ImpactError<T>> {
+    if T::INLINED { checked_here(m, v, surface) } else { checked_apart(m, v, surface) }
+}
+
+#[inline(never)]
+fn checked_apart<T: Real>(
+    m: &ReducedMatrix<T>,
+    v: &Vector3<T>,
+    surface: &Surface<T>,
+) -> Result<Option<ReducedMatrix<T>>, ImpactError<T>> {
+    checked_here(m, v, surface)
+}
+
+#[inline(always)]
+fn checked_here<T: Real>(
     m: &ReducedMatrix<T>,
     v: &Vector3<T>,
     surface: &Surface<T>,
@@ -47,7 +65,7 @@ pub(crate) fn checked<T: Real>(
 
 /// Whether contact and surface are valid by a margin so large that rounding does not matter; `false` decides
 /// nothing.
-#[inline]
+#[inline(always)]
 fn plainly_right<T: Real>(m: &ReducedMatrix<T>, surface: &Surface<T>) -> bool {
     let zero = T::zero();
     let (a, b, c) = (m.nn * m.tt, m.nn * m.ss, m.tt * m.ss);

@@ -25,7 +25,7 @@ const ROUGH: f64 = 1e-4;
 ///
 /// `turn` is h at d, not zero. `b` is (m_nt, m_ns), `nu` is mu times the deviator of T, ((m_tt - m_ss) / 2,
 /// m_ts). The vectors returned are right to half the digits, and their length is one to half the digits only.
-#[inline]
+#[inline(always)]
 pub(super) fn neighbours<T: Real>(
     b: &Vector2<T>,
     nu: &Vector2<T>,
@@ -54,39 +54,33 @@ pub(super) fn neighbours<T: Real>(
     let eps = T::default_epsilon();
     let none = eps * eps * (pull.x.abs() + pull.y.abs() + delta);
     let (p, q) = (larger(pull.x.abs(), none), larger(pull.y.abs(), none));
-    let first = || {
-        let (x, y) = alone(p, q, delta);
-        Vector2::new(x, y)
-    };
-    let third = || {
-        let (y, x) = alone(q, p, delta);
-        Vector2::new(-x, -y)
-    };
-    // Of the zeros in the fourth quadrant the stable one comes first, anticlockwise.
-    let fourth_stable = || {
-        let (y, x) = paired(q, p, delta);
-        Vector2::new(x, -y)
-    };
-    let fourth_unstable = || {
-        let (x, y) = paired(p, q, delta);
-        Vector2::new(x, -y)
-    };
     // h' changes sign once in the fourth quadrant, between its zeros: its sign tells on which side of them
     // the direction lies.
     let slope =
         fma(delta, dot(slip.x, slip.x, -slip.y, slip.y), -dot(pull.x.abs(), slip.x, pull.y.abs(), slip.y));
-    let found = if forward && crowded(p, q, delta) {
-        if slip.y >= zero || (slip.x > zero && slope > zero) {
-            [fourth_unstable(), first()]
-        } else {
-            [third(), fourth_stable()]
-        }
-    } else if !forward && slip.x >= zero && slip.y < zero {
-        [fourth_unstable(), fourth_stable()]
+    // Whether the unstable zero and the stable one are those in the fourth quadrant.
+    let [unstable, stable] = if forward && crowded(p, q, delta) {
+        let behind = slip.y >= zero || (slip.x > zero && slope > zero);
+        [behind, !behind]
     } else {
-        [third(), first()]
+        [!forward && slip.x >= zero && slip.y < zero; 2]
     };
-    found.map(|v| {
+    let unstable = if unstable {
+        let (x, y) = paired(p, q, delta);
+        Vector2::new(x, -y)
+    } else {
+        let (y, x) = alone(q, p, delta);
+        Vector2::new(-x, -y)
+    };
+    // Of the zeros in the fourth quadrant the stable one comes first, anticlockwise.
+    let stable = if stable {
+        let (y, x) = paired(q, p, delta);
+        Vector2::new(x, -y)
+    } else {
+        let (x, y) = alone(p, q, delta);
+        Vector2::new(x, y)
+    };
+    [unstable, stable].map(|v| {
         let (x, y) = (v.x * sx, v.y * sy);
         times(&axis, &Vector2::new(x, y))
     })
@@ -103,7 +97,7 @@ fn crowded<T: Real>(p: T, q: T, delta: T) -> bool {
 
 /// The direction (p / (eta + delta), q / eta) of length one (to half the digits) with eta > 0, by Newton's
 /// method on 1 / length = 1, which converges from below (theory, 3.2).
-#[inline]
+#[inline(always)]
 fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
     // The root is a convex function of delta, so its tangent at delta = 0 lies below it.
@@ -127,7 +121,7 @@ fn alone<T: Real>(p: T, q: T, delta: T) -> (T, T) {
 
 /// The direction (p / eta, q / (delta - eta)) of length one (to half the digits) with the lesser such eta in
 /// (0, delta).
-#[inline]
+#[inline(always)]
 fn paired<T: Real>(p: T, q: T, delta: T) -> (T, T) {
     let one = T::one();
     let mut eta = p;

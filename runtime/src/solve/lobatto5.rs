@@ -48,16 +48,28 @@ impl<T: Real> SlidingArc<T> {
     /// negative).
     #[inline(never)]
     pub fn short_step(&self, point: &mut ArcPoint<T>, rates: &Rates<T>, length: T) {
+        self.short_step_here::<false>(point, rates, length);
+    }
+
+    /// [`Self::short_step`] as a part of the caller, and with `HERE` all that it calls likewise.
+    #[inline(always)]
+    pub fn short_step_here<const HERE: bool>(&self, point: &mut ArcPoint<T>, rates: &Rates<T>, length: T) {
         let (one, any) = (T::one(), [length; 4]);
         let mut nodes = Nodes { w: any, value: any, e: any, rate: any, log: any, sums: [any; 3] };
         // tanh(length / 8), of which the next term is below the error of the steps to the event.
         let y = length * constant(0.125);
         let s = y * fma(y * y, constant(-1.0 / 3.0), one);
         let scale = s * constant(8.0);
-        self.nodes([point.w, s, scale, rates.growth * scale], &mut nodes);
+        let begins = [point.w, s, scale, rates.growth * scale];
+        if HERE {
+            self.nodes_here(begins, &mut nodes);
+        } else {
+            self.nodes(begins, &mut nodes);
+        }
         let begin = rates.e * rates.inverse * scale;
         let sigma = point.sigma;
-        let [first, second, third] = nodes.sums.map(sum);
+        let [first, second, third] = &nodes.sums;
+        let (first, second, third) = (sum(*first), sum(*second), sum(*third));
         let second_begin = begin * constant(FIRST) * point.w;
         let from = point.state;
         self.add(
@@ -68,7 +80,8 @@ impl<T: Real> SlidingArc<T> {
             ],
             &mut point.state,
         );
-        let pushed = self.push(begin * rates.slope * rates.e, &mut nodes);
+        let slope = begin * rates.slope * rates.e;
+        let pushed = if HERE { self.push_here(slope, &mut nodes) } else { self.push(slope, &mut nodes) };
         let done = fma(from.velocity, point.state.normal - from.normal, sigma * sigma * pushed);
         point.state.work += done;
         point.since += done;
@@ -81,7 +94,13 @@ impl<T: Real> SlidingArc<T> {
     /// Fills `nodes` for a step from w = `from`, where d ln sigma / dc is `growth`. w changes by ((1 + s c) /
     /// (1 - s c))^4.
     #[inline(never)]
-    fn nodes(&self, [from, s, scale, growth]: [T; 4], nodes: &mut Nodes<T>) {
+    fn nodes(&self, begins: [T; 4], nodes: &mut Nodes<T>) {
+        self.nodes_here(begins, nodes);
+    }
+
+    /// [`Self::nodes`] as a part of the caller.
+    #[inline(always)]
+    fn nodes_here(&self, [from, s, scale, growth]: [T; 4], nodes: &mut Nodes<T>) {
         let ([q0, q1, q2], [k0, k1, k2]) = (self.q, self.k);
         let (one, middle) = (T::one(), self.middle);
         let Nodes { w, value, e, rate, log, sums: [s0, s1, s2] } = nodes;
@@ -116,6 +135,12 @@ impl<T: Real> SlidingArc<T> {
     /// by the square of sigma at the beginning.
     #[inline(never)]
     fn push(&self, begin: T, nodes: &mut Nodes<T>) -> T {
+        self.push_here(begin, nodes)
+    }
+
+    /// [`Self::push`] as a part of the caller.
+    #[inline(always)]
+    fn push_here(&self, begin: T, nodes: &mut Nodes<T>) -> T {
         let [f0, f1, f2] = self.f;
         let Nodes { w, rate, value, e, sums: [first, second, ..], .. } = nodes;
         for ((w, rate), value) in w.iter().zip(rate.iter_mut()).zip(value.iter()) {

@@ -34,10 +34,10 @@ pub(crate) use self::{
     contact::Contact,
     event::Event,
     input::{check, checked},
-    range::slide,
+    range::{AnyArc, slide, slide_rarely},
     restitution::{LinearArc, Restitution, State},
     snapshots::Units,
-    straight::{Slide, straight},
+    straight::{Slide, Slides, straight},
     terminal::Terminal,
     without_collision::without_collision,
 };

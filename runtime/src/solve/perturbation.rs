@@ -48,7 +48,7 @@ pub(super) fn perturbed<T: Real>(
     let stop = (g < zero).then(|| -slip / g);
     // The impulse from a state to the end of the arc if slip keeps its direction.
     let remains = |mut restitution: Restitution<T>, state: &State<T>, stop: Option<T>| match restitution
-        .follow_linear(state, f, &(*d * c.mu), stop)
+        .follow_linear_apart(state, f, &(*d * c.mu), stop)
     {
         LinearArc::Ended { impulse, .. } | LinearArc::Passed(impulse) => Some(impulse),
         LinearArc::Endless => None,
@@ -88,7 +88,7 @@ pub(super) fn perturbed<T: Real>(
         -c.mu_b.dot(&across) * length * (sum * constant(1.0 / 45.0) - chord)
     };
     let (mut from, mut spent) = (zero, zero);
-    if restitution.stop.is_none() && f > zero && start / f <= whole {
+    if restitution.stop().is_none() && f > zero && start / f <= whole {
         let mean = angle(start / f) * f / start;
         let along = *d + across * mean;
         from = start / c.normal_rate(&along);
@@ -109,7 +109,7 @@ pub(super) fn perturbed<T: Real>(
     let along = *d + across * mean;
     restitution.since(&state, bow);
     let f = c.normal_rate(&along);
-    Some(match restitution.follow_linear(&state, f, &(along * c.mu), stop) {
+    Some(match restitution.follow_linear_apart(&state, f, &(along * c.mu), stop) {
         LinearArc::Ended { impulse, velocity, work } => {
             let (normal, spent) = (from + impulse, spent + mean * impulse);
             let work = work + bow;

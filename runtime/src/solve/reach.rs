@@ -19,7 +19,7 @@ impl<T: Real> SlidingArc<T> {
     /// If all zeros of q lie outside an ellipse whose foci are the ends of the stretch, and the integrand
     /// grows at a constant rate, the error is about e^(c (rho + 1 / rho - 2) / 2) rho^(-32), where rho is
     /// the sum of the semi-axes (for foci at +-1) and c half the rate times the length.
-    #[inline]
+    #[inline(always)]
     pub fn reach(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> T {
         // rho + 1 / rho at which rho^-32 = 1e-15 (theory, 5.3).
         const SUM: f64 = 3.28;
@@ -46,14 +46,7 @@ impl<T: Real> SlidingArc<T> {
         // A growth that changes means that sigma has a large power of the distance from the zeros of q; the
         // stretch must keep farther from them.
         let bent = (rates.change.abs().primal() * constant(0.06)).sqrt();
-        let limited = |rate: T| {
-            // A fit to the length at which the error with growth is 1e-15 (theory, 18.4).
-            let c = poles * rate;
-            let fit = fma(fma(c, constant(3e-5), constant(1.2e-3)), c, constant(0.01));
-            let steep = smaller(poles, constant::<T>(7.0) / rate);
-            larger(poles / fma(fit, c, fma(bent, poles, one)), steep / fma(bent, steep, one))
-        };
-        let both = limited(rate);
+        let both = limited(poles, bent, rate);
         let both = both + both;
         if self.central[2].abs().primal() <= (rate + rate) * self.q[2].primal() {
             return both.primal();
@@ -62,26 +55,16 @@ impl<T: Real> SlidingArc<T> {
         // An estimate of the growth at the far end, where it may be larger; what it has risen by is added
         // once more, since it rises on.
         let near = (rates.growth + one).abs().primal();
-        let far = |both: T| {
-            let part = both * constant(0.125);
-            let w = (one + part) / (one - part);
-            let w = w * w;
-            let w = w * w;
-            let w = point.w * w * w;
-            let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
-            let far = (poly(self.central) / poly(self.q)).abs().primal();
-            let far = far + larger(far - near, T::zero());
-            if works { far + far } else { far }
-        };
-        let steepest = far(both);
+        let steepest = self.growth_at(point.w, both, near, works);
         if steepest <= rate + rate {
             return (both + both).primal();
         }
         // A length that the growth at its own far end allows, by bisection.
-        let (mut least, mut most) = (smaller(both, limited(steepest)), both);
+        let (mut least, mut most) = (smaller(both, limited(poles, bent, steepest)), both);
         for _ in 0..4 {
             let middle = (least + most) * constant(0.5);
-            let allowed = limited(larger(far(middle), rate));
+            let far = self.growth_at(point.w, middle, near, works);
+            let allowed = limited(poles, bent, larger(far, rate));
             if allowed >= middle {
                 least = middle;
             } else {
@@ -91,14 +74,34 @@ impl<T: Real> SlidingArc<T> {
         (least + least).primal()
     }
 
+    /// The estimate of [`Self::reach`] for the growth at twice the length `both` from `w`.
+    #[inline(always)]
+    fn growth_at(&self, w: T, both: T, near: T, works: bool) -> T {
+        let one = T::one();
+        let part = both * constant(0.125);
+        let ratio = (one + part) / (one - part);
+        let ratio = ratio * ratio;
+        let ratio = ratio * ratio;
+        let w = w * ratio * ratio;
+        let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
+        let far = (poly(self.central) / poly(self.q)).abs().primal();
+        let far = far + larger(far - near, T::zero());
+        if works { far + far } else { far }
+    }
+
     /// Whether v_n has a turning point ahead.
     #[inline(always)]
     pub fn turns_ahead(&self, point: &ArcPoint<T>) -> bool {
-        self.may_turn && self.turns(point)
+        self.may_turn && if T::INLINED { self.turns_here(point) } else { self.turns(point) }
     }
 
     #[inline(never)]
     fn turns(&self, point: &ArcPoint<T>) -> bool {
+        self.turns_here(point)
+    }
+
+    #[inline(always)]
+    fn turns_here(&self, point: &ArcPoint<T>) -> bool {
         self.turning_point(point, &self.rates(point)).1.is_some()
     }
 
@@ -129,12 +132,36 @@ impl<T: Real> SlidingArc<T> {
                 best = Some(x);
             }
         }
-        (rising, best.map(|x| (T::one() + x).ln().primal()))
+        (rising, best.map(if T::INLINED { length_to_apart } else { length_to }))
     }
 }
 
+/// The length in lambda that poles at the distance `poles`, a growth of this rate and its change `bent` allow.
+#[inline(always)]
+fn limited<T: Real>(poles: T, bent: T, rate: T) -> T {
+    let one = T::one();
+    // A fit to the length at which the error with growth is 1e-15 (theory, 18.4).
+    let c = poles * rate;
+    let fit = fma(fma(c, constant(3e-5), constant(1.2e-3)), c, constant(0.01));
+    let steep = smaller(poles, constant::<T>(7.0) / rate);
+    larger(poles / fma(fit, c, fma(bent, poles, one)), steep / fma(bent, steep, one))
+}
+
+/// The length in lambda to w (1 + x).
+#[inline(always)]
+fn length_to<T: Real>(x: T) -> T {
+    (T::one() + x).ln().primal()
+}
+
+/// [`length_to`] as a function of its own: few arcs turn.
+#[cold]
+#[inline(never)]
+fn length_to_apart<T: Real>(x: T) -> T {
+    length_to(x)
+}
+
 /// Both real roots of a x^2 + b x + c, without cancellation; roots that do not exist come out as zero.
-#[inline]
+#[inline(always)]
 fn quadratic<T: Real>(a: T, b: T, c: T) -> [T; 2] {
     let disc = dot(b, b, constant::<T>(-4.0) * a, c);
     if disc < T::zero() {

@@ -131,7 +131,7 @@ impl<T: Real> Restitution<T> {
     pub fn in_units(&self, normal: T, tangential: T, direct: bool) -> Self {
         Self {
             direct,
-            target: if self.law == Law::Newton { self.target } else { self.target * normal },
+            target: if self.law() == Law::Newton { self.target } else { self.target * normal },
             least_work: self.least_work * normal,
             ended: self.ended * normal,
             wanted: self.wanted * normal,
@@ -158,8 +158,18 @@ impl<T: Real> Restitution<T> {
 
     /// Records the end of compression at this state (v_n = 0 and rising) and sets the target. True if the
     /// collision ends here (e = 0).
-    #[inline]
+    #[inline(always)]
     pub fn compressed(&mut self, at: &State<T>) -> bool {
+        if T::INLINED { self.compressed_here(at) } else { self.compressed_apart(at) }
+    }
+
+    #[inline(never)]
+    fn compressed_apart(&mut self, at: &State<T>) -> bool {
+        self.compressed_here(at)
+    }
+
+    #[inline(always)]
+    fn compressed_here(&mut self, at: &State<T>) -> bool {
         let (normal, work) = (at.normal, at.work);
         self.compressions += 1;
         let here = Some(State { velocity: T::zero(), ..*at });
@@ -170,7 +180,7 @@ impl<T: Real> Restitution<T> {
         if work < self.least_work {
             self.least_work = work;
         }
-        match self.law {
+        match self.law() {
             Law::Newton => {}
             Law::Poisson => self.target = (T::one() + self.e) * normal,
             Law::Stronge => {
@@ -187,7 +197,7 @@ impl<T: Real> Restitution<T> {
     /// difference of the total works.
     #[inline]
     pub fn since(&mut self, at: &State<T>, since: T) {
-        if self.law == Law::Stronge && self.compressions > 0 {
+        if self.law() == Law::Stronge && self.compressions > 0 {
             self.lost = since - (at.work - self.ended);
         }
     }
@@ -195,7 +205,7 @@ impl<T: Real> Restitution<T> {
     /// Whether restitution needs so little work that the balance of energy would lose its digits.
     #[inline]
     pub fn delicate(&self) -> bool {
-        self.law == Law::Stronge
+        self.law() == Law::Stronge
             && self.compressions > 0
             && self.wanted < -constant::<T>(0.05) * self.least_work
     }
@@ -211,7 +221,7 @@ impl<T: Real> Restitution<T> {
     /// follows.
     #[inline]
     pub fn falls(&mut self, at: &State<T>) {
-        let size = match self.law {
+        let size = match self.law() {
             Law::Newton => return,
             Law::Poisson => self.target,
             Law::Stronge => self.least_work,
@@ -219,9 +229,25 @@ impl<T: Real> Restitution<T> {
         self.grazing.missed((self.target - self.watched(at)).abs() / size.abs());
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn law(&self) -> Law {
-        self.law
+        match T::LAW {
+            Some(law) => law,
+            None => self.law,
+        }
+    }
+
+    /// The normal impulse at which the arc ends without a law, if there is one: never in a routine that is
+    /// specialised to collisions.
+    #[inline(always)]
+    pub fn stop(&self) -> Option<T> {
+        if T::INLINED { None } else { self.stop }
+    }
+
+    /// Whether to locate the end of compression even where the law does not need it, likewise.
+    #[inline(always)]
+    pub fn thorough(&self) -> bool {
+        !T::INLINED && self.thorough
     }
 
     /// Whether the work must be integrated directly because slip is so fast that the balance of energy would
@@ -242,7 +268,7 @@ impl<T: Real> Restitution<T> {
     /// How far the law's quantity is from its target at this state, and the scale of this quantity.
     #[inline]
     pub fn missed(&self, end: &State<T>) -> (T, T) {
-        let scale = match self.law {
+        let scale = match self.law() {
             Law::Newton => T::one(),
             Law::Poisson => end.normal,
             Law::Stronge => -self.least_work,
@@ -254,7 +280,7 @@ impl<T: Real> Restitution<T> {
     /// (Stronge).
     #[inline]
     pub fn watched(&self, state: &State<T>) -> T {
-        match self.law {
+        match self.law() {
             Law::Newton => state.velocity,
             Law::Poisson => state.normal,
             Law::Stronge => state.work,
@@ -267,14 +293,14 @@ impl<T: Real> Restitution<T> {
     #[inline]
     pub fn passes(&mut self, from: &State<T>, to: &State<T>, noise: T) -> bool {
         let zero = T::zero();
-        if let Some(stop) = self.stop {
+        if let Some(stop) = self.stop() {
             return to.normal < stop;
         }
         if from.velocity < zero {
             if to.velocity < noise {
                 return true;
             }
-            if self.law == Law::Newton && self.target > to.velocity && !self.thorough {
+            if self.law() == Law::Newton && self.target > to.velocity && !self.thorough() {
                 self.compressed_somewhere();
                 return true;
             }
@@ -285,8 +311,35 @@ impl<T: Real> Restitution<T> {
 
     /// Follows an arc on which v_n is linear in I_n with slope `rate`, over an impulse of at most `length`
     /// (no limit if `None`). The tangential impulse is -`push` per I_n.
-    #[inline]
+    #[inline(always)]
     pub fn follow_linear(
+        &mut self,
+        from: &State<T>,
+        rate: T,
+        push: &Vector2<T>,
+        length: Option<T>,
+    ) -> LinearArc<T> {
+        if T::INLINED {
+            self.follow_linear_here(from, rate, push, length)
+        } else {
+            self.follow_linear_apart(from, rate, push, length)
+        }
+    }
+
+    /// [`Self::follow_linear`] as a function of its own.
+    #[inline(never)]
+    pub fn follow_linear_apart(
+        &mut self,
+        from: &State<T>,
+        rate: T,
+        push: &Vector2<T>,
+        length: Option<T>,
+    ) -> LinearArc<T> {
+        self.follow_linear_here(from, rate, push, length)
+    }
+
+    #[inline(always)]
+    fn follow_linear_here(
         &mut self,
         from: &State<T>,
         rate: T,
@@ -296,7 +349,7 @@ impl<T: Real> Restitution<T> {
         let (mut impulse, mut velocity, mut work) = (T::zero(), from.velocity, from.work);
         let half = constant::<T>(0.5);
         let within = |d: T| length.is_none_or(|l| d <= l);
-        if let Some(stop) = self.stop {
+        if let Some(stop) = self.stop() {
             impulse = larger(stop - from.normal, T::zero());
             if !within(impulse) {
                 return LinearArc::on(length);
@@ -314,11 +367,12 @@ impl<T: Real> Restitution<T> {
             work += velocity * to_rest * half;
             velocity = T::zero();
             let tangential = from.tangential - push * impulse;
-            if self.compressed(&State { normal: from.normal + impulse, tangential, velocity, work }) {
+            let at = State { normal: from.normal + impulse, tangential, velocity, work };
+            if self.compressed(&at) {
                 return LinearArc::Ended { impulse, velocity, work };
             }
         }
-        let (more, end) = match self.law {
+        let (more, end) = match self.law() {
             Law::Newton => {
                 if rate <= T::zero() {
                     return LinearArc::on(length);

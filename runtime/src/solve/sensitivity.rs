@@ -23,8 +23,22 @@ const STEEP: f64 = 0.05;
 
 impl Sensitivity {
     /// The flags that follow from the slip at the start.
-    #[inline]
+    #[inline(always)]
     pub(super) fn of_start<T: Real>(contact: &Contact<T>, tangential: &Vector2<T>, slip: T) -> Self {
+        if T::INLINED {
+            Self::of_start_here(contact, tangential, slip)
+        } else {
+            Self::of_start_apart(contact, tangential, slip)
+        }
+    }
+
+    #[inline(never)]
+    fn of_start_apart<T: Real>(contact: &Contact<T>, tangential: &Vector2<T>, slip: T) -> Self {
+        Self::of_start_here(contact, tangential, slip)
+    }
+
+    #[inline(always)]
+    fn of_start_here<T: Real>(contact: &Contact<T>, tangential: &Vector2<T>, slip: T) -> Self {
         let no_slip = slip * slip <= T::default_epsilon();
         Self {
             unstable_direction: !no_slip && unstable(contact, &(tangential / slip)),
@@ -41,8 +55,34 @@ impl Sensitivity {
 
     /// Sets the flag of grazing at the end of the collision. `slides` is the tangential velocity there if
     /// slip has not stopped before.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ended<T: Real>(
+        &mut self,
+        contact: &Contact<T>,
+        restitution: &mut Restitution<T>,
+        end: &State<T>,
+        slides: Option<&Vector2<T>>,
+    ) {
+        if T::INLINED {
+            self.ended_here(contact, restitution, end, slides)
+        } else {
+            self.ended_apart(contact, restitution, end, slides)
+        }
+    }
+
+    #[inline(never)]
+    fn ended_apart<T: Real>(
+        &mut self,
+        contact: &Contact<T>,
+        restitution: &mut Restitution<T>,
+        end: &State<T>,
+        slides: Option<&Vector2<T>>,
+    ) {
+        self.ended_here(contact, restitution, end, slides)
+    }
+
+    #[inline(always)]
+    fn ended_here<T: Real>(
         &mut self,
         contact: &Contact<T>,
         restitution: &mut Restitution<T>,
@@ -64,7 +104,7 @@ impl Sensitivity {
 }
 
 /// Whether a direction lies near an unstable zero of h.
-#[inline]
+#[inline(always)]
 fn unstable<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
     let [_, g, h] = c.rates(d);
     // h'

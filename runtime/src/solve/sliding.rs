@@ -30,8 +30,19 @@ const PLANAR: f64 = 16.0;
 
 /// Follows the sliding arc from the tangential velocity `from` of length `speed`, for a contact whose rates
 /// are neither very large nor very small.
-#[inline]
+#[inline(never)]
 pub(super) fn arc<T: Real>(
+    c: &Contact<T>,
+    from: Vector2<T>,
+    speed: T,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
+    arc_here(c, from, speed, restitution)
+}
+
+/// [`arc`] as a part of the caller.
+#[inline(always)]
+pub(super) fn arc_here<T: Real>(
     c: &Contact<T>,
     from: Vector2<T>,
     speed: T,
@@ -65,7 +76,7 @@ pub(super) fn arc<T: Real>(
         let fast = restitution.fast(c, slip);
         // The series needs no rates, unless v_n may turn.
         if stops && !fast && arc.settles(&at, slip / speed) && !arc.turns_ahead(&at) {
-            let (stop, since) = arc.stop(&at);
+            let (stop, since) = if T::INLINED { arc.stop_here::<true>(&at) } else { arc.stop(&at) };
             if restitution.passes(&at.state, &stop, c.together(stop.normal)) {
                 restitution.since(&stop, since);
                 return Slide::Stopped(stop);

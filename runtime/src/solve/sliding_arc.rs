@@ -98,7 +98,7 @@ pub(super) struct RateChanges<T> {
 
 impl<T: Real> SlidingArc<T> {
     /// The arc through the direction `d`, at which h is not zero, and the parameter w of `d`.
-    #[inline]
+    #[inline(always)]
     pub fn through(c: &Contact<T>, d: &Vector2<T>) -> (Self, T) {
         let (zero, one, two) = (T::zero(), T::one(), constant::<T>(2.0));
         let (half, four, six) = (constant::<T>(0.5), constant::<T>(4.0), constant::<T>(6.0));
@@ -197,7 +197,7 @@ impl<T: Real> SlidingArc<T> {
     }
 
     /// All rates at a point.
-    #[inline]
+    #[inline(always)]
     pub fn rates(&self, point: &ArcPoint<T>) -> Rates<T> {
         let w = point.w;
         let poly = |[p0, p1, p2]: [T; 3]| fma(fma(p2, w, p1), w, p0);
@@ -222,7 +222,7 @@ impl<T: Real> SlidingArc<T> {
     }
 
     /// The higher derivatives at a point.
-    #[inline]
+    #[inline(always)]
     pub fn rate_changes(&self, point: &ArcPoint<T>, rates: &Rates<T>) -> RateChanges<T> {
         let w = point.w;
         let first = |p1: T, p2: T| fma(p2 + p2, w, p1) * w;
@@ -254,7 +254,7 @@ impl<T: Real> SlidingArc<T> {
 }
 
 /// Whether a quadratic has, or up to rounding may have, zeros at positive w.
-#[inline]
+#[inline(always)]
 fn may_turn<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
     let zero = T::zero();
     let apart = (*f0 <= zero) != (*f2 <= zero);
@@ -264,7 +264,7 @@ fn may_turn<T: Real>([f0, f1, f2]: &[T; 3]) -> bool {
 }
 
 /// ln x with a relative error of about one per cent between 1/8 and 8; beyond, its size is too small.
-#[inline]
+#[inline(always)]
 pub(super) fn rough_ln<T: Real>(x: T) -> T {
     // 2 atanh((x - 1) / (x + 1))
     let u = (x - T::one()) / (x + T::one());
@@ -274,7 +274,7 @@ pub(super) fn rough_ln<T: Real>(x: T) -> T {
 
 /// ln x with a relative error of about one per cent between 1/4000 and 4000, and of a size between 8 and 14.7
 /// beyond.
-#[inline]
+#[inline(always)]
 pub(super) fn wide_ln<T: Real>(x: T) -> T {
     if x < constant(0.125) || x > constant(8.0) {
         constant::<T>(4.0) * rough_ln(x.sqrt().sqrt())

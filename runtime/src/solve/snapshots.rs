@@ -24,7 +24,7 @@ pub(crate) struct Units<'a, T: Real> {
 
 impl<T: Real> Units<'_, T> {
     /// The snapshot of a state with its tangential velocity.
-    #[inline]
+    #[inline(always)]
     pub fn snapshot(&self, state: &State<T>, tangential: &Vector2<T>, motion: Motion) -> Snapshot<T> {
         let impulse = Vector3::new(state.normal, state.tangential.x, state.tangential.y) * self.scale;
         let velocity = Vector3::new(state.velocity, tangential.x, tangential.y) * self.speed;
@@ -37,8 +37,25 @@ impl<T: Real> Units<'_, T> {
         }
     }
 
+    /// The snapshot of an end of compression.
+    #[inline(always)]
+    fn compression(&self, state: &State<T>, slip_end: Option<&State<T>>, path: Path) -> Snapshot<T> {
+        let after = path.last();
+        let slides = match slip_end {
+            Some(end) => state.normal < end.normal,
+            None => path == Path::Sliding,
+        };
+        if slides {
+            self.snapshot(state, &self.tangential(state), Motion::Sliding)
+        } else if after == Motion::Renewal {
+            self.snapshot(state, &self.tangential(state), after)
+        } else {
+            self.snapshot(state, &Vector2::zeros(), after)
+        }
+    }
+
     /// The tangential velocity that the impulses give: (21), (22).
-    #[inline]
+    #[inline(always)]
     fn tangential(&self, state: &State<T>) -> Vector2<T> {
         let c = self.contact;
         let i = &state.tangential;
@@ -49,30 +66,45 @@ impl<T: Real> Units<'_, T> {
 }
 
 /// The snapshots of the states that the solver recorded.
-#[inline]
+#[inline(always)]
 pub(super) fn phases<T: Real>(
     units: &Units<'_, T>,
     restitution: &Restitution<T>,
     slip_end: Option<State<T>>,
     path: Path,
 ) -> Phases<T> {
+    if T::INLINED {
+        phases_here(units, restitution, slip_end, path)
+    } else {
+        phases_apart(units, restitution, slip_end, path)
+    }
+}
+
+#[inline(never)]
+fn phases_apart<T: Real>(
+    units: &Units<'_, T>,
+    restitution: &Restitution<T>,
+    slip_end: Option<State<T>>,
+    path: Path,
+) -> Phases<T> {
+    phases_here(units, restitution, slip_end, path)
+}
+
+#[inline(always)]
+fn phases_here<T: Real>(
+    units: &Units<'_, T>,
+    restitution: &Restitution<T>,
+    slip_end: Option<State<T>>,
+    path: Path,
+) -> Phases<T> {
     let after = path.last();
-    let compression = |state: State<T>| {
-        let slides = match &slip_end {
-            Some(end) => state.normal < end.normal,
-            None => path == Path::Sliding,
-        };
-        if slides {
-            units.snapshot(&state, &units.tangential(&state), Motion::Sliding)
-        } else if after == Motion::Renewal {
-            units.snapshot(&state, &units.tangential(&state), after)
-        } else {
-            units.snapshot(&state, &Vector2::zeros(), after)
-        }
+    let compression = |state: &Option<State<T>>| match state {
+        Some(state) => Some(units.compression(state, slip_end.as_ref(), path)),
+        None => None,
     };
-    let compression_end = restitution.first.map(compression);
+    let compression_end = compression(&restitution.first);
     let last_compression_end =
-        if restitution.compressions == 1 { compression_end } else { restitution.latest.map(compression) };
+        if restitution.compressions == 1 { compression_end } else { compression(&restitution.latest) };
     Phases {
         compression_end,
         last_compression_end,

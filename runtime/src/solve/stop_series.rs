@@ -7,7 +7,7 @@
 //!
 //! Theory: docs/theory.md, section 6.
 
-use core::cell::Cell;
+use core::{cell::Cell, hint::black_box};
 
 use super::{
     restitution::State,
@@ -34,7 +34,7 @@ struct Taps<T> {
 
 impl<T: Real> SlidingArc<T> {
     /// Whether 64 terms of the series suffice from here, where slip is `share` of the slip at the start.
-    #[inline]
+    #[inline(always)]
     pub fn settles(&self, point: &ArcPoint<T>, share: T) -> bool {
         let ratio = point.w / self.outer;
         if ratio <= constant(1.3) {
@@ -61,7 +61,15 @@ impl<T: Real> SlidingArc<T> {
     /// The state where slip stops (g < 0 at the stable end), and the normal work since compression ended.
     #[inline(never)]
     pub fn stop(&self, point: &ArcPoint<T>) -> (State<T>, T) {
-        let (zero, one, three) = (T::zero(), T::one(), constant::<T>(3.0));
+        self.stop_here::<false>(point)
+    }
+
+    /// [`Self::stop`] as a part of the caller, and with `HERE` its blocks likewise.
+    #[inline(always)]
+    pub fn stop_here<const HERE: bool>(&self, point: &ArcPoint<T>) -> (State<T>, T) {
+        // Where the compiler knows that it is zero, it may call a function that fills memory.
+        let zero = if HERE { black_box(T::zero()) } else { T::zero() };
+        let (one, three) = (T::one(), constant::<T>(3.0));
         let u = one / point.w;
         let (uu, middle) = (u * u, self.middle * u);
         let [q0, q1, q2] = self.q;
@@ -95,7 +103,11 @@ impl<T: Real> SlidingArc<T> {
         let before = point.state.normal / tau;
         let worked = point.state.work.abs() / (tau * tau * self.mu);
         for _ in 0..BLOCKS {
-            block(&mut rows, &mut sources, &mut taps, &mut total);
+            if HERE {
+                block_here(&mut rows, &mut sources, &mut taps, &mut total, zero);
+            } else {
+                block(&mut rows, &mut sources, &mut taps, &mut total);
+            }
             let [[a, b, c, d], [a1, b1, c1, d1], ..] = rows;
             let [sum, .., rubbed] = total;
             // The last two terms, compared with the whole impulse and the whole work since the start.
@@ -135,11 +147,23 @@ fn block<T: Real>(
     taps: &mut Taps<T>,
     total: &mut Row<T>,
 ) {
+    block_here(rows, sources, taps, total, T::zero());
+}
+
+/// [`block`] as a part of the caller.
+#[inline(always)]
+fn block_here<T: Real>(
+    rows: &mut [Row<T>; BLOCK + 2],
+    sources: &mut [Row<T>; BLOCK],
+    taps: &mut Taps<T>,
+    total: &mut Row<T>,
+    zero: T,
+) {
     let [p, q, r] = taps.base;
     let [dp, dq, dr] = taps.slope;
     let cells = Cell::from_mut(rows.as_mut_slice()).as_slice_of_cells();
     let one = [T::one(); 4];
-    let mut n = [T::zero(); 4];
+    let mut n = [zero; 4];
     for (window, source) in cells.windows(3).zip(sources.iter()) {
         let [before, last, out] = window else { return };
         let sum = mul_add(mul_add(n, dq, q), last.get(), *source);
@@ -160,7 +184,7 @@ fn block<T: Real>(
     let [first, second, ..] = rows;
     (*first, *second) = (a, b);
     for source in sources {
-        *source = [T::zero(); 4];
+        *source = [zero; 4];
     }
     let length = [constant::<T>(BLOCK as f64); 4];
     let [p, q, r] = &mut taps.base;

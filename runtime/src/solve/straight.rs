@@ -22,9 +22,47 @@ pub(crate) enum Slide<T: Real> {
     OverBudget(State<T>),
 }
 
+/// Follows the sliding arcs of some kind of contact.
+pub(crate) trait Slides {
+    /// Slides from the tangential velocity `from` of length `speed`.
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T>;
+}
+
 /// Slip along a fixed direction: everything is linear in I_n.
-#[inline]
+#[inline(always)]
 pub(crate) fn straight<T: Real>(
+    c: &Contact<T>,
+    d: Vector2<T>,
+    slip: T,
+    state: State<T>,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
+    if T::INLINED {
+        straight_here(c, d, slip, state, restitution)
+    } else {
+        straight_apart(c, d, slip, state, restitution)
+    }
+}
+
+/// [`straight`] as a function of its own.
+#[inline(never)]
+pub(super) fn straight_apart<T: Real>(
+    c: &Contact<T>,
+    d: Vector2<T>,
+    slip: T,
+    state: State<T>,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
+    straight_here(c, d, slip, state, restitution)
+}
+
+#[inline(always)]
+fn straight_here<T: Real>(
     c: &Contact<T>,
     d: Vector2<T>,
     slip: T,

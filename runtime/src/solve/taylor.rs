@@ -7,7 +7,7 @@ use crate::scalar::{Real, constant, fma};
 
 impl<T: Real> ArcPoint<T> {
     /// Moves the point by `step` in lambda with an error of third order.
-    #[inline]
+    #[inline(always)]
     pub fn second_order_step(&mut self, arc: &SlidingArc<T>, rates: &Rates<T>, step: T) {
         let (one, half) = (T::one(), constant::<T>(0.5));
         let first = self.sigma * rates.e * rates.inverse * step;
@@ -30,6 +30,18 @@ impl<T: Real> ArcPoint<T> {
     /// Moves the point by `step` in lambda with an error of fourth order.
     #[inline(never)]
     pub fn third_order_step(
+        &mut self,
+        arc: &SlidingArc<T>,
+        rates: &Rates<T>,
+        rate_changes: &RateChanges<T>,
+        step: T,
+    ) {
+        self.third_order_step_here(arc, rates, rate_changes, step);
+    }
+
+    /// [`Self::third_order_step`] as a part of the caller.
+    #[inline(always)]
+    pub fn third_order_step_here(
         &mut self,
         arc: &SlidingArc<T>,
         rates: &Rates<T>,

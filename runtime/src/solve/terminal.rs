@@ -16,7 +16,7 @@ impl<T: Real> Contact<T> {
     /// A second pivot within rounding of zero counts as zero if b lies in the range of T. If b does not, the
     /// pivot is small but not zero: in a positive semidefinite matrix it is at least the square of what
     /// elimination leaves of b.
-    #[inline]
+    #[inline(always)]
     pub fn hold(&self) -> Vector2<T> {
         let Some(elimination) = self.tangential().eliminate(&self.b) else { return Vector2::zeros() };
         if !elimination.is_singular() {
@@ -46,8 +46,18 @@ impl<T: Real> Contact<T> {
     ///
     /// Newton's method on 1 / |(mu T + g)^-1 b| = 1, from below, where it rises to the root without crossing
     /// it.
-    #[inline]
+    #[inline(always)]
     pub fn renewal(&self) -> Vector2<T> {
+        if T::INLINED { self.renewal_here() } else { self.renewal_apart() }
+    }
+
+    #[inline(never)]
+    fn renewal_apart(&self) -> Vector2<T> {
+        self.renewal_here()
+    }
+
+    #[inline(always)]
+    fn renewal_here(&self) -> Vector2<T> {
         let (mut b, mut tt, mut ts, mut ss) = (self.b, self.mu_tt, self.mu_ts, self.mu_ss);
         if !self.is_ordinary() {
             // The direction depends on ratios of the entries only.
@@ -104,7 +114,7 @@ pub(crate) struct Terminal<T: Real> {
 
 impl<T: Real> Terminal<T> {
     /// Sticking (45) if mu >= mu_c, else renewal (46).
-    #[inline]
+    #[inline(always)]
     pub fn of(contact: &Contact<T>) -> Self {
         let hold = contact.hold();
         let mu_c = length(&hold);

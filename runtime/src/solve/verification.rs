@@ -43,8 +43,36 @@ impl<T: Real> Restitution<T> {
     /// Checks an outcome against v_2 = v_1 + M I (20)-(22), Coulomb's cone, I_n >= 0, v_n2 >= 0, work of
     /// friction <= 0, and the law of restitution. `from` is the tangential velocity of approach, `slip`
     /// its length.
-    #[inline]
+    #[inline(always)]
     pub(super) fn verify(
+        &self,
+        c: &Contact<T>,
+        from: &Vector2<T>,
+        slip: T,
+        end: &State<T>,
+        velocity: &Vector2<T>,
+    ) -> Result<(), ImpactError<T>> {
+        if T::INLINED {
+            self.verify_here(c, from, slip, end, velocity)
+        } else {
+            self.verify_apart(c, from, slip, end, velocity)
+        }
+    }
+
+    #[inline(never)]
+    fn verify_apart(
+        &self,
+        c: &Contact<T>,
+        from: &Vector2<T>,
+        slip: T,
+        end: &State<T>,
+        velocity: &Vector2<T>,
+    ) -> Result<(), ImpactError<T>> {
+        self.verify_here(c, from, slip, end, velocity)
+    }
+
+    #[inline(always)]
+    fn verify_here(
         &self,
         c: &Contact<T>,
         from: &Vector2<T>,

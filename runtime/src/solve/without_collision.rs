@@ -9,7 +9,7 @@ use super::{
     collision::{collide, long},
     contact::Contact,
     input::check_closely,
-    range::slide,
+    range::AnyArc,
     restitution::Restitution,
 };
 use crate::{
@@ -75,7 +75,7 @@ pub(crate) fn without_collision<T: Real>(
         return Err(ImpactError::NoImpact { rate: f * matrix.nn });
     }
     let restitution = Restitution::without_collision(surface.law, surface.e).within(quadratures);
-    let mut impact = collide(&matrix, &approach, speed, surface, restitution, slide)?;
+    let mut impact = collide::<AnyArc, T>(&matrix, &approach, speed, surface, restitution)?;
     // f becomes positive at once: v_n has not fallen, and there is no impact.
     if impact.impulse.x * matrix.nn <= eps * speed * length(&(slip / speed)) {
         return Err(ImpactError::NoImpact { rate: f * matrix.nn });

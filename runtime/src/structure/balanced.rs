@@ -17,7 +17,7 @@ use super::{
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Restitution, Slide, State, slide, straight},
+    solve::{Contact, Restitution, Slide, State, slide_rarely, straight},
 };
 
 /// The greatest (v_2 / v_1)^2 at which the series about the direction of v_1 is used.
@@ -41,7 +41,7 @@ impl Shape for Balanced {
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
         if !c.is_ordinary() {
-            return slide(c, from, speed, restitution);
+            return slide_rarely(c, from, speed, restitution);
         }
         let (axis, values) = principal(c);
         decay(c, from, speed, axis, values, restitution)

@@ -132,7 +132,7 @@ fn piece<T: Real>(
     let law = restitution.law();
     let (mut from, mut to) = (from, to);
     // Stronge's target is a work since compression ended, which may be below the rounding of the total work.
-    let works = law == Law::Stronge && restitution.compressions > 0 && restitution.stop.is_none();
+    let works = law == Law::Stronge && restitution.compressions > 0 && restitution.stop().is_none();
     let passes = if works && from.1.state.velocity >= zero {
         to.1.velocity >= zero && to.2 < restitution.wanted
     } else {
@@ -141,11 +141,11 @@ fn piece<T: Real>(
     if passes {
         return Piece::Passed;
     }
-    if let Some(stop) = restitution.stop {
+    if let Some(stop) = restitution.stop() {
         return Piece::Ended(find(course, &Event::Impulse(stop), T::one(), &from, to.0).1);
     }
     if from.1.state.velocity < zero {
-        if law == Law::Newton && restitution.target > zero && !restitution.thorough {
+        if law == Law::Newton && restitution.target > zero && !restitution.thorough() {
             // Newton's target does not depend on where compression ends.
             restitution.compressed_somewhere();
         } else {

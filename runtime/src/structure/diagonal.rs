@@ -8,7 +8,7 @@ use super::{Diagonal, Shape, balanced::decay};
 use crate::{
     ReducedMatrix, Surface,
     scalar::Real,
-    solve::{Contact, Restitution, Slide, slide},
+    solve::{Contact, Restitution, Slide, slide_rarely},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -26,7 +26,7 @@ impl Shape for Diagonal {
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
         if !c.is_ordinary() {
-            return slide(c, from, speed, restitution);
+            return slide_rarely(c, from, speed, restitution);
         }
         let (one, zero) = (T::one(), T::zero());
         if c.tt >= c.ss {

@@ -16,7 +16,7 @@ use super::{
 use crate::{
     ReducedMatrix, Surface,
     scalar::{Real, constant, length},
-    solve::{Contact, Restitution, Slide, State, slide, straight},
+    solve::{Contact, Restitution, Slide, State, slide_rarely, straight},
 };
 
 #[expect(private_bounds, private_interfaces, reason = "nobody else implements this")]
@@ -34,7 +34,7 @@ impl Shape for Isotropic {
         restitution: &mut Restitution<T>,
     ) -> Slide<T> {
         if !c.is_ordinary() {
-            return slide(c, from, speed, restitution);
+            return slide_rarely(c, from, speed, restitution);
         }
         let d = from / speed;
         let beta = length(&c.b);

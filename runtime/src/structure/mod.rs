@@ -20,12 +20,15 @@ mod frictionless;
 mod isotropic;
 mod planar;
 
-use nalgebra::Vector3;
+use core::marker::PhantomData;
+
+use nalgebra::{Vector2, Vector3};
 
 pub(crate) use self::implementation::Shape;
 use crate::{
-    ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar,
-    solve::{Restitution, checked, collide},
+    ContactSurface, Impact, ImpactError, ReducedMatrix, Scalar, Surface,
+    scalar::Real,
+    solve::{Contact, Restitution, Slide, Slides, checked, collide},
 };
 
 /// A structure of a contact: one of the marker types of this module.
@@ -57,6 +60,21 @@ mod implementation {
         ) -> Slide<T> {
             slide(c, from, speed, restitution)
         }
+    }
+}
+
+/// The sliding arcs of a structure.
+struct Of<S>(PhantomData<S>);
+
+impl<S: Structure> Slides for Of<S> {
+    #[inline(always)]
+    fn slide<T: Real>(
+        c: &Contact<T>,
+        from: Vector2<T>,
+        speed: T,
+        restitution: &mut Restitution<T>,
+    ) -> Slide<T> {
+        S::slide(c, from, speed, restitution)
     }
 }
 
@@ -107,12 +125,21 @@ pub fn solve_structured<S: Structure, T: Scalar>(
     approach: &Vector3<T>,
     surface: &impl ContactSurface<T>,
 ) -> Result<Impact<T>, ImpactError<T>> {
-    let quadratures = surface.quadratures();
-    let (mut matrix, mut approach, mut surface) = (*matrix, *approach, *surface.surface());
+    structured::<S, T>(*matrix, *approach, *surface.surface(), surface.quadratures())
+}
+
+/// [`solve_structured`] for every number type of the solver.
+#[inline(always)]
+pub(crate) fn structured<S: Structure, T: Real>(
+    mut matrix: ReducedMatrix<T>,
+    mut approach: Vector3<T>,
+    mut surface: Surface<T>,
+    quadratures: u32,
+) -> Result<Impact<T>, ImpactError<T>> {
     S::impose(&mut matrix, &mut approach, &mut surface);
     if let Some(cleaned) = checked(&matrix, &approach, &surface)? {
         matrix = cleaned;
     }
     let restitution = Restitution::new(surface.law, surface.e).within(quadratures);
-    collide(&matrix, &approach, -approach.x, &surface, restitution, S::slide)
+    collide::<Of<S>, T>(&matrix, &approach, -approach.x, &surface, restitution)
 }

@@ -15,11 +15,15 @@ use no_panic::no_panic;
 mod memory;
 
 hodograph::mechanism!("../downstream/models/hopper.mech");
+hodograph::mechanism!("../../models/two_sleds.mech", specialise strike(bc_ac, law = Stronge));
+hodograph::mechanism!("../../models/arm_7dof.mech", specialise strike(tool_plane, law = Newton, mu = 0.3, e = 0.5));
 
+use arm_7dof::Arm7dof;
 use hopper::{
     ClosedContact, Collision, CollisionDerivative, Coordinates, Derivatives, Hopper, Inputs, Linearisation,
     Parameters, Speeds,
 };
+use two_sleds::TwoSleds;
 
 #[no_panic]
 #[inline(never)]
@@ -225,6 +229,87 @@ fn new(parameters: Parameters) -> Option<Hopper> {
     Hopper::new(parameters).ok()
 }
 
+/// A spatial mechanism: its constructor, accelerations, collisions and modes of contact.
+macro_rules! spatial {
+    ($called:ident: $module:ident $machine:ident $collide:ident $without:ident $mode:ident $strike:ident($($known:expr),*)) => {
+        mod $called {
+            use super::*;
+            use $module::{Collision, Coordinates, Parameters, Speeds};
+
+            type Collided = Result<Collision, CollisionError<f64>>;
+
+            #[no_panic]
+            #[inline(never)]
+            fn new(parameters: Parameters) -> Option<$machine> {
+                $machine::new(parameters).ok()
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            fn accelerations(m: &$machine, q: &Coordinates, u: &Speeds) -> Result<Speeds, StateError> {
+                m.accelerations(q, u)
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            fn collide(m: &$machine, q: &Coordinates, u: &Speeds, surface: &Surface<f64>) -> Collided {
+                m.$collide(q, u, surface)
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            fn collide_f32(
+                m: &$machine<f32>,
+                q: &Coordinates<f32>,
+                u: &Speeds<f32>,
+                surface: &Surface<f32>,
+            ) -> Result<Collision<f32>, CollisionError<f32>> {
+                m.$collide(q, u, surface)
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            fn strike(m: &$machine, q: &Coordinates, u: &Speeds) -> Collided {
+                m.$strike(q, u, $($known),*)
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            fn without(m: &$machine, q: &Coordinates, u: &Speeds, surface: &Surface<f64>) -> Collided {
+                m.$without(q, u, surface)
+            }
+
+            #[no_panic]
+            #[inline(never)]
+            fn mode(
+                m: &$machine,
+                q: &Coordinates,
+                u: &Speeds,
+                surface: &Surface<f64>,
+            ) -> Result<$module::ClosedContact, ClosedContactError<f64>> {
+                m.$mode(q, u, surface)
+            }
+
+            pub fn all(surface: &Surface<f64>) {
+                let (q, u) = (black_box(Coordinates::default()), black_box(Speeds::default()));
+                if let Some(m) = new(black_box(Parameters::default())) {
+                    black_box(accelerations(&m, &q, &u).is_ok());
+                    black_box(collide(&m, &q, &u, surface).is_ok());
+                    black_box(strike(&m, &q, &u).is_ok());
+                    black_box(without(&m, &q, &u, surface).is_ok());
+                    black_box(mode(&m, &q, &u, surface).is_ok());
+                }
+                let (q, u) = (black_box(Coordinates::default()), black_box(Speeds::default()));
+                let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Stronge });
+                black_box(collide_f32(&black_box($machine::default()), &q, &u, &surface).is_ok());
+            }
+        }
+    };
+}
+
+spatial!(sleds: two_sleds TwoSleds collide_bc_ac impact_without_collision_bc_ac contact_mode_bc_ac strike(black_box(0.6), black_box(0.8)));
+spatial!(arm: arm_7dof Arm7dof collide_tool_plane impact_without_collision_tool_plane contact_mode_tool_plane strike());
+
 #[unsafe(no_mangle)]
 extern "C" fn _start() -> ! {
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Stronge });
@@ -245,6 +330,8 @@ extern "C" fn _start() -> ! {
         );
         black_box(impact_without_collision(&hopper, &q, &u, &surface).is_ok());
     }
+    sleds::all(&surface);
+    arm::all(&surface);
     let surface = black_box(Surface { mu: 0.6, e: 0.2, law: Law::Poisson });
     let (q, u) = (black_box(Coordinates::default()), black_box(Speeds { u1: -2.0, u2: 0.1 }));
     black_box(collide_f32(&black_box(Hopper::default()), &q, &u, &surface).is_ok());

@@ -1,8 +1,10 @@
 //! Counts the instructions of every routine in `measured`, and holds them against `counts.txt`: more than 3 %
 //! above it is an error. With `HODOGRAPH_UPDATE=1` the table is written anew instead.
+//!
+//! With the argument `specialised` it prints what collisions that are one routine bring, as a table of a document.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// A routine may take this much more than the table says: compilers and their versions differ a little.
@@ -17,7 +19,12 @@ const MISSING: usize = 12;
 type Counts = BTreeMap<String, f64>;
 
 fn main() -> ExitCode {
-    match run() {
+    let done = match std::env::args().nth(1).as_deref() {
+        None => run(),
+        Some("specialised") => specialised().map(|()| true),
+        Some(other) => Err(format!("`{other}`: there is no argument but `specialised`")),
+    };
+    match done {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(message) => {
@@ -80,52 +87,98 @@ fn entry(line: &str) -> Option<(String, f64)> {
     Some((name.to_owned(), count.trim().parse().ok()?))
 }
 
-/// Instructions of the routines, and the subjects of which not all were counted.
-fn count() -> Result<(Counts, Vec<String>), String> {
+/// Prints instructions and times of the usual collisions and of specialised ones.
+fn specialised() -> Result<(), String> {
+    // As programs are built that ask for nothing.
+    let measured = build("plain", "")?;
+    let (counts, unfinished) = profile(&measured, "specialised")?;
+    if !unfinished.is_empty() {
+        return Err(format!("valgrind does not know an instruction of {}", unfinished.join(", ")));
+    }
+    println!(
+        "| collision | instructions: usual | law known | law, mu, e known | time: usual (us) | law known | law, mu, e known |"
+    );
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: |");
+    for line in execute(Command::new(&measured).arg("times"))?.lines() {
+        let mut words = line.split(' ');
+        let model = words.next().unwrap_or_default();
+        let times: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
+        let count = |routine: &str| {
+            counts.get(&format!("specialised::{model}_{routine}")).copied().unwrap_or(f64::NAN)
+        };
+        let [usual, law, surface] = ["shared", "known_law", "known_surface"].map(count);
+        let [time, with_law, with_surface] = times[..] else { return Err(format!("no times: {line}")) };
+        println!(
+            "| {model} | {usual:.0} | {law:.0} ({:.3}) | {surface:.0} ({:.3}) | {time:.2} | {with_law:.2} ({:.3}) | {with_surface:.2} ({:.3}) |",
+            law / usual,
+            surface / usual,
+            with_law / time,
+            with_surface / time
+        );
+    }
+    Ok(())
+}
+
+/// Builds the program that is measured, in a folder of its own for these flags of the compiler.
+fn build(folder: &str, flags: &str) -> Result<PathBuf, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let target = here.join("target/measured");
+    let target = here.join("target").join(folder);
     execute(
         Command::new("cargo")
             .args(["build", "--release", "--locked", "--package", "measured", "--manifest-path"])
             .arg(here.join("Cargo.toml"))
             .arg("--target-dir")
             .arg(&target)
-            // valgrind executes no AVX-512.
-            .env("RUSTFLAGS", "-C target-cpu=x86-64-v3"),
+            .env("RUSTFLAGS", flags),
     )?;
-    let measured = target.join("release/measured");
+    Ok(target.join("release/measured"))
+}
+
+/// Instructions of the routines, and the subjects of which not all were counted.
+fn count() -> Result<(Counts, Vec<String>), String> {
+    // valgrind executes no AVX-512.
+    let measured = build("measured", "-C target-cpu=x86-64-v3")?;
     let subjects = execute(&mut Command::new(&measured))?;
     let (mut counts, mut in_part) = (Counts::new(), Vec::new());
     for subject in subjects.lines() {
-        let profile = target.join("callgrind.out");
-        let counted = execute(
-            Command::new("valgrind")
-                .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
-                .arg(format!("--callgrind-out-file={}", profile.display()))
-                .arg(&measured)
-                .arg(subject),
-        );
-        // the routines that valgrind did not execute to their end
-        let unfinished: Vec<String> = match counted {
-            Ok(_) => Vec::new(),
-            // what was counted before it is kept
-            Err(message) if message.contains("Unrecognised instruction") || message.contains("SIGILL") => {
-                println!("{subject}: counted in part, for valgrind does not know one of its instructions");
-                in_part.push(subject.to_owned());
-                let calls = message.lines().filter(|line| line.contains(" at 0x") || line.contains(" by 0x"));
-                calls.filter_map(routine).collect()
-            }
-            Err(message) => return Err(message),
-        };
-        let profile =
-            std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
-        counts.extend(per_call(&profile).into_iter().filter(|(name, _)| !unfinished.contains(name)));
+        let (counted, unfinished) = profile(&measured, subject)?;
+        if !unfinished.is_empty() {
+            println!("{subject}: counted in part, for valgrind does not know one of its instructions");
+            in_part.push(subject.to_owned());
+        }
+        counts.extend(counted);
     }
     if counts.is_empty() {
         Err("valgrind counted none of the routines".to_owned())
     } else {
         Ok((counts, in_part))
     }
+}
+
+/// Instructions of the routines of a subject, without those that valgrind did not execute to their end, which
+/// are named too.
+fn profile(measured: &Path, subject: &str) -> Result<(Counts, Vec<String>), String> {
+    let profile = measured.with_file_name("callgrind.out");
+    let counted = execute(
+        Command::new("valgrind")
+            .args(["--tool=callgrind", "--compress-strings=no", "--compress-pos=no"])
+            .arg(format!("--callgrind-out-file={}", profile.display()))
+            .arg(measured)
+            .arg(subject),
+    );
+    let unfinished: Vec<String> = match counted {
+        Ok(_) => Vec::new(),
+        // what was counted before it is kept
+        Err(message) if message.contains("Unrecognised instruction") || message.contains("SIGILL") => {
+            let calls = message.lines().filter(|line| line.contains(" at 0x") || line.contains(" by 0x"));
+            calls.filter_map(routine).collect()
+        }
+        Err(message) => return Err(message),
+    };
+    let text =
+        std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
+    let counts = per_call(&text).into_iter().filter(|(name, _)| !unfinished.contains(name));
+    Ok((counts.collect(), unfinished))
 }
 
 /// What a command prints.
@@ -164,5 +217,7 @@ fn routine(function: &str) -> Option<String> {
     let rest = function.split("measured::").nth(1)?;
     let mut parts = rest.split("::").map(|part| part.split([' ', '\'']).next().unwrap_or(part));
     let (model, name) = (parts.next()?, parts.next()?);
-    (model != "Bench" && !matches!(name, "run" | "{{closure}}")).then(|| format!("{model}::{name}"))
+    // What stands deeper is called by routines.
+    (parts.next().is_none() && model != "Bench" && !matches!(name, "run" | "states" | "times" | "{{closure}}"))
+        .then(|| format!("{model}::{name}"))
 }

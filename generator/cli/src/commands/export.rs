@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use hodograph_generator::emit::Requests;
+
 use crate::commands::expand;
 use crate::derivation::Limits;
 use crate::export::{Scalar, files};
@@ -61,7 +63,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         None => format!("{{ version = \"{}\", default-features = false }}", env!("CARGO_PKG_VERSION")),
     };
     let scalar = if arguments.single { Scalar::Single } else { Scalar::Double };
-    let expanded = expand::text(&arguments.model, Vec::new(), &arguments.limits)?;
+    let expanded = expand::text(&arguments.model, Requests::default(), &arguments.limits)?;
     let files = files(&expanded, scalar, &dependency)
         .ok_or_else(|| Stop::Fault("the generated module cannot be read".to_owned()))?;
     output::files(folder, &files)?;

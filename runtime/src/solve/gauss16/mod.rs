@@ -130,9 +130,10 @@ impl<T: Real> SlidingArc<T> {
     }
 
     /// Sets `to` to the point that lies `length` further in lambda, with its work, which is that of the
-    /// balance of energy or, if `fast`, integrated directly.
+    /// balance of energy or, if `fast`, integrated directly. With `HERE` the
+    /// quadrature becomes a part of the caller.
     #[inline(always)]
-    pub fn step(
+    pub fn step<const HERE: bool>(
         &self,
         from: &ArcPoint<T>,
         length: T,
@@ -140,7 +141,11 @@ impl<T: Real> SlidingArc<T> {
         panel: &mut Panel<T>,
         to: &mut ArcPoint<T>,
     ) {
-        self.integrate(from, length, panel, to);
+        if HERE {
+            self.integrate_here(from, length, panel, to);
+        } else {
+            self.integrate(from, length, panel, to);
+        }
         // Not within `integrate`: its frame is large where numbers carry derivatives.
         if fast {
             let done = self.direct(from, to, panel);
@@ -152,6 +157,12 @@ impl<T: Real> SlidingArc<T> {
     /// [`Self::step`] with the work of the balance of energy.
     #[inline(never)]
     fn integrate(&self, from: &ArcPoint<T>, length: T, panel: &mut Panel<T>, to: &mut ArcPoint<T>) {
+        self.integrate_here(from, length, panel, to);
+    }
+
+    /// [`Self::integrate`] as a part of the caller.
+    #[inline(always)]
+    fn integrate_here(&self, from: &ArcPoint<T>, length: T, panel: &mut Panel<T>, to: &mut ArcPoint<T>) {
         let one = T::one();
         // s = tanh(length / 32)
         let y = length * constant(1.0 / 32.0);

@@ -65,7 +65,35 @@ uses!(pendulum: "planar_double_pendulum" planar_double_pendulum PlanarDoublePend
 uses!(disc: "rolling_disc" rolling_disc RollingDisc collide_rim_wall contact_mode_rim_wall collide_rim_slanted);
 uses!(arm: "arm_7dof" arm_7dof Arm7dof collide_tool_plane contact_mode_tool_plane);
 
+/// The same mechanism made a module here, with its collision as one routine in place of the usual one.
+macro_rules! one_routine {
+    ($name:ident: $feature:literal $module:ident $type:ident $file:literal $contact:ident) => {
+        #[cfg(all(feature = "one_routine", feature = $feature))]
+        mod $name {
+            hodograph::mechanism!($file, specialise strike($contact, law = Stronge));
+
+            pub fn collides() {
+                use core::hint::black_box;
+                use $module::{Coordinates, Speeds, $type};
+                let mechanism = $type::<super::Chosen>::default();
+                let (q, u) = (black_box(Coordinates::default()), black_box(Speeds::default()));
+                black_box(mechanism.strike(&q, &u, black_box(0.6), black_box(0.8))).ok();
+            }
+        }
+    };
+}
+
+one_routine!(one_of_sleds: "two_sleds" two_sleds TwoSleds "../../models/two_sleds.mech" bc_ac);
+one_routine!(one_of_pendulum: "planar_double_pendulum" planar_double_pendulum PlanarDoublePendulum "../../models/planar_double_pendulum.mech" tip_wall);
+one_routine!(one_of_arm: "arm_7dof" arm_7dof Arm7dof "../../models/arm_7dof.mech" tool_plane);
+
 fn program() {
+    #[cfg(all(feature = "one_routine", feature = "two_sleds"))]
+    one_of_sleds::collides();
+    #[cfg(all(feature = "one_routine", feature = "planar_double_pendulum"))]
+    one_of_pendulum::collides();
+    #[cfg(all(feature = "one_routine", feature = "arm_7dof"))]
+    one_of_arm::collides();
     #[cfg(feature = "two_sleds")]
     sleds();
     #[cfg(feature = "planar_double_pendulum")]

@@ -1,6 +1,8 @@
 //! The program that valgrind executes: every routine of a shipped model once, or the solver over the nine
 //! collisions of the paper and random ones.
 
+mod specialised;
+
 use std::hint::black_box;
 
 use hodograph::{Contacts, Kind, Law, State, Surface};
@@ -87,7 +89,7 @@ macro_rules! models {
         })*
 
         /// What can be measured, each in a run of its own: a name and what it runs.
-        const SUBJECTS: &[(&str, fn())] = &[$(($feature, $module::run),)* ("sets", sets::run), ("solver", solver::run)];
+        const SUBJECTS: &[(&str, fn())] = &[$(($feature, $module::run),)* ("sets", sets::run), ("solver", solver::run), ("specialised", specialised::run)];
     };
 }
 
@@ -164,9 +166,10 @@ mod sets {
     }
 }
 
-/// Runs the subject that is named, or tells the names of all.
+/// Runs the subject that is named, or tells the names of all; `times` prints how long specialised collisions take.
 fn main() {
     match std::env::args().nth(1) {
+        Some(name) if name == "times" => specialised::times(),
         Some(name) => SUBJECTS.iter().filter(|(subject, _)| *subject == name).for_each(|(_, run)| run()),
         None => SUBJECTS.iter().for_each(|(subject, _)| println!("{subject}")),
     }
