@@ -18,6 +18,7 @@ fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Variable 
         value,
         fixed: false,
         typical: 1.0,
+        factor: 1.0,
         dependent: false,
         span: Span::default(),
     }

@@ -114,6 +114,8 @@ pub struct Variable {
     pub value: Option<f64>,
     /// a size that such a quantity commonly has, in that unit; all quantities of a unit have the same
     pub typical: f64,
+    /// one of that unit, counted in SI units: numerical checks compare equations after multiplying by it
+    pub factor: f64,
     /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it
     /// appears as its number; it is kept here so that callers can refer to it by name.
     pub fixed: bool,

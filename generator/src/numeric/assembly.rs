@@ -13,6 +13,7 @@ pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
     if unknown.is_empty() {
         return Ok(());
     }
+    let sizes: Vec<f64> = unknown.iter().map(|i| m.coordinates[*i].factor).collect();
     let mut size = residual_size(m, state)?;
     for _ in 0..60 {
         if size < 1e-13 {
@@ -26,7 +27,7 @@ pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
         }
         let now = residuals(m, state, None)?;
         rows.iter_mut().zip(now).for_each(|(row, r)| row.push(HyperDual::constant(-r.re)));
-        let Ok(step) = solve(rows, unknown.len()) else { return Err(Failure::NotClosed(size)) };
+        let Ok(step) = solve(rows, unknown.len(), &sizes) else { return Err(Failure::NotClosed(size)) };
         let before = state.coordinates.clone();
         let mut scale = 1.0;
         let mut better = false;

@@ -127,6 +127,7 @@ impl Lowering<'_> {
             unit: unit.as_ref().map_or(String::new(), |unit| unit.text.clone()),
             value: number,
             typical: unit.as_ref().map_or(1.0, Unit::typical),
+            factor: unit.as_ref().map_or(1.0, Unit::factor),
             fixed: is_fixed,
             dependent: is_dependent,
             span: source.name.span,
