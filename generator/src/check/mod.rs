@@ -3,6 +3,7 @@
 
 mod bodies;
 mod body_points;
+mod configuration;
 mod contacts;
 mod counts;
 mod gaps;

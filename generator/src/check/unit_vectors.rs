@@ -56,7 +56,8 @@ fn not_unit(
     message: impl Fn(String) -> String,
 ) -> Option<Diagnostic> {
     let off = |length: &f64| length.is_finite() && (length - 1.0).abs() > 1e-9;
-    let first = lengths.first().filter(|_| lengths.iter().all(off))?;
+    // at one state a vector may have the length 1 by chance
+    let first = lengths.iter().find(|length| off(length))?;
     let help = match code {
         _ if *first < 1e-12 => "it is zero",
         codes::FRAME => "divide its components by its length",

@@ -90,6 +90,7 @@ codes! {
     INCONSISTENT = "E075", "a declared velocity contradicts the positions";
     NO_INERTIA = "E076", "a degree of freedom without inertia";
     EMPTY_EQUATION = "E077", "an equation that says nothing";
+    NOT_KEPT = "E078", "a configuration that the motion does not keep";
     NORMAL = "E080", "the normal is not a unit vector";
     CONTACT_STILL = "E081", "a contact that never moves";
     CONTACT = "E082", "a contact is not stated correctly";
@@ -105,4 +106,5 @@ codes! {
     LOAD_POINT = "W010", "a load on a geometric point where a body is meant";
     TORSION_ANGLE = "W011", "a torsion spring whose angle is not that of its axis";
     NO_EFFECT = "W012", "a load that does nothing";
+    KEPT_BY_VALUES = "W013", "a configuration that is kept with some values only";
 }

@@ -227,6 +227,35 @@ pub(super) const TABLE: &[Explanation] = &[
         right: Some("kinematics { d(q1)/dt = u1; }"),
     },
     Explanation {
+        code: NOT_KEPT,
+        text: "A closed loop is stated twice: by positions under `configuration`, from which consistent \
+            coordinates are computed, and by velocities under `constraints`, which the equations of motion \
+            need. The rate of each configuration equation must follow from the constraints (and the \
+            kinematical equations) wherever the loops are closed. Here it does not: the motion would leave \
+            the configuration at once. Look for a sign, a factor or a point that differs, for a term with \
+            `time` on one side only, or for a constraint that is missing.",
+        wrong: Some(
+            "coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = -2*u1; }\n\
+            configuration { q2 = 2*q1; }",
+        ),
+        right: Some(
+            "coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = 2*u1; }\n\
+            configuration { q2 = 2*q1; }",
+        ),
+    },
+    Explanation {
         code: NORMAL,
         text: "A normal must have the length 1. `unit(v)` is the unit vector along v.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x + N.y } }"),

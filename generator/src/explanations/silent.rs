@@ -105,4 +105,33 @@ pub(super) const TABLE: &[Explanation] = &[
         wrong: Some("loads { gravity: -g*N.y; force on O: m*g*N.x; }"),
         right: Some("loads { gravity: -g*N.y; force on P: m*g*N.x; }"),
     },
+    Explanation {
+        code: KEPT_BY_VALUES,
+        text: "The motion keeps a configuration equation with the values that the parameters have in the \
+            model, and does not with others: a number or another parameter stands in the constraints where \
+            the configuration has this one. As soon as it is set at run time, the motion leaves the \
+            configuration.",
+        wrong: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, n: 1 = 2 }\n\
+            coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = 2*u1; }\n\
+            configuration { q2 = n*q1; }",
+        ),
+        right: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, n: 1 = 2 }\n\
+            coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = n*u1; }\n\
+            configuration { q2 = n*q1; }",
+        ),
+    },
 ];
