@@ -219,7 +219,11 @@ mod tests {
             }
         }
         // pairs that make a third: the second is a mark, or a vowel of Korean
-        let joins = |c: &&char| is_combining_mark(**c) || (0x1160..0x1200).contains(&(**c as u32)) || (0x16d63..0x16d6b).contains(&(**c as u32));
+        let joins = |c: &&char| {
+            is_combining_mark(**c)
+                || (0x1160..0x1200).contains(&(**c as u32))
+                || (0x16d63..0x16d6b).contains(&(**c as u32))
+        };
         let marks: Vec<char> = letters.iter().filter(joins).copied().collect();
         for &a in &letters {
             for &b in &marks {

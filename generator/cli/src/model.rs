@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use hodograph_generator::check::check;
+use hodograph_generator::diagnostics::{Diagnostic, Severity};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
@@ -23,7 +24,8 @@ pub struct Model {
     pub mechanism: Mechanism,
 }
 
-/// Reads and checks a model file; says what is wrong on stderr.
+/// Reads and checks a model file; says what is wrong on stderr, and what makes numbers doubtful. What is only
+/// superfluous or missing is said by `check` and `derive`.
 ///
 /// # Errors
 ///
@@ -32,16 +34,22 @@ pub fn load(path: &Path) -> Outcome<Model> {
     if let Err(error) = std::fs::metadata(path) {
         return Err(Stop::unreadable(path, &error));
     }
-    checked(Source::read(path))
+    said(Source::read(path), |found| found.severity == Severity::Error || !found.code.is_of_text())
 }
 
-/// Checks a model; says what is wrong on stderr.
+/// Checks a model; says all that is wrong on stderr.
 ///
 /// # Errors
 ///
 /// [`Stop::Said`] where it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
-    let found = check(&source);
+    said(source, |_| true)
+}
+
+/// Checks a model, and says what is to be said on stderr.
+fn said(source: Source, what: impl Fn(&Diagnostic) -> bool) -> Outcome<Model> {
+    let mut found = check(&source);
+    found.diagnostics.retain(what);
     if !found.diagnostics.is_empty() {
         output::say(render(&found.diagnostics, &source).trim_end());
     }

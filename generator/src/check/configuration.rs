@@ -42,18 +42,21 @@ fn broken(m: &Mechanism, equation: &Equation) -> Diagnostic {
         "state the same twice, by positions here and by their rates under `constraints`; compare signs, factors, points, and what depends on `time`".to_owned()
     };
     let error = Diagnostic::new(codes::NOT_KEPT, equation.span, message).help(help);
-    m.constraints.iter().take(SHOWN).fold(error, |error, constraint| {
-        error.related(constraint.span, "this says how it moves")
-    })
+    m.constraints
+        .iter()
+        .take(SHOWN)
+        .fold(error, |error, constraint| error.related(constraint.span, "this says how it moves"))
 }
 
 fn by_chance(m: &Mechanism, equation: &Equation) -> Diagnostic {
     let message = "the motion keeps this equation only with these values of the parameters";
-    let help = "name the same parameters in the constraints and here, or make those whose values matter `fixed`";
+    let help =
+        "name the same parameters in the constraints and here, or make those whose values matter `fixed`";
     let warning = Diagnostic::new(codes::KEPT_BY_VALUES, equation.span, message).help(help);
-    m.constraints.iter().take(SHOWN).fold(warning, |warning, constraint| {
-        warning.related(constraint.span, "this says how it moves")
-    })
+    m.constraints
+        .iter()
+        .take(SHOWN)
+        .fold(warning, |warning, constraint| warning.related(constraint.span, "this says how it moves"))
 }
 
 /// Whether the rate of an equation vanishes in the motion of the state, whose speeds are arbitrary. `None`

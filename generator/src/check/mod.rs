@@ -16,7 +16,7 @@ mod states;
 mod unit_vectors;
 mod vector_constraints;
 
-use crate::diagnostics::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Severity, codes};
 use crate::model::{self, mechanism::Mechanism};
 use crate::source::Source;
 use crate::span::Span;
@@ -72,7 +72,11 @@ pub fn check(source: &Source) -> Checked {
     // only the first mistake at a place is reported: others there follow from it
     let mut places = std::collections::HashSet::new();
     diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
-    diagnostics.sort_by_key(|d| (d.primary.span, d.code));
+    // a contact without a gap is worth a word only where nothing else is wrong with it
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    let others: Vec<Span> =
+        diagnostics.iter().filter(|d| d.code != codes::NO_GAP).map(|d| d.primary.span).collect();
+    diagnostics.retain(|d| d.code != codes::NO_GAP || !failed && !others.contains(&d.primary.span));
+    diagnostics.sort_by_key(|d| (d.primary.span, d.code));
     Checked { mechanism: mechanism.map(|(mechanism, _)| mechanism).filter(|_| !failed), diagnostics }
 }

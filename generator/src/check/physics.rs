@@ -3,8 +3,8 @@
 
 use super::states::Seen;
 use super::{
-    bodies, body_points, configuration, contacts, gaps, independent_constraints, loads, loops, motion, states, unit_vectors,
-    vector_constraints,
+    bodies, body_points, configuration, contacts, gaps, independent_constraints, loads, loops, motion,
+    states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
@@ -137,7 +137,8 @@ impl Closed {
     fn seen<'m>(&'m self, m: &'m Mechanism) -> (Vec<Seen<'m>>, Vec<Failed>) {
         let (mut seen, mut failures) = (Vec::new(), self.failures.clone());
         for (i, state) in &self.states {
-            let numbers = Views::at(m, state).and_then(|views| Ok((numeric::evaluate_views(m, &views)?, views)));
+            let numbers =
+                Views::at(m, state).and_then(|views| Ok((numeric::evaluate_views(m, &views)?, views)));
             match numbers {
                 Ok((at, views)) => seen.push(Seen { number: *i, state, at, views }),
                 Err(failure) => failures.push((*i, state.clone(), failure)),

@@ -23,8 +23,10 @@ struct Stated {
 
 /// All constraints, by what they are at some states.
 fn stated(m: &Mechanism, seen: &[Seen<'_>]) -> Option<Vec<Stated>> {
-    let at: Vec<Vec<Vec<f64>>> =
-        seen.iter().map(|seen| numeric::constraint_coefficients(m, seen.state).ok()).collect::<Option<_>>()?;
+    let at: Vec<Vec<Vec<f64>>> = seen
+        .iter()
+        .map(|seen| numeric::constraint_coefficients(m, seen.state).ok())
+        .collect::<Option<_>>()?;
     let mut first = 0;
     let mut out = Vec::new();
     for equation in &m.constraints {

@@ -85,6 +85,7 @@ fn mechanism() -> Mechanism {
             normal_span: span,
             gap: None,
             gap_span: span,
+            surface: None,
             span,
         }],
     }

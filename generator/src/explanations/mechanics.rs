@@ -284,4 +284,19 @@ pub(super) const TABLE: &[Explanation] = &[
         wrong: Some("contacts { tip { point: P of Rod, against: N, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
     },
+    Explanation {
+        code: SURFACE,
+        text: "The surface of a contact holds its friction and restitution: `mu`, not negative, `e`, from 0 \
+            to 1, and `law`, one of newton, poisson and stronge, each a constant. What is left out is mu = 0, \
+            e = 0, law = poisson. The tool takes these where the command line does not say otherwise, and \
+            says so; equations do not depend on them.",
+        wrong: Some(
+            "contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x), surface: { mu: -0.3, \
+            e: 0.5, law: stronge } } }",
+        ),
+        right: Some(
+            "contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x), surface: { mu: 0.3, \
+            e: 0.5, law: stronge } } }",
+        ),
+    },
 ];

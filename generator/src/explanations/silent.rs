@@ -39,7 +39,7 @@ pub(super) const TABLE: &[Explanation] = &[
             points { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\n\
             bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: \
             C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\n\
-            contacts { tip { point: P of Rod, normal: -N.x } }",
+            contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }",
         ),
         right: Some(
             "coordinates { q1: rad = 0.3, q2: rad }\n\
@@ -48,7 +48,7 @@ pub(super) const TABLE: &[Explanation] = &[
             points { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\n\
             bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: \
             C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\n\
-            contacts { tip { point: P of Fore, normal: -N.x } }",
+            contacts { tip { point: P of Fore, normal: -N.x, gap: l - dot(position(P), N.x) } }",
         ),
     },
     Explanation {
@@ -133,5 +133,13 @@ pub(super) const TABLE: &[Explanation] = &[
             constraints { u2 = n*u1; }\n\
             configuration { q2 = n*q1; }",
         ),
+    },
+    Explanation {
+        code: NO_GAP,
+        text: "A simulation sees that a contact closes by its gap, the distance of the point that strikes, \
+            along the normal, from what is struck. This contact has none: bodies pass through each other \
+            there. A model that is used for collisions at given instants alone needs no gap.",
+        wrong: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
+        right: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }"),
     },
 ];

@@ -38,7 +38,8 @@ impl Kinematics<'_> {
             .collect();
         let unknowns: Vec<usize> =
             (0..self.coordinates.len()).filter(|&i| quaternions[i].is_none()).map(|i| slots + i).collect();
-        let forms = if forms.len() > unknowns.len() { self.without_repetitions(forms, &unknowns) } else { forms };
+        let forms =
+            if forms.len() > unknowns.len() { self.without_repetitions(forms, &unknowns) } else { forms };
         let solver = Solver::new(&mut self.z, &mut self.samples, &forms, &unknowns)
             .map_err(|error| self.rates_error(error, slots))?;
         let z = &mut self.z;

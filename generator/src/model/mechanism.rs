@@ -402,8 +402,52 @@ pub struct Contact {
     pub gap: Option<Scalar>,
     /// where the gap is stated; else where the contact is declared
     pub gap_span: Span,
+    /// friction and restitution, where the model states them
+    pub surface: Option<Surface>,
     /// where it is declared
     pub span: Span,
+}
+
+/// Friction and restitution of a contact. They are defaults of the tool and of the module: equations do not
+/// depend on them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Coulomb's coefficient of friction, not negative
+    pub mu: f64,
+    /// coefficient of restitution, from 0 to 1
+    pub e: f64,
+    /// the hypothesis of restitution
+    pub law: Law,
+}
+
+impl Surface {
+    /// What is left out of a surface is this: without friction, without rebound.
+    pub const PLAIN: Surface = Surface { mu: 0.0, e: 0.0, law: Law::Poisson };
+}
+
+/// Hypotheses of restitution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// ratio of normal velocities
+    Newton,
+    /// ratio of normal impulses
+    Poisson,
+    /// ratio of works of the normal force
+    Stronge,
+}
+
+impl Law {
+    /// All.
+    pub const ALL: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
+
+    /// Its name in models and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Law::Newton => "newton",
+            Law::Poisson => "poisson",
+            Law::Stronge => "stronge",
+        }
+    }
 }
 
 /// What a contact strikes.

@@ -250,7 +250,10 @@ pub fn reserved(name: &Name) -> Option<Diagnostic> {
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
     }
     if let Some(c) = letters::with_two_spellings(&name.text) {
-        let message = format!("`{c}` (U+{:04X}) can be written in two ways: names that look alike may differ", c as u32);
+        let message = format!(
+            "`{c}` (U+{:04X}) can be written in two ways: names that look alike may differ",
+            c as u32
+        );
         let help = "Rust takes both spellings for one name: choose letters that have one spelling";
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
     }

@@ -22,11 +22,7 @@ pub struct Undetermined {
 /// Gaussian elimination with the largest pivots; equations are scaled to their largest coefficient. `sizes`
 /// tells the size of the unit of each column in SI units: columns are compared in these, so that the units
 /// of a model decide nothing. Columns past the last of them are in SI units.
-pub fn solve(
-    mut rows: Vec<Vec<HyperDual>>,
-    count: usize,
-    sizes: &[f64],
-) -> Result<Solved, Undetermined> {
+pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize, sizes: &[f64]) -> Result<Solved, Undetermined> {
     let width = rows.first().map_or(count, Vec::len);
     rows.iter_mut().for_each(|row| in_si(row, sizes, |c, size| c * HyperDual::constant(1.0 / size)));
     let size = |row: &Vec<HyperDual>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
@@ -74,7 +70,9 @@ pub fn solve(
         let unit = HyperDual::constant(sizes.get(column).copied().unwrap_or(1.0));
         let right = row[count..].iter().map(|right| *right / (row[column] * unit));
         unknowns[column] = right.collect();
-        in_si(&mut unknowns[column], sizes.get(count..).unwrap_or(&[]), |c, size| c * HyperDual::constant(size));
+        in_si(&mut unknowns[column], sizes.get(count..).unwrap_or(&[]), |c, size| {
+            c * HyperDual::constant(size)
+        });
     }
     let mut contradiction = (0, 0.0);
     for (i, row) in numbered.iter().skip(count) {

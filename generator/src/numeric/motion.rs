@@ -129,7 +129,8 @@ impl<'m> Instant<'m> {
         let rows = rows.into_iter().map(|row| negate_from(row, q)).collect();
         let quantities = self.m.coordinates.iter().chain(&self.m.speeds);
         let sizes: Vec<f64> = quantities.map(|quantity| quantity.factor).collect();
-        let solved = solve(rows, q, &sizes).map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
+        let solved =
+            solve(rows, q, &sizes).map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::MotionInconsistent(spans[solved.contradiction.0], solved.contradiction.1));
         }

@@ -173,12 +173,12 @@ impl<'m> Views<'m> {
         let mut slopes: Vec<Vec<f64>> = Vec::new();
         for moving in 0..=n {
             let e1 = |i: usize| f64::from(u8::from(moving == i));
-            let coordinate = |i: usize| HyperDual { e1: e1(i), ..HyperDual::constant(self.state.coordinates[i]) };
+            let coordinate =
+                |i: usize| HyperDual { e1: e1(i), ..HyperDual::constant(self.state.coordinates[i]) };
             let time = HyperDual { e1: e1(n), ..HyperDual::constant(self.state.time) };
             let still = vec![HyperDual::ZERO; m.speeds.len()];
             let (parameters, inputs) = (&self.state.parameters, &self.state.inputs);
-            let values =
-                Evaluator::new(m, parameters, inputs, time, (0..n).map(coordinate).collect(), still);
+            let values = Evaluator::new(m, parameters, inputs, time, (0..n).map(coordinate).collect(), still);
             let column = values.residual(equation, Level::Geometry)?;
             slopes.resize(column.len(), Vec::new());
             slopes.iter_mut().zip(column).for_each(|(row, r)| row.push(r.e1));

@@ -75,6 +75,7 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable,
     lowering.gather();
     lowering.copied();
     lowering.unused();
+    lowering.without_gap();
     (lowering.out, lowering.readable, lowering.diagnostics)
 }
 

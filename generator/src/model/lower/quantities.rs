@@ -136,7 +136,7 @@ impl Lowering<'_> {
     }
 
     /// A constant expression: numbers, pi and functions.
-    fn constant(&mut self, expr: &Expr) -> Typed {
+    pub(super) fn constant(&mut self, expr: &Expr) -> Typed {
         self.constant_only = true;
         let typed = self.expression(expr);
         self.constant_only = false;
