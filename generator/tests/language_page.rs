@@ -125,6 +125,8 @@ fn every_construct_has_an_example() {
         "against: T about H",
         "normal:",
         "gap:",
+        "touching(floor, 60)",
+        "= l*sin(pi/6) - r",
         "surface: {",
         "mu:",
         " e:",

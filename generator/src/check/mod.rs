@@ -12,6 +12,7 @@ mod loads;
 mod loops;
 mod motion;
 mod physics;
+mod start;
 mod states;
 mod unit_vectors;
 mod vector_constraints;
@@ -23,6 +24,7 @@ use crate::span::Span;
 use crate::syntax;
 
 pub use bodies::{Impossible, impossible_bodies};
+pub use unit_vectors::{ROUNDED_QUATERNION, UNIT_QUATERNION};
 pub use vector_constraints::dependent_components;
 
 /// What was found in a model.
@@ -58,6 +60,12 @@ pub fn check(source: &Source) -> Checked {
         let (mechanism, readable, diagnostics) = model::lower(&tree, diagnostics);
         (Some((mechanism, readable)), diagnostics)
     };
+    if let Some((mechanism, readable)) = &mut mechanism {
+        let sound = !diagnostics.iter().any(Diagnostic::hides_meaning);
+        let found = start::complete(mechanism, sound);
+        readable.motion &= found.is_empty();
+        diagnostics.extend(found);
+    }
     // parts that could not be read hold placeholders: only checks that do not depend on them are made
     if let Some((mechanism, readable)) = &mut mechanism {
         if readable.motion {

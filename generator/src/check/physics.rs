@@ -40,7 +40,7 @@ fn parts(m: &Mechanism) -> usize {
 }
 
 /// Runs deeply recursive work on a thread with a large stack; a panic there gives the default value.
-fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
+pub(super) fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, look);
         match thread.map(|thread| thread.join()) {

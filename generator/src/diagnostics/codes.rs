@@ -100,6 +100,7 @@ codes! {
     CONTACT_STILL = "E081", "a contact that never moves";
     CONTACT = "E082", "a contact is not stated correctly";
     SURFACE = "E083", "a surface that is impossible";
+    START = "E084", "a start in contact that cannot be found";
     UNUSED_PARAMETER = "W001", "a parameter is never used";
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";

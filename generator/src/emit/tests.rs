@@ -17,6 +17,7 @@ fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Variable 
         unit: unit.into(),
         value,
         fixed: false,
+        initial: None,
         typical: 1.0,
         factor: 1.0,
         dependent: false,

@@ -299,4 +299,19 @@ pub(super) const TABLE: &[Explanation] = &[
             e: 0.5, law: stronge } } }",
         ),
     },
+    Explanation {
+        code: START,
+        text: "`touching(contact)` as the initial value of a coordinate is the value at which the gap of that \
+            contact is 0, near a guess (0, or the number that stands after the contact). It is of an \
+            independent coordinate on which the gap depends, each contact is named once, and there must be \
+            such a value near the guess.",
+        wrong: Some(
+            "coordinates { q1: rad = touching(tip) }\n\
+            contacts { tip { point: P of Rod, normal: -N.x, gap: 2*l - dot(position(P), N.x) } }",
+        ),
+        right: Some(
+            "coordinates { q1: rad = touching(tip, 0.5) }\n\
+            contacts { tip { point: P of Rod, normal: -N.x, gap: l/2 - dot(position(P), N.x) } }",
+        ),
+    },
 ];

@@ -112,6 +112,9 @@ pub struct Variable {
     /// value or initial value in that unit, if one is given; unless it is `fixed`, equations do not depend
     /// on it
     pub value: Option<f64>,
+    /// how the model states its initial value, where that follows from other quantities: `value` is the number
+    /// with the values of the model
+    pub initial: Option<Initial>,
     /// a size that such a quantity commonly has, in that unit; all quantities of a unit have the same
     pub typical: f64,
     /// one of that unit, counted in SI units: numerical checks compare equations after multiplying by it
@@ -123,6 +126,36 @@ pub struct Variable {
     pub dependent: bool,
     /// where it is declared
     pub span: Span,
+}
+
+/// An initial value that follows from other quantities.
+#[derive(Clone, Debug)]
+pub enum Initial {
+    /// a value in SI units, of numbers, parameters, coordinates and speeds alone
+    Expression {
+        /// the value
+        value: Scalar,
+        /// where it stands
+        span: Span,
+    },
+    /// the value, near a guess in the unit of the coordinate, at which the gap of a contact is 0
+    Touching {
+        /// which contact
+        contact: usize,
+        /// the guess
+        guess: f64,
+        /// where it stands
+        span: Span,
+    },
+}
+
+impl Initial {
+    /// Where it stands.
+    pub fn span(&self) -> Span {
+        match self {
+            Initial::Expression { span, .. } | Initial::Touching { span, .. } => *span,
+        }
+    }
 }
 
 /// A named subexpression.

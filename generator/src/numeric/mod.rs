@@ -13,6 +13,7 @@ pub mod hyper_dual;
 mod linear_system;
 mod loops;
 mod motion;
+pub mod start;
 mod state;
 pub mod views;
 
