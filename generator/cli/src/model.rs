@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use hodograph_generator::check::check;
-use hodograph_generator::diagnostics::{Diagnostic, Severity};
+use hodograph_generator::diagnostics::Severity;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
@@ -24,8 +24,7 @@ pub struct Model {
     pub mechanism: Mechanism,
 }
 
-/// Reads and checks a model file; says what is wrong on stderr, and what makes numbers doubtful. What is only
-/// superfluous or missing is said by `check` and `derive`.
+/// Reads and checks a model file; says what is wrong on stderr.
 ///
 /// # Errors
 ///
@@ -34,22 +33,18 @@ pub fn load(path: &Path) -> Outcome<Model> {
     if let Err(error) = std::fs::metadata(path) {
         return Err(Stop::unreadable(path, &error));
     }
-    said(Source::read(path), |found| found.severity == Severity::Error || !found.code.is_of_text())
+    checked(Source::read(path))
 }
 
-/// Checks a model; says all that is wrong on stderr.
+/// Checks a model; says what is wrong on stderr, and what makes numbers doubtful. What is only superfluous or
+/// missing is said by `hodograph check`.
 ///
 /// # Errors
 ///
 /// [`Stop::Said`] where it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
-    said(source, |_| true)
-}
-
-/// Checks a model, and says what is to be said on stderr.
-fn said(source: Source, what: impl Fn(&Diagnostic) -> bool) -> Outcome<Model> {
     let mut found = check(&source);
-    found.diagnostics.retain(what);
+    found.diagnostics.retain(|found| found.severity == Severity::Error || !found.code.is_of_text());
     if !found.diagnostics.is_empty() {
         output::say(render(&found.diagnostics, &source).trim_end());
     }

@@ -167,6 +167,88 @@ fn compilers_derive_at_once() {
     });
 }
 
+/// Names that mean something in Rust, in the prelude, in the runtime or in generated code.
+const MEANT: &str = "Some None Ok Err Option Result Vec String Box Default Clone Copy Debug Send Drop T Iterator usize f64 str core std alloc hodograph \
+     State Scalar Mechanism Contacts Surface Law Kind Parameters Coordinates Speeds Inputs Collision Derivatives MODEL NAMES UNITS DESCRIPTION q u v0 v1c \
+     inputs parameters coordinates speeds hoisted new get iter from into state first second normal binormal mass_matrix forcing surface array number \
+     Output index what rates of_part_1 given_1 lanes_1 krate union auto raw dyn_ macro_rules safe";
+
+/// What `check` accepts becomes a module that compiles, whatever the names are; what would not compile is
+/// refused.
+#[test]
+fn what_check_accepts_compiles() {
+    let (mut models, mut refused) = (Vec::new(), Vec::new());
+    let mut add = |text: String| {
+        let source = hodograph_generator::source::Source::file("names.mech", text.clone());
+        match hodograph_generator::check::check(&source).mechanism {
+            Some(_) => models.push(text),
+            None => refused.push(text),
+        }
+    };
+    for (i, name) in MEANT.split_whitespace().enumerate() {
+        // as a parameter, an input, a coordinate and a speed
+        add(format!(
+            "mechanism Named{i}; parameters {{ mm0: kg = 1, {name}: m = 1 }} coordinates {{ qq: rad = 0.3 }} speeds {{ uu: rad/s = 1 }}
+             frames {{ B0 = N.rotate(z, qq); }} points {{ P0 = O + {name}*B0.x; }} particles {{ A0 {{ point: P0, mass: mm0 }} }}
+             kinematics {{ d(qq)/dt = uu; }}"
+        ));
+        add(format!(
+            "mechanism Moved{i}; parameters {{ mm0: kg = 1 }} inputs {{ F0: N }} coordinates {{ {name}: m = 1 }} speeds {{ uu: m/s }}
+             points {{ P0 = O + {name}*N.x; }} particles {{ A0 {{ point: P0, mass: mm0 }} }} loads {{ force on P0: F0*N.x; }}
+             kinematics {{ d({name})/dt = uu; }}"
+        ));
+        add(format!(
+            "mechanism {name}; parameters {{ mm0: kg = 1 }} inputs {{ {name}_: N }} coordinates {{ qq: m = 1 }} speeds {{ {name}__: m/s }}
+             frames {{ F{name} = N; }} points {{ P0 = O + qq*N.x; }} particles {{ A0 {{ point: P0, mass: mm0 }} }}
+             loads {{ force on P0: {name}_*N.x; }} kinematics {{ d(qq)/dt = {name}__; }}"
+        ));
+        // as a frame, a point, a body and a contact: one of them at a time
+        for place in 0..4 {
+            let of = |own: usize, other: &str| if own == place { name.to_owned() } else { other.to_owned() };
+            let (frame, point, body, contact) = (of(0, "B0"), of(1, "P0"), of(2, "A0"), of(3, "c0"));
+            add(format!(
+                "mechanism Placed{i}x{place}; parameters {{ mm0: kg = 1, l0: m = 1 }} coordinates {{ qq: rad = 0.3 }} speeds {{ uu: rad/s = 1 }}
+                 frames {{ {frame} = N.rotate(z, qq); }} points {{ {point} = O + l0*{frame}.x; }}
+                 particles {{ {body} {{ point: {point}, mass: mm0 }} }} kinematics {{ d(qq)/dt = uu; }}
+                 contacts {{ {contact} {{ point: {point}, normal: N.y, gap: dot(position({point}), N.y) + 2*l0, surface: {{ mu: 0.3 }} }} }}"
+            ));
+        }
+    }
+    // names that cannot be bound are refused, and no others than these
+    assert!(refused.len() <= 12, "{refused:#?}");
+    for text in [REPEATED_RATES, SMALL_UNITS, START] {
+        models.push(text.to_owned());
+    }
+    assert!(models.len() > 300);
+    let source: String = models
+        .iter()
+        .enumerate()
+        .map(|(i, text)| format!("pub mod m{i} {{ hodograph_macros::mechanism! {{ {text} }} }}\n"))
+        .collect();
+    let built = built("accepted models");
+    let output =
+        package(&built, "accepted", &source.replace("use hodograph_macros::mechanism;", ""), "metadata")
+            .output()
+            .expect("rustc runs");
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+/// Kinematical equations of which one repeats another.
+const REPEATED_RATES: &str =
+    "mechanism Repeated; parameters { m: kg = 1 } coordinates { x: m, y: m } speeds { a: m/s, b: m/s }
+    points { P = O + x*N.x + y*N.y; } particles { A { point: P, mass: m } }
+    kinematics { d(x)/dt + d(y)/dt = a; 2*d(x)/dt + 2*d(y)/dt = 2*a; d(x)/dt - d(y)/dt = b; }";
+
+/// Lengths in units of all sizes, in one vector equation too.
+const SMALL_UNITS: &str = "mechanism Small; parameters { m: kg = 1 } coordinates { z: m = 1, x: Tm, y: pm } speeds { w: m/s, u: pm/s }
+    dependent { v: Tm/s } points { P = O + x*N.x + y*N.y + z*N.z; } particles { A { point: P, mass: m } }
+    kinematics { d(z)/dt = w; d(x)/dt = v; d(y)/dt = u; } constraints { v = 2*w; }";
+
+/// Initial values that follow from others.
+const START: &str = "mechanism Start; parameters { m: kg = 1, l: m = 2 } coordinates { x: m = l*sin(pi/6), y: mm = touching(floor, 60) }
+    speeds { u: m/s, v: m/s = 2*u } points { P = O + x*N.x + y*N.y; } particles { A { point: P, mass: m } }
+    kinematics { d(x)/dt = u; d(y)/dt = v; } contacts { floor { point: P, normal: N.y, gap: y - l/40 } }";
+
 /// What cannot be derived is an error of the compiler at the user's tokens, and the next model is derived all
 /// the same.
 #[test]

@@ -83,7 +83,7 @@ fn quaternions(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
             let message = format!(
                 "the initial values of the quaternion of `{}` have the norm {}, not 1",
                 frame.name,
-                number(norm)
+                if (norm - 1.0).abs() < 1e-3 { format!("{norm:.9}") } else { number(norm) }
             );
             let help =
                 "divide them by it (rounding of 1e-6 is mended); left out, they are those of the identity";
