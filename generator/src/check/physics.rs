@@ -78,10 +78,15 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         return out;
     }
     let sound = out.is_empty();
+    if let Some(found) = configuration::undetermined(m, &arbitrary) {
+        out.push(found);
+        out.extend(unit_vectors::normals(m, &alone));
+        return out;
+    }
     let closed = Closed::of(m, arbitrary);
     let (seen, failures) = closed.seen(m);
     if seen.is_empty() {
-        out.extend(nowhere(m, &failures));
+        out.extend(undetermined(m).or_else(|| nowhere(m, &failures)));
         out.extend(unit_vectors::normals(m, &alone));
         return out;
     }
@@ -146,6 +151,17 @@ impl Closed {
         }
         (seen, failures)
     }
+}
+
+/// What shows at open loops too, where they cannot be closed: equations that determine too little.
+fn undetermined(m: &Mechanism) -> Option<Diagnostic> {
+    let states = states::arbitrary(m).into_iter().enumerate().collect();
+    let open = Closed { states, failures: Vec::new() };
+    let (seen, failures) = open.seen(m);
+    let too_little =
+        |f: &Failure| matches!(f, Failure::RatesUndetermined(_) | Failure::SpeedsUndetermined(_));
+    let (_, state, failure) = failures.iter().find(|(_, _, failure)| too_little(failure))?;
+    if seen.is_empty() { motion::nowhere(m, state, failure) } else { None }
 }
 
 /// What is wrong with the motion of a mechanism of whose bodies and contacts nothing is said.

@@ -96,7 +96,7 @@ fn size(rows: &[Vec<f64>]) -> f64 {
 }
 
 /// Three rows along the axes of a frame, which are the columns of `axes`.
-fn turned(rows: &[Vec<f64>], axes: &[[f64; 3]; 3]) -> Vec<Vec<f64>> {
+pub fn turned(rows: &[Vec<f64>], axes: &[[f64; 3]; 3]) -> Vec<Vec<f64>> {
     let width = rows.first().map_or(0, Vec::len);
     let entry = |axis: usize, column: usize| {
         rows.iter().enumerate().map(|(i, row)| axes[i][axis] * row[column]).sum::<f64>()
@@ -105,7 +105,7 @@ fn turned(rows: &[Vec<f64>], axes: &[[f64; 3]; 3]) -> Vec<Vec<f64>> {
 }
 
 /// How many of the rows are not 0 at all states.
-fn components(at: &[Vec<Vec<f64>>]) -> usize {
+pub fn components(at: &[Vec<Vec<f64>>]) -> usize {
     let count = at.first().map_or(0, Vec::len);
     let there = |i: usize| at.iter().any(|rows| rows[i].iter().any(|c| c.abs() > NOISE * size(rows)));
     (0..count).filter(|&i| there(i)).count()

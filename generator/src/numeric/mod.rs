@@ -17,7 +17,7 @@ pub mod start;
 mod state;
 pub mod views;
 
-pub use assembly::assemble;
+pub use assembly::{assemble, configuration_slopes};
 pub use dynamics::{central_inertia, evaluate, evaluate_views, own_inertia};
 pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};

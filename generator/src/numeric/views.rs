@@ -49,8 +49,6 @@ pub fn alike(a: &[Vector3], b: &[Vector3]) -> bool {
 
 /// The evaluations of a state.
 pub struct Views<'m> {
-    /// the state
-    state: &'m State,
     /// as it is
     pub now: Evaluator<'m>,
     /// with all independent speeds 0: what is left is prescribed motion
@@ -107,7 +105,6 @@ impl<'m> Views<'m> {
             unit[r] = HyperDual::ZERO;
         }
         Ok(Views {
-            state,
             now: still.evaluator(&rates, speeds.clone()),
             rest,
             units,
@@ -164,25 +161,5 @@ impl<'m> Views<'m> {
     /// The parts of the rate of a scalar that is free of speeds.
     pub fn rate_parts(&self, scalar: &Scalar) -> Result<Vec<f64>, Failure> {
         self.parts(|values| Ok(values.scalar(scalar, Level::Geometry)?.e1))
-    }
-
-    /// The derivatives of what must vanish in a configuration equation, with respect to each coordinate, then
-    /// to time.
-    pub fn slopes(&self, m: &'m Mechanism, equation: &Equation) -> Result<Vec<Vec<f64>>, Failure> {
-        let n = m.coordinates.len();
-        let mut slopes: Vec<Vec<f64>> = Vec::new();
-        for moving in 0..=n {
-            let e1 = |i: usize| f64::from(u8::from(moving == i));
-            let coordinate =
-                |i: usize| HyperDual { e1: e1(i), ..HyperDual::constant(self.state.coordinates[i]) };
-            let time = HyperDual { e1: e1(n), ..HyperDual::constant(self.state.time) };
-            let still = vec![HyperDual::ZERO; m.speeds.len()];
-            let (parameters, inputs) = (&self.state.parameters, &self.state.inputs);
-            let values = Evaluator::new(m, parameters, inputs, time, (0..n).map(coordinate).collect(), still);
-            let column = values.residual(equation, Level::Geometry)?;
-            slopes.resize(column.len(), Vec::new());
-            slopes.iter_mut().zip(column).for_each(|(row, r)| row.push(r.e1));
-        }
-        Ok(slopes)
     }
 }
