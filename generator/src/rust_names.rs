@@ -30,6 +30,15 @@ pub const RECORDS: &[&str] = &[
 /// What else has a meaning in generated code.
 const TAKEN: &[&str] = &["T", "Result", "Ok", "Err"];
 
+/// Names that cannot be bound to a value in a generated module: in a pattern they mean variants of Rust's
+/// prelude and a constant of the module.
+const VALUES: &[&str] = &["Some", "None", "Ok", "Err", "DESCRIPTION"];
+
+/// Whether a field of that name cannot be taken out of its struct by name, as generated code does.
+pub fn is_value(name: &str) -> bool {
+    VALUES.contains(&name)
+}
+
 /// Whether it is a Rust keyword.
 pub fn is_keyword(name: &str) -> bool {
     KEYWORDS.contains(&name)

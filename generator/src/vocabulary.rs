@@ -99,6 +99,10 @@ pub fn field(word: &str, known: &[&str]) -> Option<&'static str> {
         ("rest_length", "length"),
         ("natural_length", "length"),
         ("theta", "angle"),
+        ("friction", "mu"),
+        ("restitution", "e"),
+        ("cor", "e"),
+        ("hypothesis", "law"),
         ("rest_angle", "rest"),
     ];
     table.iter().find(|(habit, here)| *habit == word && known.contains(here)).map(|(_, here)| *here)

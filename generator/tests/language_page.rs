@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use hodograph_generator::artifact::model_hash;
+use hodograph_generator::diagnostics::codes;
 use hodograph_generator::explanations::within;
 use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
@@ -43,9 +44,11 @@ fn examples_are_correct_models() {
     let mut wrong = String::new();
     for example in examples() {
         let source = Source::file(format!("line {}", example.line), within(&example.context, &example.text));
-        let checked = check(&source);
-        if !checked.diagnostics.is_empty() {
-            wrong.push_str(&render(&checked.diagnostics, &source));
+        let mut found = check(&source).diagnostics;
+        // not every example is for simulation
+        found.retain(|d| d.code != codes::NO_GAP);
+        if !found.is_empty() {
+            wrong.push_str(&render(&found, &source));
         }
         // the same model as the input of a macro
         let stream = source.text().unwrap_or_default().parse().expect("Rust tokens");
@@ -122,6 +125,12 @@ fn every_construct_has_an_example() {
         "against: T about H",
         "normal:",
         "gap:",
+        "touching(floor, 60)",
+        "= l*sin(pi/6) - r",
+        "surface: {",
+        "mu:",
+        " e:",
+        "law: stronge",
         ".vec(",
         "dot(",
         "cross(",

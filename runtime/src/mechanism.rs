@@ -83,9 +83,9 @@ pub trait Mechanism<T: Scalar = f64> {
     fn dependent_coordinate(&self, index: usize) -> Option<usize>;
 
     /// The parameters in use, in the order of [`Kind::Parameter`].
-    fn parameters(&self, parameters: &mut [T]) -> Result<(), StateError>;
+    fn parameter_values(&self, parameters: &mut [T]) -> Result<(), StateError>;
     /// Changes the parameters. Where they are refused, the mechanism stays as it is.
-    fn set_parameters(&mut self, parameters: &[T]) -> Result<(), ParameterError>;
+    fn set_parameter_values(&mut self, parameters: &[T]) -> Result<(), ParameterError>;
     /// The coordinates (`n`), speeds (`p`) and inputs that the model states; 0 where it states none, and the
     /// identity for a quaternion. Dependent coordinates are the model's guess.
     fn initial_state(

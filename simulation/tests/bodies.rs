@@ -20,7 +20,7 @@ const G: f64 = 9.81;
 /// A cube of side 2 a.
 fn cube(a: f64) -> TumblingBox<f64> {
     let mut body = TumblingBox::<f64>::default();
-    Mechanism::set_parameters(&mut body, &[2.0, a, a, a, G]).unwrap();
+    body.set_parameter_values(&[2.0, a, a, a, G]).unwrap();
     body
 }
 
@@ -102,7 +102,7 @@ fn three_balls_in_a_row() {
     for (masses, e) in
         [([1.0, 1.0, 1.0], 1.0), ([1.0, 1.0, 1.0], 0.7), ([1.0, 3.0, 0.5], 1.0), ([2.0, 0.4, 1.0], 0.9)]
     {
-        Mechanism::set_parameters(&mut body, &[masses[0], masses[1], masses[2], 0.1]).unwrap();
+        body.set_parameter_values(&[masses[0], masses[1], masses[2], 0.1]).unwrap();
         let mut simulation = start(&body, &[-0.2, 0.0, 0.1], &[1.0, 0.0, 0.0], surface(0.0, e, Law::Newton));
         let events = run(&mut simulation, 0.11);
         let expected = row(masses, e, [1.0, 0.0, 0.0]);

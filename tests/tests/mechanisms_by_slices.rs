@@ -212,7 +212,7 @@ fn names_units_and_initial_values_are_those_of_the_model() {
             let quaternion = |index: &usize| (q[*index], initial.coordinates[*index]) == (1.0, 0.0);
             let different: Vec<usize> = (0..q.len()).filter(|&i| q[i] != initial.coordinates[i]).collect();
             assert!(different.iter().all(quaternion), "{}: {q:?}", model.name);
-            m.parameters(&mut parameters).expect("parameters");
+            m.parameter_values(&mut parameters).expect("parameters");
             assert_eq!(parameters, initial.parameters);
         }
     }
@@ -268,7 +268,7 @@ fn wrong_lengths_and_numbers_are_named() {
             let expected = at.inputs.len();
             assert_eq!(m.mass_matrix(&long, &mut vec![0.0; p * p]), wrong("inputs", expected, 40));
             assert_eq!(
-                m.set_parameters(&[1.0; 99]),
+                m.set_parameter_values(&[1.0; 99]),
                 Err(ParameterError::Length { expected: m.count(Kind::Parameter), found: 99 })
             );
             let index = m.count(Kind::Contact);
@@ -299,7 +299,7 @@ fn parameters_change_or_stay() {
             for value in [f64::NAN, -1.0, 0.0] {
                 let mut parameters = at.parameters.clone();
                 parameters[index] = value;
-                let answers = [&mut generated, &mut interpreted].map(|m| m.set_parameters(&parameters));
+                let answers = [&mut generated, &mut interpreted].map(|m| m.set_parameter_values(&parameters));
                 assert_eq!(
                     answers[0], answers[1],
                     "{} {}",
@@ -307,8 +307,8 @@ fn parameters_change_or_stay() {
                 );
                 if answers[0].is_ok() {
                     assert_eq!(everything(&*generated, &state(at)), everything(&*interpreted, &state(at)));
-                    generated.set_parameters(&at.parameters).expect("good parameters");
-                    interpreted.set_parameters(&at.parameters).expect("good parameters");
+                    generated.set_parameter_values(&at.parameters).expect("good parameters");
+                    interpreted.set_parameter_values(&at.parameters).expect("good parameters");
                 }
                 assert_eq!(before, everything(&*interpreted, &state(at)), "{}", model.name);
             }

@@ -47,7 +47,7 @@ impl Machines {
             let bits = |row: usize| self.row(row).iter().map(|number| number.to_bits());
             let same = known.as_ref().is_some_and(|(other, _)| bits(*other).eq(bits(row)));
             if !same {
-                known = Some((row, machine.set_parameters(self.row(row))));
+                known = Some((row, machine.set_parameter_values(self.row(row))));
             }
             match &known {
                 Some((_, Err(error))) => with(row, Err(error), !same),

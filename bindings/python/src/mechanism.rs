@@ -202,7 +202,7 @@ impl Mechanism {
             let machines = Some(Machines { numbers: numbers.to_vec(), rows, width });
             return Ok(Mechanism { machines, ..Mechanism::of(inner) });
         }
-        inner.set_parameters(numbers).map_err(|error| {
+        inner.set_parameter_values(numbers).map_err(|error| {
             errors::error(py, "ParameterError", &error.to_string(), error.kind(), None, None)
         })?;
         Ok(Mechanism::of(inner))
@@ -211,7 +211,7 @@ impl Mechanism {
     /// Quantities of a kind: a list of (name, unit, value).
     fn _describe<'py>(&self, py: Python<'py>, kind: &str) -> PyResult<Bound<'py, PyList>> {
         let mut parameters = vec![0.0; self.inner.count(Kind::Parameter)];
-        let _ = self.inner.parameters(&mut parameters);
+        let _ = self.inner.parameter_values(&mut parameters);
         let [q, u, w] = &self.initial;
         let (kind, values): (Kind, &[f64]) = match kind {
             "parameters" => (Kind::Parameter, &parameters),

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use hodograph_generator::check::check;
+use hodograph_generator::diagnostics::Severity;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
@@ -35,13 +36,15 @@ pub fn load(path: &Path) -> Outcome<Model> {
     checked(Source::read(path))
 }
 
-/// Checks a model; says what is wrong on stderr.
+/// Checks a model; says what is wrong on stderr, and what makes numbers doubtful. What is only superfluous or
+/// missing is said by `hodograph check`.
 ///
 /// # Errors
 ///
 /// [`Stop::Said`] where it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
-    let found = check(&source);
+    let mut found = check(&source);
+    found.diagnostics.retain(|found| found.severity == Severity::Error || !found.code.is_of_text());
     if !found.diagnostics.is_empty() {
         output::say(render(&found.diagnostics, &source).trim_end());
     }

@@ -1,8 +1,12 @@
-//! Reads laws of restitution by name, and the surfaces of a contact from options.
+//! Reads laws of restitution by name, and finds the surface of a contact: what options say, else what the
+//! model states.
 
 use hodograph::{Law, Surface};
+use hodograph_generator::model::mechanism::{self, Mechanism};
 
 use crate::json::{Failure, Kind};
+use crate::output;
+use crate::stop::{Outcome, Stop};
 
 /// The law of that name.
 ///
@@ -15,35 +19,81 @@ pub fn law(name: &str) -> Result<Law, Failure> {
     })
 }
 
-/// The surfaces as they stand on the command line.
+/// What options say of a surface.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Given {
+    /// coefficient of friction
+    pub mu: Option<f64>,
+    /// coefficient of restitution
+    pub e: Option<f64>,
+    /// hypothesis of restitution
+    pub law: Option<Law>,
+}
+
+impl Given {
+    /// The surface of a contact: each number from the options, else from the model. `None` where neither says
+    /// it. What the model says is told on standard error.
+    pub fn of(self, contact: &mechanism::Contact) -> Option<Surface<f64>> {
+        if let Given { mu: Some(mu), e: Some(e), law: Some(law) } = self {
+            return Some(Surface { mu, e, law });
+        }
+        let stated = contact.surface?;
+        let law = match stated.law {
+            mechanism::Law::Newton => Law::Newton,
+            mechanism::Law::Poisson => Law::Poisson,
+            mechanism::Law::Stronge => Law::Stronge,
+        };
+        let surface = Surface {
+            mu: self.mu.unwrap_or(stated.mu),
+            e: self.e.unwrap_or(stated.e),
+            law: self.law.unwrap_or(law),
+        };
+        let says = [
+            self.mu.is_none().then(|| format!("mu = {}", stated.mu)),
+            self.e.is_none().then(|| format!("e = {}", stated.e)),
+            self.law.is_none().then(|| format!("law = {}", stated.law.name())),
+        ];
+        let says: Vec<String> = says.into_iter().flatten().collect();
+        output::say(format_args!("note: contact {}: {} of the model", contact.name, says.join(", ")));
+        Some(surface)
+    }
+}
+
+/// The surface as it stands on the command line.
 #[derive(Clone, Debug, clap::Args)]
 pub struct SurfaceArguments {
-    /// Coulomb's coefficient of friction, not negative
+    /// Coulomb's coefficient of friction, not negative [default: that of the model]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    pub mu: f64,
-    /// coefficient of restitution, between 0 and 1
+    pub mu: Option<f64>,
+    /// coefficient of restitution, between 0 and 1 [default: that of the model]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    pub e: f64,
-    /// hypothesis of restitution: newton, poisson or stronge
+    pub e: Option<f64>,
+    /// hypothesis of restitution: newton, poisson or stronge [default: that of the model]
     #[arg(long, value_name = "LAW")]
-    pub law: String,
+    pub law: Option<String>,
 }
 
 impl SurfaceArguments {
-    /// The surfaces; the solver checks the numbers.
+    /// The surface of a contact; the solver checks the numbers.
     ///
     /// # Errors
     ///
-    /// `unknown_name`, `not_finite`.
-    pub fn surface(&self) -> Result<Surface<f64>, Failure> {
+    /// `unknown_name`, `not_finite`, and [`Stop::Call`] where a number stands neither here nor in the model.
+    pub fn surface(&self, model: &Mechanism, contact: usize) -> Outcome<Surface<f64>> {
         for (option, value) in [("--mu", self.mu), ("--e", self.e)] {
-            if !value.is_finite() {
-                return Err(Failure::new(
-                    Kind::NotFinite,
-                    format!("{option} is {value}: give a finite number"),
-                ));
+            if let Some(value) = value.filter(|value| !value.is_finite()) {
+                let message = format!("{option} is {value}: give a finite number");
+                return Err(Failure::new(Kind::NotFinite, message).into());
             }
         }
-        Ok(Surface { mu: self.mu, e: self.e, law: law(&self.law)? })
+        let law = self.law.as_deref().map(law).transpose()?;
+        let given = Given { mu: self.mu, e: self.e, law };
+        let contact = model.contacts.get(contact);
+        contact.and_then(|contact| given.of(contact)).ok_or_else(|| {
+            let name = contact.map_or("", |contact| contact.name.as_str());
+            Stop::Call(format!(
+                "contact {name} has no surface: give --mu, --e and --law, or state `surface: {{ mu: .., e: .., law: .. }}` in the model"
+            ))
+        })
     }
 }

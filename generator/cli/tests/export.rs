@@ -116,7 +116,18 @@ fn every_header_is_c_and_cpp() {
     assert_eq!(hodograph(&["derive", reserved.to_str().unwrap()], "").code, 0);
     let shipped = std::fs::read_dir(root().join("models")).unwrap().map(|entry| entry.unwrap().path());
     let models = shipped.filter(|path| path.extension().is_some_and(|end| end == "mech"));
-    let models: Vec<PathBuf> = models.chain([reserved]).collect();
+    // Names of macros and of the standard library, and those that compilers keep for themselves.
+    let taken = folder.path().join("signal.mech");
+    let list: String = TAKEN.split_whitespace().map(|name| format!("{name}: 1 = 1, ")).collect();
+    let text = format!(
+        "mechanism Signal; parameters {{ m: kg = 1, {list} }} coordinates {{ errno: m, INFINITY: m }}
+         speeds {{ stdout: m/s, NULL: m/s }} points {{ P = O + errno*N.x + INFINITY*N.y; }}
+         particles {{ A {{ point: P, mass: m }} }} kinematics {{ d(errno)/dt = stdout; d(INFINITY)/dt = NULL; }}
+         contacts {{ assert {{ point: P, normal: N.x, gap: errno }} }}"
+    );
+    std::fs::write(&taken, text).unwrap();
+    assert_eq!(hodograph(&["derive", taken.to_str().unwrap()], "").code, 0);
+    let models: Vec<PathBuf> = models.chain([reserved, taken]).collect();
     assert!(models.len() > 20);
     let headers = models.iter().map(|model| {
         let exported = export(model, folder.path(), &[]);
@@ -125,8 +136,15 @@ fn every_header_is_c_and_cpp() {
     let includes: String = headers.map(|header| format!("#include \"{}\"\n", header.display())).collect();
     // All together, so that their names do not clash either.
     let all = folder.path().join("all.h");
-    std::fs::write(&all, includes).unwrap();
-    for (language, standard) in [("c", "c99"), ("c++", "c++11")] {
+    std::fs::write(&all, format!("#ifdef AMONG_OTHERS\n{STANDARD_HEADERS}#endif\n{includes}")).unwrap();
+    for (language, standard, among) in [
+        ("c", "c99", false),
+        ("c", "gnu99", true),
+        ("c", "gnu11", true),
+        ("c", "gnu17", true),
+        ("c++", "c++11", false),
+        ("c++", "gnu++20", true),
+    ] {
         let mut cc = Command::new("cc");
         cc.args([
             "-x",
@@ -138,9 +156,22 @@ fn every_header_is_c_and_cpp() {
             "-Werror",
             "-fsyntax-only",
         ]);
+        cc.args(among.then_some("-DAMONG_OTHERS")).arg("-D_XOPEN_SOURCE=700");
         output(cc.arg(&all), folder.path());
     }
 }
+
+/// Some of what headers define: a macro of each family.
+const TAKEN: &str = "EOF NAN linux unix _Bool _Complex __FILE__ __x I complex INT_MAX PATH_MAX ARG_MAX NAME_MAX M_PI near far small stdin stderr and xor \
+     nullptr DBL_MAX SIGINT EDOM LC_ALL BUFSIZ CLOCKS_PER_SEC FE_INVALID FP_NAN HUGE_VAL PRId32 RAND_MAX SEEK_SET ATOMIC_FLAG_INIT noreturn alignas \
+     thread_local consteval char8_t restrict typename template EXIT_SUCCESS NDEBUG WEOF MB_CUR_MAX TMP_MAX L_tmpnam SIZE_MAX PTRDIFF_MAX O_RDONLY \
+     math_errhandling R_OK STDIN_FILENO P_tmpdir st_atime sa_handler bool_ NAN_ printf sin exit time_t size_t FILE";
+
+/// The standard headers that C and C++ have in common, and some of POSIX.
+const STANDARD_HEADERS: &str = "#include <assert.h>\n#include <complex.h>\n#include <ctype.h>\n#include <errno.h>\n#include <fenv.h>\n#include <float.h>\n\
+     #include <inttypes.h>\n#include <iso646.h>\n#include <limits.h>\n#include <locale.h>\n#include <math.h>\n#include <setjmp.h>\n#include <signal.h>\n\
+     #include <stdarg.h>\n#include <stdbool.h>\n#include <stddef.h>\n#include <stdint.h>\n#include <stdio.h>\n#include <stdlib.h>\n#include <string.h>\n\
+     #include <tgmath.h>\n#include <time.h>\n#include <wchar.h>\n#include <wctype.h>\n#include <unistd.h>\n#include <fcntl.h>\n#include <sys/stat.h>\n";
 
 #[test]
 fn mistakes_of_the_call_are_said_and_nothing_is_written() {

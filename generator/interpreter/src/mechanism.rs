@@ -90,14 +90,14 @@ impl Mechanism for InterpretedMechanism {
         self.dependent_coordinates().get(index).copied()
     }
 
-    fn parameters(&self, parameters: &mut [f64]) -> Result<(), StateError> {
+    fn parameter_values(&self, parameters: &mut [f64]) -> Result<(), StateError> {
         let all = self.model().parameters.iter().zip(self.all_parameters());
         let run_time: Vec<f64> =
             all.filter(|(parameter, _)| !parameter.fixed).map(|(_, &value)| value).collect();
         write(parameters, &run_time, "parameters")
     }
 
-    fn set_parameters(&mut self, parameters: &[f64]) -> Result<(), ParameterError> {
+    fn set_parameter_values(&mut self, parameters: &[f64]) -> Result<(), ParameterError> {
         self.change_parameters(parameters)
     }
 

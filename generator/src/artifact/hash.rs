@@ -7,15 +7,17 @@ use crate::syntax::token::{Token, TokenKind};
 use crate::syntax::tree::Section;
 
 /// A hash of all that the equations of a model depend on, as 64 hexadecimal digits: its tokens without
-/// documentation and without the values of what is not `fixed`, which are defaults of the module and no part
-/// of its equations. Blanks, line ends and comments do not matter either, and a model has the same hash in a
+/// documentation, without the values of what is not `fixed` and without the surfaces of contacts, which are
+/// defaults of the module and no part of its equations. Blanks, line ends and comments do not matter either, and a model has the same hash in a
 /// file and inline.
 pub fn model_hash(source: &Source) -> String {
     let mut hash = Sha256::new();
     hash.update(b"hodograph model 2\n");
     if let Ok(tokens) = source.tokens() {
         let said: Vec<&Token> = tokens.iter().filter(|token| !is_documentation(token)).collect();
-        for (token, _) in said.iter().zip(defaults(&said)).filter(|(_, default)| !default) {
+        let surfaces = surfaces(&said);
+        let passed = defaults(&said).into_iter().zip(surfaces).map(|(default, surface)| default || surface);
+        for (token, _) in said.iter().zip(passed).filter(|(_, passed)| !passed) {
             let (kind, text) = match token.kind {
                 TokenKind::Name => (b'n', token.text.clone()),
                 TokenKind::Number => (b'0', token.text.clone()),
@@ -80,6 +82,52 @@ fn defaults(tokens: &[&Token]) -> Vec<bool> {
     is_default
 }
 
+/// For each token: whether it is part of the `surface: { .. }` of a contact, or of what separates it from
+/// the other fields.
+fn surfaces(tokens: &[&Token]) -> Vec<bool> {
+    let mut is_surface = vec![false; tokens.len()];
+    let (mut depth, mut of_contacts) = (0_usize, false);
+    for (i, token) in tokens.iter().enumerate() {
+        match token.kind {
+            TokenKind::Open(_) => {
+                if depth == 0 {
+                    of_contacts = i > 0 && tokens[i - 1].is_word(Section::Contacts.word());
+                }
+                depth += 1;
+            }
+            TokenKind::Close(_) => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        let begins = of_contacts && depth == 2 && token.is_word("surface");
+        let opens =
+            |ahead: usize, kind: TokenKind| tokens.get(i + ahead).is_some_and(|next| next.kind == kind);
+        if !begins || !opens(1, TokenKind::Sign(':')) || !opens(2, TokenKind::Open('{')) {
+            continue;
+        }
+        let mut inside = 0_usize;
+        let mut end = i + 2;
+        for (at, token) in tokens.iter().enumerate().skip(i + 2) {
+            end = at;
+            match token.kind {
+                TokenKind::Open(_) => inside += 1,
+                TokenKind::Close(_) => inside -= 1,
+                _ => {}
+            }
+            if inside == 0 {
+                break;
+            }
+        }
+        let mut begin = i;
+        if i > 0 && tokens[i - 1].is_sign(',') {
+            begin -= 1;
+        } else if tokens.get(end + 1).is_some_and(|next| next.is_sign(',')) {
+            end += 1;
+        }
+        is_surface[begin..=end].fill(true);
+    }
+    is_surface
+}
+
 /// Where in the declaration of a quantity a token stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Entry {
@@ -141,6 +189,19 @@ loads { gravity: -g*N.y; force on P: F*N.x; }
         ] {
             assert_eq!(with(from, to), hash(MODEL), "{from}");
         }
+    }
+
+    #[test]
+    fn surfaces_do_not_matter() {
+        let contact = |fields: &str| hash(&format!("{MODEL}contacts {{ c {{ {fields} }} }}"));
+        let plain = contact("point: P, normal: N.y");
+        let surface = "surface: { mu: 0.3, e: (1/2), law: stronge }";
+        assert_eq!(contact(&format!("point: P, normal: N.y, {surface}")), plain);
+        assert_eq!(contact(&format!("point: P, {surface}, normal: N.y")), plain);
+        assert_eq!(contact(&format!("{surface}, point: P, normal: N.y")), plain);
+        assert_eq!(contact("point: P, normal: N.y, surface: { mu: 0.4 }"), plain);
+        assert_ne!(contact("point: P, normal: N.x"), plain);
+        assert_ne!(contact("point: P, normal: N.y, gap: l"), plain);
     }
 
     #[test]

@@ -70,7 +70,7 @@ pub fn determining(m: &Mechanism) -> Option<Vec<Equation>> {
 }
 
 /// The state with other values of the parameters.
-fn with_parameters_moved(m: &Mechanism, state: &State) -> State {
+pub fn with_parameters_moved(m: &Mechanism, state: &State) -> State {
     let mut state = state.clone();
     for (i, (value, parameter)) in state.parameters.iter_mut().zip(&m.parameters).enumerate() {
         if !parameter.fixed {

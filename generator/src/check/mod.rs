@@ -3,6 +3,7 @@
 
 mod bodies;
 mod body_points;
+mod configuration;
 mod contacts;
 mod counts;
 mod gaps;
@@ -11,17 +12,19 @@ mod loads;
 mod loops;
 mod motion;
 mod physics;
+mod start;
 mod states;
 mod unit_vectors;
 mod vector_constraints;
 
-use crate::diagnostics::{Diagnostic, Severity};
+use crate::diagnostics::{Diagnostic, Severity, codes};
 use crate::model::{self, mechanism::Mechanism};
 use crate::source::Source;
 use crate::span::Span;
 use crate::syntax;
 
 pub use bodies::{Impossible, impossible_bodies};
+pub use unit_vectors::{ROUNDED_QUATERNION, UNIT_QUATERNION};
 pub use vector_constraints::dependent_components;
 
 /// What was found in a model.
@@ -57,6 +60,12 @@ pub fn check(source: &Source) -> Checked {
         let (mechanism, readable, diagnostics) = model::lower(&tree, diagnostics);
         (Some((mechanism, readable)), diagnostics)
     };
+    if let Some((mechanism, readable)) = &mut mechanism {
+        let sound = !diagnostics.iter().any(Diagnostic::hides_meaning);
+        let found = start::complete(mechanism, sound);
+        readable.motion &= found.is_empty();
+        diagnostics.extend(found);
+    }
     // parts that could not be read hold placeholders: only checks that do not depend on them are made
     if let Some((mechanism, readable)) = &mut mechanism {
         if readable.motion {
@@ -71,7 +80,11 @@ pub fn check(source: &Source) -> Checked {
     // only the first mistake at a place is reported: others there follow from it
     let mut places = std::collections::HashSet::new();
     diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
-    diagnostics.sort_by_key(|d| (d.primary.span, d.code));
+    // a contact without a gap is worth a word only where nothing else is wrong with it
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    let others: Vec<Span> =
+        diagnostics.iter().filter(|d| d.code != codes::NO_GAP).map(|d| d.primary.span).collect();
+    diagnostics.retain(|d| d.code != codes::NO_GAP || !failed && !others.contains(&d.primary.span));
+    diagnostics.sort_by_key(|d| (d.primary.span, d.code));
     Checked { mechanism: mechanism.map(|(mechanism, _)| mechanism).filter(|_| !failed), diagnostics }
 }

@@ -3,8 +3,8 @@
 
 use super::states::Seen;
 use super::{
-    bodies, body_points, contacts, gaps, independent_constraints, loads, loops, motion, states, unit_vectors,
-    vector_constraints,
+    bodies, body_points, configuration, contacts, gaps, independent_constraints, loads, loops, motion,
+    states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
@@ -40,7 +40,7 @@ fn parts(m: &Mechanism) -> usize {
 }
 
 /// Runs deeply recursive work on a thread with a large stack; a panic there gives the default value.
-fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
+pub(super) fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, look);
         match thread.map(|thread| thread.join()) {
@@ -67,39 +67,44 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     let upright = out.is_empty();
     let initial = alone.last().map_or(Vec::new(), |state| bodies::bodies(m, state, readable, upright));
     out.extend(initial);
-    if !upright || !readable.is_whole() {
+    if !upright || !readable.motion {
+        out.extend(unit_vectors::normals(m, &alone));
+        return out;
+    }
+    if !readable.is_whole() {
+        // how it moves does not depend on what has mass
+        out.extend(motion_alone(&without_unread_bodies(m, readable)));
         out.extend(unit_vectors::normals(m, &alone));
         return out;
     }
     let sound = out.is_empty();
-    let (mut closed, mut failures) = (Vec::new(), Vec::new());
-    for mut state in arbitrary {
-        match numeric::assemble(m, &mut state) {
-            Ok(()) => closed.push(state),
-            Err(failure) => failures.push((state, failure)),
-        }
+    if let Some(found) = configuration::undetermined(m, &arbitrary) {
+        out.push(found);
+        out.extend(unit_vectors::normals(m, &alone));
+        return out;
     }
-    let mut seen = Vec::new();
-    for state in &closed {
-        let numbers = Views::at(m, state).and_then(|views| Ok((numeric::evaluate_views(m, &views)?, views)));
-        match numbers {
-            Ok((at, views)) => seen.push(Seen { state, at, views }),
-            Err(failure) => failures.push((state.clone(), failure)),
-        }
-    }
+    let closed = Closed::of(m, arbitrary);
+    let (seen, failures) = closed.seen(m);
     if seen.is_empty() {
-        out.extend(nowhere(m, &failures));
+        out.extend(undetermined(m).or_else(|| nowhere(m, &failures)));
         out.extend(unit_vectors::normals(m, &alone));
         return out;
     }
     let met: Vec<State> = seen.iter().map(|seen| seen.state.clone()).collect();
     out.extend(unit_vectors::normals(m, &stated(&met, true)));
+    if let Some(found) = contradiction(m, &failures) {
+        out.push(found);
+        return out;
+    }
     if sound {
         out.extend(motion::changing_inertias(m, &seen));
         out.extend(motion::inertia_of_speeds(m, &seen));
     }
     out.extend(body_points::strangers(m, &seen));
-    out.extend(vector_constraints::inseparable(m, &seen));
+    // where inertias turn in their frames, a wrong angle is the cause mostly, which is told there
+    if !out.iter().any(|found| found.code == codes::INERTIA && sound) {
+        out.extend(of_the_motion(m, &seen));
+    }
     let of_contacts = contacts::contacts(m, &seen, &out);
     out.extend(of_contacts);
     // the following checks rely on the stated velocities
@@ -110,6 +115,95 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         out.extend(loops::open_at_the_start(m));
     }
     out
+}
+
+/// The states at which loops are closed, with their numbers among those that were tried, and why there are
+/// none at others.
+struct Closed {
+    states: Vec<(usize, State)>,
+    failures: Vec<Failed>,
+}
+
+/// The number of a state, the state, and why there are no numbers there.
+type Failed = (usize, State, Failure);
+
+impl Closed {
+    fn of(m: &Mechanism, arbitrary: Vec<State>) -> Self {
+        let mut closed = Closed { states: Vec::new(), failures: Vec::new() };
+        for (i, mut state) in arbitrary.into_iter().enumerate() {
+            match numeric::assemble(m, &mut state) {
+                Ok(()) => closed.states.push((i, state)),
+                Err(failure) => closed.failures.push((i, state, failure)),
+            }
+        }
+        closed
+    }
+
+    fn seen<'m>(&'m self, m: &'m Mechanism) -> (Vec<Seen<'m>>, Vec<Failed>) {
+        let (mut seen, mut failures) = (Vec::new(), self.failures.clone());
+        for (i, state) in &self.states {
+            let numbers =
+                Views::at(m, state).and_then(|views| Ok((numeric::evaluate_views(m, &views)?, views)));
+            match numbers {
+                Ok((at, views)) => seen.push(Seen { number: *i, state, at, views }),
+                Err(failure) => failures.push((*i, state.clone(), failure)),
+            }
+        }
+        (seen, failures)
+    }
+}
+
+/// What shows at open loops too, where they cannot be closed: equations that determine too little.
+fn undetermined(m: &Mechanism) -> Option<Diagnostic> {
+    let states = states::arbitrary(m).into_iter().enumerate().collect();
+    let open = Closed { states, failures: Vec::new() };
+    let (seen, failures) = open.seen(m);
+    let too_little =
+        |f: &Failure| matches!(f, Failure::RatesUndetermined(_) | Failure::SpeedsUndetermined(_));
+    let (_, state, failure) = failures.iter().find(|(_, _, failure)| too_little(failure))?;
+    if seen.is_empty() { motion::nowhere(m, state, failure) } else { None }
+}
+
+/// What is wrong with the motion of a mechanism of whose bodies and contacts nothing is said.
+fn motion_alone(m: &Mechanism) -> Vec<Diagnostic> {
+    let closed = Closed::of(m, states::arbitrary(m));
+    let (seen, failures) = closed.seen(m);
+    let failed = if seen.is_empty() { nowhere(m, &failures) } else { contradiction(m, &failures) };
+    failed.map_or_else(|| of_the_motion(m, &seen), |failed| vec![failed])
+}
+
+/// Constraints that repeat others, and configuration equations that they do not keep.
+fn of_the_motion(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
+    let mut out = vector_constraints::inseparable(m, seen);
+    if out.is_empty() {
+        out.extend(vector_constraints::repeated(m, seen));
+        out.extend(configuration::not_kept(m, seen));
+    }
+    out
+}
+
+/// A contradiction that does not show at every state: where a coordinate is 0, for instance, what contradicts
+/// may agree. One state alone may be near a singular one.
+fn contradiction(m: &Mechanism, failures: &[Failed]) -> Option<Diagnostic> {
+    // far from the start loops may close in another way, which constraints need not fit
+    let shows = |(i, _, failure): &&Failed| match failure {
+        Failure::MotionInconsistent(..) => true,
+        Failure::ConstraintsInconsistent(_) => m.configuration.is_empty() || *i >= states::NEAR,
+        _ => false,
+    };
+    let mut shown = failures.iter().filter(shows);
+    let (_, state, failure) = shown.next()?;
+    shown.next()?;
+    motion::nowhere(m, state, failure)
+}
+
+/// The mechanism without bodies that could not be read, and without contacts, which refer to bodies.
+fn without_unread_bodies(m: &Mechanism, readable: &Readable) -> Mechanism {
+    let mut rest = m.clone();
+    let mut at = readable.bodies.iter();
+    rest.bodies.retain(|_| at.next().copied().unwrap_or(false));
+    rest.contacts.clear();
+    rest
 }
 
 /// The mechanism with the contacts that could be read, if there are others: nothing rests on a contact.
@@ -124,9 +218,9 @@ fn without_unread_contacts(m: &Mechanism, readable: &Readable) -> Option<Mechani
 }
 
 /// What is said where the mechanism has no numbers at any state.
-fn nowhere(m: &Mechanism, failures: &[(State, Failure)]) -> Option<Diagnostic> {
+fn nowhere(m: &Mechanism, failures: &[Failed]) -> Option<Diagnostic> {
     // the first state is the most general one
-    if let Some((state, failure)) = failures.iter().find(|(_, f)| !matches!(f, Failure::NotClosed(_))) {
+    if let Some((_, state, failure)) = failures.iter().find(|(_, _, f)| !matches!(f, Failure::NotClosed(_))) {
         return motion::nowhere(m, state, failure);
     }
     let message = "the configuration equations have no solution near the values of the model";

@@ -7,12 +7,17 @@ use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual}
 /// How far the states lie from the initial values.
 const DISTANCES: [f64; 5] = [0.7, 0.4, 0.2, 0.05, 0.0];
 
+/// The number of the first of them that is near.
+pub const NEAR: usize = 2;
+
 /// How far, and how many, those are that go all round.
 const FARTHEST: f64 = 3.2;
 const FAR: u64 = 16;
 
 /// What is seen at a state.
 pub struct Seen<'m> {
+    /// its number among the arbitrary states: the last is the nearest to the initial values
+    pub number: usize,
     /// the state
     pub state: &'m State,
     /// what holds there

@@ -8,6 +8,12 @@ use crate::model::mechanism::*;
 use crate::numeric::{Level, State};
 use crate::span::Span;
 
+/// Initial values of quaternions may miss the length 1 by this much, as rounded numbers do: they are then
+/// divided by it.
+pub const ROUNDED_QUATERNION: f64 = 1e-6;
+/// By so little they are left as they are.
+pub const UNIT_QUATERNION: f64 = 1e-10;
+
 /// Axes, normals and quaternions at states in which what the model does not say is not a number.
 pub fn unit_vectors(m: &Mechanism, readable: &Readable, states: &[State]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
@@ -56,7 +62,8 @@ fn not_unit(
     message: impl Fn(String) -> String,
 ) -> Option<Diagnostic> {
     let off = |length: &f64| length.is_finite() && (length - 1.0).abs() > 1e-9;
-    let first = lengths.first().filter(|_| lengths.iter().all(off))?;
+    // at one state a vector may have the length 1 by chance
+    let first = lengths.iter().find(|length| off(length))?;
     let help = match code {
         _ if *first < 1e-12 => "it is zero",
         codes::FRAME => "divide its components by its length",
@@ -72,13 +79,14 @@ fn quaternions(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         let Orientation::Quaternion(ids) = &frame.orientation else { continue };
         let values = ids.map(|id| m.coordinates[id.0].value.unwrap_or(0.0));
         let norm = values.iter().map(|e| e * e).sum::<f64>().sqrt();
-        if norm > 0.0 && (norm - 1.0).abs() > 1e-10 {
+        if norm > 0.0 && (norm - 1.0).abs() > UNIT_QUATERNION {
             let message = format!(
                 "the initial values of the quaternion of `{}` have the norm {}, not 1",
                 frame.name,
-                number(norm)
+                if (norm - 1.0).abs() < 1e-3 { format!("{norm:.9}") } else { number(norm) }
             );
-            let help = "divide them by it; left out, they are those of the identity";
+            let help =
+                "divide them by it (rounding of 1e-6 is mended); left out, they are those of the identity";
             out.push(Diagnostic::new(codes::QUATERNION, m.coordinates[ids[0].0].span, message).help(help));
         }
     }

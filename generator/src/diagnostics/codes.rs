@@ -18,6 +18,11 @@ impl Code {
         [SECTION_ORDER, SECTION_TWICE, SECOND_MECHANISM, STRAY_DOCS, COLLISION].contains(&self)
     }
 
+    /// Whether it is a warning of what the text has too much or does not have, and no number is in doubt.
+    pub fn is_of_text(self) -> bool {
+        [UNUSED_PARAMETER, UNUSED_INPUT, UNUSED_DEFINITION, NO_GAP].contains(&self)
+    }
+
     /// What it means, in a few words.
     pub fn title(self) -> &'static str {
         ALL.iter().find(|(code, _)| *code == self).map_or("", |(_, title)| title)
@@ -90,9 +95,12 @@ codes! {
     INCONSISTENT = "E075", "a declared velocity contradicts the positions";
     NO_INERTIA = "E076", "a degree of freedom without inertia";
     EMPTY_EQUATION = "E077", "an equation that says nothing";
+    NOT_KEPT = "E078", "a configuration that the motion does not keep";
     NORMAL = "E080", "the normal is not a unit vector";
     CONTACT_STILL = "E081", "a contact that never moves";
     CONTACT = "E082", "a contact is not stated correctly";
+    SURFACE = "E083", "a surface that is impossible";
+    START = "E084", "a start in contact that cannot be found";
     UNUSED_PARAMETER = "W001", "a parameter is never used";
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";
@@ -105,4 +113,6 @@ codes! {
     LOAD_POINT = "W010", "a load on a geometric point where a body is meant";
     TORSION_ANGLE = "W011", "a torsion spring whose angle is not that of its axis";
     NO_EFFECT = "W012", "a load that does nothing";
+    KEPT_BY_VALUES = "W013", "a configuration that is kept with some values only";
+    NO_GAP = "W014", "a contact that no simulation sees";
 }

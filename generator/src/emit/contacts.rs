@@ -5,8 +5,10 @@ use quote::quote;
 
 use super::Emitter;
 use super::methods::about;
+use super::record::number;
 use super::routine::Routine;
 use super::values::local;
+use crate::model::mechanism::{Law, Surface};
 use crate::program::Output;
 use crate::program::{ContactQuantity, Quantity};
 
@@ -28,7 +30,34 @@ impl Emitter<'_> {
         let collide = self.collides(contact).then(|| self.collide(contact));
         let closed = self.closes(contact).then(|| self.closed(contact));
         let derivatives = self.collides(contact).then(|| self.derivatives(contact));
-        quote! { #(#routines)* #collide #closed #derivatives }
+        let surface = self.surface(contact);
+        quote! { #(#routines)* #collide #closed #derivatives #surface }
+    }
+
+    /// Friction and restitution, where the model states them.
+    fn surface(&self, contact: usize) -> Option<TokenStream> {
+        let krate = self.krate;
+        let stated = self.mechanism.contacts.get(contact)?;
+        let Surface { mu, e, law } = stated.surface?;
+        let name = crate::rust_names::ident(&self.contact_method("surface", contact));
+        let docs = format!(
+            " Friction and restitution that the model states for {}.",
+            about(&stated.name, &stated.docs)
+        );
+        let law = match law {
+            Law::Newton => quote!(Newton),
+            Law::Poisson => quote!(Poisson),
+            Law::Stronge => quote!(Stronge),
+        };
+        let [mu, e] = [mu, e].map(|value| number(krate, value));
+        Some(quote! {
+            #[doc = #docs]
+            #[inline]
+            #[must_use]
+            pub fn #name() -> #krate::Surface<T> {
+                #krate::Surface { mu: #mu, e: #e, law: #krate::Law::#law }
+            }
+        })
     }
 
     /// The routines of a contact but for its derivatives.

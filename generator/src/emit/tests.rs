@@ -17,7 +17,9 @@ fn quantity(name: &str, docs: &str, unit: &str, value: Option<f64>) -> Variable 
         unit: unit.into(),
         value,
         fixed: false,
+        initial: None,
         typical: 1.0,
+        factor: 1.0,
         dependent: false,
         span: Span::default(),
     }
@@ -84,6 +86,7 @@ fn mechanism() -> Mechanism {
             normal_span: span,
             gap: None,
             gap_span: span,
+            surface: None,
             span,
         }],
     }

@@ -227,6 +227,35 @@ pub(super) const TABLE: &[Explanation] = &[
         right: Some("kinematics { d(q1)/dt = u1; }"),
     },
     Explanation {
+        code: NOT_KEPT,
+        text: "A closed loop is stated twice: by positions under `configuration`, from which consistent \
+            coordinates are computed, and by velocities under `constraints`, which the equations of motion \
+            need. The rate of each configuration equation must follow from the constraints (and the \
+            kinematical equations) wherever the loops are closed. Here it does not: the motion would leave \
+            the configuration at once. Look for a sign, a factor or a point that differs, for a term with \
+            `time` on one side only, or for a constraint that is missing.",
+        wrong: Some(
+            "coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = -2*u1; }\n\
+            configuration { q2 = 2*q1; }",
+        ),
+        right: Some(
+            "coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = 2*u1; }\n\
+            configuration { q2 = 2*q1; }",
+        ),
+    },
+    Explanation {
         code: NORMAL,
         text: "A normal must have the length 1. `unit(v)` is the unit vector along v.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x + N.y } }"),
@@ -254,5 +283,35 @@ pub(super) const TABLE: &[Explanation] = &[
             (`against: velocity v`). Left out, it is a point fixed in N. Two points of one body never meet.",
         wrong: Some("contacts { tip { point: P of Rod, against: N, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
+    },
+    Explanation {
+        code: SURFACE,
+        text: "The surface of a contact holds its friction and restitution: `mu`, not negative, `e`, from 0 \
+            to 1, and `law`, one of newton, poisson and stronge, each a constant. What is left out is mu = 0, \
+            e = 0, law = poisson. The tool takes these where the command line does not say otherwise, and \
+            says so; equations do not depend on them.",
+        wrong: Some(
+            "contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x), surface: { mu: -0.3, \
+            e: 0.5, law: stronge } } }",
+        ),
+        right: Some(
+            "contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x), surface: { mu: 0.3, \
+            e: 0.5, law: stronge } } }",
+        ),
+    },
+    Explanation {
+        code: START,
+        text: "`touching(contact)` as the initial value of a coordinate is the value at which the gap of that \
+            contact is 0, near a guess (0, or the number that stands after the contact). It is of an \
+            independent coordinate on which the gap depends, each contact is named once, and there must be \
+            such a value near the guess.",
+        wrong: Some(
+            "coordinates { q1: rad = touching(tip) }\n\
+            contacts { tip { point: P of Rod, normal: -N.x, gap: 2*l - dot(position(P), N.x) } }",
+        ),
+        right: Some(
+            "coordinates { q1: rad = touching(tip, 0.5) }\n\
+            contacts { tip { point: P of Rod, normal: -N.x, gap: l/2 - dot(position(P), N.x) } }",
+        ),
     },
 ];

@@ -42,7 +42,7 @@ frames { B = N.rotate(z, q1); }
 points { G = O - l/2*B.y; P = O - l*B.y; }
 bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }
 loads { gravity: -g*N.y; }
-contacts { tip { point: P of Rod, normal: -N.x } }
+contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }
 ";
 
 /// The explanation of a code.

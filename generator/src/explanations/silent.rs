@@ -39,7 +39,7 @@ pub(super) const TABLE: &[Explanation] = &[
             points { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\n\
             bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: \
             C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\n\
-            contacts { tip { point: P of Rod, normal: -N.x } }",
+            contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }",
         ),
         right: Some(
             "coordinates { q1: rad = 0.3, q2: rad }\n\
@@ -48,7 +48,7 @@ pub(super) const TABLE: &[Explanation] = &[
             points { G = O - l/2*B.y; K = O - l*B.y; H = K - l/2*C.y; P = K - l*C.y; }\n\
             bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Fore { frame: \
             C, centre: H, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] } }\n\
-            contacts { tip { point: P of Fore, normal: -N.x } }",
+            contacts { tip { point: P of Fore, normal: -N.x, gap: l - dot(position(P), N.x) } }",
         ),
     },
     Explanation {
@@ -104,5 +104,42 @@ pub(super) const TABLE: &[Explanation] = &[
             Perhaps another point or body is meant.",
         wrong: Some("loads { gravity: -g*N.y; force on O: m*g*N.x; }"),
         right: Some("loads { gravity: -g*N.y; force on P: m*g*N.x; }"),
+    },
+    Explanation {
+        code: KEPT_BY_VALUES,
+        text: "The motion keeps a configuration equation with the values that the parameters have in the \
+            model, and does not with others: a number or another parameter stands in the constraints where \
+            the configuration has this one. As soon as it is set at run time, the motion leaves the \
+            configuration.",
+        wrong: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, n: 1 = 2 }\n\
+            coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = 2*u1; }\n\
+            configuration { q2 = n*q1; }",
+        ),
+        right: Some(
+            "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, n: 1 = 2 }\n\
+            coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { u2 = n*u1; }\n\
+            configuration { q2 = n*q1; }",
+        ),
+    },
+    Explanation {
+        code: NO_GAP,
+        text: "A simulation sees that a contact closes by its gap, the distance of the point that strikes, \
+            along the normal, from what is struck. This contact has none: bodies pass through each other \
+            there. A model that is used for collisions at given instants alone needs no gap.",
+        wrong: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
+        right: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }"),
     },
 ];

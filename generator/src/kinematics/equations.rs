@@ -81,13 +81,18 @@ impl Kinematics<'_> {
     /// How many of the forms are independent at arbitrary states; all, where that cannot be seen.
     pub(super) fn rank(&mut self, forms: &[LinearScalar]) -> usize {
         let slots: Vec<usize> = forms.iter().flat_map(|form| form.terms.keys().copied()).collect();
+        // in SI units: those of the model decide nothing
+        let quantities = self.mechanism.speeds.iter().chain(&self.mechanism.coordinates);
+        let sizes: Vec<f64> = quantities.map(|quantity| quantity.factor).collect();
+        let size = |slot: usize| sizes.get(slot).copied().unwrap_or(1.0);
         let z = &self.z;
         let ranks = self.samples.iter_mut().filter_map(|sample| {
             let rows: Option<Vec<Vec<f64>>> = forms
                 .iter()
                 .map(|form| {
-                    let terms = slots.iter().map(|&slot| form.coefficient(slot)).chain([form.rest.clone()]);
-                    terms.map(|term| sample.value(z, &term)).collect()
+                    let of = |&slot: &usize| (form.coefficient(slot), size(slot));
+                    let terms = slots.iter().map(of).chain([(form.rest.clone(), 1.0)]);
+                    terms.map(|(term, size)| Some(sample.value(z, &term)? / size)).collect()
                 })
                 .collect();
             rows.map(numeric::rank)

@@ -38,6 +38,8 @@ impl Kinematics<'_> {
             .collect();
         let unknowns: Vec<usize> =
             (0..self.coordinates.len()).filter(|&i| quaternions[i].is_none()).map(|i| slots + i).collect();
+        let forms =
+            if forms.len() > unknowns.len() { self.without_repetitions(forms, &unknowns) } else { forms };
         let solver = Solver::new(&mut self.z, &mut self.samples, &forms, &unknowns)
             .map_err(|error| self.rates_error(error, slots))?;
         let z = &mut self.z;
@@ -105,6 +107,26 @@ impl Kinematics<'_> {
             self.push_components(&difference, axes, point.span, &mut equations);
         }
         equations
+    }
+
+    /// The forms that are independent, in the unknowns, of those before them. `check` has seen that the others
+    /// follow from these.
+    fn without_repetitions(&mut self, forms: Vec<LinearScalar>, unknowns: &[usize]) -> Vec<LinearScalar> {
+        let in_unknowns = |form: &LinearScalar| {
+            let mut form = form.clone();
+            form.terms.retain(|slot, _| unknowns.contains(slot));
+            LinearScalar { rest: Expr::zero(), ..form }
+        };
+        let (mut kept, mut left): (Vec<LinearScalar>, Vec<LinearScalar>) = (Vec::new(), Vec::new());
+        for form in forms {
+            left.push(in_unknowns(&form));
+            if self.rank(&left) < left.len() {
+                left.pop();
+            } else {
+                kept.push(form);
+            }
+        }
+        kept
     }
 
     /// The direction of the time derivative: time by 1, each coordinate by its rate.

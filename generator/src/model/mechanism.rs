@@ -112,8 +112,13 @@ pub struct Variable {
     /// value or initial value in that unit, if one is given; unless it is `fixed`, equations do not depend
     /// on it
     pub value: Option<f64>,
+    /// how the model states its initial value, where that follows from other quantities: `value` is the number
+    /// with the values of the model
+    pub initial: Option<Initial>,
     /// a size that such a quantity commonly has, in that unit; all quantities of a unit have the same
     pub typical: f64,
+    /// one of that unit, counted in SI units: numerical checks compare equations after multiplying by it
+    pub factor: f64,
     /// `fixed` (of a parameter): its value is folded in and it does not exist at run time. In expressions it
     /// appears as its number; it is kept here so that callers can refer to it by name.
     pub fixed: bool,
@@ -121,6 +126,36 @@ pub struct Variable {
     pub dependent: bool,
     /// where it is declared
     pub span: Span,
+}
+
+/// An initial value that follows from other quantities.
+#[derive(Clone, Debug)]
+pub enum Initial {
+    /// a value in SI units, of numbers, parameters, coordinates and speeds alone
+    Expression {
+        /// the value
+        value: Scalar,
+        /// where it stands
+        span: Span,
+    },
+    /// the value, near a guess in the unit of the coordinate, at which the gap of a contact is 0
+    Touching {
+        /// which contact
+        contact: usize,
+        /// the guess
+        guess: f64,
+        /// where it stands
+        span: Span,
+    },
+}
+
+impl Initial {
+    /// Where it stands.
+    pub fn span(&self) -> Span {
+        match self {
+            Initial::Expression { span, .. } | Initial::Touching { span, .. } => *span,
+        }
+    }
 }
 
 /// A named subexpression.
@@ -400,8 +435,52 @@ pub struct Contact {
     pub gap: Option<Scalar>,
     /// where the gap is stated; else where the contact is declared
     pub gap_span: Span,
+    /// friction and restitution, where the model states them
+    pub surface: Option<Surface>,
     /// where it is declared
     pub span: Span,
+}
+
+/// Friction and restitution of a contact. They are defaults of the tool and of the module: equations do not
+/// depend on them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Coulomb's coefficient of friction, not negative
+    pub mu: f64,
+    /// coefficient of restitution, from 0 to 1
+    pub e: f64,
+    /// the hypothesis of restitution
+    pub law: Law,
+}
+
+impl Surface {
+    /// What is left out of a surface is this: without friction, without rebound.
+    pub const PLAIN: Surface = Surface { mu: 0.0, e: 0.0, law: Law::Poisson };
+}
+
+/// Hypotheses of restitution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// ratio of normal velocities
+    Newton,
+    /// ratio of normal impulses
+    Poisson,
+    /// ratio of works of the normal force
+    Stronge,
+}
+
+impl Law {
+    /// All.
+    pub const ALL: [Law; 3] = [Law::Newton, Law::Poisson, Law::Stronge];
+
+    /// Its name in models and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Law::Newton => "newton",
+            Law::Poisson => "poisson",
+            Law::Stronge => "stronge",
+        }
+    }
 }
 
 /// What a contact strikes.

@@ -3,7 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::diagnostics::{Diagnostic, codes};
-use crate::rust_names::{is_keyword, snake_case};
+use crate::letters;
+use crate::rust_names::{is_keyword, is_value, snake_case};
 use crate::span::Span;
 use crate::suggest;
 use crate::syntax::tree::{Name, Tree};
@@ -111,7 +112,7 @@ impl Names {
     }
 
     fn declare(&mut self, name: &Name, symbol: Symbol, diagnostics: &mut Vec<Diagnostic>) {
-        if let Some(error) = reserved(name) {
+        if let Some(error) = reserved(name).or_else(|| value_in_rust(name, symbol)) {
             diagnostics.push(error);
         }
         match self.symbols.get(&name.text) {
@@ -220,6 +221,18 @@ fn given(symbol: Symbol) -> &'static str {
     }
 }
 
+/// A quantity becomes a variable of the generated code, which cannot have the name of a constant.
+fn value_in_rust(name: &Name, symbol: Symbol) -> Option<Diagnostic> {
+    use Symbol::{Coordinate, Input, Parameter, Speed};
+    let quantity = matches!(symbol, Parameter(_) | Input(_) | Coordinate(_) | Speed(_));
+    if !quantity || !is_value(&name.text) {
+        return None;
+    }
+    let message = format!("`{}` is a value in Rust: {} cannot have this name", name.text, symbol.kind());
+    let help = format!("choose another name, such as `{}`", name.text.to_lowercase() + "_");
+    Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help))
+}
+
 /// Says why a name cannot be declared.
 pub fn reserved(name: &Name) -> Option<Diagnostic> {
     if is_keyword(&name.text) {
@@ -234,6 +247,14 @@ pub fn reserved(name: &Name) -> Option<Diagnostic> {
         let message = format!("`{c}` cannot stand in a name");
         let help =
             if c == '·' { "write `*` for a product" } else { "names are made of letters, digits and `_`" };
+        return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
+    }
+    if let Some(c) = letters::with_two_spellings(&name.text) {
+        let message = format!(
+            "`{c}` (U+{:04X}) can be written in two ways: names that look alike may differ",
+            c as u32
+        );
+        let help = "Rust takes both spellings for one name: choose letters that have one spelling";
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
     }
     if name.text.chars().count() > 100 {

@@ -4,7 +4,7 @@ use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::HyperDual;
 use super::linear_system::solve;
 use super::state::{Failure, State};
-use crate::model::mechanism::Mechanism;
+use crate::model::mechanism::{Equation, Mechanism};
 
 /// Changes the dependent coordinates so that the configuration equations hold, starting from what they are:
 /// Newton's method, with steps halved where they make things worse.
@@ -13,6 +13,7 @@ pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
     if unknown.is_empty() {
         return Ok(());
     }
+    let sizes: Vec<f64> = unknown.iter().map(|i| m.coordinates[*i].factor).collect();
     let mut size = residual_size(m, state)?;
     for _ in 0..60 {
         if size < 1e-13 {
@@ -26,7 +27,7 @@ pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
         }
         let now = residuals(m, state, None)?;
         rows.iter_mut().zip(now).for_each(|(row, r)| row.push(HyperDual::constant(-r.re)));
-        let Ok(step) = solve(rows, unknown.len()) else { return Err(Failure::NotClosed(size)) };
+        let Ok(step) = solve(rows, unknown.len(), &sizes) else { return Err(Failure::NotClosed(size)) };
         let before = state.coordinates.clone();
         let mut scale = 1.0;
         let mut better = false;
@@ -48,6 +49,30 @@ pub fn assemble(m: &Mechanism, state: &mut State) -> Result<(), Failure> {
         }
     }
     if size < 1e-9 { Ok(()) } else { Err(Failure::NotClosed(size)) }
+}
+
+/// The derivatives of what must vanish in a configuration equation, with respect to each coordinate, then to
+/// time: one row, or three along N.x, N.y, N.z.
+pub fn configuration_slopes(
+    m: &Mechanism,
+    state: &State,
+    equation: &Equation,
+) -> Result<Vec<Vec<f64>>, Failure> {
+    let n = m.coordinates.len();
+    let mut slopes: Vec<Vec<f64>> = Vec::new();
+    for moving in 0..=n {
+        let e1 = |i: usize| f64::from(u8::from(moving == i));
+        let coordinates = state.coordinates.iter().enumerate();
+        let coordinates =
+            coordinates.map(|(i, q)| HyperDual { e1: e1(i), ..HyperDual::constant(*q) }).collect();
+        let time = HyperDual { e1: e1(n), ..HyperDual::constant(state.time) };
+        let still = vec![HyperDual::ZERO; m.speeds.len()];
+        let values = Evaluator::new(m, &state.parameters, &state.inputs, time, coordinates, still);
+        let column = values.residual(equation, Level::Geometry)?;
+        slopes.resize(column.len(), Vec::new());
+        slopes.iter_mut().zip(column).for_each(|(row, r)| row.push(r.e1));
+    }
+    Ok(slopes)
 }
 
 fn residuals(m: &Mechanism, state: &State, moving: Option<usize>) -> Result<Vec<HyperDual>, Failure> {

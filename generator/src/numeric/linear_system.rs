@@ -19,9 +19,12 @@ pub struct Undetermined {
 /// Solves `A x = B` for `count` unknowns. Each row holds the coefficients of the unknowns and then the right
 /// sides.
 ///
-/// Gaussian elimination with the largest pivots; equations are scaled to their largest coefficient.
-pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize) -> Result<Solved, Undetermined> {
+/// Gaussian elimination with the largest pivots; equations are scaled to their largest coefficient. `sizes`
+/// tells the size of the unit of each column in SI units: columns are compared in these, so that the units
+/// of a model decide nothing. Columns past the last of them are in SI units.
+pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize, sizes: &[f64]) -> Result<Solved, Undetermined> {
     let width = rows.first().map_or(count, Vec::len);
+    rows.iter_mut().for_each(|row| in_si(row, sizes, |c, size| c * HyperDual::constant(1.0 / size)));
     let size = |row: &Vec<HyperDual>| row.iter().fold(0.0_f64, |m, c| m.max(c.re.abs()));
     // what is this small beside the other equations is the rounding error of an equation that says 0 = 0
     let noise = 1e-12 * rows.iter().map(size).fold(0.0_f64, f64::max);
@@ -64,7 +67,12 @@ pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize) -> Result<Solved, Unde
     let mut unknowns = vec![vec![HyperDual::ZERO; width - count]; count];
     for (step, &column) in order.iter().enumerate() {
         let row = &numbered[step].1;
-        unknowns[column] = row[count..].iter().map(|right| *right / row[column]).collect();
+        let unit = HyperDual::constant(sizes.get(column).copied().unwrap_or(1.0));
+        let right = row[count..].iter().map(|right| *right / (row[column] * unit));
+        unknowns[column] = right.collect();
+        in_si(&mut unknowns[column], sizes.get(count..).unwrap_or(&[]), |c, size| {
+            c * HyperDual::constant(size)
+        });
     }
     let mut contradiction = (0, 0.0);
     for (i, row) in numbered.iter().skip(count) {
@@ -74,6 +82,13 @@ pub fn solve(mut rows: Vec<Vec<HyperDual>>, count: usize) -> Result<Solved, Unde
         }
     }
     Ok(Solved { unknowns, contradiction })
+}
+
+/// Converts the entries of columns whose units are not those of SI.
+fn in_si(row: &mut [HyperDual], sizes: &[f64], convert: impl Fn(HyperDual, f64) -> HyperDual) {
+    for (entry, &size) in row.iter_mut().zip(sizes).filter(|(_, size)| **size != 1.0) {
+        *entry = convert(*entry, size);
+    }
 }
 
 /// How many of the rows are independent; rows of very different sizes count alike.

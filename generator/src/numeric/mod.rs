@@ -13,10 +13,11 @@ pub mod hyper_dual;
 mod linear_system;
 mod loops;
 mod motion;
+pub mod start;
 mod state;
 pub mod views;
 
-pub use assembly::assemble;
+pub use assembly::{assemble, configuration_slopes};
 pub use dynamics::{central_inertia, evaluate, evaluate_views, own_inertia};
 pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};

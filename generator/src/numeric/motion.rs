@@ -15,8 +15,8 @@ pub fn constraint_rank(m: &Mechanism, state: &State) -> Result<usize, Failure> {
     Ok(rank(rows))
 }
 
-/// The constraints at a state by their coefficients: speeds, then the constant; a vector equation has three
-/// rows, along N.x, N.y, N.z.
+/// The constraints at a state by their coefficients: speeds (as if these were counted in SI units), then the
+/// constant; a vector equation has three rows, along N.x, N.y, N.z.
 pub fn constraint_coefficients(m: &Mechanism, state: &State) -> Result<Vec<Vec<f64>>, Failure> {
     let coordinates = state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect();
     let time = HyperDual::constant(state.time);
@@ -127,7 +127,10 @@ impl<'m> Instant<'m> {
             self.kinematical_residuals(&self.evaluator(rates, speeds.to_vec()))
         })?;
         let rows = rows.into_iter().map(|row| negate_from(row, q)).collect();
-        let solved = solve(rows, q).map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
+        let quantities = self.m.coordinates.iter().chain(&self.m.speeds);
+        let sizes: Vec<f64> = quantities.map(|quantity| quantity.factor).collect();
+        let solved =
+            solve(rows, q, &sizes).map_err(|e| Failure::RatesUndetermined(CoordinateId(e.unknown)))?;
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::MotionInconsistent(spans[solved.contradiction.0], solved.contradiction.1));
         }
@@ -175,7 +178,9 @@ impl<'m> Instant<'m> {
         let dependent = count - independent;
         let (rows, spans) = self.constraint_rows(maps, dependent)?;
         let rows: Vec<Vec<HyperDual>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
-        let solved = solve(rows, dependent)
+        let (own, others) = self.m.speeds.split_at(independent);
+        let sizes: Vec<f64> = others.iter().chain(own).map(|speed| speed.factor).collect();
+        let solved = solve(rows, dependent, &sizes)
             .map_err(|e| Failure::SpeedsUndetermined(SpeedId(independent + e.unknown)))?;
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::ConstraintsInconsistent(spans[solved.contradiction.0]));
@@ -210,7 +215,9 @@ impl<'m> Instant<'m> {
         let rates = self.solve_rates()?;
         let maps = Maps { rates, speeds: Vec::new() };
         let (rows, _) = self.constraint_rows(&maps, 0)?;
-        Ok(rows.iter().map(|row| row.iter().map(|c| c.re).collect()).collect())
+        let sizes = || self.m.speeds.iter().map(|speed| speed.factor).chain([1.0]);
+        let in_si = |row: &Vec<HyperDual>| row.iter().zip(sizes()).map(|(c, size)| c.re / size).collect();
+        Ok(rows.iter().map(in_si).collect())
     }
 }
 

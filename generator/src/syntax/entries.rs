@@ -17,7 +17,7 @@ impl Parser<'_> {
         self.stray_word(section);
         match section {
             Parameters | Inputs | Coordinates | Speeds | Dependent => {
-                let quantity = self.quantity(docs)?;
+                let quantity = self.quantity(docs, section)?;
                 match section {
                     Parameters => self.tree.parameters.push(quantity),
                     Inputs => self.tree.inputs.push(quantity),
@@ -141,7 +141,7 @@ impl Parser<'_> {
     }
 
     /// `fixed name: unit = value`
-    fn quantity(&mut self, docs: String) -> Result<Declaration, Lost> {
+    fn quantity(&mut self, docs: String, section: Section) -> Result<Declaration, Lost> {
         let mut modifier = None;
         let named = self.peek_at(1).is_some_and(|token| token.kind == TokenKind::Name);
         if named {
@@ -159,11 +159,26 @@ impl Parser<'_> {
         let name = self.name("the name of a quantity")?;
         if !self.is_sign(':') {
             let message = format!("expected `:` and the unit of `{}`, found {}", name.text, self.found());
-            let error = Diagnostic::new(codes::EXPECTED, self.here(), message).help(format!(
-                "state the unit, as in `{0}: kg = 1` for a mass; a plain number has the unit 1: `{0}: 1 = 1`",
-                name.text
-            ));
-            self.report(error);
+            let (n, none) = (&name.text, "a plain number has the unit 1");
+            let help = match section {
+                Section::Coordinates => {
+                    format!(
+                        "state the unit, as in `{n}: rad` for an angle or `{n}: m` for a length; {none}: `{n}: 1`"
+                    )
+                }
+                Section::Speeds | Section::Dependent => {
+                    format!(
+                        "state the unit, as in `{n}: rad/s` for the rate of an angle or `{n}: m/s` for that of a length"
+                    )
+                }
+                Section::Inputs => {
+                    format!(
+                        "state the unit, as in `{n}: N` for a force or `{n}: N*m` for a torque; {none}: `{n}: 1`"
+                    )
+                }
+                _ => format!("state the unit, as in `{n}: kg = 1` for a mass; {none}: `{n}: 1 = 1`"),
+            };
+            self.report(Diagnostic::new(codes::EXPECTED, self.here(), message).help(help));
             return Err(Lost);
         }
         self.at += 1;
@@ -242,7 +257,7 @@ impl Parser<'_> {
                     let span = self.here();
                     let name = self.take_name().unwrap_or(Name { text: String::new(), span });
                     let value = Expr { kind: ExprKind::Error, span: name.span };
-                    fields.push(Field { name, value, notes: Vec::new() });
+                    fields.push(Field { name, value, notes: Vec::new(), fields: None });
                     Err(lost)
                 }
             };
@@ -270,6 +285,13 @@ impl Parser<'_> {
             self.advise("write `[xx, yy, zz]` or `[xx, yy, zz, xy, yz, zx]`".to_owned());
             return Err(Lost);
         }
+        // inside of a surface there is no other
+        if name.text == "surface" && self.is_open('{') && self.nesting() < 3 {
+            let start = self.here();
+            let fields = self.fields()?;
+            let value = Expr { kind: ExprKind::Error, span: start.to(self.before()) };
+            return Ok(Field { name, value, notes: Vec::new(), fields: Some(fields) });
+        }
         let mut notes = Vec::new();
         // `velocity` is a word here unless it is all there is: then it is the name of a point
         let alone = self.peek_at(1).is_none_or(|next| {
@@ -285,7 +307,7 @@ impl Parser<'_> {
             let name = self.name(&format!("a name after `{}`", word.text))?;
             notes.push(Note { word, name: Some(name) });
         }
-        Ok(Field { name, value, notes })
+        Ok(Field { name, value, notes, fields: None })
     }
 
     fn load(&mut self) -> Result<(), Lost> {

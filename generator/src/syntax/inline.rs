@@ -5,6 +5,7 @@ use proc_macro2::{Delimiter, Span as RustSpan, TokenStream, TokenTree};
 
 use super::lexer::classify_number;
 use super::token::{Bad, Token, TokenKind};
+use crate::letters;
 use crate::span::Span;
 
 /// The tokens of a macro's input, and where each stands in the user's source.
@@ -42,6 +43,7 @@ impl Reader {
                 TokenTree::Ident(name) => {
                     let (text, place) = (name.to_string(), name.span());
                     let raw = text.starts_with("r#");
+                    let text = letters::normal(&text).into_owned();
                     self.push(if raw { TokenKind::Bad(Bad::RawName) } else { TokenKind::Name }, text, place);
                 }
                 TokenTree::Literal(literal) => self.literal(&literal),

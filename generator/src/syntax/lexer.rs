@@ -2,6 +2,7 @@
 //! text that is not a token becomes a bad token.
 
 use super::token::{Bad, Token, TokenKind, is_decimal};
+use crate::letters;
 use crate::span::Span;
 
 /// The tokens of a text, at most `most` and a few. Positions are bytes.
@@ -137,7 +138,7 @@ impl<'a> Lexer<'a> {
             let length = self.run(length + 1, |c| c == '_' || unicode_ident::is_xid_continue(c));
             self.push(TokenKind::Bad(Bad::RawName), length, self.rest()[..length].to_owned());
         } else {
-            self.push(TokenKind::Name, length, name.to_owned());
+            self.push(TokenKind::Name, length, letters::normal(name).into_owned());
         }
     }
 

@@ -239,6 +239,8 @@ pub struct Field {
     pub value: Expr,
     /// what `velocity` before the value, or `in`, `about`, `of` after it say
     pub notes: Vec<Note>,
+    /// the fields of a value in braces, in place of an expression
+    pub fields: Option<Vec<Field>>,
 }
 
 /// A word and a name beside the value of a field.

@@ -11,7 +11,7 @@
 /// A method of [`Pendulum`] that returns a `Result` fails where the state is singular or a result is not finite (`StateError`). A method that solves a collision also fails where it has no outcome (`CollisionError`); a method for the force of a closed contact fails where no finite force satisfies Coulomb's law (`ClosedContactError`).
 #[allow(non_snake_case, dead_code, unused_variables, clippy::all)]
 pub mod pendulum_in_parts {
-    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_4;
+    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_5;
     /// Parameters of the mechanism.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Parameters<T = f64> {
@@ -1633,7 +1633,7 @@ pub mod pendulum_in_parts {
         ) -> ::core::result::Result<(), ::hodograph::StateError> {
             DESCRIPTION.normalize(coordinates)
         }
-        fn parameters(
+        fn parameter_values(
             &self,
             parameters: &mut [T],
         ) -> ::core::result::Result<(), ::hodograph::StateError> {
@@ -1642,7 +1642,7 @@ pub mod pendulum_in_parts {
                 3,
             >(parameters, self.parameters, "parameters")
         }
-        fn set_parameters(
+        fn set_parameter_values(
             &mut self,
             parameters: &[T],
         ) -> ::core::result::Result<(), ::hodograph::ParameterError> {

@@ -114,10 +114,10 @@ impl Mechanism<f64> for Body {
     fn dependent_coordinate(&self, _: usize) -> Option<usize> {
         None
     }
-    fn parameters(&self, _: &mut [f64]) -> Result<(), StateError> {
+    fn parameter_values(&self, _: &mut [f64]) -> Result<(), StateError> {
         Ok(())
     }
-    fn set_parameters(&mut self, _: &[f64]) -> Result<(), ParameterError> {
+    fn set_parameter_values(&mut self, _: &[f64]) -> Result<(), ParameterError> {
         Ok(())
     }
     fn initial_state(&self, q: &mut [f64], u: &mut [f64], inputs: &mut [f64]) -> Result<(), StateError> {

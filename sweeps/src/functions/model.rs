@@ -175,7 +175,7 @@ impl Prepared {
             [Kind::Coordinate, Kind::Speed, Kind::Input, Kind::Parameter].map(zeros);
         // the slices have the lengths asked for
         let _ = mechanism.initial_state(&mut q, &mut u, &mut inputs);
-        let _ = mechanism.parameters(&mut parameters);
+        let _ = mechanism.parameter_values(&mut parameters);
         let contacts = (0..count(Kind::Contact))
             .filter_map(|index| Mechanism::component(mechanism, Kind::Contact, index));
         Prepared {
@@ -255,7 +255,7 @@ impl ModelFunction {
         let mut state = Row::new(&prepared.defaults);
         let mut speeds = vec![0.0; prepared.defaults[1].len()];
         for (range, parameters) in batch.stretches(&prepared.defaults[3]) {
-            let refused = machine.set_parameters(&parameters).err();
+            let refused = machine.set_parameter_values(&parameters).err();
             for row in range {
                 let asked = batch.contact(&prepared.contacts, row);
                 match (&refused, batch.valid[row], asked) {
@@ -286,7 +286,7 @@ impl ModelFunction {
         let stretches =
             if own { batch.stretches(&prepared.defaults[3]) } else { vec![(0..batch.rows, Vec::new())] };
         for (range, parameters) in stretches {
-            if own && let Err(error) = machine.set_parameters(&parameters) {
+            if own && let Err(error) = machine.set_parameter_values(&parameters) {
                 range.for_each(|row| answers.refuse(if batch.valid[row] { error.kind() } else { NULL }));
                 continue;
             }

@@ -168,7 +168,7 @@ fn creep(python: &std::path::PathBuf) -> Result<(), Failure> {
     let mut parameters = [0.0; 3];
     hodograph::Mechanism::parameters(&puck, &mut parameters)?;
     parameters[2] = 0.05;
-    hodograph::Mechanism::set_parameters(&mut puck, &parameters)?;
+    hodograph::Mechanism::set_parameter_values(&mut puck, &parameters)?;
     let came = Motion { mechanism: &puck, mu: 1.0, tolerance: 1e-12 }.run(PUCK)?;
     println!("\na particle on an incline of 0.05 rad, mu = 1: how fast it creeps, um/s");
     let jobs: Vec<Job> = ["puck", "puck, impratio 100"]

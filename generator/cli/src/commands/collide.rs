@@ -47,8 +47,9 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let text = model::state_text(arguments.state.as_deref())?;
-    let surface = arguments.surface.surface()?.within(arguments.budget.unwrap_or(u32::MAX));
     let index = machine.contact(arguments.contact.as_deref())?;
+    let surface = arguments.surface.surface(&machine.mechanism, index)?;
+    let surface = surface.within(arguments.budget.unwrap_or(u32::MAX));
     let state = machine.state(text.as_deref())?;
     let (mut collision, found) = collide(&machine, &state, index, &surface)?;
     match arguments.characteristics.form {

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
+use hodograph_generator::diagnostics::codes::ALL;
 use hodograph_generator::explain::{Format, explain, usual};
 use hodograph_generator::explanations;
 use hodograph_generator::program::Quantity;
@@ -96,13 +97,22 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// The page of a code such as `E062`, if that is what is named and no file.
 fn code(path: &Path) -> Outcome<Option<String>> {
     let Some(name) = path.to_str().filter(|_| !path.exists()).map(str::to_uppercase) else { return Ok(None) };
-    let digits = name.strip_prefix(['E', 'W']).filter(|rest| rest.len() == 3);
-    if digits.is_none_or(|rest| !rest.bytes().all(|digit| digit.is_ascii_digit())) {
+    let digits = name.strip_prefix(['E', 'W']).filter(|rest| !rest.is_empty() && rest.len() <= 6);
+    let Some(digits) = digits.filter(|rest| rest.bytes().all(|digit| digit.is_ascii_digit())) else {
         return Ok(None);
-    }
-    match explanations::page_of(&name) {
+    };
+    // `E62` is as good as `E062`
+    let full = format!("{}{:0>3}", &name[..1], digits.trim_start_matches('0'));
+    match explanations::page_of(&full) {
         Some(page) => Ok(Some(page)),
-        None => Err(Stop::Call(format!("there is no code {name}: docs/errors.md lists all"))),
+        None => {
+            let of_letter = ALL.iter().map(|(code, _)| code.0).filter(|code| code[..1] == name[..1]);
+            let (first, last) = (of_letter.clone().next().unwrap_or(""), of_letter.last().unwrap_or(""));
+            let kind = if name.starts_with('E') { "errors" } else { "warnings" };
+            Err(Stop::Call(format!(
+                "there is no code {name}: {kind} have codes from {first} to {last}; docs/errors.md lists all"
+            )))
+        }
     }
 }
 

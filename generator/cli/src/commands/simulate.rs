@@ -120,7 +120,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     }
     let mechanism = machine.interpreted(&state)?;
     arguments.pictures.check_times(state.time, until)?;
-    let surfaces = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
+    let surfaces = arguments.surfaces.of(&mechanism, &machine.mechanism, &borrowed(&state))?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
     if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
         return Err(Stop::Call(

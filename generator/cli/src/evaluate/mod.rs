@@ -5,7 +5,7 @@ pub mod collision;
 pub mod contact;
 pub mod report;
 
-use hodograph_generator::check::impossible_bodies;
+use hodograph_generator::check::{ROUNDED_QUATERNION, UNIT_QUATERNION, impossible_bodies};
 use hodograph_generator::diagnostics::codes;
 use hodograph_generator::interpret::{self, Evaluator};
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
@@ -155,7 +155,7 @@ impl Machine {
             None => State::initial(&self.mechanism),
         };
         self.check_bodies(&state)?;
-        self.check_quaternions(&state)?;
+        self.normalise_quaternions(&mut state)?;
         assembly::assemble(self, &mut state)?;
         assembly::check_loops(self, &state)?;
         Ok(state)
@@ -175,13 +175,17 @@ impl Machine {
         Err(Failure::new(Kind::ImpossibleBody, message))
     }
 
-    /// The equations hold for unit quaternions only; which one was meant cannot be guessed.
-    fn check_quaternions(&self, state: &State) -> Result<(), Failure> {
+    /// The equations hold for unit quaternions only. Rounded ones are divided by their lengths; of others it
+    /// cannot be guessed which was meant.
+    fn normalise_quaternions(&self, state: &mut State) -> Result<(), Failure> {
         for frame in &self.mechanism.frames {
             let Orientation::Quaternion(parts) = frame.orientation else { continue };
             let numbers = parts.map(|part| state.coordinates[part.0]);
             let norm = numbers.iter().map(|number| number * number).sum::<f64>().sqrt();
-            if (norm - 1.0).abs() > 1e-10 {
+            let off = (norm - 1.0).abs();
+            if off > UNIT_QUATERNION && off <= ROUNDED_QUATERNION {
+                parts.iter().for_each(|part| state.coordinates[part.0] /= norm);
+            } else if off.is_nan() || off > ROUNDED_QUATERNION {
                 let names = parts.map(|part| self.mechanism.coordinates[part.0].name.as_str()).join(", ");
                 let advice = match norm > 0.0 && norm.is_finite() {
                     true => format!("divided by it they are {:?}", numbers.map(|number| number / norm)),

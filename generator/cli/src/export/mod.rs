@@ -80,7 +80,7 @@ pub type File = (String, String);
 /// after `hodograph =` in the manifest, in braces. `None`: the text is no generated module.
 pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<File>> {
     let mut module = module::read(&syn::parse_file(expanded).ok()?)?;
-    module.name = names::of(&module.path);
+    module.name = names::of_library(&module.path);
     let (c, rust) = match scalar {
         Scalar::Double => ("double", "f64"),
         Scalar::Single => ("float", "f32"),

@@ -2,17 +2,41 @@
 
 use super::module::{Form, Module, Record};
 
-/// Words that are no names in C or C++.
-const RESERVED: &str = "alignas alignof and and_eq asm auto bitand bitor bool break case catch char class compl concept const consteval constexpr constinit \
-     const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast else enum explicit export extern false float for friend \
-     goto if inline int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register reinterpret_cast requires \
-     restrict return short signed sizeof static static_assert static_cast struct switch template this thread_local throw true try typedef typeid typename \
-     typeof typeof_unqual union unsigned using virtual void volatile wchar_t while xor xor_eq";
+/// Keywords of C99, C11 and C++20, and words with a meaning of their own in some places of C++.
+const KEYWORDS: &str = "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case catch char char8_t char16_t char32_t \
+     class compl concept const consteval constexpr constinit const_cast continue co_await co_return co_yield decltype default delete do double dynamic_cast \
+     else enum explicit export extern false final float for fortran friend goto if import inline int long module mutable namespace new noexcept not not_eq \
+     nullptr operator or or_eq override private protected public reflexpr register reinterpret_cast requires restrict return short signed sizeof static \
+     static_assert static_cast struct switch synchronized template this thread_local throw true try typedef typeid typename typeof typeof_unqual union \
+     unsigned using virtual void volatile wchar_t while xor xor_eq";
 
-/// A name of the module as C may have it: reserved words get a line after them.
+/// Macros that would take the place of a name.
+const MACROS: &str = include_str!("macros.txt");
+
+/// What the headers of the standard library declare.
+const LIBRARY: &str = include_str!("library_names.txt");
+
+/// Whether a list of words, with comments, has this one.
+fn lists(list: &str, name: &str) -> bool {
+    let lines = list.lines().filter(|line| !line.starts_with('#'));
+    lines.flat_map(str::split_whitespace).any(|word| word == name)
+}
+
+/// A name of the module as C and C++ may have it: keywords and macros get a line after them, and what
+/// compilers keep for themselves (`_Bool`, `__x`) an x before it.
 pub fn of(name: &str) -> String {
     let name = name.strip_prefix("r#").unwrap_or(name);
-    if RESERVED.split_whitespace().any(|word| word == name) { format!("{name}_") } else { name.to_owned() }
+    let mut rest = name.chars().skip_while(|c| *c == '_');
+    let lines = name.len() - name.trim_start_matches('_').len();
+    let kept = lines > 1 || lines == 1 && rest.next().is_some_and(char::is_uppercase);
+    let name = if kept { format!("x{name}") } else { name.to_owned() };
+    if lists(KEYWORDS, &name) || lists(MACROS, &name) { format!("{name}_") } else { name }
+}
+
+/// The name of a library, which is also that of a type: no function or type of the standard library either.
+pub fn of_library(name: &str) -> String {
+    let name = of(name);
+    if lists(LIBRARY, &name) { format!("{name}_") } else { name }
 }
 
 /// The names of the fields of a record, each once.

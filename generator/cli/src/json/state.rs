@@ -1,6 +1,7 @@
 //! Reads the state in which a model is evaluated from a JSON object of names and numbers.
 
 use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
+use hodograph_generator::numeric::start::{self, Given};
 
 use super::fields::number;
 use super::{Failure, Fields, Json, Kind};
@@ -96,7 +97,33 @@ impl State {
                 }
             }
         }
+        state.complete(mechanism, |name| given.contains(name))?;
         Ok(state)
+    }
+
+    /// Evaluates the initial values that the model states in terms of others anew, but for those that are
+    /// given.
+    fn complete(&mut self, mechanism: &Mechanism, given: impl Fn(&str) -> bool) -> Result<(), Failure> {
+        let follows = |quantity: &Variable| quantity.initial.is_some();
+        if !mechanism.coordinates.iter().chain(&mechanism.speeds).any(follows) {
+            return Ok(());
+        }
+        let among = |list: &[Variable]| list.iter().map(|quantity| given(&quantity.name)).collect();
+        let kept = Given { coordinates: among(&mechanism.coordinates), speeds: among(&mechanism.speeds) };
+        let mut numbers = self.to_numeric();
+        let open = start::complete(mechanism, &mut numbers, &kept);
+        if let Some(&slot) = open.first() {
+            let quantity = mechanism.coordinates.iter().chain(&mechanism.speeds).nth(slot);
+            let name = quantity.map_or("", |quantity| quantity.name.as_str());
+            return Err(Failure::new(
+                Kind::InconsistentState,
+                format!(
+                    "the initial value of {name} cannot be found with these numbers: give {name} in the state"
+                ),
+            ));
+        }
+        (self.coordinates, self.speeds) = (numbers.coordinates, numbers.speeds);
+        Ok(())
     }
 
     /// Where the number of that name belongs.

@@ -111,10 +111,10 @@ impl Emitter<'_> {
                 },
             );
         quote! {
-            fn parameters(&self, parameters: &mut [T]) -> ::core::result::Result<(), #krate::StateError> {
+            fn parameter_values(&self, parameters: &mut [T]) -> ::core::result::Result<(), #krate::StateError> {
                 #get
             }
-            fn set_parameters(
+            fn set_parameter_values(
                 &mut self,
                 parameters: &[T],
             ) -> ::core::result::Result<(), #krate::ParameterError> {

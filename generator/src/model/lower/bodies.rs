@@ -1,7 +1,7 @@
 //! Lowers bodies and particles.
 
 use super::super::mechanism::{Body, FrameId, Inertia, PointId, Scalar};
-use super::Lowering;
+use super::{Lowering, QuantityFacts};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::number::Number;
@@ -52,7 +52,8 @@ impl Lowering<'_> {
         let mut meant = Vec::new();
         // what could not be read is said already, and may be what is missing
         let unread = |field: &&Field| {
-            matches!(field.value.kind, ExprKind::Error) && !known.contains(&field.name.text.as_str())
+            let unread = matches!(field.value.kind, ExprKind::Error) && field.fields.is_none();
+            unread && !known.contains(&field.name.text.as_str())
         };
         let complete = !fields.iter().any(|field| unread(&field));
         for field in fields.iter().filter(|field| !unread(field)) {
@@ -72,7 +73,7 @@ impl Lowering<'_> {
                                 .to_owned()
                         }
                         ("a contact", "mu" | "e" | "law" | "friction" | "restitution") => {
-                            "friction and restitution are given when the collision is solved".to_owned()
+                            "friction and restitution belong to its surface: `surface: { mu: 0.3, e: 0.5, law: stronge }`".to_owned()
                         }
                         _ => format!("its fields are {}", known.join(", ")),
                     }),
@@ -104,21 +105,30 @@ impl Lowering<'_> {
                 codes::FIELD
             };
             let message = format!("`{}` has no {}", owner.text, missing.join(" and no "));
-            let example = |field: &String| match field.trim_matches('`') {
-                "mass" => "mass: m",
-                "inertia" => "inertia: [Ixx, Iyy, Izz]",
-                "frame" => "frame: B",
-                "centre" => "centre: G",
-                "point" => "point: P",
-                "normal" => "normal: N.y",
-                "angle" => "angle: q1",
-                _ => "",
-            };
-            let examples: Vec<&str> = missing.iter().map(example).collect();
+            let examples: Vec<String> =
+                missing.iter().map(|field| self.example_of(field.trim_matches('`'))).collect();
             let help = format!("add `{}`", examples.join(", "));
             self.report(Diagnostic::new(code, owner.span, message).help(help));
         }
         found
+    }
+
+    /// A field as it could be written, with names of the model.
+    fn example_of(&self, field: &str) -> String {
+        let tree = self.tree;
+        let is_mass = |facts: &QuantityFacts| {
+            facts.unit.as_ref().is_some_and(|unit| unit.dimension == Dimension::of(0, 1, 0))
+        };
+        let mut masses = tree.parameters.iter().zip(&self.parameters).filter(|(_, facts)| is_mass(facts));
+        let value = match field {
+            "mass" => masses.next().map_or("m", |(mass, _)| &mass.name.text),
+            "inertia" => "[Ixx, Iyy, Izz]",
+            "frame" => tree.frames.first().map_or("B", |frame| &frame.name.text),
+            "centre" | "point" => tree.points.first().map_or("P", |point| &point.name.text),
+            "normal" => "N.y",
+            _ => "..",
+        };
+        format!("{field}: {value}")
     }
 
     /// Words beside a value that do not belong there.

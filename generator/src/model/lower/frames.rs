@@ -141,11 +141,20 @@ impl Lowering<'_> {
         };
         let mut traits = Traits::default();
         let mut components = Vec::new();
+        let mut moves = false;
         for item in items {
             if let Some((scalar, typed)) = self.scalar_like(item, Dimension::none(), "a component of an axis")
             {
                 self.need_free_of_speeds(&typed, "an axis");
                 self.need_rate(&typed, "an axis");
+                if !moves && typed.traits.degree == 0 && (typed.traits.moves || typed.traits.time) {
+                    moves = true;
+                    let on = if typed.traits.moves { "coordinates" } else { "time" };
+                    let message = format!("an axis of rotation stays where it is, but this depends on {on}");
+                    let error = Diagnostic::new(codes::FRAME, item.span, message)
+                        .help("make it of numbers and parameters only, and compose the rotation of several about such axes");
+                    self.report(error);
+                }
                 traits = traits.plus(typed.traits.given());
                 components.push(scalar);
             }

@@ -1,13 +1,13 @@
 //! Lowers loads.
 
-use super::super::mechanism::{Load, LoadKind, Scalar};
+use super::super::mechanism::{FrameId, Load, LoadKind, Scalar};
 use super::super::typed::Typed;
-use super::Lowering;
+use super::{Lowering, QuantityFacts};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::number::Number;
 use crate::span::Span;
-use crate::syntax::tree::{self, Expr, Field, Name};
+use crate::syntax::tree::{self, Expr, ExprKind, Field, Name};
 use crate::{suggest, vocabulary};
 
 const WORDS: [&str; 5] = ["gravity", "force", "torque", "spring", "torsion"];
@@ -213,6 +213,20 @@ impl Lowering<'_> {
         self.report(error);
     }
 
+    /// The coordinate by which a frame is turned; else the first that is an angle.
+    fn angle_of(&self, frame: FrameId) -> Option<String> {
+        let turned = frame.0.checked_sub(1).and_then(|i| match &self.tree.frames.get(i)?.value.kind {
+            ExprKind::Method(_, _, arguments) => match &arguments.last()?.kind {
+                ExprKind::Name(angle) => Some(angle.clone()),
+                _ => None,
+            },
+            _ => None,
+        });
+        let angle = |facts: &QuantityFacts| facts.unit.as_ref().is_some_and(|unit| unit.dimension.is_none());
+        let mut coordinates = self.tree.coordinates.iter().zip(&self.coordinates);
+        turned.or_else(|| Some(coordinates.find(|(_, facts)| angle(facts))?.0.name.text.clone()))
+    }
+
     fn torsion(&mut self, load: &tree::Load) -> Option<LoadKind> {
         let form = "torsion B from A about A.y: { angle: q3, rest: t0, stiffness: kt, damping: ct };";
         let [on, from] = self.ends(load, ["", "from"], 1, form)?;
@@ -231,6 +245,13 @@ impl Lowering<'_> {
         let owner = Self::owner(load);
         let [angle, rest, stiffness, damping] =
             self.record("a torsion spring", &owner, &load.fields, known, &["angle"]);
+        if angle.is_none()
+            && let Some(coordinate) = on.and_then(|frame| self.angle_of(frame))
+            && let Some(error) = self.diagnostics.last_mut()
+            && (error.code, error.primary.span) == (codes::FIELD, owner.span)
+        {
+            error.help = Some(format!("add `angle: {coordinate}`"));
+        }
         let angle_span = angle.map(|field| field.value.span);
         let angle = match angle {
             None => None,

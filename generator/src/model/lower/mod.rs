@@ -12,6 +12,7 @@ mod dimensions;
 mod equations;
 mod expressions;
 mod frames;
+mod initial;
 mod loads;
 mod points;
 mod products;
@@ -60,7 +61,9 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable,
         }
     }
     let frames = lowering.frames.iter().map(|frame| !frame.broken).collect();
-    let value = |(source, read): (&Declaration, &Variable)| source.value.is_none() || read.value.is_some();
+    let value = |(source, read): (&Declaration, &Variable)| {
+        source.value.is_none() || read.value.is_some() || read.initial.is_some()
+    };
     let initial_values =
         !tree.incomplete && tree.coordinates.iter().zip(&lowering.out.coordinates).all(value);
     let motion = lowering.mistakes() == 0;
@@ -75,6 +78,7 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable,
     lowering.gather();
     lowering.copied();
     lowering.unused();
+    lowering.without_gap();
     (lowering.out, lowering.readable, lowering.diagnostics)
 }
 

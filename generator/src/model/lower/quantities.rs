@@ -50,6 +50,7 @@ impl Lowering<'_> {
             }
         }
         self.forget_ambiguous();
+        self.initial_values();
     }
 
     /// Where two quantities of one name have different dimensions, it is not known which is meant.
@@ -86,7 +87,9 @@ impl Lowering<'_> {
         dependent: bool,
     ) -> (Variable, QuantityFacts) {
         let unit = self.unit(&source.unit);
-        let value = source.value.as_ref().map(|value| self.constant(value));
+        let initial = matches!(kind, Symbol::Coordinate(_) | Symbol::Speed(_)) && !dependent;
+        let stated = source.value.as_ref().filter(|value| !initial || !super::initial::has_names(value));
+        let value = stated.map(|value| self.constant(value));
         let (mut is_fixed, mut is_dependent) = (false, dependent);
         match (source.modifier, kind) {
             (None, _) => {}
@@ -126,7 +129,9 @@ impl Lowering<'_> {
             docs: source.docs.clone(),
             unit: unit.as_ref().map_or(String::new(), |unit| unit.text.clone()),
             value: number,
+            initial: None,
             typical: unit.as_ref().map_or(1.0, Unit::typical),
+            factor: unit.as_ref().map_or(1.0, Unit::factor),
             fixed: is_fixed,
             dependent: is_dependent,
             span: source.name.span,
@@ -135,7 +140,7 @@ impl Lowering<'_> {
     }
 
     /// A constant expression: numbers, pi and functions.
-    fn constant(&mut self, expr: &Expr) -> Typed {
+    pub(super) fn constant(&mut self, expr: &Expr) -> Typed {
         self.constant_only = true;
         let typed = self.expression(expr);
         self.constant_only = false;

@@ -133,6 +133,20 @@ impl Lowering<'_> {
 }
 
 impl Lowering<'_> {
+    /// The only speed that can be the rate of this coordinate by its unit, if nothing else is said of it.
+    fn only_speed(&self, coordinate: usize) -> Option<&str> {
+        let needed = self.coordinates[coordinate].unit.as_ref()?.dimension.over(&Dimension::of(0, 0, 1))?;
+        let fits = |i: &usize| {
+            let fits = self.speeds[*i].unit.as_ref().is_some_and(|unit| unit.dimension == needed);
+            fits && !self.used.contains(&Symbol::Speed(*i))
+        };
+        let mut fitting = (0..self.speeds.len()).filter(fits);
+        match (fitting.next(), fitting.next()) {
+            (Some(speed), None) => Some(self.out.speeds[speed].name.as_str()),
+            _ => None,
+        }
+    }
+
     /// Coordinates of whose rates nothing is said, with the speeds to which they might be equal: mostly one
     /// statement is missing.
     fn without_rate(&mut self, missing: &[(usize, Option<String>)]) {
@@ -149,10 +163,20 @@ impl Lowering<'_> {
                 format!("the coordinates {} and {more} more have no kinematical equations", names.join(", "))
             }
         };
-        let rates: Vec<String> = shown.iter().map(|q| format!("d({})/dt = ..;", q.name)).collect();
+        let meant = |(i, _): &(usize, Option<String>)| self.only_speed(*i);
+        let speeds_meant: Vec<Option<&str>> = missing.iter().map(meant).collect();
+        // a speed for each, or for none: one that fits two says nothing
+        let mut once = std::collections::HashSet::new();
+        let clear = speeds_meant.iter().flatten().all(|speed| once.insert(*speed));
+        let rate = |(q, speed): (&&Variable, &Option<&str>)| {
+            format!("d({})/dt = {};", q.name, speed.filter(|_| clear).unwrap_or(".."))
+        };
+        let rates: Vec<String> = shown.iter().zip(&speeds_meant).map(rate).collect();
+        let known = clear && speeds_meant.iter().all(Option::is_some);
         let kinematics = format!("add `kinematics {{ {} }}`", rates.join(" "));
         let speeds: Option<Vec<String>> = missing.iter().map(|(_, speed)| speed.clone()).collect();
         let help = match speeds.as_deref() {
+            _ if known => kinematics,
             Some([speed]) => format!("{kinematics}, or a speed `{speed}`, to which its rate is then equal"),
             Some(speeds) if speeds.len() == shown.len() => {
                 format!(

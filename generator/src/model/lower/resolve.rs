@@ -7,7 +7,7 @@ use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::letters;
 use crate::span::Span;
-use crate::syntax::tree::{ExprKind, Name};
+use crate::syntax::tree::{ExprKind, Name, Record};
 use crate::syntax::units;
 use crate::vocabulary;
 
@@ -135,17 +135,6 @@ impl Lowering<'_> {
             Symbol::Point(p) => Some(PointId(p)),
             other => {
                 self.wrong_kind(name, "a point", &format!("`{}` is {}", name.text, other.kind()));
-                let records = self.tree.bodies.iter().chain(&self.tree.particles);
-                let centre = records.filter(|record| record.name.text == name.text).find_map(|record| {
-                    let field =
-                        record.fields.iter().find(|f| matches!(f.name.text.as_str(), "centre" | "point"))?;
-                    if let ExprKind::Name(centre) = &field.value.kind { Some(centre.clone()) } else { None }
-                });
-                if let (Symbol::Body(_), Some(centre), Some(error)) =
-                    (other, centre, self.diagnostics.last_mut())
-                {
-                    error.help = Some(format!("its mass centre is `{centre}`"));
-                }
                 None
             }
         }
@@ -157,7 +146,52 @@ impl Lowering<'_> {
         if let Some(place) = self.names.place(&name.text) {
             error = error.related(place, "declared here");
         }
+        if let Some(help) = self.of_the_kind(&name.text, needed) {
+            error = error.help(help);
+        }
         self.report(error);
+    }
+
+    /// What of the needed kind belongs to what was named.
+    fn of_the_kind(&self, name: &str, needed: &str) -> Option<String> {
+        let records = || self.tree.bodies.iter().chain(&self.tree.particles);
+        let names = |record: &Record, fields: [&str; 2]| {
+            let field = record.fields.iter().find(|field| fields.contains(&field.name.text.as_str()))?;
+            if let ExprKind::Name(value) = &field.value.kind { Some(value.clone()) } else { None }
+        };
+        let own = || records().find(|record| record.name.text == name);
+        let with = |fields: [&str; 2]| -> Vec<String> {
+            let with = records().filter(|record| names(record, fields).as_deref() == Some(name));
+            with.map(|record| format!("`{}`", record.name.text)).collect()
+        };
+        match (needed, self.names.get(name)?) {
+            ("a point", Symbol::Body(_)) => {
+                Some(format!("its mass centre is `{}`", names(own()?, ["centre", "point"])?))
+            }
+            ("a point", Symbol::Frame(_)) => {
+                let body = with(["frame", "frame"]).into_iter().next()?;
+                let record = records().find(|record| format!("`{}`", record.name.text) == body)?;
+                let centre = names(record, ["centre", "point"])?;
+                Some(format!("the mass centre of its body {body} is `{centre}`"))
+            }
+            ("a frame", Symbol::Body(_)) => {
+                Some(format!("its frame is `{}`", names(own()?, ["frame", "frame"])?))
+            }
+            ("a body", symbol @ (Symbol::Frame(_) | Symbol::Point(_))) => {
+                let is_frame = matches!(symbol, Symbol::Frame(_));
+                let fields = if is_frame { ["frame", "frame"] } else { ["centre", "point"] };
+                let kind = if is_frame { "frame" } else { "mass centre" };
+                match &with(fields)[..] {
+                    [] if is_frame => Some(
+                        "no body has this frame: leave `of` out, or declare a body that has it".to_owned(),
+                    ),
+                    [] => None,
+                    [body] => Some(format!("it is the {kind} of the body {body}")),
+                    several => Some(format!("it is the {kind} of the bodies {}", several.join(", "))),
+                }
+            }
+            _ => None,
+        }
     }
 }
 

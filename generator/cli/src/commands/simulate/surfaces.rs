@@ -1,23 +1,24 @@
 //! The surfaces of a motion: one for all contacts, or one for each.
 
 use hodograph::{Contacts, ImpactError, Kind as Of, State, Surface};
+use hodograph_generator::model::mechanism::Mechanism;
 
 use super::gap::gap;
 use crate::json::{Failure, Kind};
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
-use crate::surface::law;
+use crate::surface::{Given, law};
 
 /// Surfaces as they stand on the command line.
 #[derive(Clone, Debug, clap::Args)]
 pub struct MotionSurfaces {
-    /// Coulomb's coefficient of friction, not negative
+    /// Coulomb's coefficient of friction, not negative [default: that of the model]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     mu: Option<f64>,
-    /// coefficient of restitution, between 0 and 1
+    /// coefficient of restitution, between 0 and 1 [default: that of the model]
     #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
     e: Option<f64>,
-    /// hypothesis of restitution: newton, poisson or stronge
+    /// hypothesis of restitution: newton, poisson or stronge [default: that of the model]
     #[arg(long, value_name = "LAW")]
     law: Option<String>,
     /// the surface of one contact, as `tip=0.5,0.8,stronge`; may be given several times
@@ -34,24 +35,18 @@ impl MotionSurfaces {
     pub fn of(
         &self,
         mechanism: &dyn Contacts<f64>,
+        model: &Mechanism,
         state: &State<'_>,
     ) -> Outcome<Vec<(usize, Surface<f64>)>> {
         let count = mechanism.count(Of::Contact);
         let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
-        let law_of_all = self.law.as_deref().map(law).transpose()?;
-        let all = match (self.mu, self.e, law_of_all) {
-            (Some(mu), Some(e), Some(law)) => Some(checked(Surface { mu, e, law })?),
-            (mu, e, law) => {
-                // What is given is checked even where it is not enough.
-                let given = Surface {
-                    mu: mu.unwrap_or(0.0),
-                    e: e.unwrap_or(0.0),
-                    law: law.unwrap_or(hodograph::Law::Newton),
-                };
-                checked(given)?;
-                None
-            }
-        };
+        let given = Given { mu: self.mu, e: self.e, law: self.law.as_deref().map(law).transpose()? };
+        // What is given is checked even where it is not enough.
+        checked(Surface {
+            mu: given.mu.unwrap_or(0.0),
+            e: given.e.unwrap_or(0.0),
+            law: given.law.unwrap_or(hodograph::Law::Newton),
+        })?;
         let mut own = vec![None; count];
         for text in &self.surface {
             let (contact, surface) = one(text)?;
@@ -70,10 +65,11 @@ impl MotionSurfaces {
                 );
                 continue;
             }
-            let Some(surface) = own.or(all) else {
+            let stated = || model.contacts.get(contact).and_then(|contact| given.of(contact));
+            let Some(surface) = own.or_else(stated) else {
                 let name = name(contact);
                 return Err(Stop::Call(format!(
-                    "contact {name} has no surface: give --mu, --e and --law for all contacts, or --surface {name}=MU,E,LAW"
+                    "contact {name} has no surface: give --mu, --e and --law for all contacts, or --surface {name}=MU,E,LAW, or state `surface: {{ mu: .., e: .., law: .. }}` in the model"
                 )));
             };
             surfaces.push((contact, surface));

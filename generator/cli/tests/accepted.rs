@@ -1,0 +1,121 @@
+//! Nothing that `check` accepts fails later: mutated models that it accepts are derived and become Rust.
+
+#![cfg(feature = "derive")]
+
+use std::path::Path;
+
+use hodograph_generator::check::check;
+use hodograph_generator::diagnostics::codes::ALL;
+use hodograph_generator::emit::{self, Options};
+use hodograph_generator::explanations::{explanation, whole};
+use hodograph_generator::program::Program;
+use hodograph_generator::source::Source;
+use hodograph_generator::{DerivationError, derive};
+
+/// What becomes of a model: `None` where `check` refuses it.
+fn outcome(text: &str) -> Option<Result<(), String>> {
+    let mechanism = check(&Source::file("accepted.mech", text)).mechanism?;
+    let derived = match derive(&mechanism) {
+        Ok(derived) => derived,
+        Err(DerivationError::Model(error)) => return Some(Err(error.to_string())),
+        Err(DerivationError::Session(error)) => return Some(Err(error.to_string())),
+    };
+    let program = Program::new(&derived);
+    let options = Options {
+        krate: "::hodograph".parse().expect("a path"),
+        module: "accepted".to_owned(),
+        tracked: Vec::new(),
+        sets: Vec::new(),
+    };
+    let module = emit::module(&mechanism, &program, &options);
+    Some(
+        module
+            .and_then(|module| syn::parse2::<syn::File>(module).map(drop).map_err(|error| error.to_string())),
+    )
+}
+
+/// The models of a folder of this package's neighbour.
+fn models(folder: &str) -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("..").join(folder);
+    let entries = std::fs::read_dir(folder).expect("models").filter_map(|entry| Some(entry.ok()?.path()));
+    let mut paths: Vec<_> =
+        entries.filter(|path| path.extension().is_some_and(|end| end == "mech")).collect();
+    paths.sort();
+    let named = |path: &std::path::PathBuf| {
+        (path.display().to_string(), std::fs::read_to_string(path).expect("a model"))
+    };
+    paths.iter().map(named).collect()
+}
+
+/// Examples and golden cases that are accepted, with warnings or without.
+#[test]
+fn accepted_examples_are_derived() {
+    let (mut done, mut wrong) = (0, Vec::new());
+    let examples = ALL.iter().filter_map(|(code, _)| explanation(*code)).flat_map(|explanation| {
+        [explanation.wrong, explanation.right]
+            .into_iter()
+            .flatten()
+            .map(|example| (explanation.code.to_string(), whole(example)))
+    });
+    for (name, text) in examples.chain(models("tests/diagnostics")).chain(models("tests/slips")) {
+        match outcome(&text) {
+            None => {}
+            Some(Ok(())) => done += 1,
+            Some(Err(error)) => wrong.push(format!("{name}: {error}")),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(done > 60, "{done}");
+}
+
+/// A number that looks random and is the same in every run.
+fn next(bits: &mut u64) -> u64 {
+    *bits ^= *bits << 13;
+    *bits ^= *bits >> 7;
+    *bits ^= *bits << 17;
+    *bits >> 16
+}
+
+/// Names, numbers and signs of small models are exchanged for others of the same model.
+#[test]
+fn accepted_mutations_are_derived() {
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+    let sources: Vec<String> = models("tests/slips").into_iter().map(|(_, text)| text).collect();
+    let (mut done, mut refused, mut wrong) = (0, 0, Vec::new());
+    while done < 60 && refused < 20_000 {
+        let text = &sources[next(&mut bits) as usize % sources.len()];
+        let words = words(text);
+        let mut changed = text.clone();
+        let (at, by) = (next(&mut bits) as usize % words.len(), next(&mut bits) as usize % words.len());
+        let ((from, to), (other, end)) = (words[at], words[by]);
+        changed.replace_range(from..to, &text[other..end]);
+        match outcome(&changed) {
+            None => refused += 1,
+            Some(Ok(())) => done += 1,
+            Some(Err(error)) => wrong.push(format!("{error}\n{changed}")),
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(done == 60, "{done} accepted, {refused} refused");
+}
+
+/// Where the names, numbers and signs of a model stand.
+fn words(text: &str) -> Vec<(usize, usize)> {
+    let mut words = Vec::new();
+    let mut start = None;
+    for (i, c) in text.char_indices() {
+        let word = c.is_alphanumeric() || c == '_' || c == '.';
+        match (start, word) {
+            (None, true) => start = Some(i),
+            (Some(from), false) => {
+                words.push((from, i));
+                start = None;
+            }
+            _ => {}
+        }
+        if "+-*/".contains(c) {
+            words.push((i, i + 1));
+        }
+    }
+    words
+}
