@@ -98,6 +98,7 @@ fn plain<T: Scalar, L: KnownLaw>(impact: &Impact<Inlined<T, L>>) -> Impact<T> {
     let Phases { compression_end, last_compression_end, slip_end } = &impact.phases;
     Impact {
         impulse: plain_vector(&impact.impulse),
+        approach: plain_vector(&impact.approach),
         velocity: plain_vector(&impact.velocity),
         contact_work: impact.contact_work.value,
         normal_work: impact.normal_work.value,
