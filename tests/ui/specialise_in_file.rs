@@ -47,7 +47,6 @@ mod malformed {
 
 mod other_arguments {
     hodograph::mechanism!("../models/dpend.mech", specialize strike(contact_ee));
-    hodograph::mechanism!("../models/dpend.mech" evaluate control(forcing));
     hodograph::mechanism!("../models/dpend.mech" "../models/dpend.mech");
     hodograph::mechanism!("../models/dpend.mech", evaluate control(forcing), inputs);
 }

@@ -1,6 +1,6 @@
 //! A small module under review, and the properties that every module has.
 
-use super::{Options, Program, Requests, module, module_in_parts};
+use super::{Options, Program, Requests, Specialised, module, module_in_parts};
 use quote::quote;
 
 use crate::arithmetic::Function;
@@ -198,6 +198,38 @@ fn structure_selects_the_closed_form() {
         );
     }
     assert!(!call(Structure::General).contains("resolve_structured"));
+}
+
+/// What is known of the surface is folded in, and the rest becomes arguments; the structure selects the closed
+/// form.
+#[test]
+fn a_specialised_collision_knows_what_it_is_told() {
+    let name = |text: &str| quote::format_ident!("{text}");
+    let emitted = |structure, contact: &str, law, e, budget| {
+        let derived = Derived { structures: vec![structure], ..derived() };
+        let asked = Specialised { name: name("strike"), contact: name(contact), law, mu: None, e, budget };
+        let requests = Requests { specialised: vec![asked], ..Requests::default() };
+        let options =
+            Options { krate: quote!(::hodograph), module: "pendulum".into(), tracked: vec![], requests };
+        let text = module(&mechanism(), &Program::new(&derived), &options)?.to_string();
+        let method = text.split_once("pub fn strike").expect("a method").1;
+        Ok::<String, String>(method.split("Collision {").next().unwrap_or_default().to_owned())
+    };
+    let contact = &mechanism().contacts[0].name;
+    let contact = crate::rust_names::snake_case(contact);
+    let text = emitted(Structure::Planar, &contact, Some("Stronge"), Some(0.5), Some(8)).unwrap();
+    assert!(text.contains("mu : T ,)") && text.contains(". within (8u32)"), "{text}");
+    assert!(text.contains(
+        "resolve_structured_inlined :: < :: hodograph :: structure :: Planar , :: hodograph :: generated :: Stronge , T >"
+    ));
+    let text = emitted(Structure::General, &contact, None, None, None).unwrap();
+    assert!(text.contains("mu : T , e : T , law : :: hodograph :: Law ,)"), "{text}");
+    assert!(
+        text.contains("resolve_inlined :: < :: hodograph :: generated :: AnyLaw , T >")
+            && !text.contains("within")
+    );
+    let error = emitted(Structure::General, "nobody", None, None, None).unwrap_err();
+    assert!(error.contains("no contact `nobody`"), "{error}");
 }
 
 /// A value that depends on parameters alone, compared with one that depends on coordinates, is kept for the

@@ -5,53 +5,17 @@
 //! end, and that the functions of the solver become part of their caller. A collision over them is one
 //! routine, and has the bits of one over plain numbers.
 
+mod known_law;
 mod number;
 
 use nalgebra::Vector3;
 
+pub use self::known_law::{AnyLaw, KnownLaw, Newton, Poisson, Stronge};
 use self::number::Inlined;
 use crate::{
-    ContactSurface, Impact, ImpactError, Law, Phases, ReducedMatrix, Scalar, Snapshot, Surface,
+    ContactSurface, Impact, ImpactError, Phases, ReducedMatrix, Scalar, Snapshot, Surface,
     structure::{Structure, structured},
 };
-
-/// What is known of the law of restitution while compiling.
-pub trait KnownLaw: Copy + core::fmt::Debug + PartialEq + Send + Sync + 'static {
-    /// The law; `None`: that of the surface.
-    const LAW: Option<Law>;
-}
-
-/// The law is that of the surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AnyLaw;
-
-/// [`Law::Newton`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Newton;
-
-/// [`Law::Poisson`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Poisson;
-
-/// [`Law::Stronge`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stronge;
-
-impl KnownLaw for AnyLaw {
-    const LAW: Option<Law> = None;
-}
-
-impl KnownLaw for Newton {
-    const LAW: Option<Law> = Some(Law::Newton);
-}
-
-impl KnownLaw for Poisson {
-    const LAW: Option<Law> = Some(Law::Poisson);
-}
-
-impl KnownLaw for Stronge {
-    const LAW: Option<Law> = Some(Law::Stronge);
-}
 
 /// Solves one collision as a part of the caller: the outcome and the errors of
 /// [`crate::structure::solve_structured`] under the law that `L` knows, or under that of the surface.

@@ -8,7 +8,7 @@ use core::{
 
 use num_traits::{One, Zero};
 
-use super::KnownLaw;
+use super::known_law::KnownLaw;
 use crate::{Law, Scalar, scalar::Real};
 
 /// A number of the type `T` over which the solver becomes part of its caller, under a law that `L` knows.

@@ -218,6 +218,8 @@ fn routine(function: &str) -> Option<String> {
     let mut parts = rest.split("::").map(|part| part.split([' ', '\'']).next().unwrap_or(part));
     let (model, name) = (parts.next()?, parts.next()?);
     // What stands deeper is called by routines.
-    (parts.next().is_none() && model != "Bench" && !matches!(name, "run" | "states" | "times" | "{{closure}}"))
-        .then(|| format!("{model}::{name}"))
+    (parts.next().is_none()
+        && model != "Bench"
+        && !matches!(name, "run" | "states" | "times" | "{{closure}}"))
+    .then(|| format!("{model}::{name}"))
 }
