@@ -118,7 +118,7 @@ fn expressions(m: &Mechanism, state: &mut State, given: &Given) -> Vec<usize> {
         open.retain(|&slot| {
             let variable = if slot < n { &m.coordinates[slot] } else { &m.speeds[slot - n] };
             let Some(Initial::Expression { value, .. }) = &variable.initial else { return false };
-            let value = number(m, state, value) / variable.factor;
+            let value = number(state, value) / variable.factor;
             if value.is_finite() {
                 set(state, slot, value);
             }
@@ -131,8 +131,8 @@ fn expressions(m: &Mechanism, state: &mut State, given: &Given) -> Vec<usize> {
 }
 
 /// The value of an expression of parameters, coordinates and speeds; what it has else is no number.
-fn number(m: &Mechanism, state: &State, scalar: &Scalar) -> f64 {
-    let of = |scalar: &Scalar| number(m, state, scalar);
+fn number(state: &State, scalar: &Scalar) -> f64 {
+    let of = |scalar: &Scalar| number(state, scalar);
     let at = |list: &[f64], i: usize| list.get(i).copied().unwrap_or(f64::NAN);
     match scalar {
         Scalar::Number(number) => number.to_f64(),
@@ -147,7 +147,7 @@ fn number(m: &Mechanism, state: &State, scalar: &Scalar) -> f64 {
         Scalar::Pow(a, b) => {
             let (base, exponent) = (of(a), of(b));
             match exponent {
-                e if e == 0.5 => base.sqrt(),
+                0.5 => base.sqrt(),
                 e if e.fract() == 0.0 && e.abs() <= 1000.0 => base.powi(e as i32),
                 e => reproducible::call(Function::Exp, e * reproducible::call(Function::Log, base)),
             }

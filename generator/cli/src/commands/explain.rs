@@ -106,8 +106,8 @@ fn code(path: &Path) -> Outcome<Option<String>> {
     match explanations::page_of(&full) {
         Some(page) => Ok(Some(page)),
         None => {
-            let of_letter = ALL.iter().map(|(code, _)| code.0).filter(|code| code[..1] == name[..1]);
-            let (first, last) = (of_letter.clone().next().unwrap_or(""), of_letter.last().unwrap_or(""));
+            let mut of_letter = ALL.iter().map(|(code, _)| code.0).filter(|code| code[..1] == name[..1]);
+            let (first, last) = (of_letter.clone().next().unwrap_or(""), of_letter.next_back().unwrap_or(""));
             let kind = if name.starts_with('E') { "errors" } else { "warnings" };
             Err(Stop::Call(format!(
                 "there is no code {name}: {kind} have codes from {first} to {last}; docs/errors.md lists all"

@@ -92,12 +92,14 @@ impl Lowering<'_> {
             ExprKind::Number(_) => true,
             ExprKind::Name(text) => self.is_value(&Name { text: text.clone(), span: expr.span }),
             ExprKind::Sum(parts) | ExprKind::Product(parts) => {
-                parts.iter().fold(true, |all, (_, part)| self.made_of_values(part) && all)
+                let made: Vec<bool> = parts.iter().map(|(_, part)| self.made_of_values(part)).collect();
+                made.iter().all(|made| *made)
             }
             ExprKind::Power(a, b) => self.made_of_values(a) & self.made_of_values(b),
             ExprKind::Neg(inner) => self.made_of_values(inner),
             ExprKind::Call(function, arguments) if super::calls::is_function(&function.text) => {
-                arguments.iter().fold(true, |all, part| self.made_of_values(part) && all)
+                let made: Vec<bool> = arguments.iter().map(|part| self.made_of_values(part)).collect();
+                made.iter().all(|made| *made)
             }
             _ => {
                 let message = "an initial value is made of numbers, parameters and other initial values";
