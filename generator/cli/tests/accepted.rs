@@ -25,7 +25,7 @@ fn outcome(text: &str) -> Option<Result<(), String>> {
         krate: "::hodograph".parse().expect("a path"),
         module: "accepted".to_owned(),
         tracked: Vec::new(),
-        sets: Vec::new(),
+        requests: emit::Requests::default(),
     };
     let module = emit::module(&mechanism, &program, &options);
     Some(
