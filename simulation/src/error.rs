@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use hodograph::{CollisionError, ContactError, StateError};
+use hodograph::{CollisionError, ContactError, Contacts, Kind, StateError};
 
 /// Why a simulation cannot continue, with time and contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,19 @@ pub struct SimulationError {
     pub contact: Option<String>,
     /// what is wrong
     pub reason: Reason,
+}
+
+impl SimulationError {
+    /// At a time, and at a contact by its number.
+    pub(crate) fn new(
+        mechanism: &dyn Contacts<f64>,
+        time: f64,
+        contact: Option<usize>,
+        reason: Reason,
+    ) -> Self {
+        let name = |index| mechanism.component(Kind::Contact, index);
+        Self { time, contact: contact.and_then(name).map(|component| component.name.to_owned()), reason }
+    }
 }
 
 /// What is wrong.

@@ -4,17 +4,17 @@ use crate::event_functions::Watched;
 use crate::event_location::Crossing;
 use crate::motion::Evaluation;
 use crate::phase::{Closed, Leaving, Phase};
-use crate::simulation::Simulation;
 use crate::slip_end::{ENDING, time_of_slip};
 use crate::stepper::Step;
+use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError};
 
 /// The greatest number of events without progress in time.
 const CROWD: usize = 2000;
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// Goes to an event and handles it.
-    pub(crate) fn happen(
+    pub(crate) fn handle_event(
         &mut self,
         closed: &[Closed],
         whole: Step,
@@ -22,8 +22,8 @@ impl Simulation<'_> {
         crossing: Crossing,
     ) -> Result<(), SimulationError> {
         let mut step = self.at_event(closed, &whole, watched, &crossing)?;
-        self.next = whole.next.min((10.0 * step.h).max(1e-7));
-        let start = self.t;
+        self.front.next = whole.next.min((10.0 * step.h).max(1e-7));
+        let start = self.front.t;
         self.commit(&mut step)?;
         self.crowded(start)?;
         match watched {
@@ -31,7 +31,7 @@ impl Simulation<'_> {
                 let (_, rate) = self.gap_at(&step, contact)?;
                 if rate >= 0.0 {
                     // It only touches.
-                    self.phases[contact] = Phase::Open(Leaving::NOW);
+                    self.front.phases[contact] = Phase::Open(Leaving::NOW);
                     return Ok(());
                 }
                 self.strike(contact)
@@ -45,7 +45,7 @@ impl Simulation<'_> {
             Watched::User(index, _) => {
                 self.push(None, EventKind::Zero(index));
                 // Past the zero, so that it is not found again.
-                let small = 1e-12 * self.t.abs().max(1e-3);
+                let small = 1e-12 * self.front.t.abs().max(1e-3);
                 if let Some(mut past) = self.part(closed, small) {
                     self.commit(&mut past)?;
                 }
@@ -62,17 +62,17 @@ impl Simulation<'_> {
         place: usize,
         time: f64,
     ) -> Result<(), SimulationError> {
-        let start = self.t;
-        let mut end = self.y.clone();
+        let start = self.front.t;
+        let mut end = self.front.y.clone();
         end.iter_mut().zip(&here.rates).for_each(|(value, rate)| *value += time * rate);
-        let mut step = Step::still(self.t, time, &end);
+        let mut step = Step::still(self.front.t, time, &end);
         let mut stopped = Vec::new();
         for (i, contact) in closed.iter().enumerate() {
             // Contacts of one body may stop together.
             let together =
                 contact.slides.is_some() && time_of_slip(here, i).is_some_and(|left| left < 3.0 * ENDING);
             if i == place || together {
-                self.phases[contact.contact] = Phase::Stick;
+                self.front.phases[contact.contact] = Phase::Stick;
                 stopped.push(contact.contact);
             }
         }
@@ -83,12 +83,12 @@ impl Simulation<'_> {
 
     /// Counts events that follow each other without progress.
     pub(crate) fn crowded(&mut self, before: f64) -> Result<(), SimulationError> {
-        let close = 1e-12 * self.t.abs().max(1.0);
-        if self.t - before > close {
-            self.crowd = (0, self.t);
+        let close = 1e-12 * self.front.t.abs().max(1.0);
+        if self.front.t - before > close {
+            self.front.crowd = 0;
         }
-        self.crowd.0 += 1;
-        if self.crowd.0 > CROWD {
+        self.front.crowd += 1;
+        if self.front.crowd > CROWD {
             return Err(self.error(None, Reason::EventsWithoutEnd(CROWD)));
         }
         Ok(())

@@ -9,7 +9,7 @@ use crate::closed_contacts::{ClosedContacts, free_acceleration};
 use crate::forces::JAM;
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
-use crate::simulation::Simulation;
+use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError, Struck, Together};
 
 /// Touching contacts approach where their normal velocity, relative to the first approach, is below minus
@@ -34,14 +34,14 @@ struct Hit {
     bounces: Option<f64>,
 }
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// A gap has closed: its contact collides, and all that touch answer.
     pub(crate) fn strike(&mut self, first: usize) -> Result<(), SimulationError> {
-        let was = self.phases.clone();
+        let was = self.front.phases.clone();
         let touching = self.touching(Some(first))?;
-        self.resting = false;
+        self.front.resting = false;
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let speeds = self.y[n..n + p].to_vec();
+        let speeds = self.front.y[n..n + p].to_vec();
         let approaching = self.approaching(&touching, &speeds, None)?;
         let names = |list: &[usize]| -> Vec<String> {
             list.iter()
@@ -54,7 +54,7 @@ impl Simulation<'_> {
             let names = names(&list);
             return Err(self.error(Some(first), Reason::Together(names)));
         }
-        if self.comes_to_lie(first)? {
+        if self.settles_into_contact(first)? {
             return Ok(());
         }
         if self.options.together == Together::Lzb
@@ -66,11 +66,11 @@ impl Simulation<'_> {
         let spread = self.spread(&touching, &speeds, &hits)?;
         let mut last = speeds;
         for (place, hit) in hits.into_iter().enumerate() {
-            self.y[n..n + p].copy_from_slice(&hit.after);
-            self.energy.impacts += hit.outcome.energy_change;
+            self.front.y[n..n + p].copy_from_slice(&hit.after);
+            self.front.energy.impacts += hit.outcome.energy_change;
             if let Some(time) = hit.bounces {
-                self.chatter.retain(|(_, contact)| *contact != hit.contact);
-                self.chatter.push((self.t + time, hit.contact));
+                self.front.chatter.retain(|(_, contact)| *contact != hit.contact);
+                self.front.chatter.push((self.front.t + time, hit.contact));
             }
             let struck = Struck {
                 outcome: hit.outcome,
@@ -92,14 +92,16 @@ impl Simulation<'_> {
         was: &[Phase],
     ) -> Result<(), SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
         let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
         let mut stay = Vec::new();
-        let mut phases = self.phases.clone();
+        let mut phases = self.front.phases.clone();
         for (place, &contact) in touching.iter().enumerate() {
             let rate = support.velocity[3 * place];
-            let size = support.velocity_size(place, speeds).max(support.velocity_size(place, &self.scale));
+            let size =
+                support.velocity_size(place, speeds).max(support.velocity_size(place, &self.front.scale));
             if rate > 1e-11 * size {
                 phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
@@ -110,10 +112,10 @@ impl Simulation<'_> {
         }
         for (contact, phase) in phases.iter().enumerate() {
             if was[contact].is_closed() && matches!(phase, Phase::Open(Leaving::Bounced)) {
-                self.forces[contact] = nalgebra::Vector3::zeros();
+                self.front.forces[contact] = nalgebra::Vector3::zeros();
             }
         }
-        self.phases = phases;
+        self.front.phases = phases;
         self.decide(&stay, was)?;
         self.look_for_rest()
     }
@@ -121,16 +123,20 @@ impl Simulation<'_> {
     /// Contacts whose gaps are closed, or close now.
     fn touching(&self, first: Option<usize>) -> Result<Vec<usize>, SimulationError> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let state =
-            State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &self.held };
+        let state = State {
+            time: self.front.t,
+            coordinates: &self.front.y[..n],
+            speeds: &self.front.y[n..n + p],
+            inputs: &self.front.held,
+        };
         let fault = |error| self.failure(Failure::State(error));
-        let size = self.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
+        let size = self.front.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
         let mut touching = Vec::new();
-        for contact in 0..self.phases.len() {
+        for contact in 0..self.front.phases.len() {
             if self.surfaces[contact].is_none() {
                 continue;
             }
-            if self.phases[contact].is_closed() || first == Some(contact) {
+            if self.front.phases[contact].is_closed() || first == Some(contact) {
                 touching.push(contact);
                 continue;
             }
@@ -151,7 +157,8 @@ impl Simulation<'_> {
         first: Option<f64>,
     ) -> Result<Vec<(usize, f64)>, SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
         let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
         let mut list = Vec::new();
@@ -159,7 +166,7 @@ impl Simulation<'_> {
             let rate = support.velocity[3 * place];
             // A contact that lasts has no normal velocity but rounding.
             let rounding = 1e-13 * support.velocity_size(place, speeds);
-            let closed = self.phases[contact].is_closed();
+            let closed = self.front.phases[contact].is_closed();
             let least = first.map_or(0.0, |first| APPROACH * first).max(if closed { rounding } else { 0.0 });
             if rate < -least.max(if first.is_some() { rounding } else { 0.0 }) {
                 list.push((contact, -rate));
@@ -201,7 +208,8 @@ impl Simulation<'_> {
     /// The impact of one contact.
     fn hit(&self, contact: usize, speeds: &[f64], faded: bool) -> Result<Hit, SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let Some(surface) = self.surfaces[contact] else {
             return Err(self.error(Some(contact), Reason::Option("the contact has no surface".to_owned())));
         };
@@ -233,17 +241,17 @@ impl Simulation<'_> {
     /// modes.
     fn pull(&self, contact: usize, speeds: &[f64]) -> Result<f64, SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
-        let mut y = self.y.clone();
+        let mut y = self.front.y.clone();
         y[n..n + speeds.len()].copy_from_slice(speeds);
-        let inputs = self.motion(&[]).inputs(self.t, &y).map_err(|failure| self.failure(failure))?;
-        let state = State { time: self.t, coordinates: &y[..n], speeds, inputs: &inputs };
+        let inputs = self.motion(&[]).inputs(self.front.t, &y).map_err(|failure| self.failure(failure))?;
+        let state = State { time: self.front.t, coordinates: &y[..n], speeds, inputs: &inputs };
         let fault = |error| self.failure(Failure::State(error));
         let beta = free_acceleration(self.mechanism, contact, &state).map_err(fault)?.x;
         let others: Vec<_> = self.closed().into_iter().filter(|closed| closed.contact != contact).collect();
         if others.is_empty() {
             return Ok(beta);
         }
-        let Ok(evaluation) = self.motion(&others).evaluate(self.t, &y) else { return Ok(beta) };
+        let Ok(evaluation) = self.motion(&others).evaluate(self.front.t, &y) else { return Ok(beta) };
         let Some(forces) = evaluation.forces else { return Ok(beta) };
         let own = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
         let rates = forces.rates(&evaluation.support);
@@ -280,18 +288,18 @@ impl Simulation<'_> {
     /// A sliding contact that no finite force holds suffers an impact with zero speed of approach; all that
     /// touch answer.
     pub(crate) fn impact_without_collision(&mut self, contact: usize) -> Result<(), SimulationError> {
-        let was = self.phases.clone();
-        self.crowd.0 += 1;
-        if self.crowd.0 > MOST {
+        let was = self.front.phases.clone();
+        self.front.crowd += 1;
+        if self.front.crowd > MOST {
             return Err(self.error(Some(contact), Reason::EventsWithoutEnd(MOST)));
         }
         let touching = self.touching(Some(contact))?;
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let before = self.y[n..n + p].to_vec();
+        let before = self.front.y[n..n + p].to_vec();
         let (outcome, after) = self.without_collision(contact, &before)?;
-        self.resting = false;
-        self.y[n..n + p].copy_from_slice(&after);
-        self.energy.impacts += outcome.energy_change;
+        self.front.resting = false;
+        self.front.y[n..n + p].copy_from_slice(&after);
+        self.front.energy.impacts += outcome.energy_change;
         let struck = Struck { outcome, speeds_before: before, last_bounce: false, spread: None };
         self.push(Some(contact), EventKind::ImpactWithoutCollision(Box::new(struck)));
         match self.approaching(&touching, &after, Some(1.0))?.first() {
@@ -307,7 +315,8 @@ impl Simulation<'_> {
         speeds: &[f64],
     ) -> Result<(CollisionOutcome<f64>, Vec<f64>), SimulationError> {
         let n = self.mechanism.count(Kind::Coordinate);
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let Some(surface) = self.surfaces[contact] else {
             return Err(self.error(Some(contact), Reason::Option("the contact has no surface".to_owned())));
         };
@@ -343,12 +352,12 @@ impl Simulation<'_> {
     /// Contacts at the start.
     pub(crate) fn begin(&mut self) -> Result<(), SimulationError> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let (q, u) = (self.y[..n].to_vec(), self.y[n..n + p].to_vec());
-        let state = State { time: self.t, coordinates: &q, speeds: &u, inputs: &self.held };
+        let (q, u) = (self.front.y[..n].to_vec(), self.front.y[n..n + p].to_vec());
+        let state = State { time: self.front.t, coordinates: &q, speeds: &u, inputs: &self.front.held };
         let mut strikes = None;
         let mut stay = Vec::new();
-        let was = self.phases.clone();
-        for contact in 0..self.phases.len() {
+        let was = self.front.phases.clone();
+        for contact in 0..self.front.phases.len() {
             if self.surfaces[contact].is_none() {
                 continue;
             }
@@ -369,9 +378,9 @@ impl Simulation<'_> {
                     strikes.get_or_insert(contact);
                 }
             } else if rate > rounding {
-                self.phases[contact] = Phase::Open(Leaving::Bounced);
+                self.front.phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
-                self.phases[contact] = Phase::Open(Leaving::NOW);
+                self.front.phases[contact] = Phase::Open(Leaving::NOW);
                 stay.push(contact);
             }
         }

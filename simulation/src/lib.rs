@@ -31,6 +31,7 @@
 
 mod check;
 mod closed_contacts;
+mod commit;
 mod drift;
 mod drive;
 mod energy;
@@ -58,6 +59,7 @@ mod slip_direction;
 mod slip_end;
 mod stepper;
 mod time_step;
+mod transition;
 
 pub use crate::{
     drive::{Controller, Drive, InputFunction},

@@ -11,34 +11,36 @@ use crate::forces::Hold;
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Phase, mus};
 use crate::settled_slip::settled;
-use crate::simulation::Simulation;
 use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
+use crate::transition::Transition;
 use crate::{Reason, SimulationError};
 
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.5;
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// Makes one step.
-    pub(crate) fn proceed(&mut self) -> Result<(), SimulationError> {
-        self.sample()?;
-        self.omegas.fill(None);
+    pub(crate) fn step(&mut self) -> Result<(), SimulationError> {
+        self.front.omegas.fill(None);
         let mut closed = self.closed();
-        let here = self.motion(&closed).evaluate(self.t, &self.y).map_err(|failure| self.failure(failure))?;
+        let here = self
+            .motion(&closed)
+            .evaluate(self.front.t, &self.front.y)
+            .map_err(|failure| self.failure(failure))?;
         self.weigh_lifted(&here)?;
         for (contact, hold) in closed.iter().zip(&here.holds) {
             // Should slip become too small to have a direction, it has the last one.
             if let Hold::Slide(direction) = hold {
-                self.phases[contact.contact] = Phase::Slide(*direction);
+                self.front.phases[contact.contact] = Phase::Slide(*direction);
             }
         }
-        let mut most = self.next.min(self.options.max_step);
+        let mut most = self.front.next.min(self.options.max_step);
         if let Some(limit) = self.limit() {
-            most = most.min(limit - self.t);
+            most = most.min(limit - self.front.t);
         }
         let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
+        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
         for (i, contact) in closed.iter().enumerate() {
             if contact.slides.is_none() {
                 continue;
@@ -53,19 +55,19 @@ impl Simulation<'_> {
                 most = most.min(SHARE * left.max(ENDING));
             }
         }
-        let omegas = settled(&self.motion(&closed), self.t, &self.y, &here);
+        let omegas = settled(&self.motion(&closed), self.front.t, &self.front.y, &here);
         for (contact, omega) in closed.iter_mut().zip(omegas) {
             contact.omega = omega;
-            self.omegas[contact.contact] = omega;
+            self.front.omegas[contact.contact] = omega;
         }
         let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
         match crossing {
             None => {
-                self.next = step.next;
+                self.front.next = step.next;
                 self.commit(&mut step)?;
                 self.on_time()
             }
-            Some((watched, crossing)) => self.happen(&closed, step, watched, crossing),
+            Some((watched, crossing)) => self.handle_event(&closed, step, watched, crossing),
         }
     }
 
@@ -92,7 +94,7 @@ impl Simulation<'_> {
                         rates.fill(f64::NAN);
                     }
                 };
-                stepper::step(&rates, self.t, &self.y, most, &tolerances)
+                stepper::step(&rates, self.front.t, &self.front.y, most, &tolerances)
             };
             let Some(mut step) = made else {
                 return self.stuck_integration(failed.into_inner()).map(|()| None);

@@ -1,0 +1,107 @@
+//! A transition: one step of the motion, or one change of modes, tried on a copy of the front.
+//!
+//! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] makes one from its
+//! front, and takes its front and its events only when all of it has succeeded.
+
+use hodograph::{Contacts, Kind, State, Surface};
+
+use crate::front::Front;
+use crate::motion::{Failure, Motion};
+use crate::phase::{Closed, Modes, Phase};
+use crate::stepper::Step;
+use crate::{Event, EventKind, Options, Reason, SimulationError};
+
+/// A front that is being changed, and what happens to it.
+pub(crate) struct Transition<'s> {
+    pub mechanism: &'s dyn Contacts<f64>,
+    pub options: &'s Options,
+    /// the surface of each contact; none where a contact has no gap
+    pub surfaces: &'s [Option<Surface<f64>>],
+    pub front: Front,
+    /// the events so far
+    pub events: Vec<Event>,
+    /// the step that led to the front, and the modes during it
+    pub step: Option<(Step, Modes)>,
+}
+
+impl Transition<'_> {
+    /// The state at the front.
+    pub(crate) fn here(&self) -> State<'_> {
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        State {
+            time: self.front.t,
+            coordinates: &self.front.y[..n],
+            speeds: &self.front.y[n..n + p],
+            inputs: &self.front.held,
+        }
+    }
+
+    /// The modes at the front.
+    pub(crate) fn modes(&self) -> Modes {
+        Modes { closed: self.closed(), held: self.front.held.clone(), resting: self.front.resting }
+    }
+
+    /// Records an event with the state here.
+    pub(crate) fn push(&mut self, contact: Option<usize>, kind: EventKind) {
+        let here = self.here();
+        let (coordinates, speeds) = (here.coordinates.to_vec(), here.speeds.to_vec());
+        self.events.push(Event { time: self.front.t, contact, kind, coordinates, speeds });
+    }
+
+    /// The closed contacts as the integration needs them.
+    pub(crate) fn closed(&self) -> Vec<Closed> {
+        self.front
+            .phases
+            .iter()
+            .enumerate()
+            .filter_map(|(contact, phase)| {
+                let slides = match phase {
+                    Phase::Open(_) => return None,
+                    Phase::Stick => None,
+                    Phase::Slide(direction) => Some(*direction),
+                };
+                Some(Closed {
+                    contact,
+                    mu: self.mu(contact),
+                    weight: self.front.weights[contact],
+                    omega: slides.and(self.front.omegas[contact]),
+                    slides,
+                })
+            })
+            .collect()
+    }
+
+    pub(crate) fn mu(&self, contact: usize) -> f64 {
+        self.surfaces.get(contact).copied().flatten().map_or(0.0, |surface| surface.mu)
+    }
+
+    pub(crate) fn motion<'a>(&'a self, closed: &'a [Closed]) -> Motion<'a> {
+        Motion {
+            mechanism: self.mechanism,
+            drive: &self.options.drive,
+            held: &self.front.held,
+            closed,
+            resting: self.front.resting,
+        }
+    }
+
+    /// An error here and now.
+    pub(crate) fn error(&self, contact: Option<usize>, reason: Reason) -> SimulationError {
+        SimulationError::new(self.mechanism, self.front.t, contact, reason)
+    }
+
+    pub(crate) fn failure(&self, failure: Failure) -> SimulationError {
+        match failure {
+            Failure::State(error) => self.error(None, Reason::State(error)),
+            Failure::Contact(contact, error) => self.error(Some(contact), Reason::Contact(error)),
+            Failure::Together => self.error(
+                None,
+                Reason::Forces(
+                    "the contacts that are closed have no forces under which they keep their modes"
+                        .to_owned(),
+                ),
+            ),
+            Failure::Input(message) => self.error(None, Reason::Input(message)),
+        }
+    }
+}
