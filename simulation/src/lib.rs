@@ -31,6 +31,7 @@
 
 mod check;
 mod closed_contacts;
+pub mod contact_problem;
 mod drift;
 mod drive;
 mod energy;
