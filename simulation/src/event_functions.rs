@@ -35,7 +35,7 @@ pub(crate) enum Watched {
     Normal(usize),
     /// whether friction suffices
     Cone(usize),
-    /// f of the only closed contact
+    /// the least f of the sliding contacts
     Jam,
     /// a user's function, times this sign
     User(usize, f64),
@@ -68,10 +68,11 @@ impl Transition<'_> {
             if contact.slides.is_none() {
                 watched.push(Watched::Cone(place));
                 noise.push(0.0);
-            } else if closed.len() == 1 {
-                watched.push(Watched::Jam);
-                noise.push(0.0);
             }
+        }
+        if closed.iter().any(|contact| contact.slides.is_some()) {
+            watched.push(Watched::Jam);
+            noise.push(0.0);
         }
         let (q, u) = (&self.front.y[..n], &self.front.y[n..n + self.mechanism.count(Kind::Speed)]);
         for (index, function) in self.options.events.iter().enumerate() {

@@ -2,7 +2,8 @@
 
 use crate::event_functions::Watched;
 use crate::event_location::Crossing;
-use crate::motion::Evaluation;
+use crate::mode_changes::Ending;
+use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase};
 use crate::slip_end::{ENDING, time_of_slip};
 use crate::stepper::Step;
@@ -36,12 +37,9 @@ impl Transition<'_> {
                 }
                 self.strike(contact)
             }
-            Watched::Normal(place) => {
-                let contact = closed[place].contact;
-                self.lift_off(contact)
-            }
-            Watched::Cone(place) => self.begin_slip(closed[place].contact),
-            Watched::Jam => self.impact_without_collision(closed[0].contact),
+            Watched::Normal(place) => self.modes_ended(closed[place].contact, Ending::NormalForce),
+            Watched::Cone(place) => self.modes_ended(closed[place].contact, Ending::Friction),
+            Watched::Jam => self.jammed(closed),
             Watched::User(index, _) => {
                 self.push(None, EventKind::Zero(index));
                 // Past the zero, so that it is not found again.
@@ -52,6 +50,19 @@ impl Transition<'_> {
                 Ok(())
             }
         }
+    }
+
+    /// A sliding contact jams: its force grows without bound.
+    fn jammed(&mut self, closed: &[Closed]) -> Result<(), SimulationError> {
+        let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
+        let place = match &here {
+            Ok(here) => here.forces.as_ref().and_then(|forces| forces.jams).unwrap_or(0),
+            Err(Failure::Contact(contact, _)) => {
+                closed.iter().position(|closed| closed.contact == *contact).unwrap_or(0)
+            }
+            Err(_) => 0,
+        };
+        self.impact_without_collision(closed[place].contact)
     }
 
     /// Slip of a contact ends after a short time.

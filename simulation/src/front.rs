@@ -23,8 +23,6 @@ pub(crate) struct Front {
     pub phases: Vec<Phase>,
     /// force of each contact when its mode was last decided, N
     pub forces: Vec<Vector3<f64>>,
-    /// weight of each contact where forces are not unique: the same from one decision to the next
-    pub weights: Vec<f64>,
     /// rate at which the direction of small slip turns where it follows from the state, rad/s
     pub omegas: Vec<Option<f64>>,
     /// whether the forces of the closed contacts were the only possible ones
@@ -61,7 +59,6 @@ impl Front {
             held: state.inputs.to_vec(),
             phases: vec![Phase::Open(Leaving::Apart); contacts],
             forces: vec![Vector3::zeros(); contacts],
-            weights: vec![1.0; contacts],
             omegas: vec![None; contacts],
             unique: true,
             resting: false,

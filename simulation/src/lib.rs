@@ -32,6 +32,7 @@
 mod check;
 mod closed_contacts;
 mod commit;
+pub mod contact_problem;
 mod drift;
 mod drive;
 mod energy;
@@ -44,6 +45,7 @@ mod event_time;
 mod forces;
 mod front;
 mod impacts;
+mod look_ahead;
 mod lzb;
 mod mode_changes;
 mod mode_selection;

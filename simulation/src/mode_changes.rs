@@ -12,12 +12,16 @@ use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError};
 
 /// Slip below this, relative to the speeds that make it up, is none.
-const NO_SLIP: f64 = 1e-11;
+pub(crate) const NO_SLIP: f64 = 1e-11;
 /// The first step of a slip that begins, s.
 const FIRST: f64 = 1e-7;
-/// After this many events at one time a contact changes its mode even if another distribution of the forces
-/// might keep it.
-const PATIENCE: usize = 40;
+
+/// Which condition of a mode is used up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ending {
+    Friction,
+    NormalForce,
+}
 
 impl Transition<'_> {
     /// Decides the modes after a change of inputs; modes that still fit are kept.
@@ -47,35 +51,34 @@ impl Transition<'_> {
         }
     }
 
-    /// Friction no longer suffices at a contact.
-    pub(crate) fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
-        let was = self.front.phases.clone();
-        let before = self.force_of(contact)?;
-        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
-        let state = (self.front.y.clone(), self.front.phases.clone(), self.events.len());
-        let decided = self.decide(&candidates, &was);
-        if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
-            // On the edge neither sticking nor slipping fits: what is at its limit begins to slip.
-            (self.front.y, self.front.phases) = (state.0, state.1);
-            self.events.truncate(state.2);
-            return self.slip_at_limit(&candidates);
+    /// A condition of the modes is used up: friction no longer suffices at a contact, or its normal force
+    /// vanishes.
+    pub(crate) fn modes_ended(&mut self, contact: usize, by: Ending) -> Result<(), SimulationError> {
+        let closed: Vec<usize> =
+            (0..self.front.phases.len()).filter(|&i| self.front.phases[i].is_closed()).collect();
+        match (closed.len(), by) {
+            (1, Ending::Friction) => self.begin_slip(contact),
+            (1, Ending::NormalForce) => self.lift_off(contact),
+            _ => self.look_ahead(&closed),
         }
-        decided?;
-        let patient = candidates.len() > 1 && self.front.crowd < PATIENCE;
-        if self.front.phases[contact] == Phase::Stick && !(patient && self.keeps()?) {
-            self.slip_against(contact, &before);
-        }
-        Ok(())
     }
 
-    /// All contacts whose friction is used up begin to slip.
-    fn slip_at_limit(&mut self, candidates: &[usize]) -> Result<(), SimulationError> {
-        for &contact in candidates {
-            let force = self.force_of(contact)?;
-            let most = self.mu(contact) * force.x;
-            if self.front.phases[contact] == Phase::Stick && force.y.hypot(force.z) >= (1.0 - 1e-9) * most {
-                self.slip_against(contact, &force);
-            }
+    /// Friction of the only closed contact no longer suffices.
+    fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let was = self.front.phases.clone();
+        let before = self.force_of(contact)?;
+        let front = self.front.clone();
+        let events = self.events.len();
+        let decided = self.decide(&[contact], &was);
+        if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
+            // On the edge neither sticking nor slipping fits: it begins to slip.
+            self.front = front;
+            self.events.truncate(events);
+        } else {
+            decided?;
+        }
+        if self.front.phases[contact] == Phase::Stick {
+            self.slip_against(contact, &before);
         }
         Ok(())
     }
@@ -91,23 +94,13 @@ impl Transition<'_> {
         }
     }
 
-    /// The normal force of a contact vanishes.
-    pub(crate) fn lift_off(&mut self, contact: usize) -> Result<(), SimulationError> {
-        let was = self.front.phases.clone();
-        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
-        if candidates.len() > 1 && self.front.crowd < PATIENCE {
-            self.decide(&candidates, &was)?;
-            if !self.front.phases[contact].is_closed() || self.keeps()? {
-                return Ok(());
-            }
-        }
-        if self.front.phases[contact].is_closed() {
-            self.front.phases[contact] = Phase::Open(Leaving::NOW);
-            self.front.forces[contact] = Vector3::zeros();
-            self.front.resting = false;
-            self.push(Some(contact), EventKind::LiftOff { selection: Selection::Unique });
-        }
-        self.keep_or_decide()
+    /// The normal force of the only closed contact vanishes.
+    fn lift_off(&mut self, contact: usize) -> Result<(), SimulationError> {
+        self.front.phases[contact] = Phase::Open(Leaving::NOW);
+        self.front.forces[contact] = Vector3::zeros();
+        self.front.resting = false;
+        self.push(Some(contact), EventKind::LiftOff { selection: Selection::Unique });
+        Ok(())
     }
 
     /// Slip of these contacts has ended.
@@ -159,26 +152,42 @@ impl Transition<'_> {
         let support = ClosedContacts::new(self.mechanism, &state, candidates, true)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let mu: Vec<f64> = candidates.iter().map(|&contact| self.mu(contact)).collect();
-        let before = DVector::from_iterator(
-            3 * candidates.len(),
-            candidates
-                .iter()
-                .flat_map(|&contact| self.front.forces[contact].iter().copied().collect::<Vec<f64>>()),
-        );
+        let before = self.forces_before(candidates);
         match choose(&support, &slips, &mu, &before) {
             Ok(choice) => {
                 self.apply(candidates, was, &choice);
-                Ok(())
+                self.confirm(candidates, was)
             }
-            Err(Lacking::Contact(
+            Err(lacking) => self.without_forces(candidates, lacking),
+        }
+    }
+
+    /// No finite forces exist: an impact without collision follows where a sliding contact jams.
+    pub(crate) fn without_forces(
+        &mut self,
+        candidates: &[usize],
+        lacking: Lacking,
+    ) -> Result<(), SimulationError> {
+        match lacking {
+            Lacking::Contact(
                 place,
                 ContactError::ImpactWithoutCollision { .. } | ContactError::Jam { .. },
-            )) => self.impact_without_collision(candidates[place]),
-            Err(Lacking::Contact(place, error)) => {
+            ) => self.impact_without_collision(candidates[place]),
+            Lacking::Contact(place, error) => {
                 Err(self.error(Some(candidates[place]), Reason::Contact(error)))
             }
-            Err(Lacking::Together) => Err(self.failure(Failure::Together)),
+            Lacking::Together => Err(self.failure(Failure::Together)),
         }
+    }
+
+    /// The forces of these contacts when their modes were last decided.
+    pub(crate) fn forces_before(&self, contacts: &[usize]) -> DVector<f64> {
+        DVector::from_iterator(
+            3 * contacts.len(),
+            contacts
+                .iter()
+                .flat_map(|&contact| self.front.forces[contact].iter().copied().collect::<Vec<_>>()),
+        )
     }
 
     /// The directions of slip; none where there is none.
@@ -207,12 +216,11 @@ impl Transition<'_> {
     }
 
     /// Takes the modes chosen, and says what changed.
-    fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
+    pub(crate) fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
         self.front.unique = choice.unique;
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection[place];
             self.front.forces[contact] = choice.forces[place];
-            self.front.weights[contact] = choice.weights[place];
             match choice.decisions[place] {
                 Decision::Separate => {
                     self.front.phases[contact] = Phase::Open(Leaving::NOW);

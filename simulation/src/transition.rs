@@ -63,7 +63,6 @@ impl Transition<'_> {
                 Some(Closed {
                     contact,
                     mu: self.mu(contact),
-                    weight: self.front.weights[contact],
                     omega: slides.and(self.front.omegas[contact]),
                     slides,
                 })
