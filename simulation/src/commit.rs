@@ -65,6 +65,9 @@ impl Transition<'_> {
     /// The state at a time in a step that was made in these modes, integrated anew up to it: as exact as the
     /// step itself.
     pub(crate) fn within_step(&self, step: &Step, modes: &Modes, time: f64) -> Option<Vec<f64>> {
+        if modes.resting {
+            return Some(step.end.clone());
+        }
         let motion = Motion {
             mechanism: self.mechanism,
             drive: &self.options.drive,

@@ -1,11 +1,15 @@
 //! Handles an event within a step: goes to the state there, and changes the modes.
 
+use nalgebra::{DVector, Vector2};
+
 use crate::event_functions::Watched;
 use crate::event_location::Crossing;
+use crate::forces::Hold;
 use crate::mode_changes::Ending;
+use crate::mode_selection::{Decision, choose};
 use crate::motion::{Evaluation, Failure};
-use crate::phase::{Closed, Leaving, Phase};
-use crate::slip_end::{ENDING, time_of_slip};
+use crate::phase::{Closed, Leaving, Phase, mus};
+use crate::slip_end::{ENDING, may_end, time_of_slip};
 use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError};
@@ -31,9 +35,11 @@ impl Transition<'_> {
             Watched::Gap(contact) => {
                 let (_, rate) = self.gap_at(&step, contact)?;
                 if rate >= 0.0 {
+                    let leaves = matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. }));
                     // It only touches.
                     self.front.phases[contact] = Phase::Open(Leaving::NOW);
-                    return Ok(());
+                    // One that leaves and touches again at once does not leave.
+                    return if leaves { self.stay(contact) } else { Ok(()) };
                 }
                 self.strike(contact)
             }
@@ -52,6 +58,14 @@ impl Transition<'_> {
         }
     }
 
+    /// A contact that was about to leave has not: decides its mode with those of all closed contacts.
+    fn stay(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let was = self.front.phases.clone();
+        let closed = |&other: &usize| other == contact || was[other].is_closed();
+        let candidates: Vec<usize> = (0..was.len()).filter(closed).collect();
+        self.decide(&candidates, &was)
+    }
+
     /// A sliding contact jams: its force grows without bound.
     fn jammed(&mut self, closed: &[Closed]) -> Result<(), SimulationError> {
         let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
@@ -65,27 +79,45 @@ impl Transition<'_> {
         self.impact_without_collision(closed[place].contact)
     }
 
-    /// Slip of a contact ends after a short time.
+    /// The contacts, by place, whose slip is so small that it ends now: all that may end within 3 ns are
+    /// supposed to have stopped, and the forces tell which of them stick. Slip that small ends where sticking
+    /// is possible (docs/theory.md, section 17.11).
+    pub(crate) fn stops(&self, closed: &[Closed], here: &Evaluation, speeds: &[f64]) -> Vec<usize> {
+        let ends = |place: usize| {
+            time_of_slip(here, place).is_some_and(|left| left < 3.0 * ENDING)
+                || may_end(here, place, speeds, 3.0 * ENDING)
+        };
+        let stopped: Vec<usize> =
+            (0..closed.len()).filter(|&place| closed[place].slides.is_some() && ends(place)).collect();
+        let mut slips: Vec<Option<Vector2<f64>>> = here.holds.iter().map(Hold::direction).collect();
+        for &place in &stopped {
+            slips[place] = None;
+        }
+        let mu = mus(closed);
+        let before = here.forces.as_ref().map_or_else(|| DVector::zeros(0), |forces| forces.lambda.clone());
+        match choose(&here.support, &slips, &mu, &before) {
+            Ok(choice) => {
+                stopped.into_iter().filter(|&place| choice.decisions[place] == Decision::Stick).collect()
+            }
+            Err(_) => Vec::new(),
+        }
+    }
+
+    /// Slip of contacts ends after a short time.
     pub(crate) fn end_slip(
         &mut self,
         closed: &[Closed],
         here: &Evaluation,
-        place: usize,
+        places: &[usize],
         time: f64,
     ) -> Result<(), SimulationError> {
         let start = self.front.t;
         let mut end = self.front.y.clone();
         end.iter_mut().zip(&here.rates).for_each(|(value, rate)| *value += time * rate);
         let mut step = Step::still(self.front.t, time, &end);
-        let mut stopped = Vec::new();
-        for (i, contact) in closed.iter().enumerate() {
-            // Contacts of one body may stop together.
-            let together =
-                contact.slides.is_some() && time_of_slip(here, i).is_some_and(|left| left < 3.0 * ENDING);
-            if i == place || together {
-                self.front.phases[contact.contact] = Phase::Stick;
-                stopped.push(contact.contact);
-            }
+        let stopped: Vec<usize> = places.iter().map(|&place| closed[place].contact).collect();
+        for &contact in &stopped {
+            self.front.phases[contact] = Phase::Stick;
         }
         self.commit(&mut step)?;
         self.crowded(start)?;

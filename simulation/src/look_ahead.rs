@@ -91,10 +91,21 @@ impl Transition<'_> {
     fn modes_ahead(&self, contacts: &[usize], round: usize) -> Result<Ahead, SimulationError> {
         let closed = self.closed();
         let Some(step) = self.part(&closed, self.ahead(round / 2)) else { return Ok(Ahead::Fit) };
-        if self.clear(&closed, &step).is_none_or(|(_, fits)| fits) {
+        let fits = self.clear(&closed, &step).is_none_or(|(_, fits)| fits);
+        if fits && self.opened(contacts, &step)? {
             return Ok(Ahead::Fit);
         }
         Ok(self.chosen_at(contacts, &step)?.map_or(Ahead::Fit, Ahead::End))
+    }
+
+    /// Whether the contacts that have opened do not approach again.
+    fn opened(&self, contacts: &[usize], step: &Step) -> Result<bool, SimulationError> {
+        for &contact in contacts {
+            if !self.front.phases[contact].is_closed() && self.gap_at(step, contact)?.1 < 0.0 {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// A time ahead: longer the more events there were without progress.

@@ -100,14 +100,14 @@ pub(crate) fn time_of_slip(here: &Evaluation, place: usize) -> Option<f64> {
     (along < 0.0).then(|| slip / -along)
 }
 
-/// Whether slip that has a direction is so small that its rate could end it within [`ENDING`], were it
+/// Whether slip that has a direction is so small that its rate could end it within a time, were it
 /// against the slip. A slip of 1e-10 m/s has the direction that the errors of the steps before leave it: it
 /// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalized speeds.
-pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64]) -> bool {
+pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64], within: f64) -> bool {
     let Some(forces) = here.forces.as_ref() else { return false };
     let rate = forces.acceleration[3 * place + 1].hypot(forces.acceleration[3 * place + 2]);
     let slip = here.support.slip(place).norm();
-    slip > DIRECTION * here.support.velocity_size(place, speeds) && slip < ENDING * rate
+    slip > DIRECTION * here.support.velocity_size(place, speeds) && slip < within * rate
 }
 
 #[cfg(test)]

@@ -46,10 +46,15 @@ impl Transition<'_> {
                 continue;
             }
             let left = time_of_slip(&here, i);
-            if (left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds))
-                && let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i)
-            {
-                return self.end_slip(&closed, &here, i, time);
+            if left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds, ENDING) {
+                if closed.len() > 1 {
+                    let stopped = self.stops(&closed, &here, speeds);
+                    if !stopped.is_empty() {
+                        return self.end_slip(&closed, &here, &stopped, left.unwrap_or(0.0).min(ENDING));
+                    }
+                } else if let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i) {
+                    return self.end_slip(&closed, &here, &[i], time);
+                }
             }
             if let Some(left) = left {
                 most = most.min(SHARE * left.max(ENDING));
@@ -61,6 +66,17 @@ impl Transition<'_> {
             self.front.omegas[contact.contact] = omega;
         }
         let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
+        if std::env::var_os("HDEBUG").is_some() {
+            eprintln!(
+                "t={:.15} h={:e} crowd={} phases={:?} crossing={:?} forces={:?}",
+                self.front.t,
+                step.h,
+                self.front.crowd,
+                closed.iter().map(|c| (c.contact, c.slides.map(|d| d.y.atan2(d.x)))).collect::<Vec<_>>(),
+                crossing.as_ref().map(|(w, c)| (*w, c.place)),
+                here.forces.as_ref().map(|f| f.lambda.as_slice().to_vec())
+            );
+        }
         match crossing {
             None => {
                 self.front.next = step.next;
