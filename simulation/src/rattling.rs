@@ -9,11 +9,9 @@
 //! section 17.7.
 
 use hodograph::Kind;
-use nalgebra::DVector;
 
 use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::{Hold, forces};
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
 use crate::transition::Transition;
@@ -80,26 +78,11 @@ impl Transition<'_> {
     fn lie(&mut self, near: &[usize]) -> Result<bool, SimulationError> {
         let was = self.front.phases.clone();
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let mut support = self.support(near, false)?;
+        let support = self.support(near, false)?;
         let rates: Vec<f64> = (0..near.len()).map(|i| support.velocity[3 * i]).collect();
-        let mu: Vec<f64> = near.iter().map(|&contact| self.mu(contact)).collect();
-        let holds: Vec<Hold> =
-            self.slips_of(near)?.into_iter().map(|slip| slip.map_or(Hold::Stick, Hold::Slide)).collect();
-        support.beta.copy_from(&support.velocity);
         let kinetic = self.kinetic()?;
-        let start = self.front.y.clone();
-        let change = match forces(&support, &holds, &mu, None) {
-            Ok(impulses) => impulses.rates(&support),
-            Err(_) => DVector::zeros(p),
-        };
-        self.front.y[n..n + p].iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
-        if self.kinetic()? > kinetic {
-            // Without friction energy cannot grow.
-            self.front.y = start;
-            let rows: Vec<usize> = (0..near.len()).map(|i| 3 * i).collect();
-            let change = support.without(&rows, &support.velocity);
-            self.front.y[n..n + p].iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
-        }
+        let hit = self.plastic_impact(near, &self.front.y[n..n + p])?;
+        self.front.y[n..n + p].copy_from_slice(&hit.after);
         for &contact in near {
             if !self.front.phases[contact].is_closed() {
                 self.front.phases[contact] = Phase::Open(Leaving::NOW);

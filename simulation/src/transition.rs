@@ -27,13 +27,13 @@ pub(crate) struct Transition<'s> {
 impl Transition<'_> {
     /// The state at the front.
     pub(crate) fn here(&self) -> State<'_> {
+        self.here_of(&self.front)
+    }
+
+    /// The state of another front.
+    pub(crate) fn here_of<'f>(&self, front: &'f Front) -> State<'f> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        State {
-            time: self.front.t,
-            coordinates: &self.front.y[..n],
-            speeds: &self.front.y[n..n + p],
-            inputs: &self.front.held,
-        }
+        State { time: front.t, coordinates: &front.y[..n], speeds: &front.y[n..n + p], inputs: &front.held }
     }
 
     /// The modes at the front.
