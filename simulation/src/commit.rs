@@ -2,12 +2,12 @@
 
 use hodograph::Kind;
 
-use crate::SimulationError;
 use crate::drift;
 use crate::motion::{Failure, Motion};
 use crate::phase::{Closed, Modes};
 use crate::stepper::{self, Step};
 use crate::transition::Transition;
+use crate::{Reason, SimulationError};
 
 impl Transition<'_> {
     /// Takes the end of a step as the new front.
@@ -56,7 +56,9 @@ impl Transition<'_> {
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
             drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)
         })();
-        moved.map_err(|error| self.failure(Failure::State(error)))?;
+        if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
+            return Err(self.error(Some(left.contact), Reason::Drift(left.gap)));
+        }
         y[..n].copy_from_slice(&q);
         y[n..n + p].copy_from_slice(&u);
         Ok(())

@@ -17,6 +17,11 @@ const LIFTED: f64 = 1e-11;
 /// body: it is zero but for rounding.
 const STILL: f64 = 2e-11;
 
+/// Angles turn by no more than this, in all, in a piece of a step that is looked at by nine points, rad.
+const TURN: f64 = 4.0;
+/// A step is looked at in no more pieces than these.
+const MOST_PIECES: f64 = 500.0;
+
 /// Places and weights of Gauss's rule on [0, 1].
 const GAUSS: [(f64, f64); 5] = [
     (0.046_910_077_030_668, 0.118_463_442_528_094_54),
@@ -137,6 +142,52 @@ impl Transition<'_> {
                 Watched::User(index, sign) => Ok(sign * (self.options.events[index])(t, q, u)),
             })
             .collect()
+    }
+
+    /// The rates of what is watched, a time after the front, of those of which they are known: of gaps that are
+    /// watched by their values.
+    pub(crate) fn slopes(&self, watched: &[Watched], after: f64, y: &[f64]) -> Vec<Option<f64>> {
+        let motion = self.motion(&[]);
+        let t = self.front.t + after;
+        let (q, u) = motion.split(y);
+        let Ok(inputs) = motion.inputs(t, y) else { return vec![None; watched.len()] };
+        let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
+        let rate = |what: &Watched| match *what {
+            Watched::Gap(contact) if self.front.phases[contact] == Phase::Open(Leaving::Apart) => {
+                self.mechanism.contact_velocity(contact, &state).ok().map(|velocity| velocity.x)
+            }
+            _ => None,
+        };
+        watched.iter().map(rate).collect()
+    }
+
+    /// In how many pieces a step is looked at: in each of them angles turn by [`TURN`] at most, so that nine
+    /// points show every turn. `None` for a step of too many pieces.
+    pub(crate) fn pieces(&self, closed: &[Closed], step: &Step) -> Option<usize> {
+        let (n, motion) = (self.mechanism.count(Kind::Coordinate), self.motion(closed));
+        let angular: Vec<f64> = (0..n)
+            .map(|index| match self.mechanism.component(Kind::Coordinate, index).map(|c| c.unit) {
+                Some("rad" | "deg") => 1.0,
+                // A quaternion turns by half the angle.
+                Some("1" | "") => 2.0,
+                _ => 0.0,
+            })
+            .collect();
+        if angular.iter().all(|weight| *weight == 0.0) {
+            return Some(1);
+        }
+        let mut fastest = 0.0_f64;
+        for (time, y) in [(step.t, step.start()), (step.t + step.h, &step.end[..])] {
+            let (q, u) = motion.split(y);
+            let inputs = motion.inputs(time, y).ok()?;
+            let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
+            let mut rates = vec![0.0; n];
+            self.mechanism.coordinate_rates(&state, &mut rates).ok()?;
+            fastest =
+                fastest.max(rates.iter().zip(&angular).map(|(rate, weight)| (rate * weight).abs()).sum());
+        }
+        let pieces = (fastest * step.h / TURN).ceil();
+        (pieces <= MOST_PIECES).then_some((pieces as usize).max(1))
     }
 
     /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the

@@ -12,7 +12,7 @@ use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::slip_end::{ENDING, may_end, time_of_slip};
 use crate::stepper::Step;
 use crate::transition::Transition;
-use crate::{EventKind, Reason, SimulationError};
+use crate::{EventKind, SimulationError};
 
 /// The greatest number of events without progress in time.
 const CROWD: usize = 2000;
@@ -84,8 +84,8 @@ impl Transition<'_> {
     /// is possible (docs/theory.md, section 17.11).
     pub(crate) fn stops(&self, closed: &[Closed], here: &Evaluation, speeds: &[f64]) -> Vec<usize> {
         let ends = |place: usize| {
-            time_of_slip(here, place).is_some_and(|left| left < 3.0 * ENDING)
-                || may_end(here, place, speeds, 3.0 * ENDING)
+            time_of_slip(here, place, &self.front.scale).is_some_and(|left| left < 3.0 * ENDING)
+                || may_end(here, place, speeds, &self.front.scale, 3.0 * ENDING)
         };
         let stopped: Vec<usize> =
             (0..closed.len()).filter(|&place| closed[place].slides.is_some() && ends(place)).collect();
@@ -132,7 +132,7 @@ impl Transition<'_> {
         }
         self.front.crowd += 1;
         if self.front.crowd > CROWD {
-            return Err(self.error(None, Reason::EventsWithoutEnd(CROWD)));
+            return Err(self.error(None, self.without_end(CROWD)));
         }
         Ok(())
     }

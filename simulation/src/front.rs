@@ -25,8 +25,6 @@ pub(crate) struct Front {
     pub forces: Vec<Vector3<f64>>,
     /// rate at which the direction of small slip turns where it follows from the state, rad/s
     pub omegas: Vec<Option<f64>>,
-    /// whether the forces of the closed contacts were the only possible ones
-    pub unique: bool,
     /// whether nothing moves
     pub resting: bool,
     /// contacts whose bounces end at a time
@@ -45,6 +43,8 @@ pub(crate) struct Front {
     pub energy: EnergyAccount,
     /// events without progress in time
     pub crowd: usize,
+    /// steps since the last event, the time of that event, and the greatest step so far, s
+    pub steps: (usize, f64, f64),
 }
 
 impl Front {
@@ -60,7 +60,6 @@ impl Front {
             phases: vec![Phase::Open(Leaving::Apart); contacts],
             forces: vec![Vector3::zeros(); contacts],
             omegas: vec![None; contacts],
-            unique: true,
             resting: false,
             chatter: Vec::new(),
             next: 1e-3,
@@ -70,6 +69,7 @@ impl Front {
             greatest: 0.0,
             energy: EnergyAccount::default(),
             crowd: 0,
+            steps: (0, state.time, 0.0),
         }
     }
 }

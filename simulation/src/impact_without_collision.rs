@@ -16,7 +16,7 @@ impl Transition<'_> {
         let was = self.front.phases.clone();
         self.front.crowd += 1;
         if self.front.crowd > MOST {
-            return Err(self.error(Some(contact), Reason::EventsWithoutEnd(MOST)));
+            return Err(self.error(Some(contact), self.without_end(MOST)));
         }
         let touching = self.touching(Some(contact))?;
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));

@@ -217,7 +217,7 @@ impl Transition<'_> {
             speeds.clone_from(&hit.after);
             hits.push(hit);
         }
-        Err(self.error(None, Reason::EventsWithoutEnd(MOST)))
+        Err(self.error(None, self.without_end(MOST)))
     }
 
     /// By how much the outcome depends on the order in which contacts struck together strike one after the

@@ -217,7 +217,6 @@ impl Transition<'_> {
 
     /// Takes the modes chosen, and says what changed.
     pub(crate) fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
-        self.front.unique = choice.unique;
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection[place];
             self.front.forces[contact] = choice.forces[place];

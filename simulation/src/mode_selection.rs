@@ -26,8 +26,6 @@ pub(crate) struct Choice {
     pub decisions: Vec<Decision>,
     pub forces: Vec<Vector3<f64>>,
     pub selection: Vec<Selection>,
-    /// whether no other forces give the same motion
-    pub unique: bool,
 }
 
 /// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not
@@ -44,7 +42,7 @@ pub(crate) fn choose(
     let problem = support.problem(mu, slips);
     if let Some(rest) = contact_problem::rest(&problem) {
         let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
-        return Ok(chosen(&problem, &modes, &rest.force, rest.unique));
+        return Ok(chosen(&problem, &modes, &rest.force));
     }
     let solution = contact_problem::solve(&problem, Some(before)).map_err(|unsolved| match unsolved {
         Unsolved::Jam { contact, .. } => {
@@ -55,14 +53,12 @@ pub(crate) fn choose(
     })?;
     // Among many forces for this motion, those in the middle.
     match contact_problem::with_modes(&problem, &solution.modes) {
-        Ok(middle) if middle.margin >= 0.0 => {
-            Ok(chosen(&problem, &solution.modes, &middle.force, middle.unique))
-        }
-        _ => Ok(chosen(&problem, &solution.modes, &solution.force, true)),
+        Ok(middle) if middle.margin >= 0.0 => Ok(chosen(&problem, &solution.modes, &middle.force)),
+        _ => Ok(chosen(&problem, &solution.modes, &solution.force)),
     }
 }
 
-fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>, unique: bool) -> Choice {
+fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Choice {
     let decision = |(mode, slip): (&Mode, &Option<Vector2<f64>>)| match mode {
         Mode::Separate => Decision::Separate,
         Mode::Stick => Decision::Stick,
@@ -72,7 +68,6 @@ fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>, unique: b
         decisions: modes.iter().zip(problem.slip).map(decision).collect(),
         forces: (0..modes.len()).map(|i| ClosedContacts::three(force, i)).collect(),
         selection: vec![selection(problem, modes); modes.len()],
-        unique,
     }
 }
 
@@ -106,7 +101,6 @@ fn one(
         decisions: vec![decision(answer.mode, answer.direction)],
         forces: vec![answer.force],
         selection: vec![answer.selection],
-        unique: answer.force_is_unique,
     })
 }
 

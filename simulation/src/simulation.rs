@@ -278,10 +278,10 @@ impl<'m> Simulation<'m> {
         let motion = transition.motion(&closed);
         let evaluation =
             motion.evaluate(self.view.0, &self.view.1).map_err(|failure| transition.failure(failure))?;
-        let forces = evaluation.forces.map_or(Vec::new(), |forces| {
-            closed.iter().enumerate().map(|(i, closed)| (closed.contact, forces.of(i))).collect()
-        });
-        Ok((forces, self.front.unique))
+        let Some(forces) = evaluation.forces else { return Ok((Vec::new(), true)) };
+        let unique = forces.unique;
+        let forces = closed.iter().enumerate().map(|(i, closed)| (closed.contact, forces.of(i))).collect();
+        Ok((forces, unique))
     }
 
     /// The energy account since the start, at the end of the last step.

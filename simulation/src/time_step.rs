@@ -6,7 +6,7 @@ use hodograph::{ContactError, Kind, State};
 use nalgebra::Vector2;
 
 use crate::event_functions::Watched;
-use crate::event_location::{Crossing, first_crossing};
+use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Phase, mus};
@@ -18,6 +18,11 @@ use crate::{Reason, SimulationError};
 
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.5;
+
+/// So many steps without an event must advance the motion by this part of the longest step so far, or of a
+/// tenth of a second.
+const STEPS: usize = 3000;
+const ADVANCE: f64 = 1e-2;
 
 impl Transition<'_> {
     /// Makes one step.
@@ -45,8 +50,9 @@ impl Transition<'_> {
             if contact.slides.is_none() {
                 continue;
             }
-            let left = time_of_slip(&here, i);
-            if left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds, ENDING) {
+            let left = time_of_slip(&here, i, &self.front.scale);
+            if left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds, &self.front.scale, ENDING)
+            {
                 if closed.len() > 1 {
                     let stopped = self.stops(&closed, &here, speeds);
                     if !stopped.is_empty() {
@@ -66,25 +72,35 @@ impl Transition<'_> {
             self.front.omegas[contact.contact] = omega;
         }
         let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
-        if std::env::var_os("HDEBUG").is_some() {
-            eprintln!(
-                "t={:.15} h={:e} crowd={} phases={:?} crossing={:?} forces={:?}",
-                self.front.t,
-                step.h,
-                self.front.crowd,
-                closed.iter().map(|c| (c.contact, c.slides.map(|d| d.y.atan2(d.x)))).collect::<Vec<_>>(),
-                crossing.as_ref().map(|(w, c)| (*w, c.place)),
-                here.forces.as_ref().map(|f| f.lambda.as_slice().to_vec())
-            );
-        }
         match crossing {
             None => {
                 self.front.next = step.next;
                 self.commit(&mut step)?;
+                self.progress(step.h)?;
                 self.on_time()
             }
-            Some((watched, crossing)) => self.handle_event(&closed, step, watched, crossing),
+            Some((watched, crossing)) => {
+                self.front.steps = (0, self.front.t, self.front.steps.2);
+                self.handle_event(&closed, step, watched, crossing)
+            }
         }
+    }
+
+    /// Counts steps without an event, and refuses to go on where they hardly advance the motion.
+    fn progress(&mut self, h: f64) -> Result<(), SimulationError> {
+        let (steps, since, longest) = self.front.steps;
+        let longest = longest.max(h.min(0.1));
+        let steps = steps + 1;
+        self.front.steps = (steps, since, longest);
+        if steps % STEPS == 0 {
+            let time = self.front.t - since;
+            if time < ADVANCE * longest {
+                let modes = self.modes_in_words();
+                return Err(self.error(None, Reason::NoProgress { steps, time, modes }));
+            }
+            self.front.steps = (0, self.front.t, longest);
+        }
+        Ok(())
     }
 
     /// A step that was integrated, and the first event in it.
@@ -120,10 +136,30 @@ impl Transition<'_> {
                 continue;
             }
             let (watched, noise) = self.watched(closed, step.h);
-            let found = first_crossing(watched.len(), &noise, &mut |fraction| {
-                let h = step.h;
-                self.values(closed, &watched, h * fraction, &mut |after| step.at(after / h)).ok()
-            });
+            let Some(pieces) = self.pieces(closed, &step) else {
+                most = 0.5 * step.h;
+                continue;
+            };
+            let h = step.h;
+            let made = RefCell::new(&mut step);
+            let found = first_crossing(
+                &mut Functions {
+                    count: watched.len(),
+                    noise: &noise,
+                    values: &mut |fraction| {
+                        let at = &mut |after: f64| made.borrow_mut().at(after / h);
+                        self.values(closed, &watched, h * fraction, at).ok()
+                    },
+                    slopes: &mut |fraction| {
+                        let y = made.borrow_mut().at(fraction);
+                        self.slopes(&watched, h * fraction, &y)
+                            .into_iter()
+                            .map(|slope| slope.map(|slope| slope * h))
+                            .collect()
+                    },
+                },
+                pieces,
+            );
             let Ok(found) = found else {
                 most = 0.5 * step.h;
                 continue;

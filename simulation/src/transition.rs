@@ -84,6 +84,27 @@ impl Transition<'_> {
         }
     }
 
+    /// The closed contacts and what they do, in words.
+    pub(crate) fn modes_in_words(&self) -> String {
+        let name = |contact: usize| {
+            self.mechanism.component(Kind::Contact, contact).map_or("?", |component| component.name)
+        };
+        let modes: Vec<String> = self
+            .closed()
+            .iter()
+            .map(|closed| {
+                let what = if closed.slides.is_some() { "slides" } else { "sticks" };
+                format!("{} {what}", name(closed.contact))
+            })
+            .collect();
+        if modes.is_empty() { "no contact".to_owned() } else { modes.join(", ") }
+    }
+
+    /// Why the motion ends where so many events follow each other without progress.
+    pub(crate) fn without_end(&self, count: usize) -> Reason {
+        Reason::EventsWithoutEnd { count, modes: self.modes_in_words() }
+    }
+
     /// An error here and now.
     pub(crate) fn error(&self, contact: Option<usize>, reason: Reason) -> SimulationError {
         SimulationError::new(self.mechanism, self.front.t, contact, reason)
