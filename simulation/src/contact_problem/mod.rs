@@ -15,6 +15,7 @@
 //! Theory: docs/theory.md, section 17.10.
 
 mod centre;
+mod directions;
 mod enumerate;
 mod linear;
 mod prescribed;

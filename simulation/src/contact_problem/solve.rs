@@ -7,31 +7,49 @@ use hodograph::several::{
 };
 use nalgebra::{DVector, Vector2};
 
-use super::{Mode, Problem, Solution, Solutions, Unsolved, enumerate::enumerate, problem::three};
+use super::{
+    Mode, Problem, Solution, Solutions, Unsolved,
+    enumerate::{enumerate, with_certificate},
+    problem::three,
+};
 
-/// Forces that obey the laws, with modes and certificate; `guess` only saves work, or chooses among several.
+/// Forces that obey the laws, with modes and certificate. Where all contacts that do not slip may go on sticking, they
+/// do. Among many forces for one motion the analytic centre is taken. `guess` saves work, and chooses among several
+/// motions that are not rest.
 ///
 /// # Errors
 /// See [`Unsolved`]. Forces that violate a law by more than 1e-12 of its terms are never returned.
 pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solution, Unsolved> {
-    let (solution, _) = search(problem, guess)?;
-    Ok(solution)
+    problem.check()?;
+    let still: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+    if let Some(found) = with_certificate(problem, &still) {
+        return Ok(found);
+    }
+    match attempt(problem, guess) {
+        Ok(found) => Ok(centred(problem, found)),
+        Err(Unsolved::NotFound { violation }) => {
+            if let Some(first) = enumerate(problem).into_iter().next() {
+                return Ok(first);
+            }
+            Err(match jammed(problem) {
+                Some(contact) => Unsolved::Jam { contact, f: own_f(problem, contact).unwrap_or(0.0) },
+                None => Unsolved::NotFound { violation },
+            })
+        }
+        Err(reason) => Err(reason),
+    }
 }
 
-/// The solution from a guess, not yet compared with others.
-fn search(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<(Solution, bool), Unsolved> {
-    match attempt(problem, guess) {
-        Err(Unsolved::NotFound { violation }) => {
-            if let Some(contact) = jammed(problem) {
-                return Err(Unsolved::Jam { contact, f: own_f(problem, contact).unwrap_or(0.0) });
-            }
-            if let Some(first) = enumerate(problem).into_iter().next() {
-                return Ok((first, true));
-            }
-            Err(Unsolved::NotFound { violation })
-        }
-        found => found.map(|found| (found, false)),
+/// The solution with the forces that its modes prescribe, where these obey the laws as well.
+fn centred(problem: &Problem<'_>, found: Solution) -> Solution {
+    match with_certificate(problem, &found.modes) {
+        Some(centred) if same_modes(&centred.modes, &found.modes) => centred,
+        _ => found,
     }
+}
+
+fn same_modes(one: &[Mode], other: &[Mode]) -> bool {
+    one.iter().zip(other).all(|(one, other)| one.is_like(other))
 }
 
 /// f of a contact that slides, alone.
@@ -130,6 +148,9 @@ pub(super) fn modes(problem: &Problem<'_>, force: &DVector<f64>, acceleration: &
         })
         .collect()
 }
+
+/// Greatest violation that is accepted.
+pub(super) const ACCEPTED: f64 = 1e-12;
 
 /// Accelerations up to this beside their terms count as zero.
 const ZERO: f64 = 1e-12;
