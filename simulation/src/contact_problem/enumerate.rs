@@ -10,8 +10,9 @@ use nalgebra::{DVector, Vector2};
 use super::{
     Mode, Problem, Solution, Solutions,
     directions::directions,
+    motion::centred,
     prescribed::{FITS, with_modes},
-    solve::{certificate, modes},
+    solve::{attempt, certificate, modes},
 };
 
 /// The greatest number of contacts of which all modes are tried.
@@ -28,6 +29,10 @@ pub fn enumerate(problem: &Problem<'_>) -> Vec<Solution> {
         return Vec::new();
     }
     let mut found: Vec<Solution> = Vec::new();
+    // Where contacts share their load in many ways as they begin to slip there are many motions: this is one of them.
+    if let Ok(first) = attempt(problem, None) {
+        found.push(centred(problem, first));
+    }
     let choices: Vec<Vec<Choice>> = (0..k).map(|i| choices(problem, i)).collect();
     let mut places = vec![0; k];
     loop {

@@ -18,6 +18,7 @@ mod centre;
 mod directions;
 mod enumerate;
 mod linear;
+mod motion;
 mod prescribed;
 mod problem;
 mod solve;

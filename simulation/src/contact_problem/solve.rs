@@ -10,6 +10,7 @@ use nalgebra::{DVector, Vector2};
 use super::{
     Mode, Problem, Solution, Solutions, Unsolved,
     enumerate::{enumerate, with_certificate},
+    motion::centred,
     problem::three,
 };
 
@@ -38,18 +39,6 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
         }
         Err(reason) => Err(reason),
     }
-}
-
-/// The solution with the forces that its modes prescribe, where these obey the laws as well.
-fn centred(problem: &Problem<'_>, found: Solution) -> Solution {
-    match with_certificate(problem, &found.modes) {
-        Some(centred) if same_modes(&centred.modes, &found.modes) => centred,
-        _ => found,
-    }
-}
-
-fn same_modes(one: &[Mode], other: &[Mode]) -> bool {
-    one.iter().zip(other).all(|(one, other)| one.is_like(other))
 }
 
 /// f of a contact that slides, alone.
