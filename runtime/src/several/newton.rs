@@ -75,7 +75,7 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
     let mut size = evaluate(scaled, run, x, centre, v, f);
     let mut failed = 0;
     for _ in 0..run.steps {
-        if !(size > run.enough) {
+        if !size.is_finite() || size <= run.enough {
             break;
         }
         for (step, f) in step.iter_mut().zip(f.iter()) {
