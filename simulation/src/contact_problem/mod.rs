@@ -22,6 +22,7 @@ mod motion;
 mod prescribed;
 mod problem;
 mod solve;
+mod sparse;
 
 pub use self::{
     enumerate::{MOST_ENUMERATED, enumerate},
