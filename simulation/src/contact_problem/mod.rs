@@ -19,6 +19,7 @@ mod directions;
 mod enumerate;
 mod linear;
 mod motion;
+mod natural_map;
 mod prescribed;
 mod problem;
 mod solve;
@@ -26,6 +27,7 @@ mod sparse;
 
 pub use self::{
     enumerate::{MOST_ENUMERATED, enumerate},
+    natural_map::natural_residual,
     prescribed::{Admissible, Impossible, rest, with_modes, with_modes_near},
     problem::{Mode, Problem, Solution, Solutions, Unsolved},
     solve::{certificate, solve},
