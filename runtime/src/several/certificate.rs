@@ -40,7 +40,7 @@ impl<T: Scalar> Certificate<T> {
 
 /// The larger one; what is not a number stays.
 fn larger_or_nan<T: Scalar>(a: T, b: T) -> T {
-    if a.is_finite() && !(b <= a) { b } else { a }
+    if !a.is_finite() || b <= a { a } else { b }
 }
 
 /// The certificate of forces `x` with accelerations `v` and their terms.

@@ -66,7 +66,7 @@ pub(super) fn eliminate<T: Scalar>(matrix: &mut [T], right: &mut [T]) -> bool {
                 best = (size, row);
             }
         }
-        if !(best.0 > T::zero()) {
+        if best.0.is_zero() {
             return false;
         }
         if best.1 != step {

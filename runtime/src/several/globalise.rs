@@ -243,7 +243,7 @@ impl<T: Scalar> Search<'_, T> {
         let run = Run { rho, alpha: T::zero(), steps: count, enough: T::default_epsilon() };
         let size = newton(&self.scaled, &run, &mut self.vectors, steps);
         let close = constant::<T>(1e-6) * larger(T::one(), self.scaled.size(self.vectors.x));
-        if !(size <= close) {
+        if !size.is_finite() || size > close {
             return None;
         }
         let Vectors { x, v, best, .. } = &mut self.vectors;

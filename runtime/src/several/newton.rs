@@ -75,7 +75,7 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
     let mut size = evaluate(scaled, run, x, centre, v, f);
     let mut failed = 0;
     for _ in 0..run.steps {
-        if !(size > run.enough) {
+        if !size.is_finite() || size <= run.enough {
             break;
         }
         for (step, f) in step.iter_mut().zip(f.iter()) {
@@ -83,7 +83,7 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
         }
         // Regularised by a part of the residual, so that steps stay bounded where the matrix is singular and
         // convergence stays fast.
-        let damping = constant::<T>(1e-12) + smaller(constant(1e-2), size * constant(1e-2));
+        let damping = constant::<T>(1e-8) + smaller(constant(1e-2), size * constant(1e-2));
         let blocks = |i: usize| derivative(&scaled.law(i), run.rho, &three(x, i), &three(v, i));
         let mut solved = steps.solve(scaled, &blocks, run.alpha + damping, step);
         if !solved {

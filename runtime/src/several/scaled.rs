@@ -83,9 +83,19 @@ impl<'a, T: Scalar> Scaled<'a, T> {
         Friction { mu: self.problem.mu[i] * self.friction, slip: self.problem.slip[i] }
     }
 
+    /// v = W x.
+    pub fn apply(&self, x: &[T], v: &mut [T]) {
+        v.iter_mut().for_each(|v| *v = T::zero());
+        self.add(x, v);
+    }
+
     /// v = W x + beta.
     pub(super) fn rates(&self, x: &[T], v: &mut [T]) {
         v.copy_from_slice(self.beta);
+        self.add(x, v);
+    }
+
+    fn add(&self, x: &[T], v: &mut [T]) {
         for (x, column) in x.iter().zip(self.matrix.chunks_exact(self.beta.len())) {
             if !x.is_zero() {
                 for (v, entry) in v.iter_mut().zip(column) {

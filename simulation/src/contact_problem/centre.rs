@@ -149,9 +149,10 @@ fn enter(
     let p = basis.ncols();
     let mut s = least_reserve(cones, &x) - load;
     let mut weight = 1.0;
-    // The forces with the greatest reserve are off by less than this over the weight.
+    // On the path s is greatest but for the degree over the weight.
     let degree = 2.0 * cones.len() as f64 + 1.0;
-    for _ in 0..PATH {
+    while degree / weight > GAP {
+        let mut moved = false;
         for _ in 0..INNER {
             let Barrier { mut gradient, mut hessian } = barrier(cones, basis, load, &x, s);
             // -weight s / load, and s below the load.
@@ -162,28 +163,24 @@ fn enter(
             let Some(factors) = hessian.cholesky() else { break };
             let step = factors.solve(&right);
             let length = right.dot(&step).max(0.0).sqrt();
-            let mut part = if length > 0.25 { 1.0 / (1.0 + length) } else { 1.0 };
             let change = basis * step.rows(0, p);
-            // A longer part if the cones allow it.
-            while part < 1.0 {
-                let longer = (2.0 * part).min(1.0);
-                let (next, slack) = (&x + &change * longer, s + step[p] * longer);
-                if least_reserve(cones, &next) - slack > 0.0 && slack < load && longer < 1.0 {
-                    part = longer;
-                } else {
-                    break;
+            let inside = |part: f64| {
+                let (next, slack) = (&x + &change * part, s + step[p] * part);
+                (least_reserve(cones, &next) > slack && slack < load).then_some((next, slack))
+            };
+            // Far from the path as long a part as the cones allow, near it a whole step.
+            let mut part = 1.0;
+            let next = loop {
+                match inside(part) {
+                    Some(next) if part == 1.0 && length < 0.25 => break Some(next),
+                    Some(_) => break inside(if length < 0.25 { part } else { 0.9 * part }),
+                    None if part < 1e-9 => break None,
+                    None => part *= 0.7,
                 }
-            }
-            let (mut next, mut slack) = (&x + &change * part, s + step[p] * part);
-            while !(least_reserve(cones, &next) - slack > 0.0 && slack < load) && part > 1e-12 {
-                part *= 0.5;
-                (next, slack) = (&x + &change * part, s + step[p] * part);
-            }
-            if part <= 1e-12 {
-                break;
-            }
-            x = next;
-            s = slack;
+            };
+            let Some((next, slack)) = next else { break };
+            (x, s) = (next, slack);
+            moved = true;
             if least_reserve(cones, &x) > START * load || (s > 0.0 && length < 0.5) {
                 return Ok(x);
             }
@@ -191,19 +188,19 @@ fn enter(
                 break;
             }
         }
-        // s is greatest but for this.
-        let gap = degree / weight * load;
-        if gap < 1e-14 * load {
+        if !moved {
             break;
         }
-        weight *= 10.0;
+        weight *= 30.0;
     }
-    if least_reserve(cones, &x) > 1e-13 * load { Ok(x) } else { Err(x) }
+    if least_reserve(cones, &x) > GAP * load { Ok(x) } else { Err(x) }
 }
 
 /// Newton steps to the centre; usual are 5 to 15.
 const STEPS: usize = 80;
 
-/// Weights on the path to the greatest reserve, and Newton steps for each.
-const PATH: usize = 17;
-const INNER: usize = 30;
+/// How near to the greatest reserve the path ends, beside the load.
+const GAP: f64 = 1e-13;
+
+/// Newton steps for one point of the path to the greatest reserve.
+const INNER: usize = 40;

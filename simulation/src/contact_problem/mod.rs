@@ -15,14 +15,19 @@
 //! Theory: docs/theory.md, section 17.10.
 
 mod centre;
+mod directions;
 mod enumerate;
 mod linear;
+mod motion;
+mod natural_map;
 mod prescribed;
 mod problem;
 mod solve;
+mod sparse;
 
 pub use self::{
     enumerate::{MOST_ENUMERATED, enumerate},
+    natural_map::natural_residual,
     prescribed::{Admissible, Impossible, rest, with_modes, with_modes_near},
     problem::{Mode, Problem, Solution, Solutions, Unsolved},
     solve::{certificate, solve},

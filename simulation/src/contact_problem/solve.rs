@@ -7,30 +7,40 @@ use hodograph::several::{
 };
 use nalgebra::{DVector, Vector2};
 
-use super::{Mode, Problem, Solution, Solutions, Unsolved, enumerate::enumerate, problem::three};
+use super::{
+    Mode, Problem, Solution, Solutions, Unsolved,
+    enumerate::{enumerate, with_certificate},
+    motion::centred,
+    problem::three,
+    sparse::Sparse,
+};
 
-/// Forces that obey the laws, with modes and certificate; `guess` only saves work, or chooses among several.
+/// Forces that obey the laws, with modes and certificate. Where all contacts that do not slip may go on sticking, they
+/// do. Among many forces for one motion the analytic centre is taken. `guess` saves work, and chooses among several
+/// motions that are not rest.
 ///
 /// # Errors
 /// See [`Unsolved`]. Forces that violate a law by more than 1e-12 of its terms are never returned.
 pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solution, Unsolved> {
-    let (solution, _) = search(problem, guess)?;
-    Ok(solution)
-}
-
-/// The solution from a guess, not yet compared with others.
-fn search(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<(Solution, bool), Unsolved> {
+    problem.check()?;
+    let still: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+    let few = problem.contacts() <= CENTRED;
+    if few && let Some(found) = with_certificate(problem, &still) {
+        return Ok(found);
+    }
     match attempt(problem, guess) {
+        Ok(found) if few => Ok(centred(problem, found)),
+        Ok(found) => Ok(found),
         Err(Unsolved::NotFound { violation }) => {
-            if let Some(contact) = jammed(problem) {
-                return Err(Unsolved::Jam { contact, f: own_f(problem, contact).unwrap_or(0.0) });
-            }
             if let Some(first) = enumerate(problem).into_iter().next() {
-                return Ok((first, true));
+                return Ok(first);
             }
-            Err(Unsolved::NotFound { violation })
+            Err(match jammed(problem) {
+                Some(contact) => Unsolved::Jam { contact, f: own_f(problem, contact).unwrap_or(0.0) },
+                None => Unsolved::NotFound { violation },
+            })
         }
-        found => found.map(|found| (found, false)),
+        Err(reason) => Err(reason),
     }
 }
 
@@ -64,10 +74,16 @@ pub(super) fn attempt(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Re
     let mut force = guess.map_or_else(|| vec![0.0; n], |guess| guess.as_slice().to_vec());
     let mut acceleration = vec![0.0; n];
     let mut memory = vec![0.0; memory_of_several(k)];
-    let mut matrix = vec![0.0; n * n];
-    let mut steps = Dense { memory: &mut matrix };
-    let certificate =
-        solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps).map_err(unsolved)?;
+    let sparse = if k >= SPARSE { Sparse::new(problem.w) } else { None };
+    let certificate = match sparse {
+        Some(mut steps) => solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps),
+        None => {
+            let mut matrix = vec![0.0; n * n];
+            let mut steps = Dense { memory: &mut matrix };
+            solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps)
+        }
+    }
+    .map_err(unsolved)?;
     let force = DVector::from_vec(force);
     let acceleration = problem.w * &force + problem.beta;
     let modes = modes(problem, &force, &acceleration);
@@ -130,6 +146,15 @@ pub(super) fn modes(problem: &Problem<'_>, force: &DVector<f64>, acceleration: &
         })
         .collect()
 }
+
+/// Greatest violation that is accepted.
+pub(super) const ACCEPTED: f64 = 1e-12;
+
+/// Up to so many contacts rest is looked for first, and the centre of forces that are not unique is taken.
+const CENTRED: usize = 48;
+
+/// From so many contacts on, a matrix with many zeros is eliminated by blocks.
+const SPARSE: usize = 12;
 
 /// Accelerations up to this beside their terms count as zero.
 const ZERO: f64 = 1e-12;

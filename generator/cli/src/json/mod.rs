@@ -4,6 +4,7 @@
 pub mod answer;
 pub mod failure;
 pub mod fields;
+pub mod lines;
 pub mod state;
 pub mod value;
 
