@@ -11,7 +11,7 @@ use nalgebra::Vector2;
 use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::hold_good;
-use crate::mode_selection::{Choice, choose};
+use crate::mode_selection::{Choice, Decision, choose};
 use crate::motion::Evaluation;
 use crate::phase::{Phase, mus};
 use crate::stepper::Step;
@@ -55,6 +55,7 @@ impl Transition<'_> {
             }
             return match self.chosen_at(contacts, &step)? {
                 Ok(choice) => {
+                    self.begin_from_rest(contacts, &choice)?;
                     self.apply(contacts, &was, &choice);
                     self.front.next = self.front.next.min(FIRST);
                     self.confirm(contacts, &was)
@@ -80,6 +81,7 @@ impl Transition<'_> {
                 Ahead::End(choice) => {
                     self.forget_mode_events(contacts);
                     self.front.phases.clone_from_slice(was);
+                    self.begin_from_rest(contacts, &choice)?;
                     self.apply(contacts, was, &choice);
                 }
             }
@@ -96,6 +98,16 @@ impl Transition<'_> {
             return Ok(Ahead::Fit);
         }
         Ok(self.chosen_at(contacts, &step)?.map_or(Ahead::Fit, Ahead::End))
+    }
+
+    /// Slip that begins does so from none: what rounding has left of the slip before would have a direction.
+    fn begin_from_rest(&mut self, contacts: &[usize], choice: &Choice) -> Result<(), SimulationError> {
+        for (&contact, decision) in contacts.iter().zip(&choice.decisions) {
+            if matches!(decision, Decision::Slide(_, true) | Decision::Stick) {
+                self.front.phases[contact] = Phase::Stick;
+            }
+        }
+        self.correct()
     }
 
     /// Whether the contacts that have opened do not approach again.

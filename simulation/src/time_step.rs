@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use crate::event_functions::Watched;
 use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
-use crate::motion::{Evaluation, Failure};
+use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::phase::{Closed, Phase, mus};
 use crate::settled_slip::settled;
 use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
@@ -196,13 +196,16 @@ impl Transition<'_> {
         let (q, u) = motion.split(&step.end);
         let inputs = motion.inputs(step.t + step.h, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &inputs };
-        for (contact, hold) in closed.iter().zip(&here.holds) {
+        for (place, (contact, hold)) in closed.iter().zip(&here.holds).enumerate() {
             if let Hold::Slide(d) = hold {
                 let velocity = self
                     .mechanism
                     .contact_velocity(contact.contact, &state)
                     .map_err(|error| self.failure(Failure::State(error)))?;
                 let slip = Vector2::new(velocity.y, velocity.z);
+                if slip.norm() <= DIRECTION * here.support.velocity_size(place, u) {
+                    continue;
+                }
                 if slip.dot(d) < 0.5 * slip.norm() && step.h > 2.0 * ENDING {
                     return Ok(false);
                 }
