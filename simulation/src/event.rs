@@ -99,6 +99,8 @@ pub struct StruckTogether {
     pub energy_change: f64,
     /// independent speeds before
     pub speeds_before: Vec<f64>,
+    /// as [`Struck::spread`]
+    pub spread: Option<f64>,
 }
 
 /// What one contact did in an impact of several at once.

@@ -3,7 +3,7 @@
 //! With v- and v+ before and after, the impulses p of all contacts obey v+ = v- + W p with the laws of contact
 //! that lasts in place of accelerations: each contact asks for v+_n >= -e v-_n with p_n >= 0, one of them with
 //! equality, and friction abs(p_tan) <= mu p_n, which opposes the slip that is left (docs/theory.md, section
-//! 17.8).
+//! 17.13).
 
 use hodograph::State;
 use nalgebra::{DVector, Vector2};

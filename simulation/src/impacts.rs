@@ -1,7 +1,7 @@
 //! Impacts: which contacts strike at a time, in what order, and what follows.
 //!
 //! Contacts that approach at one time strike at once; those that these impulses press together strike next,
-//! until nothing approaches (docs/theory.md, section 17.8).
+//! until nothing approaches (docs/theory.md, section 17.13).
 
 use hodograph::{Kind, State};
 use nalgebra::{DMatrix, DVector};
@@ -79,7 +79,7 @@ impl Transition<'_> {
             }
             HitKind::Several(shares) => {
                 let energy_change = shares.iter().map(|share| share.work).sum();
-                let struck = StruckTogether { shares, energy_change, speeds_before: hit.before };
+                let struck = StruckTogether { shares, energy_change, speeds_before: hit.before, spread };
                 self.push(None, EventKind::StruckTogether(Box::new(struck)));
             }
         }
@@ -165,8 +165,9 @@ impl Transition<'_> {
         let mut list = Vec::new();
         for (place, &contact) in touching.iter().enumerate() {
             let rate = support.velocity[3 * place];
-            // A contact that lasts has no normal velocity but rounding.
-            let rounding = 1e-13 * support.velocity_size(place, speeds);
+            // A contact that lasts has no normal velocity but rounding, also where all speeds are small now.
+            let rounding = (1e-13 * support.velocity_size(place, speeds))
+                .max(1e-15 * support.velocity_size(place, &self.front.scale));
             let closed = self.front.phases[contact].is_closed();
             let least = first.map_or(0.0, |first| APPROACH * first).max(if closed { rounding } else { 0.0 });
             if rate < -least.max(if first.is_some() { rounding } else { 0.0 }) {
@@ -210,9 +211,18 @@ impl Transition<'_> {
             }
             let faded = hits.len() > touching.len() && fastest < FADED * scale;
             let hit = if hits.len() >= patience && touching.len() > 1 {
-                self.plastic_impact(touching, &speeds)?
+                self.plastic_impact(touching, &speeds)
             } else {
-                self.hit(&next, &speeds, faded)?
+                self.hit(&next, &speeds, faded)
+            };
+            let hit = match hit {
+                // Impulses of several at once that cannot be proven are not taken: the fastest strikes alone.
+                Err(SimulationError { reason: Reason::Forces(_), .. }) => {
+                    let fastest = approaching.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+                    let alone = fastest.map_or(next[0], |(contact, _)| *contact);
+                    self.hit(&[alone], &speeds, faded)?
+                }
+                hit => hit?,
             };
             speeds.clone_from(&hit.after);
             hits.push(hit);

@@ -8,14 +8,15 @@
 use hodograph::State;
 use nalgebra::Vector2;
 
-use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::hold_good;
+use crate::forces::{Lacking, margins};
+use crate::mode_changes::NO_SLIP;
 use crate::mode_selection::{Choice, Decision, choose};
-use crate::motion::Evaluation;
-use crate::phase::{Phase, mus};
+use crate::motion::{Evaluation, Failure};
+use crate::phase::{Closed, Phase, mus};
 use crate::stepper::Step;
 use crate::transition::Transition;
+use crate::{EventKind, SimulationError};
 
 /// The first time ahead, beside the last step, and how much longer each next one is.
 const FIRST: f64 = 1e-7;
@@ -129,37 +130,29 @@ impl Transition<'_> {
 
     /// Whether the conditions of the modes differ from zero at the end of a step by more than rounding, and
     /// whether they hold.
-    fn clear(&self, closed: &[crate::phase::Closed], step: &Step) -> Option<(bool, bool)> {
+    fn clear(&self, closed: &[Closed], step: &Step) -> Option<(bool, bool)> {
         let evaluation = self.motion(closed).evaluate(step.t + step.h, &step.end).ok()?;
         let Some(forces) = &evaluation.forces else { return Some((true, true)) };
         let forward = slips_forward(closed, &evaluation);
-        let fits = forward && hold_good(forces, &evaluation.holds, &mus(closed));
+        let margins = margins(forces, &evaluation.holds, &mus(closed));
+        let fits = forward && margins.iter().flatten().all(|margin| *margin >= 0.0);
         let size = forces.lambda.amax();
-        let least = crate::forces::margins(forces, &evaluation.holds, &mus(closed))
-            .iter()
-            .flat_map(|[normal, cone]| [normal / size, cone / (size * size)])
-            .fold(f64::INFINITY, |least, margin| if margin.abs() < least.abs() { margin } else { least });
-        let greatest_lack = crate::forces::margins(forces, &evaluation.holds, &mus(closed))
-            .iter()
-            .flat_map(|[normal, cone]| [normal / size, cone / (size * size)])
-            .fold(f64::INFINITY, f64::min);
-        let clear = !forward || greatest_lack < -CLEAR || least > CLEAR;
-        Some((clear, fits))
+        let relative: Vec<f64> =
+            margins.iter().flat_map(|[normal, cone]| [normal / size, cone / (size * size)]).collect();
+        let violated = relative.iter().any(|margin| *margin < -CLEAR);
+        let near = relative.iter().any(|margin| margin.abs() <= CLEAR);
+        Some((!forward || violated || !near, fits))
     }
 
     /// The modes that the state at the end of a step asks for.
-    fn chosen_at(
-        &self,
-        contacts: &[usize],
-        step: &Step,
-    ) -> Result<Result<Choice, crate::forces::Lacking>, SimulationError> {
+    fn chosen_at(&self, contacts: &[usize], step: &Step) -> Result<Result<Choice, Lacking>, SimulationError> {
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&step.end);
         let time = step.t + step.h;
         let inputs = motion.inputs(time, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
         let support = ClosedContacts::new(self.mechanism, &state, contacts, true)
-            .map_err(|error| self.failure(crate::motion::Failure::State(error)))?;
+            .map_err(|error| self.failure(Failure::State(error)))?;
         let slips: Vec<Option<Vector2<f64>>> = contacts
             .iter()
             .enumerate()
@@ -168,8 +161,7 @@ impl Transition<'_> {
                 Phase::Slide(began) => {
                     let slip = support.slip(i);
                     let size = support.velocity_size(i, u).max(support.velocity_size(i, &self.front.scale));
-                    (slip.norm() > crate::mode_changes::NO_SLIP * size && slip.dot(&began) > 0.0)
-                        .then(|| slip / slip.norm())
+                    (slip.norm() > NO_SLIP * size && slip.dot(&began) > 0.0).then(|| slip / slip.norm())
                 }
                 _ => None,
             })
@@ -180,7 +172,6 @@ impl Transition<'_> {
 
     /// Takes back what was said of the modes of contacts at this instant.
     fn forget_mode_events(&mut self, contacts: &[usize]) {
-        use crate::EventKind;
         let now = self.front.t;
         self.events.retain(|event| {
             let of_mode = matches!(
@@ -198,7 +189,7 @@ impl Transition<'_> {
 }
 
 /// Whether slip that began goes the way it began.
-fn slips_forward(closed: &[crate::phase::Closed], evaluation: &Evaluation) -> bool {
+fn slips_forward(closed: &[Closed], evaluation: &Evaluation) -> bool {
     closed
         .iter()
         .enumerate()

@@ -80,7 +80,7 @@ impl Transition<'_> {
         let energy_change: f64 = outcome.works.iter().sum();
         self.front.energy.impacts += energy_change;
         self.front.y[n..n + p].copy_from_slice(&after);
-        let struck = StruckTogether { shares, energy_change, speeds_before: speeds };
+        let struck = StruckTogether { shares, energy_change, speeds_before: speeds, spread: None };
         self.push(None, EventKind::StruckTogether(Box::new(struck)));
         Ok(Some(after))
     }
