@@ -74,6 +74,7 @@ mod reduced;
 mod saltation;
 mod scalar;
 mod sensitivity;
+pub mod several;
 mod solve;
 mod specialised;
 pub mod structure;

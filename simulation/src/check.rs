@@ -1,96 +1,96 @@
 //! Checks options, surfaces and start state before a motion begins.
 
-use hodograph::{Kind, State, Surface};
+use hodograph::{Contacts, Kind, State, Surface};
 
-use crate::motion::Failure;
-use crate::simulation::Simulation;
-use crate::{Drive, Reason, SimulationError};
+use crate::{Drive, Options, Reason, SimulationError};
 
-impl Simulation<'_> {
-    /// Checks options and state, and gives each contact its surface.
-    pub(crate) fn check(&mut self, state: &State<'_>) -> Result<(), SimulationError> {
-        let bad = |message: String| Err(self.error(None, Reason::Option(message)));
-        let options = &self.options;
-        for (what, value) in [
-            ("the relative tolerance", options.relative_tolerance),
-            ("the absolute tolerance", options.absolute_tolerance),
-            ("the greatest step", options.max_step),
-        ] {
-            if value.is_nan() || value <= 0.0 {
-                return bad(format!("{what} is {value}: it must be positive"));
-            }
+/// Checks options and state, and gives each contact its surface; a contact without a gap has none.
+pub(crate) fn check(
+    mechanism: &dyn Contacts<f64>,
+    state: &State<'_>,
+    options: &Options,
+) -> Result<Vec<Option<Surface<f64>>>, SimulationError> {
+    let error =
+        |contact: Option<usize>, reason: Reason| SimulationError::new(mechanism, state.time, contact, reason);
+    let bad = |message: String| Err(error(None, Reason::Option(message)));
+    for (what, value) in [
+        ("the relative tolerance", options.relative_tolerance),
+        ("the absolute tolerance", options.absolute_tolerance),
+        ("the greatest step", options.max_step),
+    ] {
+        if value.is_nan() || value <= 0.0 {
+            return bad(format!("{what} is {value}: it must be positive"));
         }
-        let rising = |pair: &[f64]| pair[0] < pair[1];
-        if !options.breaks.iter().all(|time| time.is_finite()) || !options.breaks.windows(2).all(rising) {
-            return bad("the times at which inputs jump must be finite and rise".to_owned());
-        }
-        if let Drive::Sampled { period, .. } = &options.drive
-            && !(period.is_finite() && *period > 0.0)
-        {
-            return bad(format!("the sampling time is {period}: it must be positive"));
-        }
-        for (kind, have) in [
-            (Kind::Coordinate, state.coordinates.len()),
-            (Kind::Speed, state.speeds.len()),
-            (Kind::Input, state.inputs.len()),
-        ] {
-            let count = self.mechanism.count(kind);
-            if have != count {
-                return bad(format!("the state has {have} numbers for {count} {}s", kind.noun()));
-            }
-        }
-        let numbers = [state.coordinates, state.speeds, state.inputs].concat();
-        if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
-            return bad(format!("a number of the start state is {value}: it must be finite"));
-        }
-        let count = self.mechanism.count(Kind::Contact);
-        for (contact, surface) in &options.surfaces {
-            if *contact >= count {
-                return bad(format!(
-                    "there is a surface for contact {contact}, but the mechanism has {count} contacts"
-                ));
-            }
-            if let Some(message) = wrong(surface) {
-                return Err(self.error(Some(*contact), Reason::Option(message)));
-            }
-        }
-        if let Some(surface) = &options.surface
-            && let Some(message) = wrong(surface)
-        {
-            return bad(message);
-        }
-        for &(contact, stiffness) in &options.stiffness {
-            if contact >= count {
-                return bad(format!(
-                    "there is a stiffness for contact {contact}, but the mechanism has {count} contacts"
-                ));
-            }
-            if !(stiffness.is_finite() && stiffness > 0.0) {
-                let message = format!("its stiffness is {stiffness}: it must be finite and positive");
-                return Err(self.error(Some(contact), Reason::Option(message)));
-            }
-        }
-        let mut surfaces = vec![None; count];
-        for (contact, slot) in surfaces.iter_mut().enumerate() {
-            let gap =
-                self.mechanism.gap(contact, state).map_err(|error| self.failure(Failure::State(error)))?;
-            // A contact without a gap cannot be seen to close.
-            if gap.is_none() {
-                continue;
-            }
-            let own = options.surfaces.iter().rev().find(|(index, _)| *index == contact);
-            *slot = own.map(|(_, surface)| *surface).or(options.surface);
-            if slot.is_none() {
-                return Err(self.error(
-                    Some(contact),
-                    Reason::Option("no surface is given for it: it needs mu, e and a law".to_owned()),
-                ));
-            }
-        }
-        self.surfaces = surfaces;
-        self.greatest = self.mechanism.kinetic_energy(state).unwrap_or(0.0);
-        Ok(())
     }
+    let rising = |pair: &[f64]| pair[0] < pair[1];
+    if !options.breaks.iter().all(|time| time.is_finite()) || !options.breaks.windows(2).all(rising) {
+        return bad("the times at which inputs jump must be finite and rise".to_owned());
+    }
+    if let Drive::Sampled { period, .. } = &options.drive
+        && !(period.is_finite() && *period > 0.0)
+    {
+        return bad(format!("the sampling time is {period}: it must be positive"));
+    }
+    for (kind, have) in [
+        (Kind::Coordinate, state.coordinates.len()),
+        (Kind::Speed, state.speeds.len()),
+        (Kind::Input, state.inputs.len()),
+    ] {
+        let count = mechanism.count(kind);
+        if have != count {
+            return bad(format!("the state has {have} numbers for {count} {}s", kind.noun()));
+        }
+    }
+    let numbers = [state.coordinates, state.speeds, state.inputs].concat();
+    if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
+        return bad(format!("a number of the start state is {value}: it must be finite"));
+    }
+    let count = mechanism.count(Kind::Contact);
+    for (contact, surface) in &options.surfaces {
+        if *contact >= count {
+            return bad(format!(
+                "there is a surface for contact {contact}, but the mechanism has {count} contacts"
+            ));
+        }
+        if let Some(message) = wrong(surface) {
+            return Err(error(Some(*contact), Reason::Option(message)));
+        }
+    }
+    if let Some(surface) = &options.surface
+        && let Some(message) = wrong(surface)
+    {
+        return bad(message);
+    }
+    for &(contact, stiffness) in &options.stiffness {
+        if contact >= count {
+            return bad(format!(
+                "there is a stiffness for contact {contact}, but the mechanism has {count} contacts"
+            ));
+        }
+        if !(stiffness.is_finite() && stiffness > 0.0) {
+            let message = format!("its stiffness is {stiffness}: it must be finite and positive");
+            return Err(error(Some(contact), Reason::Option(message)));
+        }
+    }
+    let mut surfaces = vec![None; count];
+    for (contact, slot) in surfaces.iter_mut().enumerate() {
+        let gap = mechanism
+            .gap(contact, state)
+            .map_err(|error| SimulationError::new(mechanism, state.time, None, Reason::State(error)))?;
+        // A contact without a gap cannot be seen to close.
+        if gap.is_none() {
+            continue;
+        }
+        let own = options.surfaces.iter().rev().find(|(index, _)| *index == contact);
+        *slot = own.map(|(_, surface)| *surface).or(options.surface);
+        if slot.is_none() {
+            return Err(error(
+                Some(contact),
+                Reason::Option("no surface is given for it: it needs mu, e and a law".to_owned()),
+            ));
+        }
+    }
+    Ok(surfaces)
 }
 
 /// What is wrong with a surface.

@@ -4,6 +4,8 @@
 use hodograph::{Contacts, Kind, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
+use crate::contact_problem::Problem;
+
 /// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact
 /// basis.
 #[derive(Clone, Debug)]
@@ -56,6 +58,11 @@ impl ClosedContacts {
             }
         }
         Ok(Self { contacts: contacts.to_vec(), coupled, partials, response, velocity, beta })
+    }
+
+    /// The problem of their forces, for these coefficients of friction and directions of slip.
+    pub fn problem<'a>(&'a self, mu: &'a [f64], slip: &'a [Option<Vector2<f64>>]) -> Problem<'a> {
+        Problem { w: &self.coupled, beta: &self.beta, mu, slip, noise: None }
     }
 
     /// Number of contacts.
@@ -199,50 +206,9 @@ fn least(matrix: &DMatrix<f64>, right: &DVector<f64>) -> (DVector<f64>, bool) {
     (x, rank == n)
 }
 
-/// A basis of the x with A x = 0, in columns: A P = Q R with pivots, and the x whose last entries, behind the
-/// rank, are those of a unit matrix.
-pub(crate) fn null_space(matrix: &DMatrix<f64>) -> DMatrix<f64> {
-    let n = matrix.ncols();
-    if n == 0 || matrix.nrows() == 0 {
-        return DMatrix::zeros(n, 0);
-    }
-    let qr = matrix.clone().col_piv_qr();
-    let r = qr.r();
-    let greatest = r[(0, 0)].abs();
-    let rank = (0..r.nrows().min(n)).take_while(|&i| r[(i, i)].abs() > NULL * greatest).count();
-    let mut basis = DMatrix::zeros(n, n - rank);
-    for k in 0..n - rank {
-        basis[(rank + k, k)] = 1.0;
-    }
-    if rank > 0 && rank < n {
-        let square = r.view((0, 0), (rank, rank)).into_owned();
-        if let Some(above) = square.solve_upper_triangular(&r.view((0, rank), (rank, n - rank)).into_owned())
-        {
-            basis.rows_mut(0, rank).copy_from(&-above);
-        }
-    }
-    qr.p().inv_permute_rows(&mut basis);
-    basis
-}
-
-/// Below this ratio to the greatest one a pivot of a null space counts as zero: forces along it leave
-/// accelerations of that ratio.
-const NULL: f64 = 1e-10;
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn null_spaces_have_the_dimension_that_the_rank_leaves() {
-        let matrix = DMatrix::from_row_slice(2, 4, &[1.0, 2.0, 0.0, -1.0, 2.0, 4.0, 0.0, 1.0]);
-        let basis = null_space(&matrix);
-        assert_eq!(basis.ncols(), 2);
-        assert!((&matrix * &basis).amax() < 1e-15);
-        assert_eq!(basis.rank(1e-10), 2);
-        assert_eq!(null_space(&DMatrix::identity(3, 3)).ncols(), 0);
-        assert_eq!(null_space(&DMatrix::zeros(3, 2)).ncols(), 2);
-    }
 
     /// Four corners that slide: the matrix has rank three, and the equations are consistent.
     #[test]

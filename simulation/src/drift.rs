@@ -39,8 +39,17 @@ pub(crate) fn close_loops(
     Ok(())
 }
 
+/// A gap that was not closed: the contact, and the gap that is left, m.
+pub(crate) struct Left {
+    pub contact: usize,
+    pub gap: f64,
+}
+
+/// A gap counts as closed where the correction leaves no more than this part of the coordinates' size.
+const CLOSED: f64 = 1e-10;
+
 /// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the
-/// mass matrix.
+/// mass matrix; the first gap that it does not close, if there is one.
 pub(crate) fn close_gaps(
     mechanism: &dyn Contacts<f64>,
     time: f64,
@@ -48,8 +57,10 @@ pub(crate) fn close_gaps(
     speeds: &[f64],
     inputs: &[f64],
     contacts: &[usize],
-) -> Result<(), StateError> {
+) -> Result<Option<Left>, StateError> {
     let n = coordinates.len();
+    let size = coordinates.iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
+    let mut before = f64::INFINITY;
     for _ in 0..STEPS {
         let state = State { time, coordinates: &*coordinates, speeds, inputs };
         let mut open = Vec::new();
@@ -60,9 +71,16 @@ pub(crate) fn close_gaps(
                 gaps.push(gap);
             }
         }
-        if gaps.iter().all(|gap| gap.abs() <= 1e-16) {
-            return Ok(());
+        let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
+        if largest <= 1e-16 {
+            return Ok(None);
         }
+        if largest > CLOSED * size && largest > 0.5 * before {
+            // Newton's method closes a gap whose rate is the normal velocity quadratically.
+            let worst = gaps.iter().position(|gap| gap.abs() == largest).unwrap_or(0);
+            return Ok(Some(Left { contact: open[worst], gap: gaps[worst] }));
+        }
+        before = largest;
         let support = ClosedContacts::new(mechanism, &state, &open, false)?;
         let rows: Vec<usize> = (0..open.len()).map(|i| 3 * i).collect();
         let mut wanted = DVector::zeros(3 * open.len());
@@ -75,7 +93,6 @@ pub(crate) fn close_gaps(
         mechanism.coordinate_rates(&state, &mut here)?;
         let moved: Vec<f64> = speeds.iter().zip(change.iter()).map(|(u, change)| u + change).collect();
         mechanism.coordinate_rates(&State { speeds: &moved, ..state }, &mut there)?;
-        let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
         for (coordinate, (here, there)) in coordinates.iter_mut().zip(here.iter().zip(&there)) {
             *coordinate += there - here;
         }
@@ -84,7 +101,7 @@ pub(crate) fn close_gaps(
             break;
         }
     }
-    Ok(())
+    Ok(None)
 }
 
 /// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use hodograph::{CollisionError, ContactError, StateError};
+use hodograph::{CollisionError, ContactError, Contacts, Kind, StateError};
 
 /// Why a simulation cannot continue, with time and contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,19 @@ pub struct SimulationError {
     pub contact: Option<String>,
     /// what is wrong
     pub reason: Reason,
+}
+
+impl SimulationError {
+    /// At a time, and at a contact by its number.
+    pub(crate) fn new(
+        mechanism: &dyn Contacts<f64>,
+        time: f64,
+        contact: Option<usize>,
+        reason: Reason,
+    ) -> Self {
+        let name = |index| mechanism.component(Kind::Contact, index);
+        Self { time, contact: contact.and_then(name).map(|component| component.name.to_owned()), reason }
+    }
 }
 
 /// What is wrong.
@@ -34,7 +47,23 @@ pub enum Reason {
     /// The integrator's steps became too small.
     Stalled,
     /// So many events followed each other without progress in time.
-    EventsWithoutEnd(usize),
+    EventsWithoutEnd {
+        /// how many
+        count: usize,
+        /// the closed contacts, and whether they stick or slide
+        modes: String,
+    },
+    /// So many steps followed each other without an event and with hardly any progress in time.
+    NoProgress {
+        /// how many
+        steps: usize,
+        /// over how long, s
+        time: f64,
+        /// the closed contacts, and whether they stick or slide
+        modes: String,
+    },
+    /// The gap of a closed contact is not zero, m: its rate is not the normal velocity of the contact.
+    Drift(f64),
     /// Several contacts were struck together and the option says to stop.
     Together(Vec<String>),
     /// Several contacts were struck together, and the impact is not one that can be solved as the option
@@ -55,7 +84,9 @@ impl Reason {
             Self::Option(_) => "bad_option",
             Self::Input(_) => "bad_input",
             Self::Stalled => "stalled",
-            Self::EventsWithoutEnd(_) => "events_without_end",
+            Self::EventsWithoutEnd { .. } => "events_without_end",
+            Self::NoProgress { .. } => "no_progress",
+            Self::Drift(_) => "drift",
             Self::Together(_) => "struck_together",
             Self::Lzb(_) => "lzb_not_covered",
             Self::Forces(_) => "no_forces",
@@ -85,9 +116,17 @@ impl fmt::Display for SimulationError {
                 out,
                 "the steps of the integration became too small: the motion is singular or too stiff there"
             ),
-            Reason::EventsWithoutEnd(count) => {
-                write!(out, "{count} events followed each other without progress in time")
+            Reason::EventsWithoutEnd { count, modes } => {
+                write!(out, "{count} events followed each other without progress in time; closed: {modes}")
             }
+            Reason::NoProgress { steps, time, modes } => write!(
+                out,
+                "{steps} steps of the integration advanced the motion by no more than {time:e} s; closed: {modes}; the model may be singular there"
+            ),
+            Reason::Drift(gap) => write!(
+                out,
+                "the contact is closed, but its gap is {gap:e} m: the rate of the gap is not the velocity of the point along the normal (a face that ends, or a gap that does not belong to the normal)"
+            ),
             Reason::Together(names) => {
                 write!(out, "{} are struck together, and the option is to stop there", names.join(", "))
             }

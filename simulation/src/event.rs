@@ -24,7 +24,7 @@ pub struct Event {
 pub enum EventKind {
     /// Bodies collided.
     Collision(Box<Struck>),
-    /// Several contacts were struck together and answered all at once: see [`crate::Together::Lzb`].
+    /// Several contacts struck at once: see [`crate::Together`].
     StruckTogether(Box<StruckTogether>),
     /// A sliding contact that no finite force can hold suffered an impact with zero speed of approach.
     ImpactWithoutCollision(Box<Struck>),
@@ -84,8 +84,9 @@ pub struct Struck {
     pub speeds_before: Vec<f64>,
     /// whether it was solved with e = 0 because the next bounce would be lower than the tolerance
     pub last_bounce: bool,
-    /// for the first of several contacts struck together: the greatest difference of a speed after all
-    /// collisions between the orders in which they may be solved; zero if the order does not matter
+    /// for the first of several contacts struck together, on request ([`crate::Options::compare_orders`]): the
+    /// greatest kinetic energy of the difference between this outcome and those of the orders in which they
+    /// may strike one after the other, J; zero if the order does not matter
     pub spread: Option<f64>,
 }
 
@@ -98,9 +99,11 @@ pub struct StruckTogether {
     pub energy_change: f64,
     /// independent speeds before
     pub speeds_before: Vec<f64>,
+    /// as [`Struck::spread`]
+    pub spread: Option<f64>,
 }
 
-/// What one contact did in an impact of several.
+/// What one contact did in an impact of several at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
     /// number of the contact
@@ -113,6 +116,6 @@ pub struct Share {
     pub approach: f64,
     /// normal velocity after, m/s
     pub separation: f64,
-    /// work of the normal impulse, J
+    /// work of the impulse, J
     pub work: f64,
 }

@@ -8,14 +8,19 @@ use crate::closed_contacts::ClosedContacts;
 use crate::forces::{JAM, margins};
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
-use crate::simulation::Simulation;
 use crate::stepper::Step;
+use crate::transition::Transition;
 
 /// A contact that lifts off is apart where its gap is above this, m.
 const LIFTED: f64 = 1e-11;
 /// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other
 /// body: it is zero but for rounding.
 const STILL: f64 = 2e-11;
+
+/// Angles turn by no more than this, in all, in a piece of a step that is looked at by nine points, rad.
+const TURN: f64 = 4.0;
+/// A step is looked at in no more pieces than these.
+const MOST_PIECES: f64 = 500.0;
 
 /// Places and weights of Gauss's rule on [0, 1].
 const GAUSS: [(f64, f64); 5] = [
@@ -35,20 +40,20 @@ pub(crate) enum Watched {
     Normal(usize),
     /// whether friction suffices
     Cone(usize),
-    /// f of the only closed contact
+    /// the least f of the sliding contacts
     Jam,
     /// a user's function, times this sign
     User(usize, f64),
 }
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// What must be watched over the next time `h`, and what rounding may do to it.
     pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(Kind::Coordinate);
-        let size = self.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
+        let size = self.front.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
         let rounding = 4.0 * f64::EPSILON * size;
-        for (contact, phase) in self.phases.iter().enumerate() {
+        for (contact, phase) in self.front.phases.iter().enumerate() {
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
             {
@@ -68,14 +73,15 @@ impl Simulation<'_> {
             if contact.slides.is_none() {
                 watched.push(Watched::Cone(place));
                 noise.push(0.0);
-            } else if closed.len() == 1 {
-                watched.push(Watched::Jam);
-                noise.push(0.0);
             }
         }
-        let (q, u) = (&self.y[..n], &self.y[n..n + self.mechanism.count(Kind::Speed)]);
+        if closed.iter().any(|contact| contact.slides.is_some()) {
+            watched.push(Watched::Jam);
+            noise.push(0.0);
+        }
+        let (q, u) = (&self.front.y[..n], &self.front.y[n..n + self.mechanism.count(Kind::Speed)]);
         for (index, function) in self.options.events.iter().enumerate() {
-            let value = function(self.t, q, u);
+            let value = function(self.front.t, q, u);
             watched.push(Watched::User(index, if value < 0.0 { -1.0 } else { 1.0 }));
             noise.push(1e-15);
         }
@@ -85,8 +91,9 @@ impl Simulation<'_> {
     /// The sizes of the terms that make up the velocity of a contact.
     fn velocity_size(&self, contact: usize) -> f64 {
         let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         ClosedContacts::new(self.mechanism, &state, &[contact], false)
             .map_or(0.0, |support| support.velocity_size(0, speeds).max(support.velocity.amax()))
     }
@@ -101,7 +108,7 @@ impl Simulation<'_> {
     ) -> Result<Vec<f64>, Failure> {
         let y = at(after);
         let motion = self.motion(closed);
-        let t = self.t + after;
+        let t = self.front.t + after;
         let (q, u) = motion.split(&y);
         let inputs = motion.inputs(t, &y)?;
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
@@ -118,7 +125,7 @@ impl Simulation<'_> {
             .iter()
             .map(|what| match *what {
                 Watched::Gap(contact) => {
-                    match self.phases[contact] {
+                    match self.front.phases[contact] {
                         Phase::Open(Leaving::Bounced) => self.mean_rate(contact, after, at),
                         // Its gap by integration of its rate, over the time where it was zero at the front;
                         // less what its acceleration is rounded to.
@@ -137,6 +144,52 @@ impl Simulation<'_> {
             .collect()
     }
 
+    /// The rates of what is watched, a time after the front, of those of which they are known: of gaps that are
+    /// watched by their values.
+    pub(crate) fn slopes(&self, watched: &[Watched], after: f64, y: &[f64]) -> Vec<Option<f64>> {
+        let motion = self.motion(&[]);
+        let t = self.front.t + after;
+        let (q, u) = motion.split(y);
+        let Ok(inputs) = motion.inputs(t, y) else { return vec![None; watched.len()] };
+        let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
+        let rate = |what: &Watched| match *what {
+            Watched::Gap(contact) if self.front.phases[contact] == Phase::Open(Leaving::Apart) => {
+                self.mechanism.contact_velocity(contact, &state).ok().map(|velocity| velocity.x)
+            }
+            _ => None,
+        };
+        watched.iter().map(rate).collect()
+    }
+
+    /// In how many pieces a step is looked at: in each of them angles turn by [`TURN`] at most, so that nine
+    /// points show every turn. `None` for a step of too many pieces.
+    pub(crate) fn pieces(&self, closed: &[Closed], step: &Step) -> Option<usize> {
+        let (n, motion) = (self.mechanism.count(Kind::Coordinate), self.motion(closed));
+        let angular: Vec<f64> = (0..n)
+            .map(|index| match self.mechanism.component(Kind::Coordinate, index).map(|c| c.unit) {
+                Some("rad" | "deg") => 1.0,
+                // A quaternion turns by half the angle.
+                Some("1" | "") => 2.0,
+                _ => 0.0,
+            })
+            .collect();
+        if angular.iter().all(|weight| *weight == 0.0) {
+            return Some(1);
+        }
+        let mut fastest = 0.0_f64;
+        for (time, y) in [(step.t, step.start()), (step.t + step.h, &step.end[..])] {
+            let (q, u) = motion.split(y);
+            let inputs = motion.inputs(time, y).ok()?;
+            let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
+            let mut rates = vec![0.0; n];
+            self.mechanism.coordinate_rates(&state, &mut rates).ok()?;
+            fastest =
+                fastest.max(rates.iter().zip(&angular).map(|(rate, weight)| (rate * weight).abs()).sum());
+        }
+        let pieces = (fastest * step.h / TURN).ceil();
+        (pieces <= MOST_PIECES).then_some((pieces as usize).max(1))
+    }
+
     /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the
     /// gap's rounding, which a short time would magnify, and does not vanish at the front. By Gauss's
     /// five points.
@@ -146,7 +199,7 @@ impl Simulation<'_> {
         after: f64,
         at: &mut dyn FnMut(f64) -> Vec<f64>,
     ) -> Result<f64, Failure> {
-        self.mean_rate_from(self.t, contact, after, at)
+        self.mean_rate_from(self.front.t, contact, after, at)
     }
 
     fn mean_rate_from(
@@ -174,7 +227,7 @@ impl Simulation<'_> {
         let time = step.t + step.h;
         let motion = self.motion(&[]);
         let (q, u) = motion.split(&step.end);
-        let state = State { time, coordinates: q, speeds: u, inputs: &self.held };
+        let state = State { time, coordinates: q, speeds: u, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
         let gap = self.mechanism.gap(contact, &state).map_err(fault)?.unwrap_or(1.0);
         Ok((gap, self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x))
@@ -182,14 +235,14 @@ impl Simulation<'_> {
 
     /// Contacts that were about to leave are apart once their gaps are open; the step has just been taken.
     pub(crate) fn arm(&mut self, step: &mut Step) -> Result<(), SimulationError> {
-        for contact in 0..self.phases.len() {
-            let before = match self.phases[contact] {
+        for contact in 0..self.front.phases.len() {
+            let before = match self.front.phases[contact] {
                 Phase::Open(Leaving::Bounced) if step.h > 0.0 => 0.0,
                 Phase::Open(Leaving::Lifted { risen, .. }) => risen,
                 _ => continue,
             };
             let (gap, _) = self.gap_at(step, contact)?;
-            self.phases[contact] =
+            self.front.phases[contact] =
                 Phase::Open(if gap > LIFTED { Leaving::Apart } else { self.risen(contact, before, step)? });
         }
         Ok(())
@@ -206,16 +259,17 @@ impl Simulation<'_> {
 
     /// Contacts that lift off here: what the rounding of their accelerations is.
     pub(crate) fn weigh_lifted(&mut self, here: &Evaluation) -> Result<(), SimulationError> {
-        let lifted: Vec<usize> = (0..self.phases.len())
-            .filter(|&contact| matches!(self.phases[contact], Phase::Open(Leaving::Lifted { .. })))
+        let lifted: Vec<usize> = (0..self.front.phases.len())
+            .filter(|&contact| matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. })))
             .collect();
         if lifted.is_empty() {
             return Ok(());
         }
         let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
-        let inputs = self.motion(&[]).inputs(self.t, &self.y).map_err(|failure| self.failure(failure))?;
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &inputs };
+        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
+        let inputs =
+            self.motion(&[]).inputs(self.front.t, &self.front.y).map_err(|failure| self.failure(failure))?;
+        let state = State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &inputs };
         let support = ClosedContacts::new(self.mechanism, &state, &lifted, true)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let pressed = here.forces.as_ref().map_or(0.0, |forces| {
@@ -223,7 +277,7 @@ impl Simulation<'_> {
         });
         for (place, &contact) in lifted.iter().enumerate() {
             let size = support.beta.fixed_rows::<3>(3 * place).amax() + pressed;
-            if let Phase::Open(Leaving::Lifted { rounding, .. }) = &mut self.phases[contact] {
+            if let Phase::Open(Leaving::Lifted { rounding, .. }) = &mut self.front.phases[contact] {
                 *rounding = STILL * size;
             }
         }

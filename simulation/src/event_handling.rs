@@ -1,20 +1,25 @@
 //! Handles an event within a step: goes to the state there, and changes the modes.
 
+use nalgebra::{DVector, Vector2};
+
 use crate::event_functions::Watched;
 use crate::event_location::Crossing;
-use crate::motion::Evaluation;
-use crate::phase::{Closed, Leaving, Phase};
-use crate::simulation::Simulation;
-use crate::slip_end::{ENDING, time_of_slip};
+use crate::forces::Hold;
+use crate::mode_changes::Ending;
+use crate::mode_selection::{Decision, choose};
+use crate::motion::{Evaluation, Failure};
+use crate::phase::{Closed, Leaving, Phase, mus};
+use crate::slip_end::{ENDING, may_end, time_of_slip};
 use crate::stepper::Step;
-use crate::{EventKind, Reason, SimulationError};
+use crate::transition::Transition;
+use crate::{EventKind, SimulationError};
 
 /// The greatest number of events without progress in time.
 const CROWD: usize = 2000;
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// Goes to an event and handles it.
-    pub(crate) fn happen(
+    pub(crate) fn handle_event(
         &mut self,
         closed: &[Closed],
         whole: Step,
@@ -22,30 +27,29 @@ impl Simulation<'_> {
         crossing: Crossing,
     ) -> Result<(), SimulationError> {
         let mut step = self.at_event(closed, &whole, watched, &crossing)?;
-        self.next = whole.next.min((10.0 * step.h).max(1e-7));
-        let start = self.t;
+        self.front.next = whole.next.min((10.0 * step.h).max(1e-7));
+        let start = self.front.t;
         self.commit(&mut step)?;
         self.crowded(start)?;
         match watched {
             Watched::Gap(contact) => {
                 let (_, rate) = self.gap_at(&step, contact)?;
                 if rate >= 0.0 {
+                    let leaves = matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. }));
                     // It only touches.
-                    self.phases[contact] = Phase::Open(Leaving::NOW);
-                    return Ok(());
+                    self.front.phases[contact] = Phase::Open(Leaving::NOW);
+                    // One that leaves and touches again at once does not leave.
+                    return if leaves { self.stay(contact) } else { Ok(()) };
                 }
                 self.strike(contact)
             }
-            Watched::Normal(place) => {
-                let contact = closed[place].contact;
-                self.lift_off(contact)
-            }
-            Watched::Cone(place) => self.begin_slip(closed[place].contact),
-            Watched::Jam => self.impact_without_collision(closed[0].contact),
+            Watched::Normal(place) => self.modes_ended(closed[place].contact, Ending::NormalForce),
+            Watched::Cone(place) => self.modes_ended(closed[place].contact, Ending::Friction),
+            Watched::Jam => self.jammed(closed),
             Watched::User(index, _) => {
                 self.push(None, EventKind::Zero(index));
                 // Past the zero, so that it is not found again.
-                let small = 1e-12 * self.t.abs().max(1e-3);
+                let small = 1e-12 * self.front.t.abs().max(1e-3);
                 if let Some(mut past) = self.part(closed, small) {
                     self.commit(&mut past)?;
                 }
@@ -54,27 +58,66 @@ impl Simulation<'_> {
         }
     }
 
-    /// Slip of a contact ends after a short time.
+    /// A contact that was about to leave has not: decides its mode with those of all closed contacts.
+    fn stay(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let was = self.front.phases.clone();
+        let closed = |&other: &usize| other == contact || was[other].is_closed();
+        let candidates: Vec<usize> = (0..was.len()).filter(closed).collect();
+        self.decide(&candidates, &was)
+    }
+
+    /// A sliding contact jams: its force grows without bound.
+    fn jammed(&mut self, closed: &[Closed]) -> Result<(), SimulationError> {
+        let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
+        let place = match &here {
+            Ok(here) => here.forces.as_ref().and_then(|forces| forces.jams).unwrap_or(0),
+            Err(Failure::Contact(contact, _)) => {
+                closed.iter().position(|closed| closed.contact == *contact).unwrap_or(0)
+            }
+            Err(_) => 0,
+        };
+        self.impact_without_collision(closed[place].contact)
+    }
+
+    /// The contacts, by place, whose slip is so small that it ends now: all that may end within 3 ns are
+    /// supposed to have stopped, and the forces tell which of them stick. Slip that small ends where sticking
+    /// is possible (docs/theory.md, section 17.11).
+    pub(crate) fn stops(&self, closed: &[Closed], here: &Evaluation, speeds: &[f64]) -> Vec<usize> {
+        let ends = |place: usize| {
+            time_of_slip(here, place, &self.front.scale).is_some_and(|left| left < 3.0 * ENDING)
+                || may_end(here, place, speeds, &self.front.scale, 3.0 * ENDING)
+        };
+        let stopped: Vec<usize> =
+            (0..closed.len()).filter(|&place| closed[place].slides.is_some() && ends(place)).collect();
+        let mut slips: Vec<Option<Vector2<f64>>> = here.holds.iter().map(Hold::direction).collect();
+        for &place in &stopped {
+            slips[place] = None;
+        }
+        let mu = mus(closed);
+        let before = here.forces.as_ref().map_or_else(|| DVector::zeros(0), |forces| forces.lambda.clone());
+        match choose(&here.support, &slips, &mu, &before) {
+            Ok(choice) => {
+                stopped.into_iter().filter(|&place| choice.decisions[place] == Decision::Stick).collect()
+            }
+            Err(_) => Vec::new(),
+        }
+    }
+
+    /// Slip of contacts ends after a short time.
     pub(crate) fn end_slip(
         &mut self,
         closed: &[Closed],
         here: &Evaluation,
-        place: usize,
+        places: &[usize],
         time: f64,
     ) -> Result<(), SimulationError> {
-        let start = self.t;
-        let mut end = self.y.clone();
+        let start = self.front.t;
+        let mut end = self.front.y.clone();
         end.iter_mut().zip(&here.rates).for_each(|(value, rate)| *value += time * rate);
-        let mut step = Step::still(self.t, time, &end);
-        let mut stopped = Vec::new();
-        for (i, contact) in closed.iter().enumerate() {
-            // Contacts of one body may stop together.
-            let together =
-                contact.slides.is_some() && time_of_slip(here, i).is_some_and(|left| left < 3.0 * ENDING);
-            if i == place || together {
-                self.phases[contact.contact] = Phase::Stick;
-                stopped.push(contact.contact);
-            }
+        let mut step = Step::still(self.front.t, time, &end);
+        let stopped: Vec<usize> = places.iter().map(|&place| closed[place].contact).collect();
+        for &contact in &stopped {
+            self.front.phases[contact] = Phase::Stick;
         }
         self.commit(&mut step)?;
         self.crowded(start)?;
@@ -83,13 +126,13 @@ impl Simulation<'_> {
 
     /// Counts events that follow each other without progress.
     pub(crate) fn crowded(&mut self, before: f64) -> Result<(), SimulationError> {
-        let close = 1e-12 * self.t.abs().max(1.0);
-        if self.t - before > close {
-            self.crowd = (0, self.t);
+        let close = 1e-12 * self.front.t.abs().max(1.0);
+        if self.front.t - before > close {
+            self.front.crowd = 0;
         }
-        self.crowd.0 += 1;
-        if self.crowd.0 > CROWD {
-            return Err(self.error(None, Reason::EventsWithoutEnd(CROWD)));
+        self.front.crowd += 1;
+        if self.front.crowd > CROWD {
+            return Err(self.error(None, self.without_end(CROWD)));
         }
         Ok(())
     }

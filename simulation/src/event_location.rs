@@ -5,6 +5,10 @@
 //! half width r about m it is at least p(m) - |p'(m)| r - P r^2 / 2, where P bounds |p''|. Intervals in which
 //! this excludes a zero are skipped, on intervals in which p' cannot vanish the ends are compared, and all
 //! others are halved. So no extremum is missed.
+//!
+//! A function that turns many times between the points may look smooth at them. So a step is looked at in
+//! pieces, in each of which angles turn by a few radians at most, and the slope of the polynomial is compared
+//! with that of the function, which is known of gaps (docs/theory.md, section 17.12).
 
 /// Degrees tried, each twice the one before: points are used again.
 const DEGREES: [usize; 3] = [8, 16, 32];
@@ -15,6 +19,23 @@ const DEPTH: usize = 24;
 const MOST: usize = 20_000;
 /// A step in so many halves, at least, before what seems to be rounding is taken for it.
 const HALVED: usize = 3;
+
+/// Places of a piece, in [-1, 1], at which slopes are compared, and the greatest difference relative to what the
+/// polynomial's slope is made of.
+const SLOPES_AT: [f64; 2] = [-0.371, 0.653];
+const SLOPES_DIFFER: f64 = 1e-3;
+
+/// Functions whose first crossing is looked for.
+pub(crate) struct Functions<'f> {
+    /// how many
+    pub count: usize,
+    /// what rounding may do to each
+    pub noise: &'f [f64],
+    /// all of them at a fraction of the step, or nothing where they cannot be evaluated
+    pub values: &'f mut dyn FnMut(f64) -> Option<Vec<f64>>,
+    /// their rates by the fraction, of those of which they are known
+    pub slopes: &'f mut dyn FnMut(f64) -> Vec<Option<f64>>,
+}
 
 /// The functions have no values somewhere in the step, or it is too long for what they do: a shorter one must
 /// be looked at.
@@ -86,6 +107,14 @@ impl Chebyshev {
         (first + x * b1 - b2, b1 + x * d1 - d2)
     }
 
+    /// Whether its slope at a place is this one, as nearly as interpolation gives slopes.
+    fn has_slope(&self, x: f64, slope: f64, noise: f64) -> bool {
+        let terms = |(k, c): (usize, &f64)| (k * k) as f64 * c.abs();
+        let size: f64 = self.coefficients.iter().enumerate().map(terms).sum();
+        let rounding = 1e3 * noise + 1e-12 * self.size();
+        (self.at(x).1 - slope).abs() <= SLOPES_DIFFER * size.max(slope.abs()) + rounding
+    }
+
     /// The first place in [low, high] where the polynomial falls below -noise.
     fn first_below(&self, low: f64, high: f64, noise: f64, depth: usize) -> Option<f64> {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -123,33 +152,35 @@ impl Chebyshev {
     }
 }
 
-/// The first crossing of `count` functions over the fractions [0, 1] of a step. `values` gives all functions
-/// at a fraction, or nothing where they cannot be evaluated; `noise` is what rounding may do to each.
+/// The first crossing of functions over the fractions [0, 1] of a step, which is looked at in so many pieces at
+/// least.
 ///
 /// # Errors
 ///
 /// [`Unresolved`] where functions have no values, or too many evaluations were needed.
 pub(crate) fn first_crossing(
-    count: usize,
-    noise: &[f64],
-    values: &mut dyn FnMut(f64) -> Option<Vec<f64>>,
+    functions: &mut Functions<'_>,
+    pieces: usize,
 ) -> Result<Option<Crossing>, Unresolved> {
-    if count == 0 {
+    if functions.count == 0 {
         return Ok(None);
     }
-    let active: Vec<usize> = (0..count).collect();
+    let active: Vec<usize> = (0..functions.count).collect();
     let mut left = MOST;
-    let mut counted = |place| {
-        left = left.checked_sub(1)?;
-        values(place)
-    };
-    within(&active, noise, &mut counted, 0.0, 1.0, DEPTH)
+    for piece in 0..pieces.max(1) {
+        let end = |piece: usize| piece as f64 / pieces.max(1) as f64;
+        let found = within(&active, functions, &mut left, end(piece), end(piece + 1), DEPTH)?;
+        if found.is_some() {
+            return Ok(found);
+        }
+    }
+    Ok(None)
 }
 
 fn within(
     active: &[usize],
-    noise: &[f64],
-    values: &mut dyn FnMut(f64) -> Option<Vec<f64>>,
+    functions: &mut Functions<'_>,
+    budget: &mut usize,
     low: f64,
     high: f64,
     depth: usize,
@@ -157,6 +188,13 @@ fn within(
     let mut points: Vec<Option<Vec<f64>>> = Vec::new();
     let mut unresolved: Vec<usize> = active.to_vec();
     let mut found: Option<Crossing> = None;
+    let mut values = |functions: &mut Functions<'_>, place: f64| {
+        *budget = budget.checked_sub(1)?;
+        (functions.values)(place)
+    };
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    let slopes: Vec<Vec<Option<f64>>> =
+        SLOPES_AT.iter().map(|x| (functions.slopes)(middle + half * x)).collect();
     for degree in DEGREES {
         // Every second point is known.
         let mut next = vec![None; degree + 1];
@@ -174,7 +212,7 @@ fn within(
             } else {
                 low + 0.5 * (high - low) * (1.0 + x)
             };
-            *slot = known.or_else(|| values(place));
+            *slot = known.or_else(|| values(functions, place));
         }
         points = next;
         let rows: Vec<&Vec<f64>> =
@@ -183,15 +221,24 @@ fn within(
         for function in unresolved {
             let column: Vec<f64> = rows.iter().map(|row| row[function]).collect();
             let polynomial = Chebyshev::through(&column);
-            let noise = noise.get(function).copied().unwrap_or(0.0);
+            let noise = functions.noise.get(function).copied().unwrap_or(0.0);
             let (size, error) = (polynomial.size(), polynomial.error);
             let rest = size - 2.0 * polynomial.coefficients[0].abs();
             let fine = (1e-13 * size).max(4.0 * noise);
+            let rounding = degree == DEGREES[2] && depth + HALVED <= DEPTH && error <= 1e-9 * size;
+            let known = slopes.iter().map(|slopes| slopes.get(function).copied().flatten());
+            let alike = SLOPES_AT
+                .iter()
+                .zip(known)
+                .all(|(&x, slope)| slope.is_none_or(|slope| polynomial.has_slope(x, slope * half, noise)));
+            if !alike && !rounding {
+                left.push(function);
+                continue;
+            }
             // Far from zero, or well interpolated.
             if polynomial.coefficients[0] > 0.0 && rest + 8.0 * error < 0.0 {
                 continue;
             }
-            let rounding = degree == DEGREES[2] && depth + HALVED <= DEPTH && error <= 1e-9 * size;
             if error > fine && !rounding {
                 left.push(function);
                 continue;
@@ -210,10 +257,10 @@ fn within(
     }
     if depth == 0 || high - low < 1e-12 {
         // Not smooth even here: the ends tell.
-        let ends = (values(low), values(high));
+        let ends = (values(functions, low), values(functions, high));
         if let (Some(_), Some(last)) = ends {
             for function in unresolved {
-                let noise = noise.get(function).copied().unwrap_or(0.0);
+                let noise = functions.noise.get(function).copied().unwrap_or(0.0);
                 if last[function] < -noise && found.is_none_or(|crossing| high < crossing.place) {
                     found = Some(Crossing { function, place: high });
                 }
@@ -221,9 +268,8 @@ fn within(
         }
         return Ok(found);
     }
-    let middle = 0.5 * (low + high);
     let rest = unresolved;
-    let first = within(&rest, noise, values, low, middle, depth - 1)?;
+    let first = within(&rest, functions, budget, low, middle, depth - 1)?;
     let earliest = |a: Option<Crossing>, b: Option<Crossing>| match (a, b) {
         (Some(a), Some(b)) => Some(if b.place < a.place { b } else { a }),
         (a, b) => a.or(b),
@@ -234,15 +280,50 @@ fn within(
     if found.is_some_and(|crossing| crossing.place <= middle) {
         return Ok(found);
     }
-    Ok(earliest(found, within(&rest, noise, values, middle, high, depth - 1)?))
+    Ok(earliest(found, within(&rest, functions, budget, middle, high, depth - 1)?))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn crossing(noise: f64, values: &mut dyn FnMut(f64) -> Option<f64>) -> Result<Option<f64>, Unresolved> {
+        let mut functions = Functions {
+            count: 1,
+            noise: &[noise],
+            values: &mut |x| values(x).map(|value| vec![value]),
+            slopes: &mut |_| vec![None],
+        };
+        Ok(first_crossing(&mut functions, 1)?.map(|crossing| crossing.place))
+    }
+
     fn first(f: impl Fn(f64) -> f64) -> Option<f64> {
-        first_crossing(1, &[0.0], &mut |x| Some(vec![f(x)])).unwrap().map(|crossing| crossing.place)
+        crossing(0.0, &mut |x| Some(f(x))).unwrap()
+    }
+
+    /// A cosine of many turns looks constant at the nine points of a piece; its slopes tell.
+    #[test]
+    fn turns_between_the_points_are_seen_by_their_slopes() {
+        let mut missed = 0;
+        for k in 1..400 {
+            let omega = 2.0 * std::f64::consts::PI * f64::from(k);
+            let gap = |x: f64| 0.5 + 0.6 * (omega * x + 0.1).cos() - 0.01 * x;
+            let rate = |x: f64| -0.6 * omega * (omega * x + 0.1).sin() - 0.01;
+            let mut functions = Functions {
+                count: 1,
+                noise: &[0.0],
+                values: &mut |x| Some(vec![gap(x)]),
+                slopes: &mut |x| vec![Some(rate(x))],
+            };
+            let found = first_crossing(&mut functions, 1).unwrap();
+            let mut x = 0.0;
+            while gap(x) > 0.0 {
+                x += 1e-3 / omega;
+            }
+            let place = found.map_or(f64::NAN, |crossing| crossing.place);
+            missed += usize::from((place - x).abs() > 2e-3 / omega);
+        }
+        assert_eq!(missed, 0);
     }
 
     #[test]
@@ -281,11 +362,11 @@ mod tests {
         let mut count = 0;
         let mut evaluated = |f: &dyn Fn(f64) -> Option<f64>| {
             count = 0;
-            let found = first_crossing(1, &[0.0], &mut |x| {
+            let found = crossing(0.0, &mut |x| {
                 count += 1;
-                f(x).map(|value| vec![value])
+                f(x)
             });
-            (found.map(|crossing| crossing.map(|crossing| crossing.place)), count)
+            (found, count)
         };
         let rough = |x: f64| 1e-10 * ((1e9 * x).sin() * 1e6).sin();
         let (found, count) = evaluated(&|x| Some(1.5 - x + rough(x)));
@@ -309,7 +390,7 @@ mod tests {
         for k in 0..60 {
             let tiny = 1e-16 * f64::from(k).exp2();
             let _ = first(|x| tiny * (1e5 * x).sin());
-            let _ = first_crossing(1, &[1.0], &mut |x| Some(vec![tiny * (20.0 * x).sin() - 1.0]));
+            let _ = crossing(1.0, &mut |x| Some(tiny * (20.0 * x).sin() - 1.0));
         }
     }
 

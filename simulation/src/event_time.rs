@@ -5,15 +5,15 @@ use crate::SimulationError;
 use crate::event_functions::Watched;
 use crate::event_location::Crossing;
 use crate::phase::{Closed, Leaving, Phase};
-use crate::simulation::Simulation;
 use crate::stepper::Step;
+use crate::transition::Transition;
 
 /// The most trials of a time. Secants need three to five; where an input bends, intervals are halved.
 const TRIALS: usize = 80;
 /// After this many trials intervals are halved.
 const SECANTS: usize = 8;
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// The part of a step that ends at the event in it.
     pub(crate) fn at_event(
         &self,
@@ -42,7 +42,7 @@ impl Simulation<'_> {
             let Some(part) = self.part(closed, after) else { break };
             step = part;
             let (gap, rate) = self.gap_at(&step, contact)?;
-            let gap = match self.phases[contact] {
+            let gap = match self.front.phases[contact] {
                 Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
                     let h = step.h;
                     let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });

@@ -1,113 +1,75 @@
-//! Advances the front of a motion, that is the state at the end of the last step, and corrects its drift.
+//! The front of a motion: everything that the future of a motion depends on, as one value.
+//!
+//! A front is cloned to try a step or a change of modes, and replaced to take it. What fails leaves the
+//! front as it was.
 
-use hodograph::{Kind, State};
+use hodograph::State;
+use nalgebra::Vector3;
 
-use crate::motion::{Failure, Motion};
-use crate::phase::{Closed, Modes};
-use crate::simulation::Simulation;
-use crate::stepper::{self, Step};
-use crate::{Event, EventKind, SimulationError, drift};
+use crate::EnergyAccount;
+use crate::motion::WORKS;
+use crate::phase::{Leaving, Phase};
 
-impl Simulation<'_> {
-    /// Takes the end of a step as the new front.
-    pub(crate) fn commit(&mut self, step: &mut Step) -> Result<(), SimulationError> {
-        self.past = self.modes();
-        self.t = step.t + step.h;
-        self.y.copy_from_slice(&step.end);
-        self.correct()?;
-        step.corrected(&self.y);
-        self.arm(step)?;
-        self.step = Some(step.clone());
-        let n = self.mechanism.count(Kind::Coordinate);
-        for (scale, speed) in self.scale.iter_mut().zip(&self.y[n..]) {
-            *scale = scale.max(speed.abs());
-        }
-        let p = self.scale.len();
-        let state =
-            State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &self.held };
-        if let Ok(kinetic) = self.mechanism.kinetic_energy(&state) {
-            self.greatest = self.greatest.max(kinetic);
-        }
-        Ok(())
-    }
-
-    /// Corrects the drift of the front.
-    pub(crate) fn correct(&mut self) -> Result<(), SimulationError> {
-        let mut y = std::mem::take(&mut self.y);
-        let modes = self.modes();
-        let done = self.put_right(&modes, self.t, &mut y);
-        self.y = y;
-        done
-    }
-
-    /// The modes at the front.
-    pub(crate) fn modes(&self) -> Modes {
-        Modes { closed: self.closed(), held: self.held.clone(), resting: self.resting }
-    }
-
-    /// Corrects the drift of a state that was integrated in these modes.
-    fn put_right(&self, modes: &Modes, t: f64, y: &mut [f64]) -> Result<(), SimulationError> {
-        if modes.resting {
-            // Not even the last bit of a quaternion's length changes.
-            return Ok(());
-        }
-        let n = self.mechanism.count(Kind::Coordinate);
-        let p = self.mechanism.count(Kind::Speed);
-        let closed: Vec<(usize, bool)> =
-            modes.closed.iter().map(|closed| (closed.contact, closed.slides.is_none())).collect();
-        let mut q = y[..n].to_vec();
-        let mut u = y[n..n + p].to_vec();
-        let moved = (|| {
-            drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
-            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
-            let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-            drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)
-        })();
-        moved.map_err(|error| self.failure(Failure::State(error)))?;
-        y[..n].copy_from_slice(&q);
-        y[n..n + p].copy_from_slice(&u);
-        Ok(())
-    }
-
-    /// The state at a time in the last step, integrated anew up to it: as exact as the step itself.
-    pub(crate) fn within_step(&self, time: f64) -> Option<Vec<f64>> {
-        let step = self.step.as_ref()?;
-        let motion = Motion {
-            mechanism: self.mechanism,
-            drive: &self.options.drive,
-            held: &self.past.held,
-            closed: &self.past.closed,
-            resting: self.past.resting,
-        };
-        let part = part_of(&motion, step.t, step.start(), time - step.t)?;
-        let mut y = part.end;
-        self.put_right(&self.past, time, &mut y).ok()?;
-        Some(y)
-    }
-
-    /// A part of the step from the front, integrated anew.
-    pub(crate) fn part(&self, closed: &[Closed], h: f64) -> Option<Step> {
-        part_of(&self.motion(closed), self.t, &self.y, h)
-    }
-
-    /// Records an event with the state here.
-    pub(crate) fn push(&mut self, contact: Option<usize>, kind: EventKind) {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        self.queue.push_back(Event {
-            time: self.t,
-            contact,
-            kind,
-            coordinates: self.y[..n].to_vec(),
-            speeds: self.y[n..n + p].to_vec(),
-        });
-    }
+/// The state at the end of the last step, after its events.
+#[derive(Clone, Debug)]
+pub(crate) struct Front {
+    /// time, s
+    pub t: f64,
+    /// coordinates, speeds, work of friction, work of inputs
+    pub y: Vec<f64>,
+    /// the inputs that are held
+    pub held: Vec<f64>,
+    /// phase of each contact
+    pub phases: Vec<Phase>,
+    /// force of each contact when its mode was last decided, N
+    pub forces: Vec<Vector3<f64>>,
+    /// rate at which the direction of small slip turns where it follows from the state, rad/s
+    pub omegas: Vec<Option<f64>>,
+    /// whether nothing moves
+    pub resting: bool,
+    /// contacts whose bounces end at a time
+    pub chatter: Vec<(f64, usize)>,
+    /// size of the next step that the error of the last one allows, s
+    pub next: f64,
+    /// the next sampling time of a controller, s
+    pub next_sample: Option<f64>,
+    /// samples so far
+    pub samples: u64,
+    /// greatest size of each speed so far
+    pub scale: Vec<f64>,
+    /// greatest kinetic energy so far, J
+    pub greatest: f64,
+    /// the works of impacts so far, J
+    pub energy: EnergyAccount,
+    /// events without progress in time
+    pub crowd: usize,
+    /// steps since the last event, the time of that event, and the greatest step so far, s
+    pub steps: (usize, f64, f64),
 }
 
-/// The motion from a state on, over exactly so long.
-fn part_of(motion: &Motion<'_>, t: f64, y: &[f64], h: f64) -> Option<Step> {
-    let rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
-        Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
-        Err(_) => rates.fill(f64::NAN),
-    };
-    stepper::part(&rates, t, y, h)
+impl Front {
+    /// The start of a motion. No contact is closed yet.
+    pub fn new(state: &State<'_>, contacts: usize, sampled: bool) -> Self {
+        let mut y = state.coordinates.to_vec();
+        y.extend_from_slice(state.speeds);
+        y.resize(y.len() + WORKS, 0.0);
+        Self {
+            t: state.time,
+            y,
+            held: state.inputs.to_vec(),
+            phases: vec![Phase::Open(Leaving::Apart); contacts],
+            forces: vec![Vector3::zeros(); contacts],
+            omegas: vec![None; contacts],
+            resting: false,
+            chatter: Vec::new(),
+            next: 1e-3,
+            next_sample: sampled.then_some(state.time),
+            samples: 0,
+            scale: state.speeds.iter().map(|speed| speed.abs()).collect(),
+            greatest: 0.0,
+            energy: EnergyAccount::default(),
+            crowd: 0,
+            steps: (0, state.time, 0.0),
+        }
+    }
 }

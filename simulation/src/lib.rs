@@ -31,6 +31,8 @@
 
 mod check;
 mod closed_contacts;
+mod commit;
+pub mod contact_problem;
 mod drift;
 mod drive;
 mod energy;
@@ -42,7 +44,10 @@ mod event_location;
 mod event_time;
 mod forces;
 mod front;
+mod impact_at_once;
+mod impact_without_collision;
 mod impacts;
+mod look_ahead;
 mod lzb;
 mod mode_changes;
 mod mode_selection;
@@ -54,10 +59,13 @@ mod scheduled_events;
 mod settled_slip;
 mod simulation;
 mod simultaneous_impacts;
+mod single_impact;
 mod slip_direction;
 mod slip_end;
+mod start;
 mod stepper;
 mod time_step;
+mod transition;
 
 pub use crate::{
     drive::{Controller, Drive, InputFunction},

@@ -8,25 +8,30 @@ use crate::forces::{Lacking, hold_good};
 use crate::mode_selection::{Choice, Decision, choose};
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase, mus};
-use crate::simulation::Simulation;
+use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError};
 
 /// Slip below this, relative to the speeds that make it up, is none.
-const NO_SLIP: f64 = 1e-11;
+pub(crate) const NO_SLIP: f64 = 1e-11;
 /// The first step of a slip that begins, s.
 const FIRST: f64 = 1e-7;
-/// After this many events at one time a contact changes its mode even if another distribution of the forces
-/// might keep it.
-const PATIENCE: usize = 40;
 
-impl Simulation<'_> {
+/// Which condition of a mode is used up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Ending {
+    Friction,
+    NormalForce,
+}
+
+impl Transition<'_> {
     /// Decides the modes after a change of inputs; modes that still fit are kept.
-    pub(crate) fn settle_again(&mut self) -> Result<(), SimulationError> {
+    pub(crate) fn keep_or_decide(&mut self) -> Result<(), SimulationError> {
         if self.keeps()? {
             return Ok(());
         }
-        let candidates: Vec<usize> = (0..self.phases.len()).filter(|&i| self.phases[i].is_closed()).collect();
-        let was = self.phases.clone();
+        let candidates: Vec<usize> =
+            (0..self.front.phases.len()).filter(|&i| self.front.phases[i].is_closed()).collect();
+        let was = self.front.phases.clone();
         self.decide(&candidates, &was)
     }
 
@@ -36,7 +41,7 @@ impl Simulation<'_> {
         if closed.is_empty() {
             return Ok(true);
         }
-        match self.motion(&closed).evaluate(self.t, &self.y) {
+        match self.motion(&closed).evaluate(self.front.t, &self.front.y) {
             Ok(evaluation) => {
                 let forces = evaluation.forces.as_ref();
                 Ok(forces.is_none_or(|forces| hold_good(forces, &evaluation.holds, &mus(&closed))))
@@ -46,35 +51,34 @@ impl Simulation<'_> {
         }
     }
 
-    /// Friction no longer suffices at a contact.
-    pub(crate) fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
-        let was = self.phases.clone();
-        let before = self.force_of(contact)?;
-        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
-        let state = (self.y.clone(), self.phases.clone(), self.queue.len());
-        let decided = self.decide(&candidates, &was);
-        if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
-            // On the edge neither sticking nor slipping fits: what is at its limit begins to slip.
-            (self.y, self.phases) = (state.0, state.1);
-            self.queue.truncate(state.2);
-            return self.slip_at_limit(&candidates);
+    /// A condition of the modes is used up: friction no longer suffices at a contact, or its normal force
+    /// vanishes.
+    pub(crate) fn modes_ended(&mut self, contact: usize, by: Ending) -> Result<(), SimulationError> {
+        let closed: Vec<usize> =
+            (0..self.front.phases.len()).filter(|&i| self.front.phases[i].is_closed()).collect();
+        match (closed.len(), by) {
+            (1, Ending::Friction) => self.begin_slip(contact),
+            (1, Ending::NormalForce) => self.lift_off(contact),
+            _ => self.look_ahead(&closed),
         }
-        decided?;
-        let patient = candidates.len() > 1 && self.crowd.0 < PATIENCE;
-        if self.phases[contact] == Phase::Stick && !(patient && self.keeps()?) {
-            self.slip_against(contact, &before);
-        }
-        Ok(())
     }
 
-    /// All contacts whose friction is used up begin to slip.
-    fn slip_at_limit(&mut self, candidates: &[usize]) -> Result<(), SimulationError> {
-        for &contact in candidates {
-            let force = self.force_of(contact)?;
-            let most = self.mu(contact) * force.x;
-            if self.phases[contact] == Phase::Stick && force.y.hypot(force.z) >= (1.0 - 1e-9) * most {
-                self.slip_against(contact, &force);
-            }
+    /// Friction of the only closed contact no longer suffices.
+    fn begin_slip(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let was = self.front.phases.clone();
+        let before = self.force_of(contact)?;
+        let front = self.front.clone();
+        let events = self.events.len();
+        let decided = self.decide(&[contact], &was);
+        if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
+            // On the edge neither sticking nor slipping fits: it begins to slip.
+            self.front = front;
+            self.events.truncate(events);
+        } else {
+            decided?;
+        }
+        if self.front.phases[contact] == Phase::Stick {
+            self.slip_against(contact, &before);
         }
         Ok(())
     }
@@ -84,34 +88,24 @@ impl Simulation<'_> {
         let friction = Vector2::new(force.y, force.z);
         let size = friction.norm();
         if size > 0.0 {
-            self.phases[contact] = Phase::Slide(-friction / size);
-            self.next = FIRST;
+            self.front.phases[contact] = Phase::Slide(-friction / size);
+            self.front.next = FIRST;
             self.slips(contact, Selection::Unique);
         }
     }
 
-    /// The normal force of a contact vanishes.
-    pub(crate) fn lift_off(&mut self, contact: usize) -> Result<(), SimulationError> {
-        let was = self.phases.clone();
-        let candidates: Vec<usize> = (0..was.len()).filter(|&i| was[i].is_closed()).collect();
-        if candidates.len() > 1 && self.crowd.0 < PATIENCE {
-            self.decide(&candidates, &was)?;
-            if !self.phases[contact].is_closed() || self.keeps()? {
-                return Ok(());
-            }
-        }
-        if self.phases[contact].is_closed() {
-            self.phases[contact] = Phase::Open(Leaving::NOW);
-            self.forces[contact] = Vector3::zeros();
-            self.resting = false;
-            self.push(Some(contact), EventKind::LiftOff { selection: Selection::Unique });
-        }
-        self.settle_again()
+    /// The normal force of the only closed contact vanishes.
+    fn lift_off(&mut self, contact: usize) -> Result<(), SimulationError> {
+        self.front.phases[contact] = Phase::Open(Leaving::NOW);
+        self.front.forces[contact] = Vector3::zeros();
+        self.front.resting = false;
+        self.push(Some(contact), EventKind::LiftOff { selection: Selection::Unique });
+        Ok(())
     }
 
     /// Slip of these contacts has ended.
     pub(crate) fn slip_ended(&mut self, stopped: &[usize]) -> Result<(), SimulationError> {
-        let mut was = self.phases.clone();
+        let mut was = self.front.phases.clone();
         for &contact in stopped {
             was[contact] = Phase::Slide(Vector2::zeros());
         }
@@ -124,12 +118,12 @@ impl Simulation<'_> {
     fn force_of(&self, contact: usize) -> Result<Vector3<f64>, SimulationError> {
         let closed = self.closed();
         let place = closed.iter().position(|closed| closed.contact == contact);
-        let evaluation = self.motion(&closed).evaluate(self.t, &self.y);
+        let evaluation = self.motion(&closed).evaluate(self.front.t, &self.front.y);
         Ok(match (place, evaluation) {
             (Some(place), Ok(evaluation)) => {
-                evaluation.forces.map_or(self.forces[contact], |forces| forces.of(place))
+                evaluation.forces.map_or(self.front.forces[contact], |forces| forces.of(place))
             }
-            _ => self.forces[contact],
+            _ => self.front.forces[contact],
         })
     }
 
@@ -139,38 +133,61 @@ impl Simulation<'_> {
         if candidates.is_empty() {
             return Ok(());
         }
-        self.resting = false;
+        self.front.resting = false;
         // Contacts without slip are held so, that it is none exactly.
         let slips = self.slips_of(candidates)?;
         for (&contact, slip) in candidates.iter().zip(&slips) {
-            self.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
+            self.front.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
         }
         self.correct()?;
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let inputs = self.motion(&[]).inputs(self.t, &self.y).map_err(|failure| self.failure(failure))?;
-        let state =
-            State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &inputs };
+        let inputs =
+            self.motion(&[]).inputs(self.front.t, &self.front.y).map_err(|failure| self.failure(failure))?;
+        let state = State {
+            time: self.front.t,
+            coordinates: &self.front.y[..n],
+            speeds: &self.front.y[n..n + p],
+            inputs: &inputs,
+        };
         let support = ClosedContacts::new(self.mechanism, &state, candidates, true)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let mu: Vec<f64> = candidates.iter().map(|&contact| self.mu(contact)).collect();
-        let before = DVector::from_iterator(
-            3 * candidates.len(),
-            candidates.iter().flat_map(|&contact| self.forces[contact].iter().copied().collect::<Vec<f64>>()),
-        );
+        let before = self.forces_before(candidates);
         match choose(&support, &slips, &mu, &before) {
             Ok(choice) => {
                 self.apply(candidates, was, &choice);
-                Ok(())
+                self.confirm(candidates, was)
             }
-            Err(Lacking::Contact(
+            Err(lacking) => self.without_forces(candidates, lacking),
+        }
+    }
+
+    /// No finite forces exist: an impact without collision follows where a sliding contact jams.
+    pub(crate) fn without_forces(
+        &mut self,
+        candidates: &[usize],
+        lacking: Lacking,
+    ) -> Result<(), SimulationError> {
+        match lacking {
+            Lacking::Contact(
                 place,
                 ContactError::ImpactWithoutCollision { .. } | ContactError::Jam { .. },
-            )) => self.impact_without_collision(candidates[place]),
-            Err(Lacking::Contact(place, error)) => {
+            ) => self.impact_without_collision(candidates[place]),
+            Lacking::Contact(place, error) => {
                 Err(self.error(Some(candidates[place]), Reason::Contact(error)))
             }
-            Err(Lacking::Together) => Err(self.failure(Failure::Together)),
+            Lacking::Together => Err(self.failure(Failure::Together)),
         }
+    }
+
+    /// The forces of these contacts when their modes were last decided.
+    pub(crate) fn forces_before(&self, contacts: &[usize]) -> DVector<f64> {
+        DVector::from_iterator(
+            3 * contacts.len(),
+            contacts
+                .iter()
+                .flat_map(|&contact| self.front.forces[contact].iter().copied().collect::<Vec<_>>()),
+        )
     }
 
     /// The directions of slip; none where there is none.
@@ -179,40 +196,39 @@ impl Simulation<'_> {
         candidates: &[usize],
     ) -> Result<Vec<Option<Vector2<f64>>>, SimulationError> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let speeds = &self.y[n..n + p];
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds, inputs: &self.held };
+        let speeds = &self.front.y[n..n + p];
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let support = ClosedContacts::new(self.mechanism, &state, candidates, false)
             .map_err(|error| self.failure(Failure::State(error)))?;
         Ok(candidates
             .iter()
             .enumerate()
             .map(|(i, &contact)| {
-                if self.phases[contact] == Phase::Stick {
+                if self.front.phases[contact] == Phase::Stick {
                     return None;
                 }
                 let slip = support.slip(i);
-                let size = support.velocity_size(i, speeds).max(support.velocity_size(i, &self.scale));
+                let size = support.velocity_size(i, speeds).max(support.velocity_size(i, &self.front.scale));
                 (slip.norm() > NO_SLIP * size).then(|| slip / slip.norm())
             })
             .collect())
     }
 
     /// Takes the modes chosen, and says what changed.
-    fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
-        self.unique = choice.unique;
+    pub(crate) fn apply(&mut self, candidates: &[usize], was: &[Phase], choice: &Choice) {
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection[place];
-            self.forces[contact] = choice.forces[place];
-            self.weights[contact] = choice.weights[place];
+            self.front.forces[contact] = choice.forces[place];
             match choice.decisions[place] {
                 Decision::Separate => {
-                    self.phases[contact] = Phase::Open(Leaving::NOW);
+                    self.front.phases[contact] = Phase::Open(Leaving::NOW);
                     if was[contact].is_closed() {
                         self.push(Some(contact), EventKind::LiftOff { selection });
                     }
                 }
                 Decision::Stick => {
-                    self.phases[contact] = Phase::Stick;
+                    self.front.phases[contact] = Phase::Stick;
                     match was[contact] {
                         Phase::Open(_) => self.begin_contact(contact, selection),
                         Phase::Slide(_) if !self.bounces(contact) => {
@@ -223,9 +239,9 @@ impl Simulation<'_> {
                     }
                 }
                 Decision::Slide(direction, begins) => {
-                    self.phases[contact] = Phase::Slide(direction);
+                    self.front.phases[contact] = Phase::Slide(direction);
                     if begins {
-                        self.next = self.next.min(FIRST);
+                        self.front.next = self.front.next.min(FIRST);
                     }
                     match was[contact] {
                         Phase::Open(_) => self.begin_contact(contact, selection),
@@ -238,8 +254,8 @@ impl Simulation<'_> {
     }
 
     fn slips(&mut self, contact: usize, selection: Selection) {
-        self.resting = false;
-        if let Phase::Slide(d) = self.phases[contact]
+        self.front.resting = false;
+        if let Phase::Slide(d) = self.front.phases[contact]
             && !self.bounces(contact)
         {
             self.push(Some(contact), EventKind::Slip { direction: [d.x, d.y], selection });
@@ -248,7 +264,7 @@ impl Simulation<'_> {
 
     /// Whether the bounces of a contact, which now are lower than the tolerance, have not yet ended.
     fn bounces(&self, contact: usize) -> bool {
-        self.chatter.iter().any(|&(time, other)| other == contact && time > self.t)
+        self.front.chatter.iter().any(|&(time, other)| other == contact && time > self.front.t)
     }
 
     /// A contact begins: said now, or when its bounces have ended.
@@ -256,7 +272,8 @@ impl Simulation<'_> {
         if self.bounces(contact) {
             return;
         }
-        let mode = if self.phases[contact] == Phase::Stick { ContactMode::Stick } else { ContactMode::Slide };
+        let mode =
+            if self.front.phases[contact] == Phase::Stick { ContactMode::Stick } else { ContactMode::Slide };
         self.push(Some(contact), EventKind::Contact { mode, selection });
     }
 
@@ -268,33 +285,37 @@ impl Simulation<'_> {
     /// Whether everything that touches sticks, and nothing moves.
     pub(crate) fn look_for_rest(&mut self) -> Result<(), SimulationError> {
         let closed = self.closed();
-        if self.resting || closed.is_empty() || closed.iter().any(|closed| closed.slides.is_some()) {
+        if self.front.resting || closed.is_empty() || closed.iter().any(|closed| closed.slides.is_some()) {
             return Ok(());
         }
-        if !self.chatter.is_empty() {
+        if !self.front.chatter.is_empty() {
             return Ok(());
         }
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let state =
-            State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &self.held };
+        let state = State {
+            time: self.front.t,
+            coordinates: &self.front.y[..n],
+            speeds: &self.front.y[n..n + p],
+            inputs: &self.front.held,
+        };
         let kinetic = self.mechanism.kinetic_energy(&state);
-        let still = kinetic.is_ok_and(|kinetic| kinetic <= 1e-22 * self.greatest);
+        let still = kinetic.is_ok_and(|kinetic| kinetic <= 1e-22 * self.front.greatest);
         if !still {
             return Ok(());
         }
-        let mut y = self.y.clone();
+        let mut y = self.front.y.clone();
         y[n..n + p].fill(0.0);
-        self.resting = true;
-        let rates = self.motion(&closed).evaluate(self.t, &y).map(|evaluation| evaluation.rates);
+        self.front.resting = true;
+        let rates = self.motion(&closed).evaluate(self.front.t, &y).map(|evaluation| evaluation.rates);
         let quiet = rates.is_ok_and(|rates| rates[..n + p].iter().all(|rate| *rate == 0.0));
         if quiet {
-            self.y = y;
-            if let Some(step) = &mut self.step {
-                step.corrected(&self.y);
+            self.front.y = y;
+            if let Some((step, _)) = &mut self.step {
+                step.corrected(&self.front.y);
             }
             self.push(None, EventKind::Rest);
         } else {
-            self.resting = false;
+            self.front.resting = false;
         }
         Ok(())
     }

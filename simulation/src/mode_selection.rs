@@ -1,21 +1,15 @@
-//! Chooses the modes of several closed contacts at an event.
+//! Chooses the modes of the closed contacts at an instant.
 //!
-//! For given forces at the other contacts the runtime gives the exact mode and force of one contact.
-//! Repeating this for all contacts in turn until nothing changes (block Gauss-Seidel, as Jean and Moreau's
-//! method of contact dynamics does for time steps) gives the modes; one linear system then gives the
-//! forces to rounding. Where the iteration does not converge and there are few contacts, all combinations of
-//! modes are tried.
+//! One contact has an exact answer in the runtime. Of several contacts, rest is taken where it fits: all that
+//! do not slip keep sticking. Otherwise the forces of all contacts are found at once
+//! ([`contact_problem::solve`]), and the modes follow from them.
 
-use hodograph::{ContactError, ContactMode, Selection, contact_mode, contact_mode_after};
-use nalgebra::{DMatrix, DVector, Vector2};
+use hodograph::{ContactError, ContactMode, Selection, contact_mode_after};
+use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 
 use crate::closed_contacts::{ClosedContacts, least_squares};
-use crate::forces::{Forces, Hold, Lacking, hold_good, shared};
-
-/// Rounds at most.
-const ROUNDS: usize = 3000;
-/// Combinations of modes are tried for at most so many contacts.
-const FEW: usize = 4;
+use crate::contact_problem::{self, MOST_ENUMERATED, Mode, Problem, Unsolved};
+use crate::forces::{Forces, Lacking};
 
 /// What a closed contact does from an event on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,67 +24,63 @@ pub(crate) enum Decision {
 #[derive(Clone, Debug)]
 pub(crate) struct Choice {
     pub decisions: Vec<Decision>,
-    pub forces: Vec<nalgebra::Vector3<f64>>,
+    pub forces: Vec<Vector3<f64>>,
     pub selection: Vec<Selection>,
-    /// With which the forces were found where others are possible.
-    pub weights: Vec<f64>,
-    pub unique: bool,
 }
 
 /// Chooses the modes of closed contacts. `slips` is the direction of slip of each, none where it does not
-/// slip.
+/// slip; `before` are the forces so far, to which those chosen are near where several fit.
 pub(crate) fn choose(
     support: &ClosedContacts,
     slips: &[Option<Vector2<f64>>],
     mu: &[f64],
     before: &DVector<f64>,
 ) -> Result<Choice, Lacking> {
-    let k = support.len();
-    if k == 1 {
+    if support.len() == 1 {
         return one(support, slips[0], mu[0], before);
     }
-    let mut lambda = before.clone();
-    let mut decisions = vec![Decision::Separate; k];
-    let mut failed = None;
-    for round in 0..ROUNDS {
-        let mut change = 0.0_f64;
-        failed = None;
-        for i in 0..k {
-            match local(support, i, slips[i], mu[i], &lambda) {
-                Ok((decision, force)) => {
-                    decisions[i] = decision;
-                    let old = ClosedContacts::three(&lambda, i);
-                    change = change.max((force - old).amax());
-                    lambda.rows_mut(3 * i, 3).copy_from(&force);
-                }
-                Err(error) => failed = Some((i, error)),
-            }
-        }
-        let settled = change <= 1e-11 * lambda.amax();
-        // What the modes say may be right long before the forces have settled.
-        if failed.is_none() && (settled || round % 16 == 15) {
-            // Friction that is just used up somewhere need not mean slip: others may take more.
-            for decisions in [held(support, &decisions, slips, &lambda), decisions.clone()] {
-                for about in [None, Some(&lambda)] {
-                    if let Some(choice) = polished(support, &decisions, slips, mu, about) {
-                        return Ok(choice);
-                    }
-                }
-            }
-        }
-        if settled {
-            break;
-        }
+    let problem = support.problem(mu, slips);
+    if let Some(rest) = contact_problem::rest(&problem) {
+        let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+        return Ok(chosen(&problem, &modes, &rest.force));
     }
-    if k <= FEW
-        && let Some(choice) = tried(support, slips, mu)
-    {
-        return Ok(choice);
+    let solution = contact_problem::solve(&problem, Some(before)).map_err(|unsolved| match unsolved {
+        Unsolved::Jam { contact, .. } => {
+            let free_acceleration = support.beta[3 * contact];
+            Lacking::Contact(contact, ContactError::Jam { free_acceleration })
+        }
+        _ => Lacking::Together,
+    })?;
+    // Among many forces for this motion, those in the middle.
+    match contact_problem::with_modes(&problem, &solution.modes) {
+        Ok(middle) if middle.margin >= 0.0 => Ok(chosen(&problem, &solution.modes, &middle.force)),
+        _ => Ok(chosen(&problem, &solution.modes, &solution.force)),
     }
-    match failed {
-        Some((i, error)) => Err(Lacking::Contact(i, error)),
-        None => Err(Lacking::Together),
+}
+
+fn chosen(problem: &Problem<'_>, modes: &[Mode], force: &DVector<f64>) -> Choice {
+    let decision = |(mode, slip): (&Mode, &Option<Vector2<f64>>)| match mode {
+        Mode::Separate => Decision::Separate,
+        Mode::Stick => Decision::Stick,
+        Mode::Slide(direction) => Decision::Slide(*direction, slip.is_none()),
+    };
+    Choice {
+        decisions: modes.iter().zip(problem.slip).map(decision).collect(),
+        forces: (0..modes.len()).map(|i| ClosedContacts::three(force, i)).collect(),
+        selection: vec![selection(problem, modes); modes.len()],
     }
+}
+
+/// Whether other modes fit too. Nobody looks where there are many contacts.
+fn selection(problem: &Problem<'_>, modes: &[Mode]) -> Selection {
+    if modes.len() > MOST_ENUMERATED {
+        return Selection::Unknown;
+    }
+    let differs = |other: &contact_problem::Solution| {
+        other.modes.iter().zip(modes).any(|(other, mode)| !other.is_like(mode))
+    };
+    let several = contact_problem::enumerate(problem).iter().any(differs);
+    if several { Selection::SeveralModes } else { Selection::Unique }
 }
 
 fn one(
@@ -111,8 +101,6 @@ fn one(
         decisions: vec![decision(answer.mode, answer.direction)],
         forces: vec![answer.force],
         selection: vec![answer.selection],
-        weights: vec![1.0],
-        unique: answer.force_is_unique,
     })
 }
 
@@ -123,125 +111,6 @@ fn decision(mode: ContactMode, direction: Option<Vector2<f64>>) -> Decision {
         (ContactMode::Stick, _) => Decision::Stick,
         _ => Decision::Separate,
     }
-}
-
-/// One contact for given forces at the others.
-fn local(
-    support: &ClosedContacts,
-    i: usize,
-    slip: Option<Vector2<f64>>,
-    mu: f64,
-    lambda: &DVector<f64>,
-) -> Result<(Decision, nalgebra::Vector3<f64>), ContactError<f64>> {
-    let matrix = support.reduced(i);
-    let own = ClosedContacts::three(lambda, i);
-    let total = support.coupled.fixed_rows::<3>(3 * i) * lambda + support.beta.fixed_rows::<3>(3 * i);
-    let beta = total - matrix.apply(&own);
-    let slip = slip.unwrap_or_else(Vector2::zeros);
-    let answer = contact_mode(&matrix, &beta, &slip, mu)?;
-    Ok((decision(answer.mode, answer.direction), answer.force))
-}
-
-/// The same decisions, but for contacts that begin to slip without an acceleration: they stick.
-fn held(
-    support: &ClosedContacts,
-    decisions: &[Decision],
-    slips: &[Option<Vector2<f64>>],
-    lambda: &DVector<f64>,
-) -> Vec<Decision> {
-    let acceleration = &support.coupled * lambda + &support.beta;
-    let size = support.beta.amax();
-    decisions
-        .iter()
-        .enumerate()
-        .map(|(i, decision)| {
-            let rate = acceleration[3 * i + 1].hypot(acceleration[3 * i + 2]);
-            let begins = matches!(decision, Decision::Slide(..)) && slips[i].is_none();
-            if begins && rate <= 1e-6 * size { Decision::Stick } else { *decision }
-        })
-        .collect()
-}
-
-/// The forces of these modes by one linear system; `None` where they do not fit.
-fn polished(
-    support: &ClosedContacts,
-    decisions: &[Decision],
-    slips: &[Option<Vector2<f64>>],
-    mu: &[f64],
-    about: Option<&DVector<f64>>,
-) -> Option<Choice> {
-    let k = support.len();
-    let mut directions: Vec<Option<Vector2<f64>>> = decisions
-        .iter()
-        .map(|decision| match decision {
-            Decision::Slide(d, _) => Some(*d),
-            _ => None,
-        })
-        .collect();
-    let pressed: Vec<usize> = (0..k).filter(|&i| decisions[i] != Decision::Separate).collect();
-    let part = part(support, &pressed);
-    let friction: Vec<f64> = pressed.iter().map(|&i| mu[i]).collect();
-    let weights: Vec<f64> = pressed.iter().map(|&i| about.map_or(1.0, |all| all[3 * i])).collect();
-    let begin: Vec<(usize, usize)> = pressed
-        .iter()
-        .enumerate()
-        .filter(|&(_, &i)| slips[i].is_none() && directions[i].is_some())
-        .map(|(place, &i)| (place, i))
-        .collect();
-    let solved = |directions: &[Option<Vector2<f64>>]| -> Option<(Forces, Vec<f64>, Vec<Hold>)> {
-        let holds: Vec<Hold> =
-            pressed.iter().map(|&i| directions[i].map_or(Hold::Stick, Hold::Slide)).collect();
-        let (forces, weights) = if pressed.is_empty() {
-            let none =
-                Forces { lambda: DVector::zeros(0), acceleration: DVector::zeros(0), unique: true, f: 1.0 };
-            (none, Vec::new())
-        } else {
-            shared(&part, &holds, &friction, weights.clone()).ok()?
-        };
-        Some((forces, weights, holds))
-    };
-    begin_along(&begin, &mut directions, &vec![0.0; begin.len()], |directions| {
-        solved(directions).map(|(forces, ..)| forces)
-    })?;
-    let found = solved(&directions);
-    let (found, weights, holds) = found?;
-    let mut all_weights = vec![0.0; k];
-    pressed.iter().zip(&weights).for_each(|(&i, &weight)| all_weights[i] = weight);
-    if !hold_good(&found, &holds, &friction) {
-        return None;
-    }
-    let mut lambda = DVector::zeros(3 * k);
-    for (place, &i) in pressed.iter().enumerate() {
-        lambda.rows_mut(3 * i, 3).copy_from(&found.of(place));
-    }
-    let acceleration = &support.coupled * &lambda + &support.beta;
-    let size = support.beta.amax() + (support.coupled.abs() * lambda.abs()).amax();
-    let mut result = Vec::with_capacity(k);
-    for i in 0..k {
-        let rate = Vector2::new(acceleration[3 * i + 1], acceleration[3 * i + 2]);
-        let fits = match (decisions[i], directions[i]) {
-            (Decision::Separate, _) => acceleration[3 * i] >= -1e-11 * size,
-            (Decision::Slide(..), Some(d)) if slips[i].is_none() => {
-                rate.dot(&d) > 1e-11 * size && (rate - d * rate.dot(&d)).norm() <= 1e-9 * size
-            }
-            (Decision::Stick, _) => slips[i].is_none(),
-            _ => true,
-        };
-        if !fits {
-            return None;
-        }
-        result.push(match (decisions[i], directions[i]) {
-            (Decision::Slide(..), Some(d)) => Decision::Slide(d, slips[i].is_none()),
-            (other, _) => other,
-        });
-    }
-    Some(Choice {
-        decisions: result,
-        forces: (0..k).map(|i| ClosedContacts::three(&lambda, i)).collect(),
-        selection: vec![Selection::Unique; k],
-        weights: all_weights,
-        unique: found.unique,
-    })
 }
 
 /// Turns the directions in which slip begins until the acceleration across each is that given, 0 where it is
@@ -319,45 +188,3 @@ pub(crate) fn begin_along(
 /// Steps of Newton's method at most, and the difference by which its derivatives are formed, rad.
 const TURNS: usize = 30;
 const TURN: f64 = 1e-6;
-
-/// The support by some of the contacts.
-pub(crate) fn part(support: &ClosedContacts, places: &[usize]) -> ClosedContacts {
-    let rows: Vec<usize> = places.iter().flat_map(|&i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    ClosedContacts {
-        contacts: places.iter().map(|&i| support.contacts[i]).collect(),
-        coupled: support.coupled.select_rows(&rows).select_columns(&rows),
-        partials: support.partials.select_rows(&rows),
-        response: support.response.select_columns(&rows),
-        velocity: support.velocity.select_rows(&rows),
-        beta: support.beta.select_rows(&rows),
-    }
-}
-
-/// Tries all combinations of modes.
-fn tried(support: &ClosedContacts, slips: &[Option<Vector2<f64>>], mu: &[f64]) -> Option<Choice> {
-    let k = support.len();
-    for combination in 0..3_usize.pow(k as u32) {
-        let mut rest = combination;
-        let mut decisions = Vec::with_capacity(k);
-        for slip in slips {
-            decisions.push(match (rest % 3, slip) {
-                (0, Some(d)) => Decision::Slide(*d, false),
-                (0, None) => Decision::Stick,
-                (1, None) => {
-                    // A first guess of the direction: the free acceleration's.
-                    let i = decisions.len();
-                    let pull = Vector2::new(support.beta[3 * i + 1], support.beta[3 * i + 2]);
-                    let size = pull.norm();
-                    let guess = if size > 0.0 { pull / size } else { Vector2::new(1.0, 0.0) };
-                    Decision::Slide(guess, true)
-                }
-                _ => Decision::Separate,
-            });
-            rest /= 3;
-        }
-        if let Some(choice) = polished(support, &decisions, slips, mu, None) {
-            return Some(choice);
-        }
-    }
-    None
-}

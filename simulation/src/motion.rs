@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use crate::Drive;
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::{Forces, Hold, Lacking, forces, shared};
+use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::phase::Closed;
 use crate::slip_direction::settle_directions;
 
@@ -108,21 +108,13 @@ impl Motion<'_> {
         let mut found = None;
         if !contacts.is_empty() {
             let mu: Vec<f64> = self.closed.iter().map(|closed| closed.mu).collect();
-            let weights: Vec<f64> = self.closed.iter().map(|closed| closed.weight).collect();
             let lacking = |lacking| match lacking {
                 Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
                 Lacking::Together => Failure::Together,
             };
-            // Where something slides its share of the normal forces decides how it is slowed down, and must
-            // not change between two decisions.
-            let solve = |holds: &[Hold]| forces(&support, holds, &mu, Some(&weights));
+            let solve = |holds: &[Hold]| forces(&support, holds, &mu, None);
             settle_directions(&support, self.closed, &mut holds, &solve);
-            let answer = if holds.iter().all(|hold| *hold == Hold::Stick) {
-                shared(&support, &holds, &mu, weights).map(|(answer, _)| answer)
-            } else {
-                solve(&holds)
-            };
-            let answer = answer.map_err(lacking)?;
+            let answer = solve(&holds).map_err(lacking)?;
             let greatest = answer.lambda.amax();
             for (i, rate) in rates[n..n + p].iter_mut().enumerate() {
                 let mut size = rate.abs();

@@ -13,10 +13,15 @@ pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
 /// What happens where several contacts are struck at the same time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Together {
-    /// One after the other, the fastest approach first, until nothing approaches.
+    /// All that approach strike at once, by Moreau's law with friction; what their impulses press together
+    /// strikes next, until nothing approaches. A contact that strikes alone does so exactly, by its own law.
     #[default]
+    Approaching,
+    /// One after the other, the fastest approach first, until nothing approaches.
     Sequential,
-    /// All at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction
+    /// All that touch at once, by Moreau's law with friction: v+_n = -e v-_n or more.
+    Simultaneous,
+    /// All that touch at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction
     /// only.
     Lzb,
     /// The simulation ends with an error.
@@ -47,7 +52,8 @@ pub struct Options {
     /// of [`Together::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts
     /// that are not named have 1
     pub stiffness: Vec<(usize, f64)>,
-    /// whether all orders of up to four contacts struck together are compared
+    /// whether the outcomes of all orders of up to four contacts struck together are compared
+    /// ([`crate::Struck::spread`])
     pub compare_orders: bool,
     /// functions whose zeros are events
     pub events: Vec<EventFunction>,
@@ -63,9 +69,9 @@ impl Default for Options {
             surfaces: Vec::new(),
             surface: None,
             drive: Drive::Held,
-            together: Together::Sequential,
+            together: Together::default(),
             stiffness: Vec::new(),
-            compare_orders: true,
+            compare_orders: false,
             events: Vec::new(),
         }
     }

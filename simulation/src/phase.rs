@@ -50,8 +50,6 @@ pub enum ContactPhase {
 pub(crate) struct Closed {
     pub contact: usize,
     pub mu: f64,
-    /// its weight where forces are not unique, as found when its mode was decided
-    pub weight: f64,
     /// none while it sticks; else the direction in which slip began, for as long as slip is too small to
     /// have one
     pub slides: Option<Vector2<f64>>,

@@ -8,36 +8,35 @@
 //! apply the impulses p0 and continue in contact. For one contact it is the rule of docs/theory.md,
 //! section 17.7.
 
-use hodograph::{Kind, State};
-use nalgebra::DVector;
+use hodograph::Kind;
 
 use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::{Hold, forces};
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
-use crate::simulation::Simulation;
+use crate::transition::Transition;
 
 /// Contacts nearer than so many times the tolerance take part.
 const NEAR: f64 = 8.0;
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// A contact has closed: whether it and others near it now stay, because they would rattle below the
     /// tolerance only.
-    pub(crate) fn comes_to_lie(&mut self, first: usize) -> Result<bool, SimulationError> {
+    pub(crate) fn settles_into_contact(&mut self, first: usize) -> Result<bool, SimulationError> {
         let mut near = self.near(first)?;
         if near.len() < 2 || !self.quiet(&near)? {
             return Ok(false);
         }
-        let before = self.clone();
+        let before = (self.front.clone(), self.events.len());
         while near.len() > 1 && near.contains(&first) {
             let lies = self.lie(&near);
             if lies == Ok(true) {
                 return Ok(true);
             }
-            let closed = |contact: &usize| lies.is_ok() && self.phases[*contact].is_closed();
+            let closed = |contact: &usize| lies.is_ok() && self.front.phases[*contact].is_closed();
             let left: Vec<usize> = near.iter().copied().filter(closed).collect();
-            self.clone_from(&before);
+            self.front.clone_from(&before.0);
+            self.events.truncate(before.1);
             if left.len() == near.len() || left.is_empty() {
                 break;
             }
@@ -51,13 +50,15 @@ impl Simulation<'_> {
         let state = self.here();
         let reach = NEAR * self.options.absolute_tolerance;
         let mut near = Vec::new();
-        for contact in 0..self.phases.len() {
+        for contact in 0..self.front.phases.len() {
             if self.surfaces[contact].is_none() {
                 continue;
             }
             let gap =
                 || self.mechanism.gap(contact, &state).map_err(|error| self.failure(Failure::State(error)));
-            if contact == first || self.phases[contact].is_closed() || gap()?.is_some_and(|gap| gap <= reach)
+            if contact == first
+                || self.front.phases[contact].is_closed()
+                || gap()?.is_some_and(|gap| gap <= reach)
             {
                 near.push(contact);
             }
@@ -75,39 +76,24 @@ impl Simulation<'_> {
 
     /// Makes contacts stay; whether they do, and would not have risen above the tolerance.
     fn lie(&mut self, near: &[usize]) -> Result<bool, SimulationError> {
-        let was = self.phases.clone();
+        let was = self.front.phases.clone();
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let mut support = self.support(near, false)?;
+        let support = self.support(near, false)?;
         let rates: Vec<f64> = (0..near.len()).map(|i| support.velocity[3 * i]).collect();
-        let mu: Vec<f64> = near.iter().map(|&contact| self.mu(contact)).collect();
-        let holds: Vec<Hold> =
-            self.slips_of(near)?.into_iter().map(|slip| slip.map_or(Hold::Stick, Hold::Slide)).collect();
-        support.beta.copy_from(&support.velocity);
         let kinetic = self.kinetic()?;
-        let start = self.y.clone();
-        let change = match forces(&support, &holds, &mu, None) {
-            Ok(impulses) => impulses.rates(&support),
-            Err(_) => DVector::zeros(p),
-        };
-        self.y[n..n + p].iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
-        if self.kinetic()? > kinetic {
-            // Without friction energy cannot grow.
-            self.y = start;
-            let rows: Vec<usize> = (0..near.len()).map(|i| 3 * i).collect();
-            let change = support.without(&rows, &support.velocity);
-            self.y[n..n + p].iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
-        }
+        let hit = self.plastic_impact(near, &self.front.y[n..n + p])?;
+        self.front.y[n..n + p].copy_from_slice(&hit.after);
         for &contact in near {
-            if !self.phases[contact].is_closed() {
-                self.phases[contact] = Phase::Open(Leaving::NOW);
+            if !self.front.phases[contact].is_closed() {
+                self.front.phases[contact] = Phase::Open(Leaving::NOW);
             }
         }
-        self.energy.impacts += self.kinetic()? - kinetic;
+        self.front.energy.impacts += self.kinetic()? - kinetic;
         self.decide(near, &was)?;
         let support = self.support(near, false)?;
         let low = |(i, &contact): (usize, &usize)| {
-            let pull = self.forces[contact].x * support.coupled[(3 * i, 3 * i)];
-            self.phases[contact].is_closed()
+            let pull = self.front.forces[contact].x * support.coupled[(3 * i, 3 * i)];
+            self.front.phases[contact].is_closed()
                 && rates[i].powi(2) <= 2.0 * self.options.absolute_tolerance * pull
         };
         if !near.iter().enumerate().all(low) {
@@ -124,11 +110,5 @@ impl Simulation<'_> {
 
     fn kinetic(&self) -> Result<f64, SimulationError> {
         self.mechanism.kinetic_energy(&self.here()).map_err(|error| self.failure(Failure::State(error)))
-    }
-
-    /// The state at the front.
-    fn here(&self) -> State<'_> {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        State { time: self.t, coordinates: &self.y[..n], speeds: &self.y[n..n + p], inputs: &self.held }
     }
 }

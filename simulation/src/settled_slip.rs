@@ -26,8 +26,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
         return omegas;
     }
     let mu: Vec<f64> = closed.iter().map(|closed| closed.mu).collect();
-    let weights: Vec<f64> = closed.iter().map(|closed| closed.weight).collect();
-    let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, Some(&weights));
+    let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, None);
     let candidates: Vec<usize> = (0..closed.len())
         .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES))
         .collect();

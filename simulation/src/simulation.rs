@@ -5,9 +5,12 @@ use std::collections::VecDeque;
 use hodograph::{Contacts, Kind, State, Surface};
 use nalgebra::Vector3;
 
-use crate::motion::{Failure, Motion, WORKS};
-use crate::phase::{Closed, ContactPhase, Leaving, Modes, Phase};
+use crate::check::check;
+use crate::front::Front;
+use crate::motion::Failure;
+use crate::phase::{ContactPhase, Modes, Phase};
 use crate::stepper::Step;
+use crate::transition::Transition;
 use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
 
 /// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same
@@ -17,40 +20,17 @@ use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
 /// advanced.
 #[derive(Clone)]
 pub struct Simulation<'m> {
-    pub(crate) mechanism: &'m dyn Contacts<f64>,
-    pub(crate) options: Options,
-    pub(crate) surfaces: Vec<Option<Surface<f64>>>,
-    pub(crate) phases: Vec<Phase>,
-    /// force of each contact when its mode was last decided
-    pub(crate) forces: Vec<Vector3<f64>>,
-    /// weight of each contact where forces are not unique: the same from one decision to the next
-    pub(crate) weights: Vec<f64>,
-    /// rate at which the direction of small slip turns where it follows from the state
-    pub(crate) omegas: Vec<Option<f64>>,
-    /// whether the forces of the closed contacts were the only possible ones
-    pub(crate) unique: bool,
-    /// time, coordinates, speeds and works at the front: the end of the last step, after its events
-    pub(crate) t: f64,
-    pub(crate) y: Vec<f64>,
-    pub(crate) held: Vec<f64>,
-    pub(crate) step: Option<Step>,
-    /// the modes during that step
-    pub(crate) past: Modes,
-    pub(crate) next: f64,
-    pub(crate) queue: VecDeque<Event>,
-    /// contacts whose bounces end at a time
-    pub(crate) chatter: Vec<(f64, usize)>,
-    pub(crate) next_sample: Option<f64>,
-    pub(crate) samples: u64,
-    pub(crate) start: f64,
-    pub(crate) resting: bool,
-    /// greatest size of each speed so far
-    pub(crate) scale: Vec<f64>,
-    pub(crate) energy: EnergyAccount,
-    /// greatest kinetic energy so far
-    pub(crate) greatest: f64,
-    /// events at this time, and the time
-    pub(crate) crowd: (usize, f64),
+    mechanism: &'m dyn Contacts<f64>,
+    options: Options,
+    /// the surface of each contact; none where a contact has no gap
+    surfaces: Vec<Option<Surface<f64>>>,
+    start: f64,
+    front: Front,
+    /// the step that led to the front, and the modes during it
+    step: Option<(Step, Modes)>,
+    /// events that were not yet asked for
+    queue: VecDeque<Event>,
+    /// the time asked for, and the state then
     view: (f64, Vec<f64>),
     failed: Option<SimulationError>,
 }
@@ -59,8 +39,8 @@ impl std::fmt::Debug for Simulation<'_> {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         out.debug_struct("Simulation")
             .field("mechanism", &self.mechanism.name())
-            .field("t", &self.t)
-            .field("phases", &self.phases)
+            .field("t", &self.front.t)
+            .field("phases", &self.front.phases)
             .finish_non_exhaustive()
     }
 }
@@ -91,48 +71,88 @@ impl<'m> Simulation<'m> {
         state: &State<'_>,
         options: Options,
     ) -> Result<Self, SimulationError> {
-        let (n, p) = (mechanism.count(Kind::Coordinate), mechanism.count(Kind::Speed));
-        let count = mechanism.count(Kind::Contact);
-        let mut y = state.coordinates.to_vec();
-        y.extend_from_slice(state.speeds);
-        y.resize(n + p + WORKS, 0.0);
+        let surfaces = check(mechanism, state, &options)?;
+        let sampled = matches!(options.drive, Drive::Sampled { .. });
+        let mut front = Front::new(state, surfaces.len(), sampled);
+        front.greatest = mechanism.kinetic_energy(state).unwrap_or(0.0);
+        let view = (front.t, front.y.clone());
         let mut simulation = Self {
             mechanism,
-            surfaces: Vec::new(),
-            phases: vec![Phase::Open(Leaving::Apart); count],
-            forces: vec![Vector3::zeros(); count],
-            weights: vec![1.0; count],
-            omegas: vec![None; count],
-            unique: true,
-            t: state.time,
-            view: (state.time, y.clone()),
-            y,
-            held: state.inputs.to_vec(),
-            step: None,
-            past: Modes::default(),
-            next: 1e-3,
-            queue: VecDeque::new(),
-            chatter: Vec::new(),
-            next_sample: match &options.drive {
-                Drive::Sampled { .. } => Some(state.time),
-                _ => None,
-            },
-            samples: 0,
-            start: state.time,
-            resting: false,
-            scale: state.speeds.iter().map(|speed| speed.abs()).collect(),
-            energy: EnergyAccount::default(),
-            greatest: 0.0,
-            crowd: (0, f64::NEG_INFINITY),
-            failed: None,
             options,
+            surfaces,
+            start: state.time,
+            front,
+            step: None,
+            queue: VecDeque::new(),
+            view,
+            failed: None,
         };
-        simulation.check(state)?;
         // The inputs of the first sample decide what contacts do at the start.
-        simulation.sample()?;
-        simulation.begin()?;
-        simulation.view = (simulation.t, simulation.y.clone());
+        let inputs = simulation.sampled_inputs()?;
+        simulation.take(|transition| {
+            if let Some(inputs) = inputs {
+                transition.front.held = inputs;
+            }
+            transition.begin()
+        })?;
+        simulation.view = (simulation.front.t, simulation.front.y.clone());
         Ok(simulation)
+    }
+
+    /// A transition from the front.
+    fn transition(&self) -> Transition<'_> {
+        Transition {
+            mechanism: self.mechanism,
+            options: &self.options,
+            surfaces: &self.surfaces,
+            front: self.front.clone(),
+            events: Vec::new(),
+            step: None,
+        }
+    }
+
+    /// Makes a transition and takes its front and its events; nothing of one that fails is taken.
+    fn take(
+        &mut self,
+        change: impl FnOnce(&mut Transition<'_>) -> Result<(), SimulationError>,
+    ) -> Result<(), SimulationError> {
+        let mut transition = self.transition();
+        change(&mut transition)?;
+        let Transition { front, events, step, .. } = transition;
+        self.front = front;
+        self.queue.extend(events);
+        if step.is_some() {
+            self.step = step;
+        }
+        Ok(())
+    }
+
+    /// Makes one step, with the inputs of the controller if its sampling time has come.
+    fn proceed(&mut self) -> Result<(), SimulationError> {
+        if let Some(inputs) = self.sampled_inputs()? {
+            self.take(|transition| transition.change_inputs(inputs))?;
+        }
+        self.take(|transition| transition.step())
+    }
+
+    /// Calls the controller if its sampling time has come.
+    fn sampled_inputs(&mut self) -> Result<Option<Vec<f64>>, SimulationError> {
+        let front = &mut self.front;
+        if front.next_sample.is_none_or(|due| due > front.t) {
+            return Ok(None);
+        }
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let Drive::Sampled { period, controller } = &mut self.options.drive else { return Ok(None) };
+        let mut inputs = front.held.clone();
+        controller.control(front.t, &front.y[..n], &front.y[n..n + p], &mut inputs);
+        front.samples += 1;
+        front.next_sample = Some(self.start + *period * front.samples as f64);
+        if let Some(bad) = inputs.iter().position(|value| !value.is_finite()) {
+            let transition = self.transition();
+            let message = transition.motion(&[]).bad_input(bad, inputs[bad]);
+            return Err(transition.error(None, Reason::Input(message)));
+        }
+        Ok(Some(inputs))
     }
 
     /// Advances to the next event or to the time `until` (s), whichever comes first.
@@ -144,9 +164,9 @@ impl<'m> Simulation<'m> {
     /// nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
         if until.is_nan() || until == f64::INFINITY {
-            return Err(
-                self.error(None, Reason::Option(format!("the time asked for is {until}: it must be finite")))
-            );
+            return Err(self
+                .transition()
+                .error(None, Reason::Option(format!("the time asked for is {until}: it must be finite"))));
         }
         loop {
             if self.queue.front().is_some_and(|event| event.time <= until)
@@ -154,11 +174,11 @@ impl<'m> Simulation<'m> {
             {
                 let mut y = event.coordinates.clone();
                 y.extend_from_slice(&event.speeds);
-                y.resize(self.y.len(), 0.0);
+                y.resize(self.front.y.len(), 0.0);
                 self.view = (event.time, y);
                 return Ok(Progress::Event(event));
             }
-            if self.t >= until {
+            if self.front.t >= until {
                 self.look(until);
                 return Ok(Progress::Reached);
             }
@@ -189,17 +209,23 @@ impl<'m> Simulation<'m> {
 
     /// Looks at the state at a time in the last step.
     fn look(&mut self, time: f64) {
-        if time >= self.t {
-            self.view = (self.t, self.y.clone());
-            return;
-        }
-        if let Some(y) = self.within_step(time) {
-            self.view = (time, y);
-            return;
-        }
-        let between = |step: &mut Step| step.at((time - step.t) / step.h);
-        if let Some(y) = self.step.as_mut().map(between) {
-            self.view = (time, y);
+        let state = match &mut self.step {
+            _ if time >= self.front.t => Some(self.front.y.clone()),
+            None => None,
+            Some((step, modes)) => {
+                let transition = Transition {
+                    mechanism: self.mechanism,
+                    options: &self.options,
+                    surfaces: &self.surfaces,
+                    front: self.front.clone(),
+                    events: Vec::new(),
+                    step: None,
+                };
+                transition.within_step(step, modes, time).or_else(|| Some(step.at((time - step.t) / step.h)))
+            }
+        };
+        if let Some(state) = state {
+            self.view = (time.min(self.front.t), state);
         }
         // Integration lets quaternions drift.
         let n = self.mechanism.count(Kind::Coordinate);
@@ -224,13 +250,13 @@ impl<'m> Simulation<'m> {
 
     /// The inputs at the end of the last step.
     pub fn inputs(&self) -> &[f64] {
-        &self.held
+        &self.front.held
     }
 
     /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`],
     /// by less than a step of the integration.
     pub fn phase(&self, contact: usize) -> Option<ContactPhase> {
-        self.phases.get(contact).map(|phase| match phase {
+        self.front.phases.get(contact).map(|phase| match phase {
             Phase::Open(_) => ContactPhase::Open,
             Phase::Stick => ContactPhase::Stick,
             Phase::Slide(_) => ContactPhase::Slide,
@@ -244,17 +270,18 @@ impl<'m> Simulation<'m> {
     ///
     /// The forces cannot be evaluated.
     pub fn contact_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
-        let closed = self.closed();
+        let transition = self.transition();
+        let closed = transition.closed();
         if closed.is_empty() {
             return Ok((Vec::new(), true));
         }
-        let motion = self.motion(&closed);
+        let motion = transition.motion(&closed);
         let evaluation =
-            motion.evaluate(self.view.0, &self.view.1).map_err(|failure| self.failure(failure))?;
-        let forces = evaluation.forces.map_or(Vec::new(), |forces| {
-            closed.iter().enumerate().map(|(i, closed)| (closed.contact, forces.of(i))).collect()
-        });
-        Ok((forces, self.unique))
+            motion.evaluate(self.view.0, &self.view.1).map_err(|failure| transition.failure(failure))?;
+        let Some(forces) = evaluation.forces else { return Ok((Vec::new(), true)) };
+        let unique = forces.unique;
+        let forces = closed.iter().enumerate().map(|(i, closed)| (closed.contact, forces.of(i))).collect();
+        Ok((forces, unique))
     }
 
     /// The energy account since the start, at the end of the last step.
@@ -263,83 +290,21 @@ impl<'m> Simulation<'m> {
     ///
     /// The mechanism cannot be evaluated.
     pub fn energy(&self) -> Result<EnergyAccount, SimulationError> {
-        let motion = self.motion(&[]);
-        let (q, u) = motion.split(&self.y);
-        let state = State { time: self.t, coordinates: q, speeds: u, inputs: &self.held };
-        let works = &self.y[q.len() + u.len()..];
-        let fault = |error| self.failure(Failure::State(error));
+        let transition = self.transition();
+        let state = transition.here();
+        let works = &self.front.y[state.coordinates.len() + state.speeds.len()..];
+        let fault = |error| transition.failure(Failure::State(error));
         Ok(EnergyAccount {
             kinetic: self.mechanism.kinetic_energy(&state).map_err(fault)?,
             potential: self.mechanism.potential_energy(&state).map_err(fault)?,
             friction: works[0],
             inputs: works[1],
-            ..self.energy
+            ..self.front.energy
         })
     }
 
     /// The mechanism.
     pub fn mechanism(&self) -> &'m dyn Contacts<f64> {
         self.mechanism
-    }
-
-    /// The closed contacts as the integration needs them.
-    pub(crate) fn closed(&self) -> Vec<Closed> {
-        self.phases
-            .iter()
-            .enumerate()
-            .filter_map(|(contact, phase)| {
-                let slides = match phase {
-                    Phase::Open(_) => return None,
-                    Phase::Stick => None,
-                    Phase::Slide(direction) => Some(*direction),
-                };
-                Some(Closed {
-                    contact,
-                    mu: self.mu(contact),
-                    weight: self.weights[contact],
-                    omega: slides.and(self.omegas[contact]),
-                    slides,
-                })
-            })
-            .collect()
-    }
-
-    pub(crate) fn mu(&self, contact: usize) -> f64 {
-        self.surfaces.get(contact).copied().flatten().map_or(0.0, |surface| surface.mu)
-    }
-
-    pub(crate) fn motion<'a>(&'a self, closed: &'a [Closed]) -> Motion<'a> {
-        Motion {
-            mechanism: self.mechanism,
-            drive: &self.options.drive,
-            held: &self.held,
-            closed,
-            resting: self.resting,
-        }
-    }
-
-    /// An error here and now.
-    pub(crate) fn error(&self, contact: Option<usize>, reason: Reason) -> SimulationError {
-        let name = |index| self.mechanism.component(Kind::Contact, index);
-        SimulationError {
-            time: self.t,
-            contact: contact.and_then(name).map(|component| component.name.to_owned()),
-            reason,
-        }
-    }
-
-    pub(crate) fn failure(&self, failure: Failure) -> SimulationError {
-        match failure {
-            Failure::State(error) => self.error(None, Reason::State(error)),
-            Failure::Contact(contact, error) => self.error(Some(contact), Reason::Contact(error)),
-            Failure::Together => self.error(
-                None,
-                Reason::Forces(
-                    "the contacts that are closed have no forces under which they keep their modes"
-                        .to_owned(),
-                ),
-            ),
-            Failure::Input(message) => self.error(None, Reason::Input(message)),
-        }
     }
 }

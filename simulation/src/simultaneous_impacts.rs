@@ -6,14 +6,14 @@ use nalgebra::{DMatrix, DVector};
 use crate::closed_contacts::ClosedContacts;
 use crate::lzb::{self, Fault};
 use crate::motion::Failure;
-use crate::simulation::Simulation;
+use crate::transition::Transition;
 use crate::{EventKind, Reason, Share, SimulationError, StruckTogether};
 
 /// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not
 /// touch each other.
 const COUPLED: f64 = 1e-12;
 
-impl Simulation<'_> {
+impl Transition<'_> {
     /// Solves the impact of the touching contacts that `first` is coupled with, and says so; the speeds
     /// after. `None` where it is coupled with none.
     pub(crate) fn strike_together(
@@ -22,8 +22,13 @@ impl Simulation<'_> {
         first: usize,
     ) -> Result<Option<Vec<f64>>, SimulationError> {
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
-        let speeds = self.y[n..n + p].to_vec();
-        let state = State { time: self.t, coordinates: &self.y[..n], speeds: &speeds, inputs: &self.held };
+        let speeds = self.front.y[n..n + p].to_vec();
+        let state = State {
+            time: self.front.t,
+            coordinates: &self.front.y[..n],
+            speeds: &speeds,
+            inputs: &self.front.held,
+        };
         let fault = |error| self.failure(Failure::State(error));
         let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
         let places = coupled_with(&support, touching.iter().position(|&contact| contact == first));
@@ -73,9 +78,9 @@ impl Simulation<'_> {
             });
         }
         let energy_change: f64 = outcome.works.iter().sum();
-        self.energy.impacts += energy_change;
-        self.y[n..n + p].copy_from_slice(&after);
-        let struck = StruckTogether { shares, energy_change, speeds_before: speeds };
+        self.front.energy.impacts += energy_change;
+        self.front.y[n..n + p].copy_from_slice(&after);
+        let struck = StruckTogether { shares, energy_change, speeds_before: speeds, spread: None };
         self.push(None, EventKind::StruckTogether(Box::new(struck)));
         Ok(Some(after))
     }

@@ -79,14 +79,23 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
 /// up, or less, is zero. Where inputs are steep, the rounding of the time of the event is in it too.
 const BEGINS: f64 = 1e-7;
 
-/// The time after which slip would end if its rate stayed; `None` where it grows or has just begun.
-pub(crate) fn time_of_slip(here: &Evaluation, place: usize) -> Option<f64> {
+/// Slip below this, relative to the greatest speeds so far, is rounding: it has just begun.
+const ROUNDING: f64 = 1e-14;
+
+/// Whether slip is rounding; `scale` are the greatest speeds so far.
+fn is_rounding(here: &Evaluation, place: usize, scale: &[f64]) -> bool {
+    here.support.slip(place).norm() <= ROUNDING * here.support.velocity_size(place, scale)
+}
+
+/// The time after which slip would end if its rate stayed; `None` where it grows or has just begun. `scale` are
+/// the greatest speeds so far.
+pub(crate) fn time_of_slip(here: &Evaluation, place: usize, scale: &[f64]) -> Option<f64> {
     let Hold::Slide(d) = here.holds[place] else { return None };
     let forces = here.forces.as_ref()?;
     let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
     let slip = here.support.slip(place).norm();
     let along = rate.dot(&d);
-    if slip == 0.0 {
+    if is_rounding(here, place, scale) {
         let support = &here.support;
         let size = |row: usize| {
             let terms =
@@ -100,14 +109,18 @@ pub(crate) fn time_of_slip(here: &Evaluation, place: usize) -> Option<f64> {
     (along < 0.0).then(|| slip / -along)
 }
 
-/// Whether slip that has a direction is so small that its rate could end it within [`ENDING`], were it
+/// Whether slip that has a direction is so small that its rate could end it within a time, were it
 /// against the slip. A slip of 1e-10 m/s has the direction that the errors of the steps before leave it: it
-/// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalized speeds.
-pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64]) -> bool {
+/// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalized speeds, `scale` the
+/// greatest so far.
+pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64], scale: &[f64], within: f64) -> bool {
+    if is_rounding(here, place, scale) {
+        return false;
+    }
     let Some(forces) = here.forces.as_ref() else { return false };
     let rate = forces.acceleration[3 * place + 1].hypot(forces.acceleration[3 * place + 2]);
     let slip = here.support.slip(place).norm();
-    slip > DIRECTION * here.support.velocity_size(place, speeds) && slip < ENDING * rate
+    slip > DIRECTION * here.support.velocity_size(place, speeds) && slip < within * rate
 }
 
 #[cfg(test)]

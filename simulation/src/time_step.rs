@@ -6,67 +6,101 @@ use hodograph::{ContactError, Kind, State};
 use nalgebra::Vector2;
 
 use crate::event_functions::Watched;
-use crate::event_location::{Crossing, first_crossing};
+use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
-use crate::motion::{Evaluation, Failure};
+use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::phase::{Closed, Phase, mus};
 use crate::settled_slip::settled;
-use crate::simulation::Simulation;
 use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
+use crate::transition::Transition;
 use crate::{Reason, SimulationError};
 
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.5;
 
-impl Simulation<'_> {
+/// So many steps without an event must advance the motion by this part of the longest step so far, or of a
+/// tenth of a second.
+const STEPS: usize = 3000;
+const ADVANCE: f64 = 1e-2;
+
+impl Transition<'_> {
     /// Makes one step.
-    pub(crate) fn proceed(&mut self) -> Result<(), SimulationError> {
-        self.sample()?;
-        self.omegas.fill(None);
+    pub(crate) fn step(&mut self) -> Result<(), SimulationError> {
+        self.front.omegas.fill(None);
         let mut closed = self.closed();
-        let here = self.motion(&closed).evaluate(self.t, &self.y).map_err(|failure| self.failure(failure))?;
+        let here = self
+            .motion(&closed)
+            .evaluate(self.front.t, &self.front.y)
+            .map_err(|failure| self.failure(failure))?;
         self.weigh_lifted(&here)?;
         for (contact, hold) in closed.iter().zip(&here.holds) {
             // Should slip become too small to have a direction, it has the last one.
             if let Hold::Slide(direction) = hold {
-                self.phases[contact.contact] = Phase::Slide(*direction);
+                self.front.phases[contact.contact] = Phase::Slide(*direction);
             }
         }
-        let mut most = self.next.min(self.options.max_step);
+        let mut most = self.front.next.min(self.options.max_step);
         if let Some(limit) = self.limit() {
-            most = most.min(limit - self.t);
+            most = most.min(limit - self.front.t);
         }
         let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.y[n..n + self.mechanism.count(Kind::Speed)];
+        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
         for (i, contact) in closed.iter().enumerate() {
             if contact.slides.is_none() {
                 continue;
             }
-            let left = time_of_slip(&here, i);
-            if (left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds))
-                && let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i)
+            let left = time_of_slip(&here, i, &self.front.scale);
+            if left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds, &self.front.scale, ENDING)
             {
-                return self.end_slip(&closed, &here, i, time);
+                if closed.len() > 1 {
+                    let stopped = self.stops(&closed, &here, speeds);
+                    if !stopped.is_empty() {
+                        return self.end_slip(&closed, &here, &stopped, left.unwrap_or(0.0).min(ENDING));
+                    }
+                } else if let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i) {
+                    return self.end_slip(&closed, &here, &[i], time);
+                }
             }
             if let Some(left) = left {
                 most = most.min(SHARE * left.max(ENDING));
             }
         }
-        let omegas = settled(&self.motion(&closed), self.t, &self.y, &here);
+        let omegas = settled(&self.motion(&closed), self.front.t, &self.front.y, &here);
         for (contact, omega) in closed.iter_mut().zip(omegas) {
             contact.omega = omega;
-            self.omegas[contact.contact] = omega;
+            self.front.omegas[contact.contact] = omega;
         }
         let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
         match crossing {
             None => {
-                self.next = step.next;
+                self.front.next = step.next;
                 self.commit(&mut step)?;
+                self.progress(step.h)?;
                 self.on_time()
             }
-            Some((watched, crossing)) => self.happen(&closed, step, watched, crossing),
+            Some((watched, crossing)) => {
+                self.front.steps = (0, self.front.t, self.front.steps.2);
+                self.handle_event(&closed, step, watched, crossing)
+            }
         }
+    }
+
+    /// Counts steps without an event, and refuses to go on where they hardly advance the motion.
+    fn progress(&mut self, h: f64) -> Result<(), SimulationError> {
+        let (steps, since, longest) = self.front.steps;
+        let longest = longest.max(h.min(0.1));
+        let steps = steps + 1;
+        self.front.steps = (steps, since, longest);
+        if steps % STEPS == 0 {
+            let time = self.front.t - since;
+            if time < ADVANCE * longest {
+                let modes = self.modes_in_words();
+                return Err(self.error(None, Reason::NoProgress { steps, time, modes }));
+            }
+            self.front.steps = (0, self.front.t, longest);
+        }
+        Ok(())
     }
 
     /// A step that was integrated, and the first event in it.
@@ -92,7 +126,7 @@ impl Simulation<'_> {
                         rates.fill(f64::NAN);
                     }
                 };
-                stepper::step(&rates, self.t, &self.y, most, &tolerances)
+                stepper::step(&rates, self.front.t, &self.front.y, most, &tolerances)
             };
             let Some(mut step) = made else {
                 return self.stuck_integration(failed.into_inner()).map(|()| None);
@@ -102,10 +136,30 @@ impl Simulation<'_> {
                 continue;
             }
             let (watched, noise) = self.watched(closed, step.h);
-            let found = first_crossing(watched.len(), &noise, &mut |fraction| {
-                let h = step.h;
-                self.values(closed, &watched, h * fraction, &mut |after| step.at(after / h)).ok()
-            });
+            let Some(pieces) = self.pieces(closed, &step) else {
+                most = 0.5 * step.h;
+                continue;
+            };
+            let h = step.h;
+            let made = RefCell::new(&mut step);
+            let found = first_crossing(
+                &mut Functions {
+                    count: watched.len(),
+                    noise: &noise,
+                    values: &mut |fraction| {
+                        let at = &mut |after: f64| made.borrow_mut().at(after / h);
+                        self.values(closed, &watched, h * fraction, at).ok()
+                    },
+                    slopes: &mut |fraction| {
+                        let y = made.borrow_mut().at(fraction);
+                        self.slopes(&watched, h * fraction, &y)
+                            .into_iter()
+                            .map(|slope| slope.map(|slope| slope * h))
+                            .collect()
+                    },
+                },
+                pieces,
+            );
             let Ok(found) = found else {
                 most = 0.5 * step.h;
                 continue;
@@ -142,13 +196,16 @@ impl Simulation<'_> {
         let (q, u) = motion.split(&step.end);
         let inputs = motion.inputs(step.t + step.h, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &inputs };
-        for (contact, hold) in closed.iter().zip(&here.holds) {
+        for (place, (contact, hold)) in closed.iter().zip(&here.holds).enumerate() {
             if let Hold::Slide(d) = hold {
                 let velocity = self
                     .mechanism
                     .contact_velocity(contact.contact, &state)
                     .map_err(|error| self.failure(Failure::State(error)))?;
                 let slip = Vector2::new(velocity.y, velocity.z);
+                if slip.norm() <= DIRECTION * here.support.velocity_size(place, u) {
+                    continue;
+                }
                 if slip.dot(d) < 0.5 * slip.norm() && step.h > 2.0 * ENDING {
                     return Ok(false);
                 }

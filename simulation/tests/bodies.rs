@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{first, names, run, start, surface};
+use common::{first, first_collision, names, run, start, surface};
 use cradle::Cradle;
 use hodograph::{Contacts, Law, Mechanism, State};
 use hodograph_models::rattleback;
@@ -42,12 +42,8 @@ fn a_cube_falls_from_its_edge() {
         let mut simulation = start(&body, &q, &[0.0; 6], surface(3.0, 0.0, Law::Poisson));
         assert_eq!(simulation.phase(1), Some(ContactPhase::Stick));
         let events = run(&mut simulation, 3.0);
-        let strike = first(&events, "collision");
+        let (strike, before) = first_collision(&events);
         let last = events.iter().rfind(|event| event.time == strike.time).expect("that event");
-        let before = match &strike.kind {
-            hodograph_simulation::EventKind::Collision(struck) => struck.speeds_before.clone(),
-            _ => unreachable!(),
-        };
         let radius = a * 2.0_f64.sqrt();
         let w = (1.5 * G / radius * (lean.cos() - 0.5_f64.sqrt())).sqrt();
         assert!(

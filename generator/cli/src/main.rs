@@ -24,7 +24,7 @@ mod stop;
 mod surface;
 
 use commands::{
-    check, collide, derive, derive_worker, eval, expand, explain, export as export_library,
+    check, collide, contacts, derive, derive_worker, eval, expand, explain, export as export_library,
     import as import_urdf, plot as draw, simulate, solve,
 };
 
@@ -42,6 +42,7 @@ struct Arguments {
 #[derive(clap::Subcommand)]
 enum Command {
     Solve(solve::Arguments),
+    Contacts(contacts::Arguments),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
     Check(check::Arguments),
@@ -64,6 +65,7 @@ fn main() -> ExitCode {
     };
     let outcome = match arguments.command {
         Command::Solve(arguments) => solve::run(&arguments),
+        Command::Contacts(arguments) => contacts::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),
         Command::Collide(arguments) => collide::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),

@@ -69,6 +69,8 @@ pub enum Selection {
     Unique,
     /// Several modes fit; this is the one whose force is nearest to the one before.
     SeveralModes,
+    /// There are too many contacts to look for other modes.
+    Unknown,
     /// The contact slides with f < 0 and beta_n >= 0: it may lift off or suffer an impact without collision.
     /// Lift-off is taken.
     Indeterminate,

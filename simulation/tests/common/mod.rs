@@ -300,11 +300,26 @@ pub fn first<'a>(events: &'a [Event], name: &str) -> &'a Event {
         .unwrap_or_else(|| panic!("no {name} in {:?}", names(events)))
 }
 
+/// Whether bodies collided, at one contact or at several at once.
+fn collided(event: &Event) -> bool {
+    matches!(event.kind, EventKind::Collision(_) | EventKind::StruckTogether(_))
+}
+
+/// The first collision, and the speeds before it.
+pub fn first_collision(events: &[Event]) -> (&Event, &[f64]) {
+    let event = events
+        .iter()
+        .find(|event| collided(event))
+        .unwrap_or_else(|| panic!("no collision in {:?}", names(events)));
+    let before = match &event.kind {
+        EventKind::Collision(struck) => &struck.speeds_before,
+        EventKind::StruckTogether(struck) => &struck.speeds_before,
+        _ => unreachable!(),
+    };
+    (event, before)
+}
+
 /// Times of the collisions.
 pub fn collisions(events: &[Event]) -> Vec<f64> {
-    events
-        .iter()
-        .filter(|event| matches!(event.kind, EventKind::Collision(_)))
-        .map(|event| event.time)
-        .collect()
+    events.iter().filter(|event| collided(event)).map(|event| event.time).collect()
 }

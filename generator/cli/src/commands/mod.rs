@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod collide;
+pub mod contacts;
 pub mod derive;
 pub mod derive_worker;
 pub mod eval;

@@ -64,10 +64,12 @@ pub struct Arguments {
     /// interpolated
     #[arg(long, value_name = "FILE")]
     inputs: Option<PathBuf>,
-    /// contacts that are struck together answer one after the other, all at once by their
-    /// stiffnesses, or the simulation stops
-    #[arg(long, value_name = "WAY", default_value = "sequential")]
+    /// what several contacts do that are struck at one time
+    #[arg(long, value_name = "WAY", default_value = "approaching")]
     together: TogetherArgument,
+    /// compare the outcomes of all orders of up to four contacts struck at one time (`spread`, J)
+    #[arg(long)]
+    spread: bool,
     /// of --together lzb: the stiffness of a contact, as `left=2`; only ratios matter, and contacts
     /// not named have 1
     #[arg(long, value_name = "CONTACT=NUMBER")]
@@ -84,9 +86,14 @@ pub struct Arguments {
 /// What contacts that are struck together do.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum TogetherArgument {
+    /// all that approach strike at once, by Moreau's law with friction; what this presses together
+    /// strikes next
+    Approaching,
     /// one after the other, the fastest first
     Sequential,
-    /// all at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction
+    /// all that touch strike at once, by Moreau's law with friction
+    Simultaneous,
+    /// all that touch at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction
     /// only
     Lzb,
     /// an error
@@ -144,11 +151,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
         drive,
         breaks,
         together: match arguments.together {
+            TogetherArgument::Approaching => Together::Approaching,
             TogetherArgument::Sequential => Together::Sequential,
+            TogetherArgument::Simultaneous => Together::Simultaneous,
             TogetherArgument::Lzb => Together::Lzb,
             TogetherArgument::Stop => Together::Stop,
         },
         stiffness,
+        compare_orders: arguments.spread,
         ..Options::default()
     };
     let mut lines = Lines::new(&mechanism, arguments.format)?;

@@ -1,7 +1,7 @@
 //! `hodograph solve`: solves collisions given as JSON lines, and writes their outcomes as JSON
 //! lines.
 
-use std::io::{self, BufRead, IsTerminal};
+use std::io::{self, IsTerminal};
 
 use clap::ValueEnum;
 use hodograph::methods::{self, Integration, Partial, Solution, Summation, Switch};
@@ -10,7 +10,7 @@ use nalgebra::Vector3;
 
 use crate::json::answer::{Answer, At};
 use crate::json::characteristics::{Asked, Characteristics, Form};
-use crate::json::{Failure, Fields, Json};
+use crate::json::{Failure, Fields, Json, lines::read_line};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 use crate::surface;
@@ -202,7 +202,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         );
     }
     let (mut all_solved, mut line) = (true, Vec::new());
-    while let Some(complete) = read_line(&mut input, &mut line)? {
+    while let Some(complete) = read_line(&mut input, &mut line, LONGEST_LINE, "standard input")? {
         let answer = if complete {
             if line.iter().all(u8::is_ascii_whitespace) {
                 continue;
@@ -230,34 +230,6 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
     }
     if all_solved { Ok(()) } else { Err(Stop::Said) }
-}
-
-/// Reads the next line; `Some(false)` if it was too long to keep, `None` at the end.
-fn read_line(input: &mut impl BufRead, line: &mut Vec<u8>) -> Outcome<Option<bool>> {
-    line.clear();
-    let (mut any, mut complete) = (false, true);
-    loop {
-        let chunk = match input.fill_buf() {
-            Ok(chunk) => chunk,
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(Stop::Fault(format!("cannot read standard input: {error}"))),
-        };
-        if chunk.is_empty() {
-            return Ok(any.then_some(complete));
-        }
-        any = true;
-        let end = chunk.iter().position(|&byte| byte == b'\n');
-        let piece = &chunk[..end.unwrap_or(chunk.len())];
-        complete = complete && line.len() + piece.len() <= LONGEST_LINE;
-        if complete {
-            line.extend_from_slice(piece);
-        }
-        let used = end.map_or(chunk.len(), |end| end + 1);
-        input.consume(used);
-        if end.is_some() {
-            return Ok(Some(complete));
-        }
-    }
 }
 
 fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {

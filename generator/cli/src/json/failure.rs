@@ -30,6 +30,10 @@ pub enum Kind {
     NoNormalMobility,
     /// no outcome exists
     Wedged,
+    /// no forces are known to exist: a contact that slips jams
+    Jam,
+    /// no forces were found that obey the laws within their bound
+    Unsolved,
     /// rounding forbids an outcome that obeys the laws of impact
     Inaccurate,
     /// the collision needs more quadratures than it may take

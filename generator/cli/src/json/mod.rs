@@ -5,6 +5,7 @@ pub mod answer;
 pub mod characteristics;
 pub mod failure;
 pub mod fields;
+pub mod lines;
 pub mod state;
 pub mod value;
 

@@ -195,6 +195,7 @@ impl<'m> Lines<'m> {
         line.shares = Some(shares.collect());
         line.u_after = Some(self.after(event));
         line.kinetic_energy_change = Some(struck.energy_change + 0.0);
+        line.spread = struck.spread;
         line.u = self.speeds(&struck.speeds_before);
     }
 

@@ -1,0 +1,99 @@
+//! Takes the end of a step as the new front, and projects states onto the constraints.
+
+use hodograph::Kind;
+
+use crate::drift;
+use crate::motion::{Failure, Motion};
+use crate::phase::{Closed, Modes};
+use crate::stepper::{self, Step};
+use crate::transition::Transition;
+use crate::{Reason, SimulationError};
+
+impl Transition<'_> {
+    /// Takes the end of a step as the new front.
+    pub(crate) fn commit(&mut self, step: &mut Step) -> Result<(), SimulationError> {
+        let modes = self.modes();
+        self.front.t = step.t + step.h;
+        self.front.y.copy_from_slice(&step.end);
+        self.correct()?;
+        step.corrected(&self.front.y);
+        self.arm(step)?;
+        self.step = Some((step.clone(), modes));
+        let n = self.mechanism.count(Kind::Coordinate);
+        for (scale, speed) in self.front.scale.iter_mut().zip(&self.front.y[n..]) {
+            *scale = scale.max(speed.abs());
+        }
+        if let Ok(kinetic) = self.mechanism.kinetic_energy(&self.here()) {
+            self.front.greatest = self.front.greatest.max(kinetic);
+        }
+        Ok(())
+    }
+
+    /// Corrects the drift of the front.
+    pub(crate) fn correct(&mut self) -> Result<(), SimulationError> {
+        let mut y = std::mem::take(&mut self.front.y);
+        let modes = self.modes();
+        let done = self.project_onto_constraints(&modes, self.front.t, &mut y);
+        self.front.y = y;
+        done
+    }
+
+    /// Corrects the drift of a state that was integrated in these modes.
+    fn project_onto_constraints(&self, modes: &Modes, t: f64, y: &mut [f64]) -> Result<(), SimulationError> {
+        if modes.resting {
+            // Not even the last bit of a quaternion's length changes.
+            return Ok(());
+        }
+        let n = self.mechanism.count(Kind::Coordinate);
+        let p = self.mechanism.count(Kind::Speed);
+        let closed: Vec<(usize, bool)> =
+            modes.closed.iter().map(|closed| (closed.contact, closed.slides.is_none())).collect();
+        let mut q = y[..n].to_vec();
+        let mut u = y[n..n + p].to_vec();
+        let moved = (|| {
+            drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
+            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
+            let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
+            drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)
+        })();
+        if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
+            return Err(self.error(Some(left.contact), Reason::Drift(left.gap)));
+        }
+        y[..n].copy_from_slice(&q);
+        y[n..n + p].copy_from_slice(&u);
+        Ok(())
+    }
+
+    /// The state at a time in a step that was made in these modes, integrated anew up to it: as exact as the
+    /// step itself.
+    pub(crate) fn within_step(&self, step: &Step, modes: &Modes, time: f64) -> Option<Vec<f64>> {
+        if modes.resting {
+            return Some(step.end.clone());
+        }
+        let motion = Motion {
+            mechanism: self.mechanism,
+            drive: &self.options.drive,
+            held: &modes.held,
+            closed: &modes.closed,
+            resting: modes.resting,
+        };
+        let part = part_of(&motion, step.t, step.start(), time - step.t)?;
+        let mut y = part.end;
+        self.project_onto_constraints(modes, time, &mut y).ok()?;
+        Some(y)
+    }
+
+    /// A part of the step from the front, integrated anew.
+    pub(crate) fn part(&self, closed: &[Closed], h: f64) -> Option<Step> {
+        part_of(&self.motion(closed), self.front.t, &self.front.y, h)
+    }
+}
+
+/// The motion from a state on, over exactly so long.
+fn part_of(motion: &Motion<'_>, t: f64, y: &[f64], h: f64) -> Option<Step> {
+    let rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
+        Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
+        Err(_) => rates.fill(f64::NAN),
+    };
+    stepper::part(&rates, t, y, h)
+}

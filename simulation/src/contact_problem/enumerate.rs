@@ -1,0 +1,143 @@
+//! All solutions of few contacts, mode by mode.
+//!
+//! Of contacts that do not slip each may separate, stick or begin to slip. Where none begins to slip the equations are
+//! linear. The directions in which contacts begin to slip follow from equations in their angles alone.
+//!
+//! Theory: docs/theory.md, section 17.10.
+
+use nalgebra::{DVector, Vector2};
+
+use super::{
+    Mode, Problem, Solution, Solutions,
+    directions::directions,
+    motion::centred,
+    prescribed::{FITS, with_modes},
+    solve::{attempt, certificate, modes},
+};
+
+/// The greatest number of contacts of which all modes are tried.
+pub const MOST_ENUMERATED: usize = 4;
+
+/// Every motion that the laws allow at most [`MOST_ENUMERATED`] contacts, each with forces, the most resting first; of
+/// more contacts, or of a problem that is not one, none.
+///
+/// Where no or one contact begins to slip no solution is missed. Directions of more are looked for from a grid. Forces
+/// of one motion count once: they are the ones of [`with_modes`].
+pub fn enumerate(problem: &Problem<'_>) -> Vec<Solution> {
+    let k = problem.contacts();
+    if k > MOST_ENUMERATED || problem.check().is_err() {
+        return Vec::new();
+    }
+    let mut found: Vec<Solution> = Vec::new();
+    // Where contacts share their load in many ways as they begin to slip there are many motions: this is one of them.
+    if let Ok(first) = attempt(problem, None) {
+        found.push(centred(problem, first));
+    }
+    let choices: Vec<Vec<Choice>> = (0..k).map(|i| choices(problem, i)).collect();
+    let mut places = vec![0; k];
+    loop {
+        let chosen: Vec<Choice> =
+            places.iter().zip(&choices).map(|(&place, choices)| choices[place]).collect();
+        for modes in ways(problem, &chosen) {
+            accept(problem, &modes, &mut found);
+        }
+        // The next combination.
+        let Some(i) = (0..k).find(|&i| places[i] + 1 < choices[i].len()) else { break };
+        places[i] += 1;
+        places[..i].fill(0);
+    }
+    found.sort_by_key(|solution| solution.modes.iter().map(rank).sum::<usize>());
+    let solutions = if found.len() == 1 { Solutions::Unique } else { Solutions::Several };
+    found.iter_mut().for_each(|solution| solution.solutions = solutions);
+    found
+}
+
+fn rank(mode: &Mode) -> usize {
+    match mode {
+        Mode::Stick => 0,
+        Mode::Slide(_) => 1,
+        Mode::Separate => 2,
+    }
+}
+
+/// A mode whose direction may be open.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Choice {
+    Known(Mode),
+    Begin,
+}
+
+fn choices(problem: &Problem<'_>, i: usize) -> Vec<Choice> {
+    match problem.slip[i] {
+        Some(d) => vec![Choice::Known(Mode::Slide(d)), Choice::Known(Mode::Separate)],
+        None if problem.mu[i] > 0.0 => {
+            vec![Choice::Known(Mode::Stick), Choice::Begin, Choice::Known(Mode::Separate)]
+        }
+        None => vec![Choice::Known(Mode::Stick), Choice::Known(Mode::Separate)],
+    }
+}
+
+/// The choice with all directions in which those that begin to slip may do so.
+fn ways(problem: &Problem<'_>, chosen: &[Choice]) -> Vec<Vec<Mode>> {
+    let open: Vec<usize> = (0..chosen.len()).filter(|&i| chosen[i] == Choice::Begin).collect();
+    let with = |found: &[Vector2<f64>]| {
+        let mut directions = found.iter();
+        let mode = |choice: &Choice| match choice {
+            Choice::Known(mode) => *mode,
+            Choice::Begin => directions.next().map_or(Mode::Stick, |d| Mode::Slide(*d)),
+        };
+        chosen.iter().map(mode).collect()
+    };
+    if open.is_empty() {
+        return vec![with(&[])];
+    }
+    directions(problem, chosen, &open).iter().map(|found| with(found)).collect()
+}
+
+/// Adds the forces of these modes if they obey the laws and their motion is new.
+fn accept(problem: &Problem<'_>, wanted: &[Mode], found: &mut Vec<Solution>) {
+    let Some(solution) = with_certificate(problem, wanted) else { return };
+    let size = solution.acceleration.amax().max(problem.beta.amax());
+    let same = |other: &Solution| (&other.acceleration - &solution.acceleration).amax() <= SAME * size;
+    if !found.iter().any(same) {
+        found.push(solution);
+    }
+}
+
+/// Accelerations that differ by less beside the greatest one are one motion.
+const SAME: f64 = 1e-8;
+
+/// The forces of modes, if they obey the laws.
+pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option<Solution> {
+    let found = with_modes(problem, wanted).ok()?;
+    if found.margin < -FITS {
+        return None;
+    }
+    let force = within(problem, wanted, found.force);
+    let certificate = certificate(problem, &force).ok()?;
+    if certificate.greatest() > super::solve::ACCEPTED {
+        return None;
+    }
+    let acceleration = problem.w * &force + problem.beta;
+    let modes = modes(problem, &force, &acceleration);
+    Some(Solution { force, acceleration, modes, certificate, solutions: Solutions::Unknown })
+}
+
+/// The forces without what rounding takes out of the cones.
+fn within(problem: &Problem<'_>, modes: &[Mode], mut force: DVector<f64>) -> DVector<f64> {
+    for (i, mode) in modes.iter().enumerate() {
+        let normal = force[3 * i].max(0.0);
+        let friction = Vector2::new(force[3 * i + 1], force[3 * i + 2]);
+        let most = problem.mu[i] * normal;
+        let size = friction.norm();
+        let friction = match mode {
+            Mode::Slide(d) => d * -most,
+            _ if size > most => friction * (most / size),
+            _ => friction,
+        };
+        force[3 * i] = normal;
+        force[3 * i + 1] = friction.x;
+        force[3 * i + 2] = friction.y;
+    }
+    force
+}

@@ -1,0 +1,99 @@
+//! One motion among many: where contacts that begin to slip share their load in many ways, each has another friction
+//! and so another motion. The one is taken whose forces are the centre for its own directions of slip.
+//!
+//! Theory: docs/theory.md, section 17.10.
+
+use nalgebra::{DMatrix, DVector, Vector2};
+
+use super::{
+    Mode, Problem, Solution,
+    enumerate::with_certificate,
+    prescribed::{Admissible, with_modes_near},
+};
+
+/// The solution with the forces that its modes prescribe, where these obey the laws as well.
+pub(super) fn centred(problem: &Problem<'_>, found: Solution) -> Solution {
+    let like =
+        |solution: &Solution| solution.modes.iter().zip(&found.modes).all(|(one, other)| one.is_like(other));
+    let open: Vec<usize> = (0..found.modes.len())
+        .filter(|&i| problem.slip[i].is_none() && matches!(found.modes[i], Mode::Slide(_)))
+        .collect();
+    if !open.is_empty()
+        && let Some(modes) = settled(problem, &found, &open)
+        && let Some(centred) = with_certificate(problem, &modes).filter(like)
+    {
+        return centred;
+    }
+    with_certificate(problem, &found.modes).filter(like).unwrap_or(found)
+}
+
+/// The modes of a solution with directions in which the contacts slip under the centre of the forces that these
+/// directions allow; `None` where forces are unique or the directions do not settle.
+fn settled(problem: &Problem<'_>, found: &Solution, open: &[usize]) -> Option<Vec<Mode>> {
+    let first = with_modes_near(problem, &found.modes, Some(&found.force)).ok()?;
+    if first.unique {
+        return None;
+    }
+    let mut force = first.force;
+    let mut modes = found.modes.clone();
+    let mut last = f64::INFINITY;
+    for _ in 0..ROUNDS {
+        let (turns, centre) = turns(problem, &modes, open, &force)?;
+        force = centre.force;
+        let greatest = turns.amax();
+        if greatest <= 1e-14 || (greatest <= 1e-11 && greatest >= 0.5 * last) {
+            return Some(modes);
+        }
+        last = greatest;
+        // Newton's method, with differences; of many contacts each direction follows its own slip.
+        let step = if open.len() <= MOST {
+            let mut rates = DMatrix::zeros(open.len(), open.len());
+            for j in 0..open.len() {
+                let mut turned = modes.clone();
+                turn(&mut turned[open[j]], DIFFERENCE);
+                let there = self::turns(problem, &turned, open, &force)?.0;
+                rates.set_column(j, &((there - &turns) / DIFFERENCE));
+            }
+            rates.lu().solve(&turns).map(|step| -step)?
+        } else {
+            turns
+        };
+        let part = (0.5 / step.amax()).min(1.0);
+        for (&i, step) in open.iter().zip(step.iter()) {
+            turn(&mut modes[i], part * step);
+        }
+    }
+    None
+}
+
+/// The angles from the given directions to those of the accelerations under the centre of their forces.
+fn turns(
+    problem: &Problem<'_>,
+    modes: &[Mode],
+    open: &[usize],
+    near: &DVector<f64>,
+) -> Option<(DVector<f64>, Admissible)> {
+    let centre = with_modes_near(problem, modes, Some(near)).ok()?;
+    let angles = DVector::from_fn(open.len(), |j, _| {
+        let i = open[j];
+        let (t, s) = (centre.acceleration[3 * i + 1], centre.acceleration[3 * i + 2]);
+        match modes[i] {
+            Mode::Slide(d) => (d.x * s - d.y * t).atan2(d.x * t + d.y * s),
+            _ => 0.0,
+        }
+    });
+    Some((angles, centre))
+}
+
+fn turn(mode: &mut Mode, angle: f64) {
+    if let Mode::Slide(d) = mode {
+        let (sin, cos) = angle.sin_cos();
+        *d = Vector2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y).normalize();
+    }
+}
+
+/// Rounds until directions settle, the most contacts for which their changes are found by differences, and the angle of
+/// these.
+const ROUNDS: usize = 60;
+const MOST: usize = 16;
+const DIFFERENCE: f64 = 1e-6;

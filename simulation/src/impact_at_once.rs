@@ -1,0 +1,139 @@
+//! Impacts of several contacts at once, by Moreau's law with friction.
+//!
+//! With v- and v+ before and after, the impulses p of all contacts obey v+ = v- + W p with the laws of contact
+//! that lasts in place of accelerations: each contact asks for v+_n >= -e v-_n with p_n >= 0, one of them with
+//! equality, and friction abs(p_tan) <= mu p_n, which opposes the slip that is left (docs/theory.md, section
+//! 17.13).
+
+use hodograph::State;
+use nalgebra::{DVector, Vector2};
+
+use crate::closed_contacts::ClosedContacts;
+use crate::contact_problem::{self, Problem};
+use crate::motion::Failure;
+use crate::single_impact::{Hit, HitKind};
+use crate::transition::Transition;
+use crate::{Reason, Share, SimulationError};
+
+/// Halvings of the share of restitution that does not gain energy.
+const HALVINGS: usize = 40;
+/// A gain of energy below this, relative to the energies of the normal impulses, is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The impulses of contacts that strike at once.
+struct AtOnce {
+    impulse: DVector<f64>,
+    velocity: DVector<f64>,
+    /// change of kinetic energy, J
+    work: f64,
+    /// size of the terms of the work, J
+    scale: f64,
+}
+
+impl Transition<'_> {
+    /// The impact of these contacts at once; `faded` ones end without restitution.
+    pub(crate) fn impact_at_once(
+        &self,
+        contacts: &[usize],
+        speeds: &[f64],
+        faded: bool,
+    ) -> Result<Hit, SimulationError> {
+        let support = self.struck_support(contacts, speeds)?;
+        let mut restitution = Vec::with_capacity(contacts.len());
+        let mut bounces = Vec::new();
+        for (i, &contact) in contacts.iter().enumerate() {
+            let e = if faded { 0.0 } else { self.surface(contact)?.e };
+            let before = -support.velocity[3 * i];
+            let ends = if e > 0.0 && e < 1.0 && before > 0.0 {
+                self.last_bounce(contact, speeds, before, e * before)?
+            } else {
+                None
+            };
+            restitution.push(if ends.is_some() { 0.0 } else { e });
+            bounces.extend(ends.map(|time| (contact, time)));
+        }
+        self.at_once(contacts, &support, speeds, &restitution, bounces)
+    }
+
+    /// The impact of these contacts at once after which none approaches: without restitution.
+    pub(crate) fn plastic_impact(&self, contacts: &[usize], speeds: &[f64]) -> Result<Hit, SimulationError> {
+        let support = self.struck_support(contacts, speeds)?;
+        self.at_once(contacts, &support, speeds, &vec![0.0; contacts.len()], Vec::new())
+    }
+
+    fn struck_support(&self, contacts: &[usize], speeds: &[f64]) -> Result<ClosedContacts, SimulationError> {
+        let state = State { speeds, ..self.here() };
+        ClosedContacts::new(self.mechanism, &state, contacts, false)
+            .map_err(|error| self.failure(Failure::State(error)))
+    }
+
+    fn at_once(
+        &self,
+        contacts: &[usize],
+        support: &ClosedContacts,
+        speeds: &[f64],
+        restitution: &[f64],
+        bounces: Vec<(usize, f64)>,
+    ) -> Result<Hit, SimulationError> {
+        let mu: Vec<f64> = contacts.iter().map(|&contact| self.mu(contact)).collect();
+        let solve = |share: f64| {
+            let e: Vec<f64> = restitution.iter().map(|e| share * e).collect();
+            solve(support, &mu, &e).map_err(|unsolved| {
+                self.error(
+                    Some(contacts[0]),
+                    Reason::Forces(format!("the contacts that strike at once have no impulses: {unsolved}")),
+                )
+            })
+        };
+        let mut outcome = solve(1.0)?;
+        if outcome.work > ROUNDING * outcome.scale {
+            // Moreau's law may gain energy with friction and unlike e: as much of the restitution is taken as
+            // gains none. Without restitution none is gained.
+            let (mut low, mut high) = (0.0, 1.0);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                let trial = solve(middle)?;
+                if trial.work > 0.0 { high = middle } else { low = middle }
+            }
+            outcome = solve(low)?;
+        }
+        let change = &support.response * &outcome.impulse;
+        let after = speeds.iter().zip(change.iter()).map(|(speed, change)| speed + change).collect();
+        let state = State { speeds, ..self.here() };
+        let mut shares = Vec::with_capacity(contacts.len());
+        for (i, &contact) in contacts.iter().enumerate() {
+            let basis = self
+                .mechanism
+                .contact_state(contact, &state)
+                .map_err(|error| self.failure(Failure::State(error)))?;
+            let p = ClosedContacts::three(&outcome.impulse, i);
+            let (before, velocity) =
+                (ClosedContacts::three(&support.velocity, i), ClosedContacts::three(&outcome.velocity, i));
+            shares.push(Share {
+                contact,
+                impulse: p.x,
+                impulse_on_point: basis.normal * p.x + basis.first * p.y + basis.second * p.z,
+                approach: before.x,
+                separation: velocity.x,
+                work: 0.5 * p.dot(&(before + velocity)),
+            });
+        }
+        Ok(Hit { kind: HitKind::Several(shares), before: speeds.to_vec(), after, bounces })
+    }
+}
+
+/// The impulses for these coefficients of restitution.
+fn solve(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Result<AtOnce, contact_problem::Unsolved> {
+    let mut wanted = support.velocity.clone();
+    for (i, e) in e.iter().enumerate() {
+        wanted[3 * i] += e * support.velocity[3 * i].min(0.0);
+    }
+    let none: Vec<Option<Vector2<f64>>> = vec![None; support.len()];
+    let problem = Problem { w: &support.coupled, beta: &wanted, mu, slip: &none, noise: None };
+    let solution = contact_problem::solve(&problem, None)?;
+    let velocity = &support.coupled * &solution.force + &support.velocity;
+    let terms = |i: usize| 0.5 * solution.force[i] * (support.velocity[i] + velocity[i]);
+    let work = (0..velocity.len()).map(terms).sum();
+    let scale = (0..velocity.len()).map(|i| terms(i).abs()).sum();
+    Ok(AtOnce { impulse: solution.force, velocity, work, scale })
+}

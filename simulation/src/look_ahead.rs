@@ -1,0 +1,197 @@
+//! Decides modes by the motion just after an instant.
+//!
+//! Where friction is used up, or a normal force vanishes, the accelerations at the contacts are zero: at that
+//! instant the modes before and after fit both. A mode is right if its conditions hold for some time after the
+//! instant (docs/theory.md, section 17.11). So the motion is carried on a little in the modes that end; the
+//! forces that obey the laws there tell the modes that follow, of all contacts at once.
+
+use hodograph::State;
+use nalgebra::Vector2;
+
+use crate::closed_contacts::ClosedContacts;
+use crate::forces::{Lacking, margins};
+use crate::mode_changes::NO_SLIP;
+use crate::mode_selection::{Choice, Decision, choose};
+use crate::motion::{Evaluation, Failure};
+use crate::phase::{Closed, Phase, mus};
+use crate::stepper::Step;
+use crate::transition::Transition;
+use crate::{EventKind, SimulationError};
+
+/// The first time ahead, beside the last step, and how much longer each next one is.
+const FIRST: f64 = 1e-7;
+const LONGER: f64 = 8.0;
+/// Times ahead that are tried.
+const TRIALS: usize = 8;
+/// A condition that has changed by so much, relative to the forces, has changed by more than rounding.
+const CLEAR: f64 = 1e-10;
+/// After so many events without progress the modes that were decided are confirmed.
+const DOUBT: usize = 4;
+/// Modes that are tried before those chosen last are taken.
+const ROUNDS: usize = 6;
+
+/// What the motion ahead says of the modes.
+enum Ahead {
+    /// They go on.
+    Fit,
+    /// They end here: these follow.
+    End(Choice),
+}
+
+impl Transition<'_> {
+    /// The modes of these contacts have ended, or seem to: decides what follows.
+    pub(crate) fn look_ahead(&mut self, contacts: &[usize]) -> Result<(), SimulationError> {
+        let was = self.front.phases.clone();
+        let closed = self.closed();
+        let mut last: Option<Step> = None;
+        for trial in 0..TRIALS {
+            let Some(step) = self.part(&closed, self.ahead(trial)) else { break };
+            let Some((clear, fits)) = self.clear(&closed, &step) else { break };
+            last = Some(step.clone());
+            if !clear {
+                continue;
+            }
+            if fits {
+                break;
+            }
+            return match self.chosen_at(contacts, &step)? {
+                Ok(choice) => {
+                    self.begin_from_rest(contacts, &choice)?;
+                    self.apply(contacts, &was, &choice);
+                    self.front.next = self.front.next.min(FIRST);
+                    self.confirm(contacts, &was)
+                }
+                Err(lacking) => self.without_forces(contacts, lacking),
+            };
+        }
+        // The conditions hold ahead, or are as nearly used up there as here: the modes go on.
+        match last {
+            Some(mut step) => self.commit(&mut step),
+            None => self.decide(contacts, &was),
+        }
+    }
+
+    /// Confirms modes that were just decided where events crowd: they must hold a little later, too.
+    pub(crate) fn confirm(&mut self, contacts: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
+        if contacts.len() < 2 || self.front.crowd < DOUBT {
+            return Ok(());
+        }
+        for round in 0..ROUNDS {
+            match self.modes_ahead(contacts, round)? {
+                Ahead::Fit => return Ok(()),
+                Ahead::End(choice) => {
+                    self.forget_mode_events(contacts);
+                    self.front.phases.clone_from_slice(was);
+                    self.begin_from_rest(contacts, &choice)?;
+                    self.apply(contacts, was, &choice);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the modes as they are still fit a little later, and those that do.
+    fn modes_ahead(&self, contacts: &[usize], round: usize) -> Result<Ahead, SimulationError> {
+        let closed = self.closed();
+        let Some(step) = self.part(&closed, self.ahead(round / 2)) else { return Ok(Ahead::Fit) };
+        let fits = self.clear(&closed, &step).is_none_or(|(_, fits)| fits);
+        if fits && self.opened(contacts, &step)? {
+            return Ok(Ahead::Fit);
+        }
+        Ok(self.chosen_at(contacts, &step)?.map_or(Ahead::Fit, Ahead::End))
+    }
+
+    /// Slip that begins does so from none: what rounding has left of the slip before would have a direction.
+    fn begin_from_rest(&mut self, contacts: &[usize], choice: &Choice) -> Result<(), SimulationError> {
+        for (&contact, decision) in contacts.iter().zip(&choice.decisions) {
+            if matches!(decision, Decision::Slide(_, true) | Decision::Stick) {
+                self.front.phases[contact] = Phase::Stick;
+            }
+        }
+        self.correct()
+    }
+
+    /// Whether the contacts that have opened do not approach again.
+    fn opened(&self, contacts: &[usize], step: &Step) -> Result<bool, SimulationError> {
+        for &contact in contacts {
+            if !self.front.phases[contact].is_closed() && self.gap_at(step, contact)?.1 < 0.0 {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// A time ahead: longer the more events there were without progress.
+    fn ahead(&self, trial: usize) -> f64 {
+        let scale = self.front.next.clamp(1e-6, 1e-2);
+        let crowd = (self.front.crowd / 8).min(4);
+        FIRST * scale * LONGER.powi((trial + crowd) as i32) + 64.0 * f64::EPSILON * self.front.t.abs()
+    }
+
+    /// Whether the conditions of the modes differ from zero at the end of a step by more than rounding, and
+    /// whether they hold.
+    fn clear(&self, closed: &[Closed], step: &Step) -> Option<(bool, bool)> {
+        let evaluation = self.motion(closed).evaluate(step.t + step.h, &step.end).ok()?;
+        let Some(forces) = &evaluation.forces else { return Some((true, true)) };
+        let forward = slips_forward(closed, &evaluation);
+        let margins = margins(forces, &evaluation.holds, &mus(closed));
+        let fits = forward && margins.iter().flatten().all(|margin| *margin >= 0.0);
+        let size = forces.lambda.amax();
+        let relative: Vec<f64> =
+            margins.iter().flat_map(|[normal, cone]| [normal / size, cone / (size * size)]).collect();
+        let violated = relative.iter().any(|margin| *margin < -CLEAR);
+        let near = relative.iter().any(|margin| margin.abs() <= CLEAR);
+        Some((!forward || violated || !near, fits))
+    }
+
+    /// The modes that the state at the end of a step asks for.
+    fn chosen_at(&self, contacts: &[usize], step: &Step) -> Result<Result<Choice, Lacking>, SimulationError> {
+        let motion = self.motion(&[]);
+        let (q, u) = motion.split(&step.end);
+        let time = step.t + step.h;
+        let inputs = motion.inputs(time, &step.end).map_err(|failure| self.failure(failure))?;
+        let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
+        let support = ClosedContacts::new(self.mechanism, &state, contacts, true)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let slips: Vec<Option<Vector2<f64>>> = contacts
+            .iter()
+            .enumerate()
+            .map(|(i, &contact)| match self.front.phases[contact] {
+                // Slip that began here against its direction is none.
+                Phase::Slide(began) => {
+                    let slip = support.slip(i);
+                    let size = support.velocity_size(i, u).max(support.velocity_size(i, &self.front.scale));
+                    (slip.norm() > NO_SLIP * size && slip.dot(&began) > 0.0).then(|| slip / slip.norm())
+                }
+                _ => None,
+            })
+            .collect();
+        let mu: Vec<f64> = contacts.iter().map(|&contact| self.mu(contact)).collect();
+        Ok(choose(&support, &slips, &mu, &self.forces_before(contacts)))
+    }
+
+    /// Takes back what was said of the modes of contacts at this instant.
+    fn forget_mode_events(&mut self, contacts: &[usize]) {
+        let now = self.front.t;
+        self.events.retain(|event| {
+            let of_mode = matches!(
+                event.kind,
+                EventKind::Slip { .. }
+                    | EventKind::Stick { .. }
+                    | EventKind::LiftOff { .. }
+                    | EventKind::Contact { .. }
+            );
+            !(of_mode
+                && event.time == now
+                && event.contact.is_some_and(|contact| contacts.contains(&contact)))
+        });
+    }
+}
+
+/// Whether slip that began goes the way it began.
+fn slips_forward(closed: &[Closed], evaluation: &Evaluation) -> bool {
+    closed
+        .iter()
+        .enumerate()
+        .all(|(i, contact)| contact.slides.is_none_or(|began| evaluation.support.slip(i).dot(&began) >= 0.0))
+}

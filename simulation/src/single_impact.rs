@@ -1,0 +1,122 @@
+//! One of the impacts at a time: of one contact by the exact solver, or of several at once.
+
+use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface};
+
+use crate::closed_contacts::{ClosedContacts, free_acceleration};
+use crate::motion::Failure;
+use crate::transition::Transition;
+use crate::{Reason, Share, SimulationError};
+
+/// An impact, with the speeds before and after.
+pub(crate) struct Hit {
+    pub kind: HitKind,
+    pub before: Vec<f64>,
+    pub after: Vec<f64>,
+    /// the contacts that would go on bouncing below the tolerance, and for how long, s
+    pub bounces: Vec<(usize, f64)>,
+}
+
+/// What struck.
+pub(crate) enum HitKind {
+    One(usize, Box<CollisionOutcome<f64>>),
+    Several(Vec<Share>),
+}
+
+impl Hit {
+    /// The contacts with impulses.
+    pub fn contacts(&self) -> Vec<usize> {
+        match &self.kind {
+            HitKind::One(contact, _) => vec![*contact],
+            HitKind::Several(shares) => shares.iter().map(|share| share.contact).collect(),
+        }
+    }
+
+    /// The change of kinetic energy, J.
+    pub fn energy_change(&self) -> f64 {
+        match &self.kind {
+            HitKind::One(_, outcome) => outcome.energy_change,
+            HitKind::Several(shares) => shares.iter().map(|share| share.work).sum(),
+        }
+    }
+}
+
+impl Transition<'_> {
+    /// The impact of these contacts; `faded` ones end without restitution.
+    pub(crate) fn hit(
+        &self,
+        contacts: &[usize],
+        speeds: &[f64],
+        faded: bool,
+    ) -> Result<Hit, SimulationError> {
+        match contacts {
+            [contact] => self.single(*contact, speeds, faded),
+            _ => self.impact_at_once(contacts, speeds, faded),
+        }
+    }
+
+    /// The impact of one contact.
+    fn single(&self, contact: usize, speeds: &[f64], faded: bool) -> Result<Hit, SimulationError> {
+        let n = self.mechanism.count(Kind::Coordinate);
+        let state =
+            State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
+        let surface = self.surface(contact)?;
+        let fault = |error: CollisionError<f64>| self.error(Some(contact), Reason::Collision(error));
+        let solve = |surface: &Surface<f64>, bounces: Vec<(usize, f64)>| {
+            let mut after = speeds.to_vec();
+            let outcome = self.mechanism.collide(contact, &state, surface, &mut after).map_err(fault)?;
+            let kind = HitKind::One(contact, Box::new(outcome));
+            Ok((outcome, Hit { kind, before: speeds.to_vec(), after, bounces }))
+        };
+        let plastic = Surface { e: 0.0, ..surface };
+        let (outcome, hit) = solve(if faded { &plastic } else { &surface }, Vec::new())?;
+        let (before, rebound) = (-outcome.approach.x, outcome.impact.velocity.x);
+        if faded || rebound <= 0.0 || rebound >= before {
+            return Ok(hit);
+        }
+        match self.last_bounce(contact, speeds, before, rebound)? {
+            Some(time) => Ok(solve(&plastic, vec![(contact, time)])?.1),
+            None => Ok(hit),
+        }
+    }
+
+    /// The rule of chatter (docs/theory.md, section 17.7): the time for which a contact would go on bouncing if
+    /// its next bounce is lower than the tolerance and it is pressed together, s.
+    pub(crate) fn last_bounce(
+        &self,
+        contact: usize,
+        speeds: &[f64],
+        before: f64,
+        rebound: f64,
+    ) -> Result<Option<f64>, SimulationError> {
+        let pull = self.pull(contact, speeds)?;
+        let low = pull < 0.0 && rebound * rebound / (-2.0 * pull) < self.options.absolute_tolerance;
+        Ok(low.then(|| 2.0 * rebound / (-pull * (1.0 - rebound / before))))
+    }
+
+    /// The surface of a contact that strikes.
+    pub(crate) fn surface(&self, contact: usize) -> Result<Surface<f64>, SimulationError> {
+        self.surfaces[contact]
+            .ok_or_else(|| self.error(Some(contact), Reason::Option("the contact has no surface".to_owned())))
+    }
+
+    /// The normal acceleration of a contact without its own force, while the others that last keep their
+    /// modes.
+    fn pull(&self, contact: usize, speeds: &[f64]) -> Result<f64, SimulationError> {
+        let n = self.mechanism.count(Kind::Coordinate);
+        let mut y = self.front.y.clone();
+        y[n..n + speeds.len()].copy_from_slice(speeds);
+        let inputs = self.motion(&[]).inputs(self.front.t, &y).map_err(|failure| self.failure(failure))?;
+        let state = State { time: self.front.t, coordinates: &y[..n], speeds, inputs: &inputs };
+        let fault = |error| self.failure(Failure::State(error));
+        let beta = free_acceleration(self.mechanism, contact, &state).map_err(fault)?.x;
+        let others: Vec<_> = self.closed().into_iter().filter(|closed| closed.contact != contact).collect();
+        if others.is_empty() {
+            return Ok(beta);
+        }
+        let Ok(evaluation) = self.motion(&others).evaluate(self.front.t, &y) else { return Ok(beta) };
+        let Some(forces) = evaluation.forces else { return Ok(beta) };
+        let own = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
+        let rates = forces.rates(&evaluation.support);
+        Ok(beta + (own.partials.row(0) * rates)[0])
+    }
+}

@@ -1,0 +1,127 @@
+//! A transition: one step of the motion, or one change of modes, tried on a copy of the front.
+//!
+//! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] makes one from its
+//! front, and takes its front and its events only when all of it has succeeded.
+
+use hodograph::{Contacts, Kind, State, Surface};
+
+use crate::front::Front;
+use crate::motion::{Failure, Motion};
+use crate::phase::{Closed, Modes, Phase};
+use crate::stepper::Step;
+use crate::{Event, EventKind, Options, Reason, SimulationError};
+
+/// A front that is being changed, and what happens to it.
+pub(crate) struct Transition<'s> {
+    pub mechanism: &'s dyn Contacts<f64>,
+    pub options: &'s Options,
+    /// the surface of each contact; none where a contact has no gap
+    pub surfaces: &'s [Option<Surface<f64>>],
+    pub front: Front,
+    /// the events so far
+    pub events: Vec<Event>,
+    /// the step that led to the front, and the modes during it
+    pub step: Option<(Step, Modes)>,
+}
+
+impl Transition<'_> {
+    /// The state at the front.
+    pub(crate) fn here(&self) -> State<'_> {
+        self.here_of(&self.front)
+    }
+
+    /// The state of another front.
+    pub(crate) fn here_of<'f>(&self, front: &'f Front) -> State<'f> {
+        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        State { time: front.t, coordinates: &front.y[..n], speeds: &front.y[n..n + p], inputs: &front.held }
+    }
+
+    /// The modes at the front.
+    pub(crate) fn modes(&self) -> Modes {
+        Modes { closed: self.closed(), held: self.front.held.clone(), resting: self.front.resting }
+    }
+
+    /// Records an event with the state here.
+    pub(crate) fn push(&mut self, contact: Option<usize>, kind: EventKind) {
+        let here = self.here();
+        let (coordinates, speeds) = (here.coordinates.to_vec(), here.speeds.to_vec());
+        self.events.push(Event { time: self.front.t, contact, kind, coordinates, speeds });
+    }
+
+    /// The closed contacts as the integration needs them.
+    pub(crate) fn closed(&self) -> Vec<Closed> {
+        self.front
+            .phases
+            .iter()
+            .enumerate()
+            .filter_map(|(contact, phase)| {
+                let slides = match phase {
+                    Phase::Open(_) => return None,
+                    Phase::Stick => None,
+                    Phase::Slide(direction) => Some(*direction),
+                };
+                Some(Closed {
+                    contact,
+                    mu: self.mu(contact),
+                    omega: slides.and(self.front.omegas[contact]),
+                    slides,
+                })
+            })
+            .collect()
+    }
+
+    pub(crate) fn mu(&self, contact: usize) -> f64 {
+        self.surfaces.get(contact).copied().flatten().map_or(0.0, |surface| surface.mu)
+    }
+
+    pub(crate) fn motion<'a>(&'a self, closed: &'a [Closed]) -> Motion<'a> {
+        Motion {
+            mechanism: self.mechanism,
+            drive: &self.options.drive,
+            held: &self.front.held,
+            closed,
+            resting: self.front.resting,
+        }
+    }
+
+    /// The closed contacts and what they do, in words.
+    pub(crate) fn modes_in_words(&self) -> String {
+        let name = |contact: usize| {
+            self.mechanism.component(Kind::Contact, contact).map_or("?", |component| component.name)
+        };
+        let modes: Vec<String> = self
+            .closed()
+            .iter()
+            .map(|closed| {
+                let what = if closed.slides.is_some() { "slides" } else { "sticks" };
+                format!("{} {what}", name(closed.contact))
+            })
+            .collect();
+        if modes.is_empty() { "no contact".to_owned() } else { modes.join(", ") }
+    }
+
+    /// Why the motion ends where so many events follow each other without progress.
+    pub(crate) fn without_end(&self, count: usize) -> Reason {
+        Reason::EventsWithoutEnd { count, modes: self.modes_in_words() }
+    }
+
+    /// An error here and now.
+    pub(crate) fn error(&self, contact: Option<usize>, reason: Reason) -> SimulationError {
+        SimulationError::new(self.mechanism, self.front.t, contact, reason)
+    }
+
+    pub(crate) fn failure(&self, failure: Failure) -> SimulationError {
+        match failure {
+            Failure::State(error) => self.error(None, Reason::State(error)),
+            Failure::Contact(contact, error) => self.error(Some(contact), Reason::Contact(error)),
+            Failure::Together => self.error(
+                None,
+                Reason::Forces(
+                    "the contacts that are closed have no forces under which they keep their modes"
+                        .to_owned(),
+                ),
+            ),
+            Failure::Input(message) => self.error(None, Reason::Input(message)),
+        }
+    }
+}

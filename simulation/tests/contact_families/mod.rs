@@ -1,0 +1,171 @@
+//! Random problems of several contacts, in four families.
+
+use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
+
+/// W, beta, mu and the directions of slip.
+pub struct Contacts {
+    pub w: DMatrix<f64>,
+    pub beta: DVector<f64>,
+    pub mu: Vec<f64>,
+    pub slip: Vec<Option<Vector2<f64>>>,
+}
+
+/// The names of the families.
+pub const FAMILIES: [&str; 4] = ["planted", "body", "flat", "stack"];
+
+/// Numbers that look random (splitmix).
+pub struct Random(pub u64);
+
+impl Random {
+    /// Between 0 and 1.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Nearly normal.
+    pub fn normal(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (std::f64::consts::TAU * self.unit()).cos()
+    }
+
+    fn vector(&mut self) -> Vector3<f64> {
+        Vector3::new(self.normal(), self.normal(), self.normal())
+    }
+
+    fn direction(&mut self) -> Vector2<f64> {
+        let angle = std::f64::consts::TAU * self.unit();
+        Vector2::new(angle.cos(), angle.sin())
+    }
+}
+
+/// A problem of a family with about `k` contacts (a stack has a multiple of four).
+pub fn problem(family: &str, k: usize, seed: u64) -> Contacts {
+    let mut random = Random(seed.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ (k as u64) << 40);
+    match family {
+        "planted" => planted(k, &mut random),
+        "body" => body(k, true, &mut random),
+        "flat" => body(k, false, &mut random),
+        _ => stack(k.div_ceil(4), &mut random),
+    }
+}
+
+/// A solution is planted: a fifth of the contacts slips along a given direction, the others separate, stick or begin to
+/// slip.
+fn planted(k: usize, random: &mut Random) -> Contacts {
+    let dofs = 3 + (random.unit() * 4.0 * k as f64) as usize;
+    let partials = DMatrix::from_fn(3 * k, dofs, |_, _| random.normal());
+    let w = &partials * partials.transpose() / dofs as f64;
+    let mut mu = Vec::new();
+    let mut slip = Vec::new();
+    let (mut force, mut acceleration) = (DVector::zeros(3 * k), DVector::zeros(3 * k));
+    for i in 0..k {
+        let (friction, d) = (random.between(0.05, 0.6), random.direction());
+        let normal = random.between(0.1, 2.0);
+        let kind = random.unit();
+        mu.push(friction);
+        slip.push((kind < 0.2).then_some(d));
+        let set = |values: &mut DVector<f64>, three: [f64; 3]| {
+            for (axis, value) in three.into_iter().enumerate() {
+                values[3 * i + axis] = value;
+            }
+        };
+        if kind < 0.2 {
+            set(&mut force, [normal, -friction * normal * d.x, -friction * normal * d.y]);
+            set(&mut acceleration, [0.0, random.normal(), random.normal()]);
+        } else if kind < 0.45 {
+            set(&mut acceleration, [normal, random.normal(), random.normal()]);
+        } else if kind < 0.8 {
+            let push = friction * normal * random.unit();
+            set(&mut force, [normal, push * d.x, push * d.y]);
+        } else {
+            let rate = random.between(0.1, 2.0);
+            set(&mut force, [normal, -friction * normal * d.x, -friction * normal * d.y]);
+            set(&mut acceleration, [0.0, rate * d.x, rate * d.y]);
+        }
+    }
+    let beta = acceleration - &w * force;
+    Contacts { w, beta, mu, slip }
+}
+
+/// One body on k contacts in a plane, with vertical normals or with tilted ones, under a random load.
+fn body(k: usize, tilted: bool, random: &mut Random) -> Contacts {
+    let mut partials = DMatrix::zeros(3 * k, 6);
+    let mut mu = Vec::new();
+    for i in 0..k {
+        let point = Vector3::new(random.normal(), random.normal(), -0.5);
+        let lean = if tilted { 0.6 } else { 0.0 };
+        let normal = Vector3::new(lean * random.normal(), lean * random.normal(), 1.0).normalize();
+        rows(&mut partials, i, 0, &point, &normal, 1.0);
+        mu.push(random.between(0.05, 1.0));
+    }
+    let masses = [1.0, 1.0, 1.0, 0.3, 0.4, 0.5];
+    let load = Vector3::new(random.normal(), random.normal(), -4.0);
+    let moment = random.vector() * 0.5;
+    let free = [load.x, load.y, load.z, moment.x / 0.3, moment.y / 0.4, moment.z / 0.5];
+    assembled(&partials, &masses, &free, mu)
+}
+
+/// Boxes on each other, four contacts between each two, the lowest on the ground.
+fn stack(boxes: usize, random: &mut Random) -> Contacts {
+    let mut partials = DMatrix::zeros(12 * boxes, 6 * boxes);
+    let mut mu = Vec::new();
+    let (mut masses, mut free) = (Vec::new(), Vec::new());
+    for b in 0..boxes {
+        let friction = random.between(0.2, 0.8);
+        for (corner, (x, y)) in [(-0.5, -0.5), (0.5, -0.5), (-0.5, 0.5), (0.5, 0.5)].into_iter().enumerate() {
+            rows(&mut partials, 4 * b + corner, 6 * b, &Vector3::new(x, y, -0.5), &Vector3::z(), 1.0);
+            if b > 0 {
+                rows(
+                    &mut partials,
+                    4 * b + corner,
+                    6 * (b - 1),
+                    &Vector3::new(x, y, 0.5),
+                    &Vector3::z(),
+                    -1.0,
+                );
+            }
+            mu.push(friction);
+        }
+        let mass = random.between(0.5, 2.0);
+        masses.extend([mass, mass, mass, mass / 6.0, mass / 6.0, mass / 6.0]);
+        let push = random.vector() * if random.unit() < 0.3 { 3.0 } else { 0.3 };
+        let turn = random.vector() * 0.3;
+        free.extend([push.x, push.y, -9.81, turn.x, turn.y, turn.z]);
+    }
+    assembled(&partials, &masses, &free, mu)
+}
+
+/// The rows of contact `i` at a point of the body whose speeds begin at `column`.
+fn rows(
+    partials: &mut DMatrix<f64>,
+    i: usize,
+    column: usize,
+    point: &Vector3<f64>,
+    normal: &Vector3<f64>,
+    sign: f64,
+) {
+    let t = if normal.x.abs() < 0.9 { Vector3::x() } else { Vector3::y() };
+    let t = (t - normal * normal.dot(&t)).normalize();
+    let basis = Matrix3::from_columns(&[*normal, t, normal.cross(&t)]);
+    for axis in 0..3 {
+        let e: Vector3<f64> = basis.column(axis).into();
+        let arm = point.cross(&e);
+        for c in 0..3 {
+            partials[(3 * i + axis, column + c)] += sign * e[c];
+            partials[(3 * i + axis, column + 3 + c)] += sign * arm[c];
+        }
+    }
+}
+
+fn assembled(partials: &DMatrix<f64>, masses: &[f64], free: &[f64], mu: Vec<f64>) -> Contacts {
+    let weighed = DMatrix::from_fn(partials.ncols(), partials.nrows(), |a, b| partials[(b, a)] / masses[a]);
+    let slip = vec![None; mu.len()];
+    Contacts { w: partials * weighed, beta: partials * DVector::from_column_slice(free), mu, slip }
+}

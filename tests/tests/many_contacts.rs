@@ -1,0 +1,275 @@
+//! Mechanisms that touch the world at several points: what statics, symmetry and closed forms say of them.
+
+use hodograph::{Kind, Law, Mechanism, Selection, State, Surface};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::{
+    Drive, Event, EventKind, Options, Progress, Simulation, SimulationError, Together,
+};
+
+fn model(name: &str) -> InterpretedMechanism {
+    let path = format!("{}/data/many_contacts/{name}.mech", env!("CARGO_MANIFEST_DIR"));
+    InterpretedMechanism::read(path.as_ref()).unwrap()
+}
+
+/// The start state of the model, with some values changed.
+struct Start {
+    coordinates: Vec<f64>,
+    speeds: Vec<f64>,
+    inputs: Vec<f64>,
+}
+
+impl Start {
+    fn of(mechanism: &InterpretedMechanism) -> Self {
+        let model = mechanism.model();
+        let values = |list: &[hodograph_generator::model::mechanism::Variable], kind| {
+            (0..mechanism.count(kind))
+                .map(|index| {
+                    let name = mechanism.component(kind, index).unwrap().name;
+                    list.iter().find(|other| other.name == name).and_then(|other| other.value).unwrap_or(0.0)
+                })
+                .collect()
+        };
+        Self {
+            coordinates: values(&model.coordinates, Kind::Coordinate),
+            speeds: values(&model.speeds, Kind::Speed),
+            inputs: values(&model.inputs, Kind::Input),
+        }
+    }
+
+    fn set(&mut self, mechanism: &InterpretedMechanism, name: &str, value: f64) {
+        let place = |kind| mechanism.index(kind, name);
+        if let Some(index) = place(Kind::Coordinate) {
+            self.coordinates[index] = value;
+        } else {
+            self.speeds[place(Kind::Speed).unwrap()] = value;
+        }
+    }
+}
+
+fn surface(mu: f64, e: f64) -> Options {
+    Options { surface: Some(Surface { mu, e, law: Law::Poisson }), ..Options::default() }
+}
+
+struct Ended {
+    events: Vec<Event>,
+    error: Option<SimulationError>,
+    coordinates: Vec<f64>,
+    /// change of energy that no work accounts for, J
+    account: f64,
+}
+
+impl Ended {
+    fn names(&self) -> Vec<String> {
+        self.events.iter().map(|event| format!("{} {:.12}", event.kind.name(), event.time)).collect()
+    }
+
+    fn rests(&self) -> bool {
+        self.events.iter().any(|event| matches!(event.kind, EventKind::Rest))
+    }
+}
+
+fn run(mechanism: &InterpretedMechanism, start: &Start, options: Options, until: f64) -> Ended {
+    let state =
+        State { time: 0.0, coordinates: &start.coordinates, speeds: &start.speeds, inputs: &start.inputs };
+    let mut simulation = Simulation::new(mechanism, &state, options).unwrap();
+    let before = simulation.energy().unwrap().total();
+    let (mut events, mut error) = (Vec::new(), None);
+    loop {
+        match simulation.advance(until) {
+            Ok(Progress::Event(event)) => events.push(event),
+            Ok(Progress::Reached) => break,
+            Err(what) => {
+                error = Some(what);
+                break;
+            }
+        }
+    }
+    let after = simulation.energy().unwrap();
+    Ended {
+        events,
+        error,
+        coordinates: simulation.coordinates().to_vec(),
+        account: after.total() - after.friction - after.impacts - after.inputs - before,
+    }
+}
+
+/// A uniform ladder on a floor against a wall, both of the same roughness, stands if and only if the tangent of
+/// its angle with the floor is at least (1 - mu^2) / (2 mu).
+#[test]
+fn a_ladder_stands_if_friction_can_hold_it() {
+    let ladder = model("ladder");
+    let (mut stood, mut fell) = (0, 0);
+    for mu in [0.2, 0.4, 0.6, 0.9] {
+        for k in 0..12 {
+            let angle = 0.5 + 0.08 * f64::from(k);
+            let least = (1.0 - mu * mu) / (2.0 * mu);
+            if (angle.tan() / least - 1.0).abs() < 1e-3 {
+                continue;
+            }
+            let mut start = Start::of(&ladder);
+            start.set(&ladder, "x", angle.cos());
+            start.set(&ladder, "z", angle.sin());
+            start.set(&ladder, "q", angle);
+            let end = run(&ladder, &start, surface(mu, 0.0), 0.05);
+            assert!(end.error.is_none(), "{mu} {angle}: {:?}", end.error);
+            let stands = angle.tan() >= least;
+            assert_eq!(end.rests(), stands, "{mu} {angle}: {:?}", end.names());
+            if stands {
+                let moved = end.coordinates.iter().zip(&start.coordinates).map(|(a, b)| (a - b).abs());
+                assert!(moved.fold(0.0, f64::max) < 1e-14, "{mu} {angle}");
+                stood += 1;
+            } else {
+                fell += 1;
+            }
+        }
+    }
+    assert!(stood > 15 && fell > 10, "{stood} {fell}");
+}
+
+/// A ball dropped into a groove comes to the end of the motion from everywhere, and rests or rolls along it.
+#[test]
+fn a_ball_in_a_groove_is_followed_to_the_end() {
+    let groove = model("groove_drop");
+    for k in 0..30 {
+        let mut start = Start::of(&groove);
+        start.set(&groove, "y", 0.002 * f64::from(k - 15));
+        start.set(&groove, "wx", f64::from(k % 7) - 3.0);
+        start.set(&groove, "wy", 2.0 * f64::from(k % 5));
+        let (mu, e) = ([0.2, 0.3, 0.6][k as usize % 3], [0.0, 0.3][k as usize % 2]);
+        let end = run(&groove, &start, surface(mu, e), 1.5);
+        assert!(end.error.is_none(), "{k}: {:?}", end.error);
+        assert!(end.account.abs() < 1e-10, "{k}: {:e}", end.account);
+    }
+}
+
+/// Six discs in a pyramid can stand from mu = 0.434 on (a linear program says so), and below they cannot.
+#[test]
+fn a_pyramid_stands_where_forces_exist() {
+    let pyramid = model("pyramid3");
+    let start = Start::of(&pyramid);
+    let end = run(&pyramid, &start, surface(0.45, 0.0), 0.2);
+    assert!(end.error.is_none() && end.rests(), "{:?} {:?}", end.error, end.names());
+    let end = run(&pyramid, &start, surface(0.40, 0.0), 0.05);
+    assert!(end.error.is_none() && !end.rests(), "{:?} {:?}", end.error, end.names());
+}
+
+/// Both feet of a crate begin to slip at once when the push is mu m g, whatever mu.
+#[test]
+fn both_feet_of_a_crate_begin_to_slip_at_once() {
+    let krate = model("crate");
+    for k in 1..=18 {
+        let mu = 0.05 * f64::from(k);
+        let drive = Drive::Continuous(std::sync::Arc::new(|t, _: &[f64], _: &[f64], inputs: &mut [f64]| {
+            inputs[0] = 20.0 * t
+        }));
+        let options = Options { drive, max_step: 0.05, ..surface(mu, 0.0) };
+        let begins = mu * 2.0 * 9.81 / 20.0;
+        let end = run(&krate, &Start::of(&krate), options, 1.2 * begins);
+        assert!(end.error.is_none(), "{mu}: {:?}", end.error);
+        let slips: Vec<f64> = end
+            .events
+            .iter()
+            .filter(|event| matches!(event.kind, EventKind::Slip { .. }))
+            .map(|event| event.time)
+            .collect();
+        assert_eq!(slips.len(), 2, "{mu}: {:?}", end.names());
+        assert!(slips.iter().all(|time| (time - begins).abs() < 1e-9), "{mu}: {slips:?} {begins}");
+        assert!(end.account.abs() < 1e-9, "{mu}: {:e}", end.account);
+    }
+}
+
+/// A particle between two walls may be held or fall: it is held, and said to be one of several.
+#[test]
+fn several_modes_are_said() {
+    let wedge = model("wedge");
+    let end = run(&wedge, &Start::of(&wedge), surface(0.3, 0.0), 0.1);
+    assert!(end.error.is_none() && end.rests(), "{:?}", end.names());
+    let several =
+        |event: &Event| matches!(event.kind, EventKind::Contact { selection: Selection::SeveralModes, .. });
+    assert!(end.events.iter().any(several), "{:?}", end.events);
+}
+
+/// Chains, dominoes and stacks come to the end of the motion, and their energies agree with the works.
+#[test]
+fn chains_dominoes_and_stacks_come_to_the_end() {
+    for (name, mu, e, until) in [
+        ("chain5", 0.3, 0.0, 0.6),
+        ("domino3", 0.3, 0.0, 0.7),
+        ("domino3", 0.5, 0.2, 0.2),
+        ("dropped5", 0.4, 0.0, 0.3),
+        ("stack10", 0.5, 0.0, 1.0),
+    ] {
+        let mechanism = model(name);
+        let start = Start::of(&mechanism);
+        let end = run(&mechanism, &start, surface(mu, e), until);
+        assert!(end.error.is_none(), "{name} {mu} {e}: {:?}", end.error);
+        assert!(end.account.abs() < 1e-9, "{name} {mu} {e}: {:e}", end.account);
+        if name == "stack10" {
+            let moved = end.coordinates.iter().zip(&start.coordinates).map(|(a, b)| (a - b).abs());
+            assert!(end.rests() && moved.fold(0.0, f64::max) < 1e-14, "{:?}", end.names());
+        }
+    }
+}
+
+/// Boxes that fall flat on each other keep their symmetry: no box turns when all corners strike at once.
+#[test]
+fn a_stack_that_falls_flat_does_not_turn() {
+    let boxes = model("dropped5");
+    let mut start = Start::of(&boxes);
+    for k in 1..=5 {
+        start.set(&boxes, &format!("x{k}"), 0.0);
+    }
+    for together in [Together::Approaching, Together::Simultaneous] {
+        for e in [0.0, 0.5] {
+            let options = Options { together, ..surface(0.4, e) };
+            let end = run(&boxes, &start, options, 0.0999);
+            assert!(end.error.is_none(), "{:?}", end.error);
+            for k in 0..5 {
+                assert!(end.coordinates[3 * k].abs() < 1e-13, "{together:?} {e}: {:?}", end.coordinates);
+                assert!(end.coordinates[3 * k + 2].abs() < 1e-12, "{together:?} {e}: {:?}", end.coordinates);
+            }
+        }
+    }
+}
+
+/// A gap whose rate is not the normal velocity cannot be held closed: an error, and no motion through a table.
+#[test]
+fn a_face_that_ends_by_a_maximum_is_refused() {
+    let table = model("table_edge");
+    let end = run(&table, &Start::of(&table), surface(0.2, 0.0), 1.0);
+    let error = end.error.expect("the table ends");
+    assert_eq!(error.reason.kind(), "drift", "{error}");
+    assert_eq!(error.contact.as_deref(), Some("top"));
+    assert!(end.coordinates[1].abs() < 1e-9, "{:?}", end.coordinates);
+}
+
+/// A rod that turns hundreds of times within a step of the integration strikes where its gap first closes.
+#[test]
+fn fast_spins_miss_no_collision() {
+    let rod = model("spin");
+    let mut longest = 0.0_f64;
+    for k in 0..120 {
+        let spin = 20.0 + 1.7 * f64::from(k) + 0.013 * f64::from(k * k % 97);
+        let mut start = Start::of(&rod);
+        start.set(&rod, "u1", spin);
+        start.set(&rod, "q1", 0.1 * f64::from(k));
+        let gap = |t: f64| 1.9 - 0.3 * t + (0.1 * f64::from(k) + spin * t).cos();
+        // The envelope 0.9 - 0.3 t closes at 3 s: the first turn after that, by small steps and halving.
+        let (mut low, mut t) = (2.9, 2.9);
+        while gap(t) > 0.0 {
+            low = t;
+            t += 0.002 / spin;
+        }
+        let mut high = t;
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if gap(middle) > 0.0 { low = middle } else { high = middle }
+        }
+        let end = run(&rod, &start, surface(0.3, 0.5), high + 0.01);
+        assert!(end.error.is_none(), "{spin}: {:?}", end.error);
+        let first = end.events.first().unwrap_or_else(|| panic!("{spin}: missed"));
+        assert_eq!(first.kind.name(), "collision");
+        longest = longest.max((first.time - high).abs());
+    }
+    assert!(longest < 1e-7, "{longest:e}");
+}
