@@ -15,7 +15,7 @@ use crate::{
 /// An entry is a sum of products of partial velocities and their images under M^-1. Its rounding error is
 /// relative to the sizes of these terms, which are those of the largest diagonal entry, however small the
 /// entry itself is: a few units for each of some dozen terms.
-pub(super) const NOISE: f64 = 256.0;
+const NOISE: f64 = 256.0;
 
 /// An error that says what is wrong with the input, if anything is.
 #[inline]

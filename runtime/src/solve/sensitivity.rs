@@ -7,7 +7,6 @@ use nalgebra::Vector2;
 
 use super::{
     contact::Contact,
-    input::NOISE,
     restitution::{Restitution, State},
 };
 use crate::{
@@ -107,8 +106,10 @@ impl Sensitivity {
 #[inline(always)]
 fn unstable<T: Real>(c: &Contact<T>, d: &Vector2<T>) -> bool {
     let [_, g, h] = c.rates(d);
-    // h'
-    let slope = c.convergence(d) - g;
+    // h' + g, the rate at which the velocity across the slip changes. Where it is zero nothing moves the
+    // contact across the slip (planar systems), and a deviation stays as small as it is.
+    let across = c.convergence(d);
+    let slope = across - g;
     let noise = constant::<T>(64.0) * T::default_epsilon() * c.slip_size();
-    slope > noise && h.abs() <= constant::<T>(NEAR) * slope && c.moves_across(d, NOISE)
+    slope > noise && h.abs() <= constant::<T>(NEAR) * slope && -across > noise
 }
