@@ -57,6 +57,7 @@ fn pendulum(moments: usize) -> Animation {
         ],
         up: [0.0, 1.0, 0.0],
         times,
+        ..Animation::default()
     }
 }
 

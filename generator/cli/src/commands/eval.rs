@@ -2,27 +2,28 @@
 
 use std::path::PathBuf;
 
+use crate::answers::FormArgument;
 use crate::derivation::{self, Limits};
-use crate::evaluate::report::report;
-use crate::model;
-use crate::output;
+use crate::evaluate::report::{Report, report};
+use crate::state_arguments::StateArguments;
 use crate::stop::Outcome;
 
-/// Evaluate a model in a state: mass matrix, forcing, accelerations, contacts, as one line of JSON
+/// Evaluate a model in a state: mass matrix, forcing, accelerations, contacts
 ///
-///   hodograph eval models/two_sleds.mech --state '{"q":{"q3":0.8},"u":{"u1":1,"u4":1}}'
+///   hodograph eval models/two_sleds.mech --state q3=0.8,u1=1,u4=1 --parameter mA=3
 ///
-/// A state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes the
-/// file's value, else 0. Dependent coordinates of closed loops are completed from the values given
-/// as a guess.
+/// A whole state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes
+/// the file's value, else 0. Dependent coordinates of closed loops are completed from the values
+/// given as a guess. The answer is a set of tables at a terminal, else one line of JSON.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
     /// the model file
     model: PathBuf,
-    /// a file with the state, `-` for standard input, or the state itself
-    #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
-    state: Option<String>,
+    #[command(flatten)]
+    state: StateArguments,
+    #[command(flatten)]
+    form: FormArgument,
     #[command(flatten)]
     limits: Limits,
 }
@@ -34,7 +35,22 @@ pub struct Arguments {
 /// An error object for what is wrong with the state.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
-    let text = model::state_text(arguments.state.as_deref())?;
-    let state = machine.state(text.as_deref())?;
-    output::json(&report(&machine, &state)?)
+    arguments.form.write(
+        || {
+            let state = arguments.state.state(&machine)?;
+            Ok(Evaluated { report: report(&machine, &state)?, time: state.time, speeds: state.speeds })
+        },
+        |found| found.report.tables(&machine.mechanism, (found.time, &found.speeds)),
+    )
+}
+
+/// The report, and what it was made of.
+#[derive(serde::Serialize)]
+struct Evaluated<'a> {
+    #[serde(flatten)]
+    report: Report<'a>,
+    #[serde(skip)]
+    time: f64,
+    #[serde(skip)]
+    speeds: Vec<f64>,
 }

@@ -63,13 +63,13 @@ impl State {
         state
     }
 
-    /// Reads `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional.
+    /// Sets what stands in `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional.
     ///
     /// # Errors
     ///
     /// `bad_json`, `unknown_name`, `not_finite`.
-    pub fn read(text: &str, mechanism: &Mechanism) -> Result<Self, Failure> {
-        let mut state = State::initial(mechanism);
+    pub fn read(&mut self, text: &str, mechanism: &Mechanism) -> Result<(), Failure> {
+        let state = self;
         let mut given = std::collections::HashSet::new();
         for (name, value) in Fields::new(Json::parse(text)?, "the state")?.into_inner() {
             match name.as_str() {
@@ -96,7 +96,46 @@ impl State {
                 }
             }
         }
-        Ok(state)
+        Ok(())
+    }
+
+    /// Sets one number by its name: a parameter or an input, or, unless `parameters` alone are meant, a
+    /// coordinate, a speed or the time `t`.
+    ///
+    /// # Errors
+    ///
+    /// `unknown_name`.
+    pub fn set(
+        &mut self,
+        mechanism: &Mechanism,
+        name: &str,
+        value: f64,
+        parameters: bool,
+    ) -> Result<(), Failure> {
+        let is = |list: &[Variable]| list.iter().any(|quantity| quantity.name == name);
+        let section = match () {
+            () if parameters || is(&mechanism.parameters) || is(&mechanism.inputs) => "parameters",
+            () if is(&mechanism.coordinates) => "q",
+            () if is(&mechanism.speeds) => "u",
+            () if name == "t" => {
+                self.time = value;
+                return Ok(());
+            }
+            () => {
+                let all = names(&mechanism.coordinates)
+                    .chain(names(&mechanism.speeds[..self.speeds.len()]))
+                    .chain(names(&mechanism.inputs))
+                    .chain(["t"]);
+                let hint = spelling::hint(name, all);
+                let message = format!(
+                    "{} has no coordinate, speed, input or parameter `{name}`: {hint}",
+                    mechanism.name
+                );
+                return Err(Failure::new(Kind::UnknownName, message));
+            }
+        };
+        *self.slot(mechanism, section, name)? = value;
+        Ok(())
     }
 
     /// Where the number of that name belongs.

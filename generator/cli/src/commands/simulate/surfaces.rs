@@ -1,9 +1,10 @@
 //! The surfaces of a motion: one for all contacts, or one for each.
 
-use hodograph::{Contacts, ImpactError, Kind as Of, State, Surface};
+use hodograph::{Contacts, Kind as Of, State, Surface};
+use hodograph_interpreter::motion::{GivenSurface, surfaces};
 
-use super::gap::gap;
 use crate::json::{Failure, Kind};
+use crate::output;
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
 use crate::surface::law;
@@ -36,49 +37,34 @@ impl MotionSurfaces {
         mechanism: &dyn Contacts<f64>,
         state: &State<'_>,
     ) -> Outcome<Vec<(usize, Surface<f64>)>> {
-        let count = mechanism.count(Of::Contact);
         let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
-        let law_of_all = self.law.as_deref().map(law).transpose()?;
-        let all = match (self.mu, self.e, law_of_all) {
-            (Some(mu), Some(e), Some(law)) => Some(checked(Surface { mu, e, law })?),
-            (mu, e, law) => {
-                // What is given is checked even where it is not enough.
-                let given = Surface {
-                    mu: mu.unwrap_or(0.0),
-                    e: e.unwrap_or(0.0),
-                    law: law.unwrap_or(hodograph::Law::Newton),
-                };
-                checked(given)?;
-                None
-            }
-        };
-        let mut own = vec![None; count];
+        let law = self.law.as_deref().map(law).transpose()?;
+        // What is given is checked even where it is not enough.
+        let all = GivenSurface { mu: self.mu, e: self.e, law }.check().map_err(Failure::from)?;
+        let mut own: Vec<(usize, GivenSurface)> = Vec::new();
         for text in &self.surface {
             let (contact, surface) = one(text)?;
-            if own[place_of(contact, mechanism)?].replace(surface).is_some() {
+            let place = place_of(contact, mechanism)?;
+            if own.iter().any(|(other, _)| *other == place) {
                 return Err(Stop::Call(format!(
                     "--surface {text}: {contact} has two surfaces: leave one out"
                 )));
             }
+            own.push((place, surface));
         }
-        let mut surfaces = Vec::new();
-        for (contact, own) in own.into_iter().enumerate() {
-            if gap(mechanism, contact, state).is_none() {
-                eprintln!(
-                    "note: contact {} has no gap in the model: it is never seen to close",
-                    name(contact)
-                );
-                continue;
-            }
-            let Some(surface) = own.or(all) else {
-                let name = name(contact);
-                return Err(Stop::Call(format!(
-                    "contact {name} has no surface: give --mu, --e and --law for all contacts, or --surface {name}=MU,E,LAW"
-                )));
-            };
-            surfaces.push((contact, surface));
+        let found = surfaces(mechanism, state, all, &own).map_err(|error| {
+            Stop::Call(format!(
+                "{error}: give --mu, --e and --law for all contacts, or --surface {}=MU,E,LAW",
+                error.contact
+            ))
+        })?;
+        for contact in found.without_gap {
+            output::say(format_args!(
+                "note: contact {} has no gap in the model: it is never seen to close",
+                name(contact)
+            ));
         }
-        Ok(surfaces)
+        Ok(found.of_contacts)
     }
 }
 
@@ -123,26 +109,12 @@ pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<V
 }
 
 /// A surface of one contact.
-fn one(text: &str) -> Outcome<(&str, Surface<f64>)> {
+fn one(text: &str) -> Outcome<(&str, GivenSurface)> {
     let wrong = || Stop::Call(format!("--surface {text}: give CONTACT=MU,E,LAW, as in tip=0.5,0.8,stronge"));
     let (contact, rest) = text.split_once('=').ok_or_else(wrong)?;
     let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
     let [mu, e, named] = parts[..] else { return Err(wrong()) };
     let number = |text: &str| text.parse::<f64>().map_err(|_| wrong());
-    Ok((contact.trim(), checked(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? })?))
-}
-
-/// A surface that the solver will take.
-fn checked(surface: Surface<f64>) -> Result<Surface<f64>, Failure> {
-    let Surface { mu, e, .. } = surface;
-    let wrong = if let Some(&value) = [mu, e].iter().find(|value| !value.is_finite()) {
-        ImpactError::NotFinite { value }
-    } else if mu < 0.0 {
-        ImpactError::NegativeFriction { mu }
-    } else if !(0.0..=1.0).contains(&e) {
-        ImpactError::RestitutionOutOfRange { e }
-    } else {
-        return Ok(surface);
-    };
-    Err(wrong.into())
+    let surface = GivenSurface::from(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? });
+    Ok((contact.trim(), surface.check().map_err(Failure::from)?))
 }
