@@ -49,6 +49,27 @@ fn a_new_model_collides() {
     }
 }
 
+/// The README shows the model that `new` writes, without its comments; the one of CONTRIBUTING.md is the same.
+#[test]
+fn the_readme_shows_the_new_model() {
+    use hodograph_generator::{artifact::model_hash, source::Source};
+    let hash = |text: &str| model_hash(&Source::file("pendulum.mech", text));
+    let written = include_str!("../src/commands/new/pendulum.mech");
+    let values = |text: &str| -> Vec<String> {
+        let found = hodograph_generator::check::check(&Source::file("pendulum.mech", text));
+        let model = found.mechanism.unwrap();
+        let all = model.parameters.iter().chain(&model.coordinates).chain(&model.speeds);
+        all.map(|quantity| format!("{} {:?}", quantity.name, quantity.value)).collect()
+    };
+    for page in ["README.md", "CONTRIBUTING.md"] {
+        let text = fs::read_to_string(common::root().join(page)).unwrap();
+        let block = text.split("```text\n").find(|block| block.contains("mechanism Pendulum;")).unwrap();
+        let model = block.split("```").next().unwrap();
+        assert!(hash(model) == hash(written), "{page} shows another model than `hodograph new` writes");
+        assert_eq!(values(model), values(written), "{page}");
+    }
+}
+
 /// Numbers by name are those of the JSON state, in any order and with expressions.
 #[test]
 fn states_are_given_by_name() {
