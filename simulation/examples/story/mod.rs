@@ -213,10 +213,7 @@ pub fn account(energy: &[EnergyAccount; 2]) -> String {
     let left = last - start - after.friction - after.impacts;
     let mut text = format!(
         "energy (J): {:.6} at the start, {:.6} at the end\n  impacts {:+.6}, friction while contact lasts {:+.6}\n",
-        start,
-        last,
-        after.impacts,
-        after.friction
+        start, last, after.impacts, after.friction
     );
     if left.abs() > 1e-6 {
         text += &format!("  springs, dampers and inputs {left:+.6}\n");

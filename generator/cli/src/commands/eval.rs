@@ -10,7 +10,7 @@ use crate::stop::Outcome;
 
 /// Evaluate a model in a state: mass matrix, forcing, accelerations, contacts
 ///
-///   hodograph eval models/two_sleds.mech --state q3=0.8,u1=1,u4=1 --parameter mA=3
+///   hodograph eval models/two_sleds.mech --state q3=0.8,u1=1,u4=1 --parameter m=3
 ///
 /// A whole state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes
 /// the file's value, else 0. Dependent coordinates of closed loops are completed from the values
