@@ -128,12 +128,12 @@ impl<T> ImpactError<T> {
     }
 }
 
-impl<T: fmt::Display> fmt::Display for ImpactError<T> {
+impl<T: fmt::Debug + fmt::Display> fmt::Display for ImpactError<T> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFinite { value } => write!(
                 out,
-                "an input or the outcome is not finite or beyond the range of the numbers ({value}): check the state and the parameters for \
+                "an input or the outcome is not finite or beyond the range of the numbers ({value:?}): check the state and the parameters for \
                  overflow or division by zero"
             ),
             Self::NegativeFriction { mu } => {

@@ -71,7 +71,8 @@ pub fn tell() -> Told {
         _ => "It does not turn back.".to_owned(),
     };
     let rolls = story.events.len() == zeros.len() + 1;
-    let kept = story.energy[1].total() - story.energy[0].total();
+    let [before, after] = story.energy.map(|energy| energy.total().unwrap_or(f64::NAN));
+    let kept = after - before;
     story.text = format!(
         "A rattleback on a floor with mu = 0.8 is spun with {} rad/s.\n\n{table}\n{turned}\n{}\nThe energy, {:.6} J, changes by {kept:.1e} J.\n\n\
          The picture shows the spin over time. To see the like move:\n  hodograph simulate simulation/models/rattleback_on_floor.mech --until 12 --mu 0.8 --e 0 --law newton --html rattleback.html",
@@ -81,7 +82,7 @@ pub fn tell() -> Told {
         } else {
             "It slips or leaves the floor in between."
         },
-        story.energy[0].total()
+        before
     );
     Ok(story)
 }

@@ -7,7 +7,8 @@
 pub struct EnergyAccount {
     /// kinetic energy
     pub kinetic: f64,
-    /// potential energy of gravity and springs; `None` where the model has neither
+    /// potential energy of gravity and springs; `None` where the model has neither, or where it is not a
+    /// function of the coordinates
     pub potential: Option<f64>,
     /// work of friction in contact that lasts, not positive
     pub friction: f64,
@@ -18,8 +19,9 @@ pub struct EnergyAccount {
 }
 
 impl EnergyAccount {
-    /// Kinetic and potential energy.
-    pub fn total(&self) -> f64 {
-        self.kinetic + self.potential.unwrap_or(0.0)
+    /// Kinetic and potential energy; `None` where there is no potential energy: it is not zero where it is
+    /// not defined.
+    pub fn total(&self) -> Option<f64> {
+        self.potential.map(|potential| self.kinetic + potential)
     }
 }

@@ -40,7 +40,7 @@ fn slip_ends_in_three_dimensions() {
             assert_eq!(simulation.speeds(), [0.0; 3]);
             let energy = simulation.energy().unwrap();
             let before = v0 * v0;
-            let account = energy.total() - energy.friction - before;
+            let account = energy.total().unwrap() - energy.friction - before;
             assert!(account.abs() < 1e-10 * before, "{r} {phi}: {account:e}");
         }
     }

@@ -79,7 +79,8 @@ fn it_comes_to_rest_on_its_feet() {
         assert!((q[2] - 0.7).abs() < 1e-9, "{case}: {q:?}");
         assert!(touching(&simulation, ContactPhase::Stick) >= 3, "{case}: {q:?} {:?}", names(&events));
         let after = simulation.energy().unwrap();
-        let off = (after.total() - before.total() - after.impacts - after.friction) / before.total();
+        let off = (after.total().unwrap() - before.total().unwrap() - after.impacts - after.friction)
+            / before.total().unwrap();
         assert!(off.abs() < 1e-9 && after.impacts < 0.0, "{case}: {off:e}");
         println!("{case}: {} events, off by {off:.1e}", events.len());
     }

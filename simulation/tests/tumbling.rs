@@ -74,7 +74,7 @@ fn tumble(seed: u64) -> Result<Figures, String> {
     let law = [Law::Stronge, Law::Poisson][random.place(2)];
     let surface = Surface { mu: random.between(0.1, 1.0), e: random.between(0.0, 0.7), law };
     let mut simulation = start(&body, &q, &u, Options { surface: Some(surface), ..Options::default() });
-    let before = simulation.energy().unwrap().total();
+    let before = simulation.energy().unwrap().total().unwrap();
     let mut seen: Vec<Event> = Vec::new();
     let mut gain = f64::NEG_INFINITY;
     let wrong = |message: String, seen: &[Event]| {
@@ -105,7 +105,7 @@ fn tumble(seed: u64) -> Result<Figures, String> {
         }
     };
     let energy = simulation.energy().unwrap();
-    let account = ((energy.total() - energy.friction - energy.impacts - before) / before).abs();
+    let account = ((energy.total().unwrap() - energy.friction - energy.impacts - before) / before).abs();
     if account > 1e-9 {
         return wrong(format!("the account of energy is off by {account:e}"), &seen);
     }

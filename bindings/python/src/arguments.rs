@@ -22,6 +22,17 @@ pub struct Rows<'py> {
 }
 
 impl Rows<'_> {
+    /// A table of its own.
+    pub fn of(numbers: Vec<f64>, rows: Option<usize>, width: usize) -> Self {
+        Rows { numbers: Numbers::Owned(numbers), rows, width }
+    }
+
+    /// The numbers of a row; one row serves all.
+    pub fn row(&self, row: usize) -> &[f64] {
+        let row = if self.rows.is_some() { row } else { 0 };
+        self.slice().get(row * self.width..(row + 1) * self.width).unwrap_or(&[])
+    }
+
     /// All numbers, by rows.
     pub fn slice(&self) -> &[f64] {
         match &self.numbers {
@@ -38,6 +49,17 @@ impl Rows<'_> {
     }
 }
 
+/// Entries that a masked array hides are not there: they have no number.
+fn refuse_masked(py: Python<'_>, given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    let Ok(mask) = given.getattr("mask") else { return Ok(()) };
+    if mask.call_method0("any")?.is_truthy()? {
+        let message =
+            format!("`{name}` has masked entries: fill them (`.filled(value)`), or leave their rows out");
+        return Err(errors::argument(py, name, "masked", &message));
+    }
+    Ok(())
+}
+
 /// A table of `width` columns from an array of shape (width,) or (n, width), or `default` where none is
 /// given.
 pub fn rows<'py>(
@@ -48,8 +70,9 @@ pub fn rows<'py>(
     default: &[f64],
 ) -> PyResult<Rows<'py>> {
     let Some(given) = given else {
-        return Ok(Rows { numbers: Numbers::Owned(default.to_vec()), rows: None, width });
+        return Ok(Rows::of(default.to_vec(), None, width));
     };
+    refuse_masked(py, given, name)?;
     let wrong_shape = |found: String| {
         errors::argument(
             py,
@@ -98,6 +121,7 @@ pub fn rows<'py>(
 
 /// One number for all rows, or an array of shape (n,).
 pub fn column<'py>(py: Python<'py>, given: &Bound<'py, PyAny>, name: &str) -> PyResult<Rows<'py>> {
+    refuse_masked(py, given, name)?;
     if let Ok(number) = given.extract::<f64>() {
         return Ok(Rows { numbers: Numbers::Owned(vec![number]), rows: None, width: 1 });
     }

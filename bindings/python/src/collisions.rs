@@ -1,7 +1,7 @@
 //! Collisions of a contact of a mechanism.
 
 use hodograph::nalgebra::Vector3;
-use hodograph::{CollisionError, CollisionOutcome, Kind, Mechanism as _, Path};
+use hodograph::{CollisionError, CollisionOutcome, Kind, Mechanism as _, Path, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::over_rows;
 use numpy::{PyArray1, PyArrayMethods};
@@ -142,6 +142,10 @@ pub fn collide<'py>(
     raises: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let surfaces = Surfaces::new(py, mu, e, law)?;
+    let timeless = states.without_time();
+    if let Some(&row) = timeless.first().filter(|_| raises) {
+        return Err(states.error(py, mechanism, &StateError::NotFinite, row, timeless.len()));
+    }
     let collisions = mechanism
         .collisions(contact)
         .map_err(|error| errors::error(py, "StateError", &error.to_string(), error.kind(), None, None))?;

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use hodograph::{Kind, Mechanism as _};
+use hodograph::{Kind, Mechanism as _, StateError};
 use hodograph_generator::explain::{self, Format};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
@@ -173,8 +173,29 @@ impl Mechanism {
             }
             (rows, machines) => rows.or(machines.as_ref().map(|machines| machines.rows)),
         };
+        let q = without_times(q, time.as_ref(), rows);
         Ok(States { q, u, inputs, time, accelerations, tangent, rows })
     }
+}
+
+/// Makes these rows numbers that are none.
+fn blank(numbers: &mut [f64], rows: usize, which: &[usize]) {
+    let width = numbers.len() / rows.max(1);
+    for &row in which {
+        numbers[row * width..(row + 1) * width].fill(f64::NAN);
+    }
+}
+
+/// The coordinates, with numbers that are none in the rows whose time is none: a state without a time has no
+/// answer, also where the model does not use the time.
+fn without_times<'py>(q: Rows<'py>, time: Option<&Rows<'py>>, rows: Option<usize>) -> Rows<'py> {
+    let Some(time) = time.filter(|time| time.slice().iter().any(|time| !time.is_finite())) else { return q };
+    let of = |row: usize| {
+        let known = time.row(row).iter().all(|time| time.is_finite());
+        q.row(row).iter().map(move |&number| if known { number } else { f64::NAN })
+    };
+    let numbers = (0..rows.unwrap_or(1)).flat_map(of).collect();
+    Rows::of(numbers, rows, q.width)
 }
 
 #[pymethods]
@@ -278,6 +299,10 @@ impl Mechanism {
         let routine = self.routine(py, quantity)?;
         let states = self.states(py, [q, u, inputs, time, accelerations, tangent])?;
         let raises = raises(py, errors)?;
+        let timeless = states.without_time();
+        if let Some(&row) = timeless.first().filter(|_| raises) {
+            return Err(states.error(py, &self.inner, &StateError::NotFinite, row, timeless.len()));
+        }
         let Some(rows) = states.rows else {
             let none: &[f64] = &[];
             let given =
@@ -292,6 +317,9 @@ impl Mechanism {
                 tangent: &tangent,
             };
             let mut numbers = vec![f64::NAN; routine.one.len()];
+            if !timeless.is_empty() {
+                return array(py, None, &routine.shape, numbers);
+            }
             let outcome = routine.one.evaluate(&arguments, |index, number| numbers[index] = number);
             return match outcome {
                 Err(failed) if raises => {
@@ -302,7 +330,8 @@ impl Mechanism {
         };
         let table = states.table();
         if let Some(machines) = &self.machines {
-            let (numbers, refused) = py.detach(|| machines.evaluate(&self.inner, &routine.one, &table));
+            let (mut numbers, refused) = py.detach(|| machines.evaluate(&self.inner, &routine.one, &table));
+            blank(&mut numbers, rows, &timeless);
             return match refused.first() {
                 Some((row, Refused::Parameters(error))) if raises => {
                     Err(parameter_error(py, error, (*row, rows, refused.len())))
@@ -320,6 +349,7 @@ impl Mechanism {
             let count = failures.iter().filter(|failure| failure.is_some()).count();
             return Err(states.error(py, &self.inner, &self.inner.state_error(*failed), row, count));
         }
+        blank(&mut numbers, rows, &timeless);
         array(py, Some(rows), &routine.shape, numbers)
     }
 
@@ -347,7 +377,7 @@ impl Mechanism {
         py: Python<'py>,
         states: [Option<Bound<'py, PyAny>>; 4],
         until: f64,
-        step: f64,
+        step: Option<f64>,
         choices: Choices,
     ) -> PyResult<Bound<'py, PyDict>> {
         let [q, u, inputs, time] = &states;

@@ -2,8 +2,9 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use hodograph::{Kind, Mechanism as _, State, Surface};
+use hodograph::{Kind, Mechanism as _, State};
 use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
     Drive, Event, EventKind, InputFunction, Options, Progress, Simulation, SimulationError,
 };
@@ -18,19 +19,22 @@ use crate::states::States;
 /// A motion has at most this many states.
 const MOST: f64 = 1e7;
 
-/// What a motion is to be like, from Python.
+/// mu, e and the name of the law of a surface; what is not given is none.
+type Given = (Option<f64>, Option<f64>, Option<String>);
+
+/// What a motion is to be like, from Python. What is none has the default of the command line tool.
 #[derive(FromPyObject)]
 pub struct Choices {
-    /// mu, e and law of all contacts that have none of their own
+    /// the surface of all contacts, for what they leave open
     #[pyo3(item)]
-    surface: (f64, f64, String),
-    /// mu, e and law of contacts, by number
+    surface: Given,
+    /// the surfaces of contacts, by number
     #[pyo3(item)]
-    surfaces: Vec<(usize, f64, f64, String)>,
+    surfaces: Vec<(usize, Given)>,
     #[pyo3(item)]
-    tolerance: f64,
+    tolerance: Option<f64>,
     #[pyo3(item)]
-    max_step: f64,
+    max_step: Option<f64>,
     /// inputs as a function of time, coordinates and speeds
     #[pyo3(item)]
     control: Option<Py<PyAny>>,
@@ -76,9 +80,11 @@ fn controlled(control: Py<PyAny>, raised: &Raised) -> InputFunction {
     })
 }
 
-/// A surface from its numbers and the name of its law.
-fn surface(py: Python<'_>, mu: f64, e: f64, law: &str) -> PyResult<Surface<f64>> {
-    Ok(Surface { mu, e, law: law_named(py, law)? })
+/// What is given of a surface, with its law by name.
+fn given(py: Python<'_>, (mu, e, law): &Given) -> PyResult<GivenSurface> {
+    let law = law.as_deref().map(|law| law_named(py, law)).transpose()?;
+    let given = GivenSurface { mu: *mu, e: *e, law };
+    given.check().map_err(|error| errors::argument(py, "surface", error.kind(), &error.to_string()))
 }
 
 fn follow(
@@ -107,9 +113,10 @@ pub fn simulate<'py>(
     py: Python<'py>,
     mechanism: &InterpretedMechanism,
     states: &States<'py>,
-    (until, step): (f64, f64),
+    (until, step): (f64, Option<f64>),
     choices: Choices,
 ) -> PyResult<Bound<'py, PyDict>> {
+    let step = step.unwrap_or(defaults::STEP);
     let wrong = |name: &str, message: &str| Err(errors::argument(py, name, "bad_option", message));
     if states.rows.is_some() {
         return wrong("q", "a motion begins in one state: expected arrays of shape (p,)");
@@ -119,17 +126,35 @@ pub fn simulate<'py>(
     if !(step > 0.0 && lasts >= 0.0 && lasts.is_finite() && lasts / step <= MOST) {
         return wrong("step", "expected step > 0, until not before the beginning, and at most 1e7 steps");
     }
-    let (mu, e, law) = &choices.surface;
+    if !start.is_finite() {
+        return wrong("time", &format!("`time` is {start}: expected a finite number"));
+    }
+    let state = State {
+        time: start,
+        coordinates: states.q.slice(),
+        speeds: states.u.slice(),
+        inputs: states.inputs.slice(),
+    };
+    let mut own = Vec::new();
+    for (contact, surface) in &choices.surfaces {
+        own.push((*contact, given(py, surface)?));
+    }
+    let surfaces = match defaults::surfaces(mechanism, &state, given(py, &choices.surface)?, &own) {
+        Ok(surfaces) => surfaces.of_contacts,
+        Err(error) => return wrong("mu", &format!("{error}: give mu, e and law, or `surfaces`")),
+    };
+    let tolerance = choices.tolerance.unwrap_or(Options::default().relative_tolerance);
+    if let Err(message) = defaults::check_tolerance(tolerance) {
+        return wrong("tolerance", &message);
+    }
+    let driven = choices.control.is_some() && choices.period.is_none();
     let mut options = Options {
-        relative_tolerance: choices.tolerance,
-        absolute_tolerance: choices.tolerance,
-        max_step: choices.max_step,
-        surface: Some(surface(py, *mu, *e, law)?),
+        relative_tolerance: tolerance,
+        absolute_tolerance: tolerance,
+        max_step: choices.max_step.unwrap_or(defaults::greatest_step(mechanism.program(), driven)),
+        surfaces,
         ..Options::default()
     };
-    for (contact, mu, e, law) in &choices.surfaces {
-        options.surfaces.push((*contact, surface(py, *mu, *e, law)?));
-    }
     let raised = Raised::default();
     if let Some(control) = choices.control {
         let function = controlled(control, &raised);
@@ -141,12 +166,6 @@ pub fn simulate<'py>(
             },
         };
     }
-    let state = State {
-        time: start,
-        coordinates: states.q.slice(),
-        speeds: states.u.slice(),
-        inputs: states.inputs.slice(),
-    };
     let followed = py.detach(|| follow(mechanism, &state, (until, step), options));
     if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
         return Err(error);

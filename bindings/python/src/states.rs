@@ -36,6 +36,13 @@ impl States<'_> {
         }
     }
 
+    /// The rows without a time: the model may not use it, but a state without a time is none.
+    pub fn without_time(&self) -> Vec<usize> {
+        let Some(time) = &self.time else { return Vec::new() };
+        let known = |row: &usize| time.row(*row).iter().all(|time| time.is_finite());
+        (0..self.rows.unwrap_or(1)).filter(|row| !known(row)).collect()
+    }
+
     /// The exception of a row; `count` rows have none.
     pub fn error(
         &self,
@@ -58,7 +65,12 @@ impl States<'_> {
         .find(|(.., number)| !number.is_finite());
         let (mut message, mut number) = (failure.to_string(), None);
         let mut place = self.rows.map(|_| format!("row {row}"));
-        if let Some((kind, argument, index, value)) = at_fault {
+        let time = table.time.as_ref().map(|time| time.get(row)).filter(|time| !time.is_finite());
+        if let Some(value) = time {
+            message = format!("`time` is {value}: expected a finite number");
+            number = Some(value);
+            place = Some(place.map_or("time".to_owned(), |row| format!("{row}, time")));
+        } else if let Some((kind, argument, index, value)) = at_fault {
             let name = mechanism.component(kind, index).map_or(String::new(), |c| c.name.to_owned());
             message = format!("`{argument}` holds {value} for {name}: expected a finite number");
             number = Some(value);

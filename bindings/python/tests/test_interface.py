@@ -147,6 +147,65 @@ def test_simulate_contacts_with_surfaces_and_events():
         m.simulate(0.1, 0.01, surfaces={contact: {"friction": 1}})
 
 
+def test_surfaces_and_tolerances_have_the_defaults_of_the_tool():
+    m = model("free_box_corner")
+    whole = dict(mu=0.3, e=0.5, law="stronge")
+    for name in whole:
+        part = {key: value for key, value in whole.items() if key != name}
+        with pytest.raises(hodograph.ArgumentError, match=f"no surface: {name} is missing"):
+            m.simulate(0.05, 0.01, **part)
+    with pytest.raises(hodograph.ArgumentError, match="has no surface"):
+        m.simulate(0.05)
+    np.testing.assert_array_equal(m.simulate(0.05, **whole).q, m.simulate(0.05, 0.01, tolerance=1e-12, **whole).q)
+    for name, value in (("tolerance", 1e-22), ("tolerance", 0.0), ("mu", -1.0), ("e", 1.2), ("mu", "0.3"), ("e", np.ma.masked)):
+        with pytest.raises(hodograph.ArgumentError):
+            m.simulate(0.05, 0.01, **{**whole, name: value})
+    # a contact that cannot close needs no surface
+    assert model("rolling_disc").simulate(0.02).time.shape == (3,)
+
+
+def test_what_is_no_number_is_refused():
+    m = model("two_sleds")
+    u = np.ones(4)
+    masked = np.ma.masked_array(u, mask=[0, 1, 0, 0])
+    for call in (
+        lambda: m.accelerations(u=masked),
+        lambda: m.collide("BcAc", mu=np.ma.masked_array([0.1, 0.2], [1, 0]), e=0.5, law="newton"),
+        lambda: m.with_parameters(m=np.ma.masked_array([1.0, 2.0], [0, 1])),
+        lambda: m.states({"u1": np.ma.masked_array([1.0], [1])}),
+    ):
+        with pytest.raises(hodograph.ArgumentError, match="masked"):
+            call()
+    np.testing.assert_array_equal(m.accelerations(u=np.ma.masked_array(u)), m.accelerations(u=u))
+    for call in (
+        lambda: m.with_parameters(m="3"),
+        lambda: m.with_parameters(m=np.array(["3"])),
+        lambda: m.states({"u1": ["1.0"]}),
+        lambda: m.tabulate("accelerations", {"u1": ["1.0"]}),
+        lambda: m.accelerations(u=["1", "1", "1", "1"]),
+        lambda: m.with_parameters(m=True),
+    ):
+        with pytest.raises(hodograph.ArgumentError):
+            call()
+    # the sleds do not use the time
+    for time in (np.nan, np.inf):
+        with pytest.raises(hodograph.StateError, match="time"):
+            m.accelerations(time=time)
+        with pytest.raises(hodograph.HodographError, match="time"):
+            m.collide("BcAc", time=time, mu=0.3, e=0.5, law="newton")
+        with pytest.raises(hodograph.ArgumentError):
+            m.simulate(1.0, 0.1, time=time)
+    rows = m.accelerations(time=np.array([0.0, np.nan]), errors="nan")
+    assert np.isfinite(rows[0]).all() and np.isnan(rows[1]).all()
+
+
+def test_figures_keep_names_beside_lines():
+    m = model("planar_double_pendulum")
+    text = m.simulate(0.2, 0.01)._repr_html_()
+    assert ">-0<" not in text and ">q1<" in text
+    assert "1 contact>" in repr(m) and "2 speeds" in repr(m)
+
+
 def test_simulate_under_control():
     m = model("puma_560")
     q0 = np.array([q.value for q in m.coordinates])

@@ -6,11 +6,14 @@ use std::process::ExitCode;
 use clap::Parser;
 
 mod animation;
+mod answers;
 mod commands;
 mod derivation;
 mod evaluate;
 mod export;
+mod expression;
 mod files;
+mod findings;
 mod import;
 mod inline;
 mod interrupt;
@@ -20,12 +23,14 @@ mod model;
 mod output;
 mod plot;
 mod spelling;
+mod state_arguments;
 mod stop;
 mod surface;
+mod table;
 
 use commands::{
-    check, collide, contacts, derive, derive_worker, eval, expand, explain, export as export_library,
-    import as import_urdf, plot as draw, simulate, solve,
+    check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
+    export as export_library, import as import_urdf, new, plot as draw, simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -41,18 +46,21 @@ struct Arguments {
 
 #[derive(clap::Subcommand)]
 enum Command {
-    Solve(solve::Arguments),
-    Contacts(contacts::Arguments),
+    New(new::Arguments),
+    Check(check::Arguments),
+    Simulate(simulate::Arguments),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
-    Check(check::Arguments),
+    Plot(draw::Arguments),
+    Explain(explain::Arguments),
     Derive(derive::Arguments),
     Expand(expand::Arguments),
-    Explain(explain::Arguments),
     Export(export_library::Arguments),
-    Plot(draw::Arguments),
-    Simulate(simulate::Arguments),
     Import(import_urdf::Arguments),
+    Solve(solve::Arguments),
+    Contacts(contacts::Arguments),
+    Completions(completions::Arguments),
+    Man(completions::ManArguments),
     #[command(name = derivation::WORKER, hide = true)]
     DeriveWorker(derive_worker::Arguments),
 }
@@ -64,6 +72,9 @@ fn main() -> ExitCode {
         Err(answer) => return output::answer(&answer),
     };
     let outcome = match arguments.command {
+        Command::New(arguments) => new::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Man(arguments) => completions::run_man(&arguments),
         Command::Solve(arguments) => solve::run(&arguments),
         Command::Contacts(arguments) => contacts::run(&arguments),
         Command::Eval(arguments) => eval::run(&arguments),

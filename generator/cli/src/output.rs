@@ -1,7 +1,7 @@
 //! Writes results to standard output, and files completely or not at all.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use crate::interrupt::Unfinished;
@@ -105,6 +105,22 @@ pub fn file(path: &Path, bytes: &[u8]) -> Outcome {
     written(path, bytes).map_err(|error| Stop::unwritable(path, &error))
 }
 
+/// Writes a file that is not there yet, whole or not at all.
+///
+/// # Errors
+///
+/// It is there, or cannot be written.
+pub fn new_file(path: &Path, bytes: &[u8]) -> Outcome {
+    let write = || -> io::Result<()> {
+        let mut file = temporary(folder(path))?;
+        let _unfinished = Unfinished::file(file.path());
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        file.persist_noclobber(path).map(drop).map_err(|error| error.error)
+    };
+    write().map_err(|error| Stop::unwritable(path, &error))
+}
+
 /// Refuses a file that [`file`] cannot write, before the work whose result it is to hold.
 ///
 /// # Errors
@@ -125,6 +141,34 @@ pub fn check(path: &Path) -> Outcome {
     }
 }
 
+/// Refuses files to be written that are one, or are among those that are read, whatever they are called.
+///
+/// # Errors
+///
+/// [`Stop::Call`].
+pub fn apart(written: &[&Path], read: &[PathBuf]) -> Outcome {
+    let place = |path: &Path| -> PathBuf {
+        // A file that is not there yet is known by its folder.
+        let beside = || Some(folder(path).canonicalize().ok()?.join(path.file_name()?));
+        path.canonicalize().ok().or_else(beside).unwrap_or_else(|| path.to_path_buf())
+    };
+    let places: Vec<PathBuf> = written.iter().map(|path| place(path)).collect();
+    for (index, path) in written.iter().enumerate() {
+        if places[..index].contains(&places[index]) {
+            let path = path.display();
+            return Err(Stop::Call(format!("{path} is to be two files: give each its own name")));
+        }
+        if let Some(input) = read.iter().find(|input| place(input) == places[index]) {
+            return Err(Stop::Call(format!(
+                "{} would be written over {}, which is read: give another name",
+                path.display(),
+                input.display()
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Where a file is, or is to be.
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
@@ -136,7 +180,18 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
     if std::fs::metadata(&place).is_ok_and(|data| !data.is_file() && !data.is_dir()) {
         return std::fs::OpenOptions::new().write(true).open(&place)?.write_all(bytes);
     }
-    let folder = folder(&place);
+    let mut file = temporary(folder(&place))?;
+    let _unfinished = Unfinished::file(file.path());
+    file.write_all(bytes)?;
+    file.as_file().sync_all()?;
+    if let Ok(data) = std::fs::metadata(&place) {
+        file.as_file().set_permissions(data.permissions())?;
+    }
+    file.persist(&place).map(drop).map_err(|error| error.error)
+}
+
+/// A file in a folder that is not seen until it gets its name.
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".hodograph");
     #[cfg(unix)]
@@ -145,14 +200,7 @@ fn written(path: &Path, bytes: &[u8]) -> io::Result<()> {
         // As a new file of the user: the mask of the process applies.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder)?;
-    let _unfinished = Unfinished::file(file.path());
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    if let Ok(data) = std::fs::metadata(&place) {
-        file.as_file().set_permissions(data.permissions())?;
-    }
-    file.persist(&place).map(drop).map_err(|error| error.error)
+    builder.tempfile_in(folder)
 }
 
 /// Writes a folder with these files (paths in it and texts), whole or not at all: beside its place first, and

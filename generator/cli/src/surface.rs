@@ -3,6 +3,7 @@
 
 use hodograph::{Law, Surface};
 use hodograph_generator::model::mechanism::{self, Mechanism};
+use hodograph_interpreter::motion::GivenSurface;
 
 use crate::json::{Failure, Kind};
 use crate::output;
@@ -19,44 +20,25 @@ pub fn law(name: &str) -> Result<Law, Failure> {
     })
 }
 
-/// What options say of a surface.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Given {
-    /// coefficient of friction
-    pub mu: Option<f64>,
-    /// coefficient of restitution
-    pub e: Option<f64>,
-    /// hypothesis of restitution
-    pub law: Option<Law>,
-}
-
-impl Given {
-    /// The surface of a contact: each number from the options, else from the model. `None` where neither says
-    /// it. What the model says is told on standard error.
-    pub fn of(self, contact: &mechanism::Contact) -> Option<Surface<f64>> {
-        if let Given { mu: Some(mu), e: Some(e), law: Some(law) } = self {
-            return Some(Surface { mu, e, law });
-        }
-        let stated = contact.surface?;
-        let law = match stated.law {
-            mechanism::Law::Newton => Law::Newton,
-            mechanism::Law::Poisson => Law::Poisson,
-            mechanism::Law::Stronge => Law::Stronge,
-        };
-        let surface = Surface {
-            mu: self.mu.unwrap_or(stated.mu),
-            e: self.e.unwrap_or(stated.e),
-            law: self.law.unwrap_or(law),
-        };
-        let says = [
-            self.mu.is_none().then(|| format!("mu = {}", stated.mu)),
-            self.e.is_none().then(|| format!("e = {}", stated.e)),
-            self.law.is_none().then(|| format!("law = {}", stated.law.name())),
-        ];
-        let says: Vec<String> = says.into_iter().flatten().collect();
+/// What is given of the surface of a contact, and for what that leaves open what the model states. What is
+/// taken from the model is told on standard error.
+pub fn stated_in(contact: &mechanism::Contact, given: GivenSurface) -> GivenSurface {
+    let Some(stated) = contact.surface else { return given };
+    let law = match stated.law {
+        mechanism::Law::Newton => Law::Newton,
+        mechanism::Law::Poisson => Law::Poisson,
+        mechanism::Law::Stronge => Law::Stronge,
+    };
+    let says = [
+        given.mu.is_none().then(|| format!("mu = {}", stated.mu)),
+        given.e.is_none().then(|| format!("e = {}", stated.e)),
+        given.law.is_none().then(|| format!("law = {}", stated.law.name())),
+    ];
+    let says: Vec<String> = says.into_iter().flatten().collect();
+    if !says.is_empty() {
         output::say(format_args!("note: contact {}: {} of the model", contact.name, says.join(", ")));
-        Some(surface)
     }
+    given.or(GivenSurface { mu: Some(stated.mu), e: Some(stated.e), law: Some(law) })
 }
 
 /// The surface as it stands on the command line.
@@ -87,9 +69,9 @@ impl SurfaceArguments {
             }
         }
         let law = self.law.as_deref().map(law).transpose()?;
-        let given = Given { mu: self.mu, e: self.e, law };
+        let given = GivenSurface { mu: self.mu, e: self.e, law };
         let contact = model.contacts.get(contact);
-        contact.and_then(|contact| given.of(contact)).ok_or_else(|| {
+        contact.and_then(|contact| stated_in(contact, given).whole()).ok_or_else(|| {
             let name = contact.map_or("", |contact| contact.name.as_str());
             Stop::Call(format!(
                 "contact {name} has no surface: give --mu, --e and --law, or state `surface: {{ mu: .., e: .., law: .. }}` in the model"

@@ -91,9 +91,11 @@ fn surfaces_are_asked_for_and_checked_before_the_start() {
         simulate("bouncing_ball", &["--until", "0.1", "--step", "0.1", "--surface", "floor=0,0.5,newton"]);
     assert_eq!((own.code, own.lines().len()), (0, 2), "{}", own.stderr);
     let unknown = simulate("bouncing_ball", &["--until", "1", "--surface", "flor=0,0.5,newton"]);
-    assert_eq!(unknown.error_kind(), "unknown_name");
+    assert_eq!(unknown.told(), (1, "error: there is no contact `flor`: did you mean `floor`?"));
     let much = simulate("bouncing_ball", &["--until", "0.1", "--mu", "0", "--e", "2", "--law", "newton"]);
-    assert_eq!(much.error_kind(), "restitution_out_of_range");
+    assert_eq!(much.told(), (1, "error: the coefficient of restitution is 2: it must lie between 0 and 1"));
+    let part = simulate("bouncing_ball", &["--until", "0.1", "--mu", "0", "--law", "newton"]);
+    assert!(part.told().1.contains("contact floor has no surface: e is missing"), "{}", part.stderr);
     let back = simulate("bouncing_ball", &[&["--until", "-1"], &BALL[..]].concat());
     assert_eq!(back.code, 2);
     assert!(back.stderr.contains("before the start"), "{}", back.stderr);
@@ -180,15 +182,32 @@ fn pages_show_the_motion() {
         simulate("bouncing_ball", &[&["--until", "3", "--step", "0.1", "--html", &page], &BALL[..]].concat());
     assert_eq!(run.code, 0, "{}", run.stderr);
     let (lines, shown) = (run.lines(), data(&page));
-    assert_eq!(shown["times"].as_array().unwrap().len(), lines.len());
+    let times = shown["times"].as_array().unwrap();
     assert_eq!(shown["up"][2], 1.0);
     let ball = shown["points"].as_array().unwrap().iter().find(|point| point["name"] != "O").unwrap();
-    for (line, (time, place)) in
-        lines.iter().zip(shown["times"].as_array().unwrap().iter().zip(ball["places"].as_array().unwrap()))
-    {
-        assert_eq!(line["t"], *time);
-        assert!((number(&line["q"]["z"]) - number(&place[2])).abs() < 1e-12, "{line} {place}");
+    let curve = |name: &str| {
+        let series = shown["series"].as_array().unwrap();
+        series.iter().find(|series| series["name"] == name).unwrap()["values"].as_array().unwrap().clone()
+    };
+    let (places, kinetic) = (ball["places"].as_array().unwrap(), curve("kinetic"));
+    // A line of a state is one moment, that of an event two: before it, and after it.
+    let mut moment = 0;
+    for line in &lines {
+        for _ in 0..if line["event"].is_null() { 1 } else { 2 } {
+            assert_eq!(line["t"], times[moment]);
+            assert!((number(&line["q"]["z"]) - number(&places[moment][2])).abs() < 1e-12, "{line}");
+            moment += 1;
+        }
+        if line["event"] == "collision" {
+            let (before, after) = (number(&kinetic[moment - 2]), number(&kinetic[moment - 1]));
+            assert!((before - 0.5 * number(&line["u"]["v"]).powi(2)).abs() < 1e-9, "{line}");
+            assert!((after - before - number(&line["kinetic_energy_change"])).abs() < 1e-9, "{line}");
+        }
     }
+    assert_eq!(moment, times.len());
+    // The weight does not press before it does: no force at the moment before contact begins.
+    let pressed = curve("floor");
+    assert_eq!(pressed.len(), times.len());
     let told: Vec<String> =
         lines.iter().filter_map(|line| line["event"].as_str().map(|event| event.replace('_', " "))).collect();
     let marked: Vec<&str> =
@@ -279,7 +298,7 @@ fn inputs_and_surfaces_are_read_with_care() {
         assert!(run.stderr.contains(what), "{text} {}", run.stderr);
     }
     let unknown = call(&["--inputs", &table("t,G\n0,1\n")]);
-    assert_eq!(unknown.error_kind(), "unknown_name");
+    assert_eq!(unknown.told(), (1, "error: Incline has no input `G`: there are: F"));
     let both = call(&["--inputs", &table("t,F\n0,1\n"), "--input", "F=1"]);
     assert!(both.code == 2 && both.stderr.contains("F is given twice"), "{}", both.stderr);
     // The same force: as other programs write tables, as an expression of `t`, and of `time`, as models call

@@ -22,6 +22,7 @@ mod error;
 mod intern;
 mod interpreted;
 mod mechanism;
+pub mod motion;
 mod parameters;
 mod routines;
 

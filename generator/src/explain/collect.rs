@@ -43,6 +43,9 @@ pub fn collect(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
     }
     let names = names(mechanism);
     let symbols = Symbols::new(names.iter().flat_map(|(_, list)| list).map(|entry| entry.name.as_str()));
+    let timed =
+        slice.order.iter().any(|&value| matches!(program.operation(value), Operation::Input(Input::Time)));
+    let symbols = if timed { symbols } else { symbols.without_time() };
     let intermediate = intermediate.into_iter().filter(|(_, list)| !list.is_empty());
     let mut sections: Vec<Section> = intermediate
         .map(|(stage, equations)| Section {
@@ -64,6 +67,7 @@ fn names(mechanism: &Mechanism) -> Vec<(&'static str, Vec<Entry>)> {
             name: q.name.clone(),
             unit: q.unit.clone(),
             docs: q.docs.replace('\n', " "),
+            value: q.value,
         };
         list.iter().map(entry).collect::<Vec<_>>()
     };
@@ -164,9 +168,11 @@ impl Reader<'_> {
             Left::Entry(symbol, indices) => taken(symbol, indices.join(",")),
             Left::Z(_) | Left::Of(..) => false,
         };
+        let matrix = matrix(output);
         let mut symbol = heading.symbol.to_owned();
         let mut left_sides = lefts(self.mechanism, output, &symbol);
-        while left_sides.iter().any(clash) {
+        // A matrix is written with its symbol, which must be no name either.
+        while left_sides.iter().any(clash) || (!matrix.is_empty() && taken(&symbol, String::new())) {
             symbol.push('\'');
             left_sides = lefts(self.mechanism, output, &symbol);
         }
@@ -176,7 +182,7 @@ impl Reader<'_> {
             title: heading.title.to_owned(),
             unit: heading.unit.to_owned(),
             symbol: Some(symbol).filter(|symbol| !taken(symbol, String::new())),
-            matrix: matrix(output),
+            matrix,
             equations: left_sides
                 .into_iter()
                 .zip(rights)

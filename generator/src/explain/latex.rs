@@ -21,7 +21,8 @@ pub fn write(document: &Document) -> String {
             let unit = unit(&entry.unit);
             let unit = if unit.is_empty() { "1" } else { unit.as_str() };
             let name = writer.name(&entry.name);
-            out += &format!("\\item[${name}$] {{[}}{}{{]}} {}\n", plain(unit), plain(&entry.docs));
+            let value = entry.value.map_or(String::new(), |value| format!(" ${}$", number(value)));
+            out += &format!("\\item[${name}$] {{[}}{}{{]}}{value} {}\n", plain(unit), plain(&entry.docs));
         }
         out += "\\end{description}\n";
     }

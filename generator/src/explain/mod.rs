@@ -227,6 +227,8 @@ struct Entry {
     name: String,
     unit: String,
     docs: String,
+    /// that of the model, in its unit
+    value: Option<f64>,
 }
 
 /// Everything to be written.

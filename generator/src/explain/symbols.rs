@@ -53,7 +53,7 @@ pub fn greek_name(letter: char) -> Option<&'static str> {
 }
 
 /// The symbol of a name, by itself: `q1` is q with the index 1, `gamma` a Greek letter, `m_arm` m with the
-/// index arm.
+/// index arm, `vx` v with the index x, `walpha` w with the index alpha.
 pub fn symbol(name: &str) -> Symbol {
     let (head, tail) = match name.split_once('_') {
         Some((head, tail)) if !head.is_empty() && !tail.is_empty() => (head, tail),
@@ -61,10 +61,24 @@ pub fn symbol(name: &str) -> Symbol {
     };
     let letters = head.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let (head, digits) = if letters.is_empty() { (head, "") } else { (letters, &head[letters.len()..]) };
-    let parts = [digits].into_iter().chain(tail.split('_')).filter(|part| !part.is_empty());
+    let (head, letter) = head.split_at(indexed(head));
+    let parts = [letter, digits].into_iter().chain(tail.split('_')).filter(|part| !part.is_empty());
     let index = parts.collect::<Vec<_>>().join(",");
     let greek = GREEK.iter().find(|(name, _)| *name == head);
     Symbol { head: greek.map_or(head.to_owned(), |(_, letter)| letter.to_string()), index }
+}
+
+/// Where the index begins in letters that are no word: after the first of two letters, or of a letter and the
+/// name of a Greek one; else at the end.
+fn indexed(letters: &str) -> usize {
+    let greek = |text: &str| GREEK.iter().any(|(name, _)| *name == text);
+    let mut rest = letters.chars();
+    let first = rest.next().filter(char::is_ascii_alphabetic);
+    let two = letters.len() == 2 && rest.clone().all(|letter| letter.is_ascii_alphabetic());
+    match first {
+        Some(_) if !greek(letters) && (two || greek(rest.as_str())) => 1,
+        _ => letters.len(),
+    }
 }
 
 /// The symbols of all names of a mechanism: no two of them look alike.
@@ -98,6 +112,12 @@ impl Symbols {
             of.insert(name.to_owned(), symbol);
         }
         Symbols { of, letter }
+    }
+
+    /// The same for a mechanism in whose equations the time does not stand: its symbol is free.
+    pub fn without_time(mut self) -> Self {
+        self.of.remove("time");
+        self
     }
 
     /// Whether a name looks like this.
@@ -195,6 +215,13 @@ mod tests {
             ("v1_a_b", "v", "1,a,b"),
             ("_x", "_x", ""),
             ("mass", "mass", ""),
+            ("vx", "v", "x"),
+            ("mf", "m", "f"),
+            ("walpha", "w", "alpha"),
+            ("Ixx", "Ixx", ""),
+            ("vx2", "v", "x,2"),
+            ("mu", "μ", ""),
+            ("mmu", "m", "mu"),
         ];
         for (name, head, index) in pairs {
             assert_eq!(symbol(name), Symbol { head: head.to_owned(), index: index.to_owned() }, "{name}");

@@ -57,7 +57,8 @@ fn text_names_everything() {
     let text = explain(&mechanism, &program, &usual(&program), Format::Text);
     for part in [
         "Rod\n===",
-        "m [kg]: its mass",
+        "m [kg] (1 in the model): its mass",
+        "g [m/s²] (9.81 in the model)",
         "tau [N·m]",
         "d(q1)/dt = u1",
         "M = ",

@@ -19,7 +19,8 @@ pub fn write(document: &Document) -> String {
             let docs = if entry.docs.is_empty() { String::new() } else { format!(": {}", entry.docs) };
             let unit = unit(&entry.unit);
             let unit = if unit.is_empty() { "1" } else { unit.as_str() };
-            out += &format!("  {} [{unit}]{docs}\n", entry.name);
+            let value = entry.value.map_or(String::new(), |value| format!(" ({value} in the model)"));
+            out += &format!("  {} [{unit}]{value}{docs}\n", entry.name);
         }
     }
     for section in &document.sections {

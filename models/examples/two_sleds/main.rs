@@ -1,13 +1,16 @@
 //! The example of S. Djerassi, "Three-dimensional, one-point collision with friction" (2012), from its model
 //! file to its solved collisions, beside every number that the paper prints for it.
 //!
-//! `cargo run --release --example two_sleds`. Equation numbers are the paper's. The paper takes s = t x n in
-//! this example (and n x t elsewhere); this program prints s = t x n, too.
+//! `cargo run --release --example two_sleds` draws and prints the nine outcomes; `-- --compare` prints every
+//! number beside the published one. Equation numbers are the paper's. The paper takes s = t x n in this
+//! example (and n x t elsewhere); this program prints s = t x n, too.
 
 mod integrate;
 mod paper;
+mod picture;
 
 use std::error::Error;
+use std::path::Path;
 
 use hodograph::{Law, ReducedMatrix, Surface};
 use hodograph_models::two_sleds::{Collision, Coordinates, Speeds, TwoSleds};
@@ -34,11 +37,82 @@ fn flipped(v: &Vector3<f64>) -> Vector3<f64> {
     Vector3::new(v.x, v.y, 0.0 - v.z)
 }
 
+/// e of all collisions, and mu.
+const E: f64 = 0.8;
+const MU: [f64; 3] = [0.6, 1.1, 1.6];
+
 fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => show(),
+        ["--compare"] => compare(),
+        _ => Err("there is one option, --compare: every number beside the published one".into()),
+    }
+}
+
+/// A solved collision.
+struct Outcome {
+    mu: f64,
+    law: Law,
+    hit: Collision,
+}
+
+/// The nine outcomes: three coefficients of friction under three laws of restitution.
+fn outcomes() -> Result<Vec<Outcome>, Box<dyn Error>> {
+    let sleds = TwoSleds::<f64>::default();
+    let (q, u) = (Coordinates::default(), Speeds::default());
+    let mut outcomes = Vec::new();
+    for mu in MU {
+        for &law in Law::ALL {
+            let hit = sleds.collide_bc_ac(&q, &u, &Surface { mu, e: E, law })?;
+            outcomes.push(Outcome { mu, law, hit });
+        }
+    }
+    Ok(outcomes)
+}
+
+/// What there is to see first: a picture, a paragraph and the nine outcomes.
+fn show() -> Result<(), Box<dyn Error>> {
+    let outcomes = outcomes()?;
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target");
+    std::fs::create_dir_all(&folder)?;
+    let path = folder.canonicalize()?.join("two_sleds.svg");
+    std::fs::write(&path, picture::picture(&outcomes)?)?;
+    println!(
+        "Two sleds, each sliding on a plane of its own, collide at one point, with friction: the example of S. Djerassi's paper.\n\
+         Hodograph derived their equations of motion from models/two_sleds.mech; the collision is solved exactly. While the bodies\n\
+         touch, friction turns and slows the slip. It stops and begins anew in another direction, or stays zero, or lasts to the end.\n\
+         The picture shows this course:\n\n  {}\n",
+        path.display()
+    );
+    nine(&outcomes);
+    println!(
+        "\nEvery number of the paper beside ours, energies and speeds after: cargo run --release --example two_sleds -- --compare"
+    );
+    Ok(())
+}
+
+/// Prints the nine outcomes.
+fn nine(outcomes: &[Outcome]) {
+    println!("Nine outcomes, e = {E}: impulse and velocity of separation along n, t, s = t x n\n");
+    println!("                    impulse, N s                      velocity of separation, m/s");
+    println!("  mu   law              I_n        I_t        I_s         v_n        v_t        v_s   path");
+    for Outcome { mu, law, hit } in outcomes {
+        let (i, v) = (flipped(&hit.impulse), flipped(&hit.separation));
+        let (law, path) = (format!("{law:?}"), hit.path.phases().join(", "));
+        println!(
+            " {mu:4}  {law:8} {:11.6} {:10.6} {:10.6}  {:10.7} {:10.7} {:10.7}   {path}",
+            i.x, i.y, i.z, v.x, v.y, v.z,
+        );
+    }
+}
+
+/// Everything: each number of the paper beside ours, the outcomes, their energies and speeds.
+fn compare() -> Result<(), Box<dyn Error>> {
     let sleds = TwoSleds::<f64>::default();
     let q = Coordinates::default();
     let u = Speeds::default();
-    let e = 0.8;
+    let e = E;
 
     println!(
         "Two sleds, each sliding on a plane of its own, collide at one point, with friction. The tables show what Hodograph computes\n\
@@ -63,28 +137,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         sticking: (&sticking.0, sticking.1.separation.x),
     })?;
 
-    println!("\nNine outcomes, e = {e}\n");
-    println!("                    impulse, N s                      velocity of separation, m/s");
-    println!("  mu   law              I_n        I_t        I_s         v_n        v_t        v_s   path");
-    let mut outcomes = Vec::new();
-    for mu in [0.6, 1.1, 1.6] {
-        for &law in Law::ALL {
-            let hit = sleds.collide_bc_ac(&q, &u, &Surface { mu, e, law })?;
-            let (i, v) = (flipped(&hit.impulse), flipped(&hit.separation));
-            let (law_name, path) = (format!("{law:?}"), hit.path.phases().join(", "));
-            println!(
-                " {mu:4}  {law_name:8} {:11.6} {:10.6} {:10.6}  {:10.7} {:10.7} {:10.7}   {path}",
-                i.x, i.y, i.z, v.x, v.y, v.z,
-            );
-            outcomes.push((mu, law, hit));
-        }
-    }
+    println!();
+    let outcomes = outcomes()?;
+    nine(&outcomes);
 
     println!(
         "\nEnergy of the nine outcomes, J: (23) from impulses, (23) from speeds, (35a) integrated along the path\n"
     );
     println!("  mu   law      I.(v1 + v2)/2   u M u/2 after - before   integral of (v_n - mu s) dI_n");
-    for (mu, law, hit) in &outcomes {
+    for Outcome { mu, law, hit } in &outcomes {
         let before = sleds.kinetic_energy(&q, &u)?;
         let after = sleds.kinetic_energy(&q, &hit.speeds)?;
         let course = integrate::course(&contact, *mu, hit.impulse.x);
@@ -103,7 +164,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "\nGeneralized speeds after the collision by (12a); before: u1 = u4 = 1 m/s, u3 = u6 = 0.1 rad/s\n"
     );
     println!("  mu   law              u1         u2         u3         u4         u5         u6");
-    for (mu, law, hit) in &outcomes {
+    for Outcome { mu, law, hit } in &outcomes {
         let (u, d) = (&hit.speeds, &hit.dependent_speeds);
         let law = format!("{law:?}");
         println!(
@@ -189,6 +250,16 @@ mod tests {
     /// Every number of the paper is reproduced but those that are marked and explained.
     #[test]
     fn the_example_runs() {
-        super::main().expect("the numbers of the paper");
+        super::compare().expect("the numbers of the paper");
+    }
+
+    /// The picture has a curve for each friction in both panels, and a mark for each outcome.
+    #[test]
+    fn the_picture_shows_the_nine_outcomes() {
+        super::show().expect("the outcomes");
+        let drawn = super::picture::picture(&super::outcomes().expect("the outcomes")).expect("a picture");
+        assert_eq!(drawn.matches("class=\"curve\"").count(), 6, "{drawn}");
+        assert_eq!(drawn.matches("class=\"end\"").count(), 18, "{drawn}");
+        assert!(!drawn.contains("NaN") && !drawn.contains("inf"), "{drawn}");
     }
 }

@@ -47,7 +47,7 @@ impl<T> ContactError<T> {
     }
 }
 
-impl<T: fmt::Display> fmt::Display for ContactError<T> {
+impl<T: fmt::Debug + fmt::Display> fmt::Display for ContactError<T> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ImpactWithoutCollision { f, free_acceleration } => write!(

@@ -178,7 +178,7 @@ impl<T> CollisionError<T> {
     }
 }
 
-impl<T: fmt::Display> fmt::Display for CollisionError<T> {
+impl<T: fmt::Debug + fmt::Display> fmt::Display for CollisionError<T> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::State(error) => error.fmt(out),
@@ -223,7 +223,7 @@ impl<T> ClosedContactError<T> {
     }
 }
 
-impl<T: fmt::Display> fmt::Display for ClosedContactError<T> {
+impl<T: fmt::Debug + fmt::Display> fmt::Display for ClosedContactError<T> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::State(error) => error.fmt(out),

@@ -88,6 +88,9 @@ pub(crate) fn collide<A: Slides, T: Real>(
     let mut slip = length(&tangential);
     if !slip.is_finite() {
         slip = long(&tangential);
+        if !slip.is_finite() {
+            return Err(ImpactError::NotFinite { value: approach.x });
+        }
     }
     let slips = slips(slip);
     let mut sensitivity = Sensitivity::of_start(&contact, &tangential, slip);
@@ -122,6 +125,10 @@ pub(crate) fn collide<A: Slides, T: Real>(
         });
     };
     restitution.verify(&contact, &tangential, slip, &end, &velocity)?;
+    if end.velocity < T::zero() {
+        // What rounding has left of a restitution too small to be seen; derivatives stay.
+        end.velocity -= end.velocity.primal();
+    }
     let slides = path == Path::Sliding && !stops;
     sensitivity.ended(&contact, &mut restitution, &end, slides.then_some(&velocity));
     let mut slip_end = stops.then_some(state);

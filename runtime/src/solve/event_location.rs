@@ -60,8 +60,12 @@ impl<T: Real> EventLocation<'_, T> {
         // Newton's target does not depend on where compression ends.
         if v >= zero || (law == Law::Newton && target > zero && !restitution.thorough()) {
             let ended = self.find(&Event::end(restitution), T::one(), limit, to).is_some();
-            if v < zero && to.state.velocity >= zero {
+            if v < zero && (ended || to.state.velocity >= zero) {
                 restitution.compressed_somewhere();
+            }
+            if ended && law == Law::Newton {
+                // The law states v_n itself: rounding of the place may exceed a small target.
+                to.state.velocity = target;
             }
             return ended;
         }

@@ -168,7 +168,12 @@ fn piece<T: Real>(
     if !reached || (law == Law::Newton && restitution.watched(&from.1.state) >= target) {
         return Piece::Passed;
     }
-    Piece::Ended(find(course, &Event::end(restitution), T::one(), &from, to.0).1)
+    let mut end = find(course, &Event::end(restitution), T::one(), &from, to.0).1;
+    if law == Law::Newton {
+        // The law states v_n itself: rounding of the place may exceed a small target.
+        end.state.velocity = target;
+    }
+    Piece::Ended(end)
 }
 
 /// The event between `from` and `hi`, where its residual rises (`sign` = 1) or falls (-1) through zero:

@@ -205,15 +205,15 @@ fn line(mechanism: &dyn Contacts<f64>, event: &Event) -> String {
 /// Where the energy went.
 pub fn account(energy: &[EnergyAccount; 2]) -> String {
     let [before, after] = energy;
+    let (Some(first), Some(last)) = (before.total(), after.total()) else {
+        return "the potential energy is not defined, and there is no account of the energy\n".to_owned();
+    };
     // At the start impacts may have happened already.
-    let start = before.total() - before.impacts;
-    let left = after.total() - start - after.friction - after.impacts;
+    let start = first - before.impacts;
+    let left = last - start - after.friction - after.impacts;
     let mut text = format!(
         "energy (J): {:.6} at the start, {:.6} at the end\n  impacts {:+.6}, friction while contact lasts {:+.6}\n",
-        start,
-        after.total(),
-        after.impacts,
-        after.friction
+        start, last, after.impacts, after.friction
     );
     if left.abs() > 1e-6 {
         text += &format!("  springs, dampers and inputs {left:+.6}\n");

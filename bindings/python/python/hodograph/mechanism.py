@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from numbers import Real
 from typing import NamedTuple, Optional
 
 import numpy as np
@@ -78,7 +79,7 @@ class Mechanism(_native.Mechanism):
         for name, value in parameters.items():
             if name not in values:
                 raise _unknown("parameter", name, values)
-            value = np.asarray(value, dtype=np.float64)
+            value = _numbers(value, name)
             if value.ndim > 1:
                 raise ArgumentError(
                     f"`{name}` has the shape {value.shape}: expected a number or (k,)", kind="wrong_shape", place=name
@@ -99,7 +100,7 @@ class Mechanism(_native.Mechanism):
         DataFrame, a pyarrow Table, or a dictionary. What has no column is what the model states. ``m.accelerations(**m.states(table))``.
         """
         names = list(getattr(table, "column_names", None) or table.keys())
-        column = lambda name: np.asarray(table[name], dtype=np.float64)
+        column = lambda name: _numbers(table[name], name)
         known = {q.name for q in [*self.coordinates, *self.speeds, *self.inputs]} | {"time"}
         for name in names:
             if name not in known:
@@ -124,7 +125,7 @@ class Mechanism(_native.Mechanism):
             raise _unknown("quantity for a table", str(quantity), _COLUMNS)
         names_of = getattr(table, "column_names", None) or table.keys()
         variable = {quantity.name for quantity in self.parameters}
-        machines = {name: np.asarray(table[name], dtype=np.float64) for name in names_of if name in variable}
+        machines = {name: _numbers(table[name], name) for name in names_of if name in variable}
         states = self.states({name: table[name] for name in names_of if name not in variable})
         mechanism = self.with_parameters(**machines) if machines else self
         found = getattr(mechanism, quantity)(*names, **states, **options)
@@ -240,16 +241,19 @@ class Mechanism(_native.Mechanism):
         return found
 
     def simulate(
-        self, until, step, q=None, u=None, inputs=None, time=None, *, mu=0.0, e=0.0, law="poisson", tolerance=1e-10,
-        surfaces=None, control=None, period=None, max_step=float("inf"),
+        self, until, step=None, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, tolerance=None,
+        surfaces=None, control=None, period=None, max_step=None,
     ):
         """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
 
-        ``mu``, ``e``, ``law``: the surface of all contacts; ``surfaces``: {contact: {"mu": .., "e": .., "law": ..}} for contacts with another one.
+        ``mu``, ``e``, ``law``: the surface of all contacts; ``surfaces``: {contact: {"mu": .., "e": .., "law": ..}} for contacts with another one. A contact
+        that can close (it has a gap) needs all three: they have no defaults. The other defaults are those of the command line tool: ``step`` 0.01 s,
+        ``tolerance`` 1e-12, ``max_step`` 0.05 s where something depends on time by itself, else unbounded.
         ``control``: a function of time, q (n,) and u (p,) that gives the inputs (w,): with ``period`` (s) at these times and held in between, otherwise
         continuously (it must be smooth then). What it raises ends the motion. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
         """
-        of = lambda given: (float(given.get("mu", mu)), float(given.get("e", e)), given.get("law", law))
+        number = lambda value, name: None if value is None else float(_number(value, name))
+        of = lambda given: (number(given.get("mu"), "mu"), number(given.get("e"), "e"), given.get("law"))
         for contact, given in (surfaces or {}).items():
             for name in given:
                 if name not in ("mu", "e", "law"):
@@ -257,10 +261,11 @@ class Mechanism(_native.Mechanism):
         if period is not None and control is None:
             raise ArgumentError("`period` is that of `control`, which is missing", kind="bad_option", place="period")
         choices = {
-            "surface": of({}), "tolerance": tolerance, "max_step": max_step, "control": control, "period": period,
-            "surfaces": [(_index("contact", contact, self.contacts), *of(given)) for contact, given in (surfaces or {}).items()],
+            "surface": of({"mu": mu, "e": e, "law": law}), "tolerance": number(tolerance, "tolerance"),
+            "max_step": number(max_step, "max_step"), "control": control, "period": number(period, "period"),
+            "surfaces": [(_index("contact", contact, self.contacts), of(given)) for contact, given in (surfaces or {}).items()],
         }  # fmt: skip
-        found = self._simulate((q, u, inputs, time), until, step, choices)
+        found = self._simulate((q, u, inputs, time), float(_number(until, "until")), number(step, "step"), choices)
         names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
         return Simulation(found, *names)
 
@@ -269,8 +274,9 @@ class Mechanism(_native.Mechanism):
         return self._equations(format)
 
     def __repr__(self):
-        sizes = f"{len(self.coordinates)} coordinates, {len(self.speeds)} speeds, {len(self.contacts)} contacts"
-        return f"<hodograph.Mechanism {self.name}: {sizes}>"
+        count = lambda all, noun: f"{len(all)} {noun}{'' if len(all) == 1 else 's'}"
+        sizes = [count(self.coordinates, "coordinate"), count(self.speeds, "speed"), count(self.contacts, "contact")]
+        return f"<hodograph.Mechanism {self.name}: {', '.join(sizes)}>"
 
     def _repr_html_(self):
         page = html.escape(self.equations("html"), quote=True)
@@ -306,6 +312,31 @@ class NumericMechanism:
     def kinetic_energy(self, q, u, inputs=(), time=0.0):
         """Kinetic energy, J."""
         return float(self._of("kinetic_energy", q, u, inputs, time))
+
+
+def _numbers(value, name):
+    """An array of doubles of numbers: strings are none, and entries that a mask hides have none."""
+    if np.ma.is_masked(value):
+        raise ArgumentError(
+            f"`{name}` has masked entries: fill them (`.filled(value)`), or leave their rows out", kind="masked", place=name
+        )
+    found = np.asarray(value)
+    real = found.dtype.kind in "fiu" or (
+        found.dtype.kind == "O" and all(isinstance(entry, Real) and not isinstance(entry, bool) for entry in found.flat)
+    )
+    if not real:
+        raise ArgumentError(
+            f"`{name}` has the dtype {found.dtype}: expected numbers", kind="wrong_dtype", place=name
+        )
+    return found.astype(np.float64)
+
+
+def _number(value, name):
+    """One number."""
+    found = _numbers(value, name)
+    if found.ndim:
+        raise ArgumentError(f"`{name}` has the shape {found.shape}: expected a number", kind="wrong_shape", place=name)
+    return found
 
 
 def _primed(quantities):

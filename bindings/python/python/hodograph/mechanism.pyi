@@ -110,20 +110,20 @@ class Mechanism:
     def simulate(
         self,
         until: float,
-        step: float,
+        step: Optional[float] = ...,
         q: Rows = ...,
         u: Rows = ...,
         inputs: Rows = ...,
         time: Optional[float] = ...,
         *,
-        mu: float = ...,
-        e: float = ...,
-        law: str = ...,
-        tolerance: float = ...,
+        mu: Optional[float] = ...,
+        e: Optional[float] = ...,
+        law: Optional[str] = ...,
+        tolerance: Optional[float] = ...,
         surfaces: Optional[Mapping[str, Mapping[str, Any]]] = ...,
         control: Optional[Callable[[float, Floats, Floats], Union[float, Sequence[float], Floats]]] = ...,
         period: Optional[float] = ...,
-        max_step: float = ...,
+        max_step: Optional[float] = ...,
     ) -> Simulation: ...
     def equations(self, format: str = ...) -> str: ...
 

@@ -5,12 +5,14 @@
 //! mouse, touch and keyboard.
 
 mod segments;
+mod setup;
 #[cfg(test)]
 mod tests;
 
 use serde::Serialize;
 
 pub use segments::segments;
+pub use setup::{Setup, Value};
 
 use crate::plot::svg::escaped;
 
@@ -25,8 +27,11 @@ const MOMENTS: usize = 6000;
 pub struct Animation {
     /// in plain words
     pub title: String,
-    /// the moments, s; they do not decrease, and an impact may have one before and one after it
+    /// the moments, s; they do not decrease, and an event has one before and one after it
     pub times: Vec<f64>,
+    /// the moments just before events, by their places in `times`, rising
+    #[serde(skip)]
+    pub before: Vec<usize>,
     /// the points of the mechanism
     pub points: Vec<Point>,
     /// the frames to be shown, if any
@@ -41,6 +46,11 @@ pub struct Animation {
     pub series: Vec<Series>,
     /// the direction upwards, such as that against gravity
     pub up: [f64; 3],
+    /// what else is to be said, in sentences
+    pub notes: Vec<String>,
+    /// of what this is the motion
+    #[serde(skip)]
+    pub setup: Setup,
 }
 
 /// A point.
@@ -109,11 +119,11 @@ pub fn page(animation: &Animation) -> String {
     // JSON has no numbers that are not finite: they become null. Nothing in a string can end the element it
     // stands in.
     let data = serde_json::to_string(&shown).unwrap_or_default().replace('<', "\\u003c");
-    let title = escaped(&animation.title);
+    let (title, line, setup) = (escaped(&animation.title), animation.setup.line(), animation.setup.html());
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
          content=\"width=device-width, initial-scale=1\">\n<title>{title}: motion</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <header><h1>{title}</h1></header>\n<main>\n{BODY}</main>\n<script type=\"application/json\" id=\"data\">{data}</script>\n\
+         <header><h1>{title}</h1>{line}</header>\n<main>\n{BODY}{setup}</main>\n<script type=\"application/json\" id=\"data\">{data}</script>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n"
     )
 }
@@ -122,7 +132,7 @@ const BODY: &str = r#"<section class="motion" aria-label="Motion">
 <svg id="stage" role="img" aria-label="The mechanism; drag, or use the arrow keys with Shift, to look from elsewhere" tabindex="0"></svg>
 <div class="controls">
 <button id="play" type="button" aria-label="Play"></button>
-<input id="time" type="range" min="0" max="1" step="any" value="0" aria-label="Time">
+<span class="line"><input id="time" type="range" min="0" max="1" step="any" value="0" aria-label="Time"><svg id="marks" aria-hidden="true"></svg></span>
 <output id="now" for="time"></output>
 <label>Speed <select id="speed"></select></label>
 <label><input id="names" type="checkbox" checked> names</label>
@@ -132,6 +142,7 @@ const BODY: &str = r#"<section class="motion" aria-label="Motion">
 <p class="help">Space plays and pauses; the left and right arrow keys go from moment to moment. Drag the picture to turn it, pinch or roll to come closer.</p>
 <ul class="key" id="key"></ul>
 </section>
+<div id="zoom"><button id="closer" type="button" aria-label="Show less of the time">+</button><button id="farther" type="button" aria-label="Show more of the time">&minus;</button><button id="whole" type="button">All the time</button><span>zooms the curves in time, as Shift or Ctrl and the wheel do</span></div>
 <section id="curves" aria-label="Curves over time"></section>
 <section id="events" aria-label="Events"></section>
 <noscript><p>This page needs JavaScript, which stands in the page itself.</p></noscript>

@@ -68,7 +68,11 @@
       const from = [0, 0, 0]; from[flat[0]] = flat[0] === 1 ? -1 : 1;
       return { turn: Math.atan2(dot(from, other), dot(from, side)), tilt: 0, zoom: 1 };
     }
-    if (flat.length === 1) return { turn: 0, tilt: Math.PI / 2 - 0.001, zoom: 1 };
+    if (flat.length === 1) {
+      // From above, with N.x to the right; N.y where that is upwards.
+      const ahead = cross(flat[0] === 0 ? [0, 1, 0] : [1, 0, 0], up);
+      return { turn: Math.atan2(dot(ahead, other), dot(ahead, side)), tilt: Math.PI / 2 - 0.001, zoom: 1 };
+    }
     return { turn: 0.6, tilt: 0.35, zoom: 1 };
   };
   let view = home();
@@ -78,16 +82,19 @@
     const right = unit(cross(up, flat));
     return { right, above: cross(towards, right) };
   };
+  // The axes of N stand beside the mechanism, in a column so wide.
+  const TRIAD = 88;
   let size = [600, 400];
   const projector = () => {
     const { right, above } = camera();
     const width = Math.max(...spread(right).map((x) => Math.abs(x - dot(middle, right)))) || reach;
     const height = Math.max(...spread(above).map((x) => Math.abs(x - dot(middle, above)))) || reach;
-    const room = Math.min((size[0] / 2 - 46) / Math.max(width, 0.02 * reach), (size[1] / 2 - 40) / Math.max(height, 0.02 * reach));
+    const half = (size[0] - TRIAD) / 2;
+    const room = Math.min((half - 40) / Math.max(width, 0.02 * reach), (size[1] / 2 - 40) / Math.max(height, 0.02 * reach));
     const scale = Math.max(room, 1e-9) * view.zoom;
     const place = (v) => {
       const d = plus(v, scaled(middle, -1));
-      return [size[0] / 2 + scale * dot(d, right), size[1] / 2 - scale * dot(d, above)];
+      return [TRIAD + half + scale * dot(d, right), size[1] / 2 - scale * dot(d, above)];
     };
     return { place, scale };
   };
@@ -172,13 +179,13 @@
       }
       p.trail.setAttribute("d", path);
     });
-    const long = 34, { right, above } = camera(), foot = [64, size[1] - 52], taken = [];
+    const long = 24, { right, above } = camera(), foot = [TRIAD / 2 + 2, size[1] - 46], taken = [];
     axes.forEach((a, i) => {
       const e = [0, 0, 0]; e[i] = 1;
       const d = [dot(e, right), -dot(e, above)], n = Math.hypot(d[0], d[1]);
       const to = [foot[0] + long * d[0], foot[1] + long * d[1]];
       a.line.setAttribute("d", arrow(foot, to));
-      const x = n > 0.05 ? to[0] + 11 * d[0] / n : 0, y = n > 0.05 ? to[1] + 11 * d[1] / n + 4 : 0;
+      const x = n > 0.05 ? Math.max(14, to[0] + 11 * d[0] / n) : 0, y = n > 0.05 ? to[1] + 11 * d[1] / n + 4 : 0;
       const free = n > 0.25 && taken.every((t) => Math.abs(t[0] - x) > 26 || Math.abs(t[1] - y) > 14);
       show(a.text, free);
       if (free) { taken.push([x, y]); set(a.text, { x: x.toFixed(1), y: y.toFixed(1) }); }
@@ -216,6 +223,7 @@
     slider.value = now;
     clock.value = minus(now.toFixed(digits)) + " s";
     slider.setAttribute("aria-valuetext", clock.value);
+    follow();
     cursors.forEach((c) => c());
     let current = -1;
     data.events.forEach((e, i) => { if (e.time <= now) current = i; });
@@ -227,9 +235,15 @@
   };
   const digits = Math.max(2, Math.min(9, 3 - Math.floor(Math.log10(Math.max(last - first, 1e-6)))));
 
-  // Curves below: one chart for each panel.
-  const cursors = [], charts = [], margins = [];
-  let left = 60;
+  // An event in words.
+  const told = (e) => {
+    const impulse = e.impulse && finite(e.impulse) ? `, impulse ${norm(e.impulse).toPrecision(4)} N\u00b7s` : "";
+    return `${minus(e.time.toFixed(Math.max(digits, 4)))} s: ${e.label}${e.contact ? ` at ${e.contact}` : ""}${impulse}`;
+  };
+
+  // Curves below: one chart for each panel, all over the same part of the time, which can be narrowed.
+  const cursors = [], charts = [];
+  let left = 60, shown = [first, last];
   const step = (width, most) => {
     const rough = width / most, power = 10 ** Math.floor(Math.log10(rough)), times = rough / power;
     return (times <= 1 ? 1 : times <= 2 ? 2 : times <= 5 ? 5 : 10) * power;
@@ -244,6 +258,27 @@
     };
     for (let k = Math.ceil(low / by - 1e-9); k * by <= high + 1e-9 * by && list.length < 50; k++) list.push([k * by, text(k * by)]);
     return list;
+  };
+  const drawCharts = () => {
+    left = Math.max(60, ...charts.map((chart) => chart.measure()));
+    charts.forEach((chart) => chart.draw());
+    cursors.forEach((c) => c());
+  };
+  // The part of the time so many times as long, around a time that stays where it is.
+  const narrow = (by, around) => {
+    const whole = last - first, length = Math.min(whole, Math.max(whole / 1e6, (shown[1] - shown[0]) * by));
+    const share = (around - shown[0]) / (shown[1] - shown[0] || 1);
+    const from = Math.min(last - length, Math.max(first, around - share * length));
+    shown = [from, from + length];
+    drawCharts();
+  };
+  // Where time has run out of the part that is shown, the part follows.
+  const follow = () => {
+    if (now >= shown[0] && now <= shown[1]) return;
+    const length = shown[1] - shown[0];
+    const from = Math.min(last - length, Math.max(first, now - 0.1 * length));
+    shown = [from, from + length];
+    drawCharts();
   };
   const panels = [...new Set(data.series.map((s) => s.panel))];
   panels.forEach((panel) => {
@@ -265,52 +300,98 @@
       key.append(item);
     });
     byId("curves").append(heading, svg, key);
-    let low = Infinity, high = -Infinity;
-    for (const s of all) for (const v of s.values) if (v !== null) { if (v < low) low = v; if (v > high) high = v; }
-    if (!(low <= high)) { low = -1; high = 1; }
-    const margin = Math.max(0.06 * (high - low), 1e-6 * Math.max(Math.abs(low), Math.abs(high))) || 1;
-    low -= margin; high += margin;
-    let width = 100, height = 100;
-    margins.push(16 + 7 * Math.max(...numbers(low, high, 5).map((r) => r[1].length), 1));
-    const x = (t) => left + (last > first ? (t - first) / (last - first) : 0) * (width - left - 12);
+    let low = -1, high = 1, width = 100, height = 100;
+    const x = (t) => left + (shown[1] > shown[0] ? (t - shown[0]) / (shown[1] - shown[0]) : 0) * (width - left - 12);
     const y = (v) => 8 + (high - v) / (high - low) * (height - 36);
     const cursor = document.createElementNS(SVG, "line");
     cursor.setAttribute("class", "cursor");
-    charts.push(() => {
+    // The range of what is shown.
+    const measure = () => {
+      low = Infinity; high = -Infinity;
+      const see = (v) => { if (v < low) low = v; if (v > high) high = v; };
+      for (const s of all) {
+        s.values.forEach((v, k) => { if (v !== null && times[k] >= shown[0] && times[k] <= shown[1]) see(v); });
+        // Between two moments the curves are straight.
+        for (const end of shown) {
+          const m = moment(end), a = s.values[m.low], b = s.values[m.next];
+          if (a !== null && a !== undefined && b !== null) see(a + (b - a) * m.part);
+        }
+      }
+      if (!(low <= high)) { low = -1; high = 1; }
+      const margin = Math.max(0.06 * (high - low), 1e-6 * Math.max(Math.abs(low), Math.abs(high))) || 1;
+      low -= margin; high += margin;
+      return 16 + 7 * Math.max(...numbers(low, high, 5).map((r) => r[1].length), 1);
+    };
+    const draw = () => {
       width = svg.clientWidth || 600; height = svg.clientHeight || 170;
       svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
       svg.replaceChildren();
-      left = Math.max(...margins);
       numbers(low, high, 5).forEach(([v, text]) => {
         make(svg, "line", v === 0 ? "axis" : "grid", { x1: left, x2: width - 12, y1: y(v).toFixed(1), y2: y(v).toFixed(1) });
         make(svg, "text", "number", { x: left - 7, y: (y(v) + 4).toFixed(1), "text-anchor": "end" }).textContent = text;
       });
-      if (last > first) numbers(first, last, Math.max(2, Math.floor(width / 110))).forEach(([t, text]) => {
+      if (shown[1] > shown[0]) numbers(shown[0], shown[1], Math.max(2, Math.floor(width / 110))).forEach(([t, text]) => {
         make(svg, "line", "grid", { x1: x(t).toFixed(1), x2: x(t).toFixed(1), y1: 8, y2: height - 28 });
         const anchor = x(t) > width - 34 ? "end" : "middle";
         make(svg, "text", "number", { x: Math.min(x(t), width - 4).toFixed(1), y: height - 12, "text-anchor": anchor }).textContent = text + " s";
       });
+      // What is outside of the part that is shown is cut off.
+      const inner = Math.max(width - left - 12, 1);
+      const plot = make(svg, "svg", "", { x: left, y: 0, viewBox: `${left} 0 ${inner} ${height}` });
+      plot.style.width = `${inner}px`; plot.style.height = `${height}px`;
+      let before = -9;
+      data.events.forEach((e) => {
+        const at = x(e.time);
+        if (e.time < shown[0] || e.time > shown[1] || at - before < 1) return;
+        before = at;
+        const line = make(svg, "line", "mark", { x1: at.toFixed(1), x2: at.toFixed(1), y1: 8, y2: height - 28 });
+        make(line, "title").textContent = told(e);
+      });
       all.forEach((s, i) => {
-        let path = "", pen = false, before = -9, beforeY = -9;
+        let path = "", pen = false, before = -1e9, beforeY = -9;
         s.values.forEach((v, k) => {
           if (v === null) { pen = false; return; }
+          // What is far outside of the part shown is left out, but for one place on either side.
+          if ((times[k + 1] < shown[0]) || (times[k - 1] > shown[1])) { pen = false; return; }
           const px = x(times[k]), py = y(v);
           if (pen && px - before < 0.3 && Math.abs(py - beforeY) < 0.3 && k < count - 1) return;
           path += `${pen ? "L" : "M"}${px.toFixed(2)} ${py.toFixed(2)}`;
           pen = true; before = px; beforeY = py;
         });
-        make(svg, "path", "curve", { d: path, ...look(i) });
+        make(plot, "path", "curve", { d: path, ...look(i) });
       });
       svg.append(cursor);
       set(cursor, { y1: 8, y2: height - 28 });
-    });
-    cursors.push(() => set(cursor, { x1: x(now).toFixed(2), x2: x(now).toFixed(2) }));
-    const seek = (event) => {
-      const at = (event.clientX - svg.getBoundingClientRect().left - left) / Math.max(width - left - 12, 1);
-      go(first + Math.min(1, Math.max(0, at)) * (last - first));
     };
+    charts.push({ measure, draw });
+    cursors.push(() => {
+      show(cursor, now >= shown[0] && now <= shown[1]);
+      set(cursor, { x1: x(now).toFixed(2), x2: x(now).toFixed(2) });
+    });
+    const timeAt = (event) => {
+      const at = (event.clientX - svg.getBoundingClientRect().left - left) / Math.max(width - left - 12, 1);
+      return shown[0] + Math.min(1, Math.max(0, at)) * (shown[1] - shown[0]);
+    };
+    const seek = (event) => go(timeAt(event));
     svg.addEventListener("pointerdown", (event) => { svg.setPointerCapture(event.pointerId); pause(); seek(event); });
     svg.addEventListener("pointermove", (event) => { if (event.buttons) seek(event); });
+    // The wheel scrolls the page, unless a key says that it is for the time.
+    svg.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey && !event.shiftKey) return;
+      event.preventDefault();
+      narrow(Math.exp((event.deltaY || event.deltaX) / 300), timeAt(event));
+    }, { passive: false });
+    svg.addEventListener("dblclick", () => { shown = [first, last]; drawCharts(); });
+  });
+  show(byId("zoom"), data.series.length > 0 && last > first);
+  byId("closer").addEventListener("click", () => narrow(0.5, Math.min(shown[1], Math.max(shown[0], now))));
+  byId("farther").addEventListener("click", () => narrow(2, Math.min(shown[1], Math.max(shown[0], now))));
+  byId("whole").addEventListener("click", () => { shown = [first, last]; drawCharts(); });
+  data.notes.forEach((text) => {
+    const note = document.createElement("p");
+    note.className = "help";
+    note.textContent = text;
+    byId("curves").append(note);
   });
 
   // Events, each a button that leads to its time.
@@ -322,8 +403,7 @@
     data.events.forEach((e) => {
       const item = document.createElement("li"), button = document.createElement("button");
       button.type = "button";
-      const impulse = e.impulse && finite(e.impulse) ? `, impulse ${norm(e.impulse).toPrecision(4)} N\u00b7s` : "";
-      button.textContent = `${minus(e.time.toFixed(Math.max(digits, 4)))} s: ${e.label}${e.contact ? ` at ${e.contact}` : ""}${impulse}`;
+      button.textContent = told(e);
       button.addEventListener("click", () => { pause(); go(e.time); });
       item.append(button); list.append(item); buttons.push(button);
     });
@@ -345,7 +425,7 @@
   const wanted = last - first >= 2 && last - first <= 30 ? 1 : (last - first) / 8;
   const nearest = speeds.reduce((best, s) => (Math.abs(Math.log(s / wanted)) < Math.abs(Math.log(best / wanted)) ? s : best), 1);
   const speed = byId("speed");
-  speeds.filter((s) => s >= nearest / 11 && s <= nearest * 11).forEach((s) => {
+  speeds.filter((s) => s >= nearest / 110 && s <= nearest * 11).forEach((s) => {
     const option = document.createElement("option");
     option.value = s; option.textContent = `${s}\u00d7`; option.selected = s === nearest;
     speed.append(option);
@@ -423,11 +503,26 @@
   byId("view").addEventListener("click", () => { view = home(); drawTrails(); draw(); });
   ["names", "trails"].forEach((id) => byId(id).addEventListener("change", () => { drawTrails(); draw(); }));
 
+  // Events on the slider, whose knob keeps half its width from the ends.
+  const ticks = byId("marks");
+  const drawMarks = () => {
+    const width = slider.clientWidth || 300, knob = 8;
+    ticks.setAttribute("viewBox", `0 0 ${width} 8`);
+    ticks.style.width = `${width}px`;
+    ticks.replaceChildren();
+    let before = -9;
+    data.events.forEach((e) => {
+      const at = knob + (last > first ? (e.time - first) / (last - first) : 0) * (width - 2 * knob);
+      if (at - before < 1) return;
+      before = at;
+      make(ticks, "line", "mark", { x1: at.toFixed(1), x2: at.toFixed(1), y1: 0, y2: 8 });
+    });
+  };
+
   const layout = () => {
     size = [stage.clientWidth || 600, stage.clientHeight || 400];
     stage.setAttribute("viewBox", `0 0 ${size[0]} ${size[1]}`);
-    charts.forEach((chart) => chart());
-    drawTrails(); draw();
+    drawMarks(); drawCharts(); drawTrails(); draw();
   };
   if (count) {
     new ResizeObserver(layout).observe(document.body);

@@ -57,6 +57,7 @@ fn pendulum(moments: usize) -> Animation {
         ],
         up: [0.0, 1.0, 0.0],
         times,
+        ..Animation::default()
     }
 }
 
@@ -167,6 +168,16 @@ document.getElementById('view').click();
 if (Math.hypot(tip()[0] - seen[0], tip()[1] - seen[1]) > 0.01) complain('the view does not come back');
 const charts = [...document.querySelectorAll('.chart')];
 if (charts.length !== 2 || charts.some((chart) => !chart.querySelector('.curve'))) complain('curves are missing');
+// Events are marked on the slider and in the curves, time runs as slowly as 0.01, and the curves show less of it.
+if (document.querySelectorAll('#marks .mark').length !== data.events.length) complain('events are not marked on the slider');
+if (charts.some((chart) => chart.querySelectorAll('.mark').length !== data.events.length)) complain('events are not marked in the curves');
+if (![...document.querySelectorAll('#speed option')].some((option) => Number(option.value) <= 0.01)) complain('no slow motion');
+const numbers = () => [...charts[0].querySelectorAll('.number')].map((node) => node.textContent).join(' ');
+const all = numbers();
+document.getElementById('closer').click();
+if (numbers() === all) complain('the curves do not zoom in time');
+document.getElementById('whole').click();
+if (numbers() !== all) complain('the curves do not show all the time again');
 for (const node of document.querySelectorAll('button, select, input[type=range]')) if (box(node).height < 36) complain(`too small for a finger: ${describe(node)}`);
 return found;
 "#;
@@ -176,4 +187,53 @@ return found;
 fn mechanisms_move_in_a_browser() {
     let complaints = browser::complaints(&page(&pendulum(100)), MOTION);
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// N.x points to the right and N.y upwards where a motion in their plane is looked at from above.
+const UPRIGHT: &str = r#"
+const data = JSON.parse(document.getElementById('data').textContent);
+const slider = document.getElementById('time');
+const at = (index) => {
+  slider.value = data.times[index];
+  slider.dispatchEvent(new page.Event('input'));
+  const node = document.querySelectorAll('#stage .point')[2];
+  return [Number(node.getAttribute('cx')), Number(node.getAttribute('cy'))];
+};
+for (const index of [10, 25, 40, 90]) {
+  const [a, b] = [data.points[2].places[index], data.points[2].places[0]], [p, q] = [at(index), at(0)];
+  if ((a[0] - b[0]) * (p[0] - q[0]) < 0) complain('N.x points to the left');
+  if ((a[1] - b[1]) * (p[1] - q[1]) > 0) complain('N.y points down');
+}
+return found;
+"#;
+
+#[test]
+#[ignore = "needs Chromium"]
+fn planes_are_seen_upright_in_a_browser() {
+    for up in [[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]] {
+        let page = page(&Animation { up, ..pendulum(100) });
+        let complaints = browser::complaints(&page, UPRIGHT);
+        assert!(complaints.is_empty(), "{up:?}: {}", complaints.join("\n"));
+    }
+}
+
+/// What the model says stands in the page, and cannot end what it stands in.
+#[test]
+fn pages_tell_of_what_they_show_the_motion() {
+    let setup = Setup {
+        surfaces: vec![("tip".to_owned(), 0.3, 0.7, "stronge".to_owned())],
+        parameters: vec![Value {
+            name: "m".to_owned(),
+            value: 2.5,
+            unit: "kg".to_owned(),
+            docs: "</table><script>".to_owned(),
+        }],
+        model: "mechanism A;\n// </pre><script>alert(1)</script>\n".to_owned(),
+        ..Setup::default()
+    };
+    let page = page(&Animation { setup, ..pendulum(10) });
+    for part in ["tip: \u{3bc} = 0.3, e = 0.7, stronge", "<td>kg</td>", "mechanism A;\n//"] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert_eq!(page.matches("<script").count(), 2);
 }

@@ -2,20 +2,24 @@
 
 use std::path::PathBuf;
 
+use hodograph::Surface;
+
+use crate::answers::FormArgument;
 use crate::commands::solve::characteristics_of;
 use crate::derivation::{self, Limits};
-use crate::evaluate::collision::collide;
+use crate::evaluate::collision::{Collision, collide};
 use crate::json::characteristics::{Asked, Form};
-use crate::model;
 use crate::output;
+use crate::state_arguments::StateArguments;
 use crate::stop::Outcome;
 use crate::surface::SurfaceArguments;
 
-/// Solve the collision of a model in a state: impulse, separation, new speeds, as one line of JSON
+/// Solve the collision of a model in a state: impulse, separation, new speeds
 ///
 ///   hodograph collide models/two_sleds.mech --contact BcAc --mu 0.6 --e 0.8 --law stronge
 ///
 /// Vectors stand along n, t, s: the normal, the slip of approach, and n x t (see `hodograph eval`).
+/// The answer is a set of tables at a terminal, else one line of JSON.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -32,9 +36,10 @@ pub struct Arguments {
     budget: Option<u32>,
     #[command(flatten)]
     characteristics: Asked,
-    /// a file with the state, `-` for standard input, or the state itself
-    #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
-    state: Option<String>,
+    #[command(flatten)]
+    state: StateArguments,
+    #[command(flatten)]
+    form: FormArgument,
     #[command(flatten)]
     limits: Limits,
 }
@@ -46,21 +51,40 @@ pub struct Arguments {
 /// An error object for what is wrong with the state or the collision.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
-    let text = model::state_text(arguments.state.as_deref())?;
-    let index = machine.contact(arguments.contact.as_deref())?;
-    let surface = arguments.surface.surface(&machine.mechanism, index)?;
-    let surface = surface.within(arguments.budget.unwrap_or(u32::MAX));
-    let state = machine.state(text.as_deref())?;
-    let (mut collision, found) = collide(&machine, &state, index, &surface)?;
-    match arguments.characteristics.form {
-        None => output::json(&collision),
-        Some(form) => {
-            let found = characteristics_of(&found.reduced.into(), &found.slip, &surface.surface)?;
-            if form == Form::Table {
-                return output::text(&found.table());
-            }
-            collision.answer.characteristics = Some(found);
-            output::json(&collision)
-        }
+    let solve = || {
+        let index = machine.contact(arguments.contact.as_deref())?;
+        let surface = arguments.surface.surface(&machine.mechanism, index)?;
+        let state = arguments.state.state(&machine)?;
+        let budget = surface.within(arguments.budget.unwrap_or(u32::MAX));
+        let (mut collision, found) = collide(&machine, &state, index, &budget)?;
+        let asked = arguments.characteristics.form;
+        let of_paper =
+            asked.map(|_| characteristics_of(&found.reduced.into(), &found.slip, &surface)).transpose()?;
+        collision.answer.characteristics = of_paper;
+        Ok(Solved { collision, index, surface, speeds: state.speeds })
+    };
+    if arguments.characteristics.form == Some(Form::Table) {
+        let found = solve()?.collision.answer.characteristics;
+        return output::text(&found.map_or(String::new(), |found| found.table()));
     }
+    arguments.form.write(solve, |found| {
+        let mechanism = &machine.mechanism;
+        let Surface { mu, e, law } = &found.surface;
+        let contact = &mechanism.contacts[found.index].name;
+        let title = format!("{}, contact {contact}: mu = {mu}, e = {e}, {}", mechanism.name, law.name());
+        found.collision.tables(&title, mechanism, &found.speeds)
+    })
+}
+
+/// The collision, and what it was made of.
+#[derive(serde::Serialize)]
+struct Solved<'a> {
+    #[serde(flatten)]
+    collision: Collision<'a>,
+    #[serde(skip)]
+    index: usize,
+    #[serde(skip)]
+    surface: Surface<f64>,
+    #[serde(skip)]
+    speeds: Vec<f64>,
 }

@@ -2,20 +2,21 @@
 
 use std::path::PathBuf;
 
+use crate::answers::FormArgument;
 use crate::derivation::{self, Limits};
-use crate::evaluate::report::report;
+use crate::evaluate::report::{Report, report};
 use crate::json::characteristics::{Asked, Form};
-use crate::model;
 use crate::output;
+use crate::state_arguments::StateArguments;
 use crate::stop::Outcome;
 
-/// Evaluate a model in a state: mass matrix, forcing, accelerations, contacts, as one line of JSON
+/// Evaluate a model in a state: mass matrix, forcing, accelerations, contacts
 ///
-///   hodograph eval models/two_sleds.mech --state '{"q":{"q3":0.8},"u":{"u1":1,"u4":1}}'
+///   hodograph eval models/two_sleds.mech --state q3=0.8,u1=1,u4=1 --parameter m=3
 ///
-/// A state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes the
-/// file's value, else 0. Dependent coordinates of closed loops are completed from the values given
-/// as a guess.
+/// A whole state is {"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}; what is missing takes
+/// the file's value, else 0. Dependent coordinates of closed loops are completed from the values
+/// given as a guess. The answer is a set of tables at a terminal, else one line of JSON.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -33,9 +34,10 @@ pub struct Arguments {
         requires = "characteristics"
     )]
     mu: Option<f64>,
-    /// a file with the state, `-` for standard input, or the state itself
-    #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
-    state: Option<String>,
+    #[command(flatten)]
+    state: StateArguments,
+    #[command(flatten)]
+    form: FormArgument,
     #[command(flatten)]
     limits: Limits,
 }
@@ -54,15 +56,30 @@ fn friction(text: &str) -> Result<f64, String> {
 /// An error object for what is wrong with the state.
 pub fn run(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
-    let text = model::state_text(arguments.state.as_deref())?;
-    let state = machine.state(text.as_deref())?;
-    let mut report = report(&machine, &state)?;
-    match arguments.characteristics.form {
-        None => output::json(&report),
-        Some(Form::Json) => {
-            report.characterise(arguments.mu);
-            output::json(&report)
-        }
-        Some(Form::Table) => output::text(&report.tables(arguments.mu)),
+    if arguments.characteristics.form == Some(Form::Table) {
+        let state = arguments.state.state(&machine)?;
+        return output::text(&report(&machine, &state)?.characteristics(arguments.mu));
     }
+    arguments.form.write(
+        || {
+            let state = arguments.state.state(&machine)?;
+            let mut report = report(&machine, &state)?;
+            if arguments.characteristics.form.is_some() {
+                report.characterise(arguments.mu);
+            }
+            Ok(Evaluated { report, time: state.time, speeds: state.speeds })
+        },
+        |found| found.report.tables(&machine.mechanism, (found.time, &found.speeds)),
+    )
+}
+
+/// The report, and what it was made of.
+#[derive(serde::Serialize)]
+struct Evaluated<'a> {
+    #[serde(flatten)]
+    report: Report<'a>,
+    #[serde(skip)]
+    time: f64,
+    #[serde(skip)]
+    speeds: Vec<f64>,
 }

@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod collide;
+pub mod completions;
 pub mod contacts;
 pub mod derive;
 pub mod derive_worker;
@@ -10,6 +11,7 @@ pub mod expand;
 pub mod explain;
 pub mod export;
 pub mod import;
+pub mod new;
 pub mod plot;
 pub mod simulate;
 pub mod solve;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use hodograph::{ReducedMatrix, snapshot_at};
+use hodograph_generator::artifact::place;
 use hodograph_generator::program::Quantity;
 use hodograph_generator::reading;
 use nalgebra::Vector3;
@@ -12,13 +13,13 @@ use nalgebra::Vector3;
 use crate::derivation::{self, Limits};
 use crate::evaluate::contact::{self, Contact};
 use crate::json::{Failure, Fields, Json};
-use crate::model;
 use crate::output;
 use crate::plot::collision::figure;
 use crate::plot::figure::{Figure, Panel};
 use crate::plot::file::Format;
 use crate::plot::trace::{Trace, trace};
 use crate::plot::{conics, portrait};
+use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 
 /// Draw the course of a collision: v_s over v_t, v_n and the slip s over I_n, as the paper's Fig. 3
@@ -44,9 +45,8 @@ pub struct Arguments {
     /// the contact; may be left out if the model has only one
     #[arg(long, value_name = "NAME", requires = "model")]
     contact: Option<String>,
-    /// a file with the state, `-` for standard input, or the state itself
-    #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true, requires = "model")]
-    state: Option<String>,
+    #[command(flatten)]
+    state: StateArguments,
     /// coefficients of friction, one curve each
     #[arg(
         long,
@@ -104,6 +104,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     if arguments.starts.is_some() && arguments.figure != Kind::Portrait {
         return Err(Stop::Call("--starts is for --figure portrait".to_owned()));
+    }
+    if arguments.model.is_none() && !arguments.state.is_empty() {
+        return Err(Stop::Call("--state and --parameter are those of a model: name one".to_owned()));
+    }
+    if let Some(path) = &arguments.output {
+        let mut read = arguments.state.files();
+        if let Some(model) = &arguments.model {
+            read.extend([model.clone(), place::beside(model)]);
+        }
+        output::apart(&[path], &read)?;
     }
     let Drawn { title, matrix, velocity } = collision(arguments)?;
     let figure = match arguments.figure {
@@ -188,9 +198,8 @@ fn collision(arguments: &Arguments) -> Outcome<Drawn> {
         return Ok(Drawn { title: String::new(), matrix: matrix.into(), velocity });
     };
     let machine = derivation::machine(path, &arguments.limits)?;
-    let text = model::state_text(arguments.state.as_deref())?;
     let index = machine.contact(arguments.contact.as_deref())?;
-    let state = machine.state(text.as_deref())?;
+    let state = arguments.state.state(&machine)?;
     let wanted = contact::QUANTITIES.map(|quantity| Quantity::Contact(index as u32, quantity));
     let contact = Contact::new(&machine.evaluate(&state, &wanted)?, index, &state.speeds);
     let mechanism = &machine.mechanism;

@@ -1,36 +1,39 @@
 //! `hodograph simulate`: simulates motion with collisions and lasting contact.
 
-mod curves;
-mod expression;
+mod energies;
+mod figure;
 mod gap;
 mod inputs;
 mod lines;
 mod pictures;
 mod recording;
+mod rigid;
+mod setup;
+mod summary;
 mod surfaces;
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use hodograph::State as Borrowed;
-use hodograph_generator::program::graph::Input;
-use hodograph_generator::program::operation::Operation;
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph_generator::artifact::place;
+use hodograph_interpreter::{InterpretedMechanism, motion};
 use hodograph_simulation::{Options, Progress, Simulation, SimulationError, Together};
 
 use self::lines::{Format, Lines};
 use self::pictures::{PictureFiles, Pictures};
 use self::surfaces::MotionSurfaces;
+use crate::answers::is_read;
 use crate::derivation::{self, Limits};
 use crate::json::state::State;
-use crate::model;
+use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 
-/// Simulate a model from a state: motion, collisions and contact that lasts, as JSON lines
+/// Simulate a model from a state: motion, collisions and contact that lasts
 ///
-///   hodograph simulate models/free_box_corner.mech --until 1 --step 0.01 --mu 0.3 --e 0.5 --law stronge
+///   hodograph simulate models/free_box_corner.mech --until 1 --mu 0.3 --e 0.5 --law stronge --html box.html
 ///
-/// Lines are {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
+/// At a terminal the answer is a set of tables and a summary, else JSON lines: {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
 /// and so on at each event: collision, impact_without_collision, contact, lift_off, slip, stick,
 /// rest. Times of events do not depend on --step.
 #[derive(Clone, Debug, clap::Args)]
@@ -38,19 +41,18 @@ use crate::stop::{Outcome, Stop};
 pub struct Arguments {
     /// the model file
     model: PathBuf,
-    /// a file with the state at the start, `-` for standard input, or the state itself
-    #[arg(long, value_name = "FILE|-|JSON", allow_hyphen_values = true)]
-    state: Option<String>,
+    #[command(flatten)]
+    state: StateArguments,
     /// when to end, s
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
     until: f64,
     /// a line each so many seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.01, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", default_value_t = motion::STEP, allow_hyphen_values = true)]
     step: f64,
-    /// relative and absolute tolerance of the integration; bounces lower than it, in metres, end in
-    /// contact
-    #[arg(long, value_name = "NUMBER", default_value_t = 1e-12, allow_hyphen_values = true)]
-    tolerance: f64,
+    /// relative and absolute tolerance of the integration, at least 1e-16; bounces lower than it, in
+    /// metres, end in contact [default: 1e-12]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
     /// greatest step of the integration, s: without it 0.05 where something depends on time by
     /// itself, else unbounded; inputs must not pass faster
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
@@ -74,9 +76,9 @@ pub struct Arguments {
     /// not named have 1
     #[arg(long, value_name = "CONTACT=NUMBER")]
     stiffness: Vec<String>,
-    /// how lines are written
-    #[arg(long, value_name = "FORMAT", default_value = "json")]
-    format: Format,
+    /// how states and events are written [default: tables at a terminal, else JSON]
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
     #[command(flatten)]
     pictures: PictureFiles,
     #[command(flatten)]
@@ -100,25 +102,31 @@ enum TogetherArgument {
     Stop,
 }
 
-/// Runs the command.
+/// Runs the command. Whatever is wrong is told on standard error: standard output holds the motion alone.
 ///
 /// # Errors
 ///
-/// An error object for what is wrong with the state or a surface; [`Stop::Fault`] where the motion
-/// cannot be followed: the lines before are written.
+/// [`Stop::Call`] for options that are wrong; [`Stop::Fault`] for what is wrong with the state or a surface,
+/// and where the motion cannot be followed: what came before is written.
 pub fn run(arguments: &Arguments) -> Outcome {
+    simulated(arguments).map_err(Stop::told)
+}
+
+fn simulated(arguments: &Arguments) -> Outcome {
     let (until, step) = (arguments.until, arguments.step);
     let positive = |number: f64| number.is_finite() && number > 0.0;
     let max_step = arguments.max_step.is_none_or(positive);
-    if !(until.is_finite() && positive(step) && positive(arguments.tolerance) && max_step) {
-        return Err(Stop::Call(
-            "--step, --max-step and --tolerance must be positive and --until finite".to_owned(),
-        ));
+    if !(until.is_finite() && positive(step) && max_step) {
+        return Err(Stop::Call("--step and --max-step must be positive and --until finite".to_owned()));
     }
-    arguments.pictures.check()?;
+    let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
+    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
+    let mut read = vec![arguments.model.clone(), place::beside(&arguments.model)];
+    read.extend(arguments.state.files());
+    read.extend(arguments.inputs.clone());
+    arguments.pictures.check(&read)?;
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
-    let text = model::state_text(arguments.state.as_deref())?;
-    let state = machine.state(text.as_deref())?;
+    let state = arguments.state.state(&machine)?;
     if until < state.time {
         return Err(Stop::Call(format!(
             "--until is {until}, before the start at t = {}: give a later time",
@@ -135,18 +143,12 @@ pub fn run(arguments: &Arguments) -> Outcome {
         ));
     }
     let driven = inputs::drive(&machine.mechanism, &arguments.input, arguments.inputs.as_deref())?;
-    let timed = driven.is_some()
-        || machine
-            .program
-            .operations
-            .iter()
-            .any(|operation| matches!(operation, Operation::Input(Input::Time)));
+    let greatest = motion::greatest_step(&machine.program, driven.is_some());
     let (drive, breaks) = driven.map_or_else(Default::default, |driven| (driven.drive, driven.breaks));
     let options = Options {
-        relative_tolerance: arguments.tolerance,
-        absolute_tolerance: arguments.tolerance,
-        // Where something depends on time by itself it must not be stepped over.
-        max_step: arguments.max_step.unwrap_or(if timed { 0.05 } else { f64::INFINITY }),
+        relative_tolerance: tolerance,
+        absolute_tolerance: tolerance,
+        max_step: arguments.max_step.unwrap_or(greatest),
         surfaces,
         drive,
         breaks,
@@ -161,11 +163,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
         compare_orders: arguments.spread,
         ..Options::default()
     };
-    let mut lines = Lines::new(&mechanism, arguments.format)?;
-    let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state);
-    let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut pictures);
+    let format = arguments.format.unwrap_or(if is_read() { Format::Table } else { Format::Json });
+    let mut lines = Lines::new(&mechanism, format, arguments.pictures.wanted())?;
+    let setup = || setup::setup(&arguments.model, &machine.mechanism, &state, &options.surfaces);
+    let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state, setup);
+    let progress = bar(state.time, until, format);
+    let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut pictures, &progress);
+    progress.finish_and_clear();
     // What was seen before the motion ended is worth seeing, above all where it ended with an error.
-    pictures.save(&arguments.pictures, done)
+    let told = lines.finish();
+    pictures.save(&arguments.pictures, done.and(told))
 }
 
 /// Follows the motion and writes it.
@@ -176,11 +183,12 @@ fn follow(
     (until, step): (f64, f64),
     lines: &mut Lines<'_>,
     pictures: &mut Pictures<'_>,
+    progress: &indicatif::ProgressBar,
 ) -> Outcome {
     let mut simulation = Simulation::new(mechanism, &borrowed(state), options).map_err(fault)?;
     lines.sample(state.time, &state.coordinates, &state.speeds)?;
+    lines.energy(simulation.energy().map_err(fault)?);
     pictures.add(&simulation);
-    let progress = bar(state.time, until);
     let shown = |t: f64| {
         progress.set_position(((t - state.time) * 1e3) as u64);
         progress.set_message(format!("t = {t:.3} s"));
@@ -189,8 +197,7 @@ fn follow(
         let end = (state.time + count as f64 * step).min(until);
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
             lines.event(&event)?;
-            pictures.add(&simulation);
-            pictures.event(&event);
+            pictures.event(&event, &simulation);
             shown(event.time);
         }
         if end > state.time {
@@ -202,13 +209,13 @@ fn follow(
             break;
         }
     }
-    progress.finish_and_clear();
+    lines.energy(simulation.energy().map_err(fault)?);
     Ok(())
 }
 
-/// Shown where someone looks at standard error and not at the lines.
-fn bar(start: f64, until: f64) -> indicatif::ProgressBar {
-    if std::io::stdout().is_terminal() || !std::io::stderr().is_terminal() {
+/// Shown where someone looks at standard error and not at lines that run.
+fn bar(start: f64, until: f64, format: Format) -> indicatif::ProgressBar {
+    if (is_read() && format != Format::Table) || !std::io::stderr().is_terminal() {
         return indicatif::ProgressBar::hidden();
     }
     let style = indicatif::ProgressStyle::with_template("{wide_bar} {msg} of {prefix} s");

@@ -4,11 +4,12 @@ pub mod assembly;
 pub mod collision;
 pub mod contact;
 pub mod report;
+pub mod tables;
 
 use hodograph_generator::check::{ROUNDED_QUATERNION, UNIT_QUATERNION, impossible_bodies};
 use hodograph_generator::diagnostics::codes;
 use hodograph_generator::interpret::{self, Evaluator};
-use hodograph_generator::model::mechanism::{Mechanism, Orientation};
+use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::{ContactQuantity, Quantity};
@@ -90,9 +91,10 @@ impl Machine {
                         format!("{} = {}, ", self.mechanism.coordinates[index].name, state.coordinates[index])
                     });
                     let place: String = place.collect();
+                    let cure = self.cure(state);
                     Failure::new(
                         Kind::SingularState,
-                        format!("{message} ({place}a divisor is {value:e}): choose another state"),
+                        format!("{message} ({place}a divisor is {value:e}): {cure}"),
                     )
                 }
                 other => Failure::new(Kind::SingularState, other.to_string()),
@@ -107,6 +109,23 @@ impl Machine {
             }
         }
         Ok(Numbers { arrays: arrays.into_iter().map(positive_zeros).collect() })
+    }
+
+    /// What to do where the equations cannot be evaluated in a state: parameters that were made zero are
+    /// the first suspects.
+    fn cure(&self, state: &State) -> String {
+        let parameters = self.mechanism.parameters.iter().zip(&state.parameters);
+        let made_zero = |parameter: &Variable| parameter.value.is_some_and(|value| value != 0.0);
+        let suspects: Vec<String> = parameters
+            .filter(|(parameter, value)| **value == 0.0 && made_zero(parameter))
+            .map(|(parameter, _)| {
+                format!("{} is 0 ({} in the model)", parameter.name, parameter.value.unwrap_or(0.0))
+            })
+            .collect();
+        match suspects.is_empty() {
+            true => "choose another state, or other parameters".to_owned(),
+            false => format!("change the parameters: {}", suspects.join(", ")),
+        }
     }
 
     /// The mechanism with the parameters of a state.
@@ -144,16 +163,12 @@ impl Machine {
         }
     }
 
-    /// A state as read: quaternions and loops checked, dependent coordinates completed.
+    /// A state as given: quaternions and loops checked, dependent coordinates completed.
     ///
     /// # Errors
     ///
-    /// `bad_json`, `unknown_name`, `not_finite`, `impossible_body`, `inconsistent_state`, `singular_state`.
-    pub fn state(&self, text: Option<&str>) -> Result<State, Failure> {
-        let mut state = match text {
-            Some(text) => State::read(text, &self.mechanism)?,
-            None => State::initial(&self.mechanism),
-        };
+    /// `impossible_body`, `inconsistent_state`, `singular_state`.
+    pub fn complete(&self, mut state: State) -> Result<State, Failure> {
         self.check_bodies(&state)?;
         self.normalise_quaternions(&mut state)?;
         assembly::assemble(self, &mut state)?;

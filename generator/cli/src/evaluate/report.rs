@@ -35,29 +35,29 @@ pub fn named<'a>(
 /// All of it.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Report<'a> {
-    speeds: Vec<&'a str>,
-    q: Named<'a, f64>,
-    mass_matrix: Vec<Vec<f64>>,
-    forcing: Vec<f64>,
-    udot: Named<'a, f64>,
-    qdot: Named<'a, f64>,
-    dependent: Named<'a, f64>,
-    kinetic_energy: f64,
-    contacts: Named<'a, ContactReport>,
+    pub(super) speeds: Vec<&'a str>,
+    pub(super) q: Named<'a, f64>,
+    pub(super) mass_matrix: Vec<Vec<f64>>,
+    pub(super) forcing: Vec<f64>,
+    pub(super) udot: Named<'a, f64>,
+    pub(super) qdot: Named<'a, f64>,
+    pub(super) dependent: Named<'a, f64>,
+    pub(super) kinetic_energy: f64,
+    pub(super) contacts: Named<'a, ContactReport>,
 }
 
 #[derive(Clone, Debug, serde::Serialize)]
-struct ContactReport {
-    gap: Option<f64>,
-    normal: [f64; 3],
-    tangent: [f64; 3],
-    binormal: [f64; 3],
+pub struct ContactReport {
+    pub(super) gap: Option<f64>,
+    pub(super) normal: [f64; 3],
+    pub(super) tangent: [f64; 3],
+    pub(super) binormal: [f64; 3],
     velocity: [f64; 3],
     #[serde(rename = "V")]
     partials: [Vec<f64>; 3],
     remainder: [f64; 3],
-    reduced: [f64; 6],
-    v: [f64; 3],
+    pub(super) reduced: [f64; 6],
+    pub(super) v: [f64; 3],
     #[serde(skip_serializing_if = "Option::is_none")]
     characteristics: Option<Characteristics>,
 }
@@ -84,7 +84,7 @@ impl Report<'_> {
     }
 
     /// The characteristic quantities as tables, one for each contact.
-    pub fn tables(&self, mu: Option<f64>) -> String {
+    pub fn characteristics(&self, mu: Option<f64>) -> String {
         let table =
             |(name, contact): &(&str, ContactReport)| format!("{name}\n{}", contact.found(mu).table());
         self.contacts.0.iter().map(table).collect::<Vec<_>>().join("\n")

@@ -1,5 +1,7 @@
 //! Reads the state in which a model is evaluated from a JSON object of names and numbers.
 
+use std::collections::HashSet;
+
 use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_generator::numeric::start::{self, Given};
 
@@ -64,14 +66,15 @@ impl State {
         state
     }
 
-    /// Reads `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional.
+    /// Sets what stands in `{"parameters":{..},"t":0,"q":{..},"u":{..},"inputs":{..}}`, all of it optional, and
+    /// gives the names of the numbers that were given.
     ///
     /// # Errors
     ///
     /// `bad_json`, `unknown_name`, `not_finite`.
-    pub fn read(text: &str, mechanism: &Mechanism) -> Result<Self, Failure> {
-        let mut state = State::initial(mechanism);
-        let mut given = std::collections::HashSet::new();
+    pub fn read(&mut self, text: &str, mechanism: &Mechanism) -> Result<HashSet<String>, Failure> {
+        let state = self;
+        let mut given = HashSet::new();
         for (name, value) in Fields::new(Json::parse(text)?, "the state")?.into_inner() {
             match name.as_str() {
                 "t" => state.time = number(&value, "t")?,
@@ -97,13 +100,55 @@ impl State {
                 }
             }
         }
-        state.complete(mechanism, |name| given.contains(name))?;
-        Ok(state)
+        Ok(given)
+    }
+
+    /// Sets one number by its name: a parameter or an input, or, unless `parameters` alone are meant, a
+    /// coordinate, a speed or the time `t`.
+    ///
+    /// # Errors
+    ///
+    /// `unknown_name`.
+    pub fn set(
+        &mut self,
+        mechanism: &Mechanism,
+        name: &str,
+        value: f64,
+        parameters: bool,
+    ) -> Result<(), Failure> {
+        let is = |list: &[Variable]| list.iter().any(|quantity| quantity.name == name);
+        let section = match () {
+            () if parameters || is(&mechanism.parameters) || is(&mechanism.inputs) => "parameters",
+            () if is(&mechanism.coordinates) => "q",
+            () if is(&mechanism.speeds) => "u",
+            () if name == "t" => {
+                self.time = value;
+                return Ok(());
+            }
+            () => {
+                let all = names(&mechanism.coordinates)
+                    .chain(names(&mechanism.speeds[..self.speeds.len()]))
+                    .chain(names(&mechanism.inputs))
+                    .chain(["t"]);
+                let hint = spelling::hint(name, all);
+                let message = format!(
+                    "{} has no coordinate, speed, input or parameter `{name}`: {hint}",
+                    mechanism.name
+                );
+                return Err(Failure::new(Kind::UnknownName, message));
+            }
+        };
+        *self.slot(mechanism, section, name)? = value;
+        Ok(())
     }
 
     /// Evaluates the initial values that the model states in terms of others anew, but for those that are
     /// given.
-    fn complete(&mut self, mechanism: &Mechanism, given: impl Fn(&str) -> bool) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    ///
+    /// `inconsistent_state`.
+    pub fn complete(&mut self, mechanism: &Mechanism, given: impl Fn(&str) -> bool) -> Result<(), Failure> {
         let follows = |quantity: &Variable| quantity.initial.is_some();
         if !mechanism.coordinates.iter().chain(&mechanism.speeds).any(follows) {
             return Ok(());

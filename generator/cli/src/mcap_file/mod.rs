@@ -39,6 +39,10 @@ pub fn bytes(shown: &Animation, more: &[Series]) -> McapResult<Vec<u8>> {
     let scene = Scene::new(shown);
     let mut events = shown.events.iter().peekable();
     for (moment, &time) in shown.times.iter().enumerate() {
+        // A recording shows the states after events.
+        if shown.before.binary_search(&moment).is_ok() {
+            continue;
+        }
         file.write(topics.transforms, time, &transforms::at(shown, moment))?;
         file.write(topics.mechanism, time, &scene.mechanism(moment))?;
         file.write(topics.names, time, &scene.names(moment))?;

@@ -62,9 +62,16 @@ pub fn draw(figure: &Figure) -> Result<Sheet, Reason> {
     let canvas = Canvas::new([width, bottom + space + below + MARGIN]);
     let title = Label::words(&figure.title);
     text(&canvas, title.marked(), [width / 2.0, MARGIN + TITLE], TITLE);
+    // Panels above each other have their axes above each other.
+    let mut lefts = vec![0.0_f64; columns];
+    for (index, panel) in figure.panels.iter().enumerate() {
+        let left = &mut lefts[index % columns];
+        *left = left.max(Frame::new(panel, figure.panel_size, 0.0).left);
+    }
     for (index, panel) in figure.panels.iter().enumerate() {
         let corner = [MARGIN + (index % columns) as f64 * cell[0], top + (index / columns) as f64 * cell[1]];
-        self::panel(&canvas, panel, corner, figure.panel_size)?;
+        let frame = Frame::new(panel, figure.panel_size, lefts[index % columns]);
+        self::panel(&canvas, panel, corner, figure.panel_size, &frame)?;
         if figure.legend == Legend::Beside {
             let entries = legend::entries(std::iter::once(panel));
             legend::draw_column(&canvas, &entries, [corner[0] + wide + MARGIN, corner[1] + CAPTION_LINE]);
@@ -81,34 +88,60 @@ fn text(canvas: &Canvas, marked: &str, at: [f64; 2], size: f64) {
     }
 }
 
-fn panel(canvas: &Canvas, panel: &Panel, corner: [f64; 2], size: [f64; 2]) -> Result<(), Reason> {
-    let caption = if panel.title == Label::default() { MARGIN / 2.0 } else { CAPTION_LINE };
-    let below = NAME_LINE + NUMBER + 2.5 * TICK;
-    let height = size[1] - caption - below - MARGIN / 2.0;
-    let points = || {
-        let of_series = panel.series.iter().flat_map(|series| series.points.iter().copied());
-        of_series.chain(panel.marks.iter().map(|mark| mark.at))
-    };
-    let mut scales = [
-        Scale::new(&panel.x, points().map(|point| point[0])),
-        Scale::new(&panel.y, points().map(|point| point[1])),
-    ];
-    if panel.equal {
-        let exponent = scales[0].exponent.max(scales[1].exponent);
-        scales = scales.map(|scale| scale.with_exponent(exponent));
-    }
-    // The numbers need place, and what they are depends on the place that is left.
-    let apart = if panel.equal { EQUALLY_APART } else { NUMBERS_APART };
-    let mut left = 0.0;
-    let mut width = size[0];
-    for _ in 0..3 {
-        left = NAME_LINE + scales[1].ticks(height, apart[1]).widest() + 3.0 * TICK;
-        width = size[0] - left - MARGIN;
+/// Where the axes of a panel are, and their numbers.
+struct Frame {
+    scales: [Scale; 2],
+    /// above the frame, and below it
+    caption: f64,
+    below: f64,
+    /// the place of the numbers and the name on the left
+    left: f64,
+    width: f64,
+    height: f64,
+}
+
+impl Frame {
+    /// Of a panel of a size; `left` is the least place on the left.
+    fn new(panel: &Panel, size: [f64; 2], least: f64) -> Frame {
+        let caption = if panel.title == Label::default() { MARGIN / 2.0 } else { CAPTION_LINE };
+        let below = NAME_LINE + NUMBER + 2.5 * TICK;
+        let height = size[1] - caption - below - MARGIN / 2.0;
+        let points = || {
+            let of_series = panel.series.iter().flat_map(|series| series.points.iter().copied());
+            of_series.chain(panel.marks.iter().map(|mark| mark.at))
+        };
+        let mut scales = [
+            Scale::new(&panel.x, points().map(|point| point[0])),
+            Scale::new(&panel.y, points().map(|point| point[1])),
+        ];
         if panel.equal {
-            scales = Scale::equal(scales, [width, height]);
+            let exponent = scales[0].exponent.max(scales[1].exponent);
+            scales = scales.map(|scale| scale.with_exponent(exponent));
         }
+        // The numbers need place, and what they are depends on the place that is left.
+        let apart = if panel.equal { EQUALLY_APART } else { NUMBERS_APART };
+        let (mut left, mut width) = (least, size[0]);
+        for _ in 0..3 {
+            left = least.max(NAME_LINE + scales[1].ticks(height, apart[1]).widest() + 3.0 * TICK);
+            width = size[0] - left - MARGIN;
+            if panel.equal {
+                scales = Scale::equal(scales, [width, height]);
+            }
+        }
+        Frame { scales, caption, below, left, width, height }
     }
-    let [x, y] = &scales;
+}
+
+fn panel(
+    canvas: &Canvas,
+    panel: &Panel,
+    corner: [f64; 2],
+    size: [f64; 2],
+    frame: &Frame,
+) -> Result<(), Reason> {
+    let &Frame { ref scales, caption, below, left, width, height } = frame;
+    let apart = if panel.equal { EQUALLY_APART } else { NUMBERS_APART };
+    let [x, y] = scales;
     let (x_ticks, y_ticks) = (x.ticks(width, apart[0]), y.ticks(height, apart[1]));
     let middle = corner[0] + left + width / 2.0;
     text(canvas, panel.title.marked(), [middle, corner[1] + CAPTION_LINE - 9.0], NAME);
@@ -145,7 +178,7 @@ fn panel(canvas: &Canvas, panel: &Panel, corner: [f64; 2], size: [f64; 2]) -> Re
             ((x.of(point[0]) - x.low) / (x.high - x.low), (y.high - y.of(point[1])) / (y.high - y.low));
         [corner[0] + left + right * width, corner[1] + caption + down * height]
     };
-    zero_lines(canvas, &scales, place, [[corner[0] + left, corner[1] + caption], [width, height]]);
+    zero_lines(canvas, scales, place, [[corner[0] + left, corner[1] + caption], [width, height]]);
     for series in &panel.series {
         let places: Vec<[f64; 2]> = series.points.iter().map(|point| place(*point)).collect();
         curve(canvas, &places, style(series.style), series.directed);

@@ -31,6 +31,12 @@ impl Run {
         lines.remove(0)
     }
 
+    /// The exit code and what was told on standard error; nothing stands on standard output.
+    pub fn told(&self) -> (i32, &str) {
+        assert_eq!(self.stdout, "", "{}", self.stderr);
+        (self.code, self.stderr.trim_end())
+    }
+
     /// The kind of the error object that is all of standard output.
     pub fn error_kind(&self) -> String {
         assert_eq!(self.code, 1, "{}{}", self.stdout, self.stderr);

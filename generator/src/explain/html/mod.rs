@@ -11,7 +11,7 @@ use escape::plain;
 use mathml::{Writer, letters, math};
 
 use super::symbols::unit;
-use super::{Document, Equation, Place, Rank, Section, text};
+use super::{Document, Equation, Place, Rank, Section, Term, text};
 
 const STYLE: &str = include_str!("page.css");
 
@@ -94,14 +94,17 @@ fn names(document: &Document, writer: &Writer<'_>) -> String {
     for (title, entries) in &document.names {
         out += &format!(
             "<h3>{title}</h3>\n<table class=\"names\">\n<thead><tr><th scope=\"col\">Symbol</th><th scope=\"col\">In the model</th><th \
-             scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead>\n<tbody>\n"
+             scope=\"col\">Value</th><th scope=\"col\">Unit</th><th scope=\"col\">Meaning</th></tr></thead>\n<tbody>\n"
         );
         for entry in entries {
             let unit = unit(&entry.unit);
             out += &format!(
-                "<tr><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td></tr>\n",
+                "<tr><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                 math(&writer.name(&entry.name)),
                 plain(&entry.name),
+                entry
+                    .value
+                    .map_or(String::new(), |value| math(&writer.term(&Term::Number(value), Rank::Sum))),
                 if unit.is_empty() { "1".to_owned() } else { plain(&unit) },
                 prose(&entry.docs)
             );

@@ -47,7 +47,8 @@ pub fn drive(mechanism: &Mechanism, expressions: &[String], file: Option<&Path>)
         }
         functions.push((
             index,
-            super::expression::read(value).map_err(|error| Stop::Call(format!("--input {text}: {error}")))?,
+            crate::expression::of_time(value)
+                .map_err(|error| Stop::Call(format!("--input {text}: {error}")))?,
         ));
     }
     if functions.is_empty() {

@@ -1,18 +1,21 @@
-//! Writes the JSON lines of `simulate`.
+//! Writes the states and events of `simulate` as lines, or gathers them for a summary.
 
 use hodograph::{Kind as Of, Mechanism, Selection, State};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::{Event, EventKind, Struck, StruckTogether};
+use hodograph_simulation::{EnergyAccount, Event, EventKind, Struck, StruckTogether};
 use serde::Serialize;
 
+use super::summary::Summary;
 use crate::evaluate::report::{Named, named};
 use crate::json::answer::Answer;
 use crate::output;
-use crate::stop::Outcome;
+use crate::stop::{Outcome, Stop};
 
 /// How lines are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Format {
+    /// tables of states and events, and a summary
+    Table,
     /// a JSON object per line
     Json,
     /// comma-separated values: t, event, contact, coordinates, speeds
@@ -74,16 +77,22 @@ struct ShareOf<'a> {
 pub struct Lines<'m> {
     mechanism: &'m InterpretedMechanism,
     format: Format,
+    summary: Summary,
+    /// whether the motion is wanted where nobody reads the lines any more
+    wanted: bool,
+    reader_gone: bool,
 }
 
 impl<'m> Lines<'m> {
-    /// Begins; CSV has a head.
+    /// Begins; CSV has a head. `wanted` says that the motion is to be followed to its end even where the
+    /// reader of the lines leaves: files are to show all of it.
     ///
     /// # Errors
     ///
     /// As [`output::text`].
-    pub fn new(mechanism: &'m InterpretedMechanism, format: Format) -> Outcome<Self> {
-        let lines = Lines { mechanism, format };
+    pub fn new(mechanism: &'m InterpretedMechanism, format: Format, wanted: bool) -> Outcome<Self> {
+        let summary = Summary::default();
+        let mut lines = Lines { mechanism, format, summary, wanted, reader_gone: false };
         if format == Format::Csv {
             let names = |kind| {
                 (0..mechanism.count(kind))
@@ -95,7 +104,7 @@ impl<'m> Lines<'m> {
                 .chain(names(Of::Coordinate))
                 .chain(names(Of::Speed))
                 .collect();
-            output::line(&head.join(","))?;
+            lines.write(&head.join(","))?;
         }
         Ok(lines)
     }
@@ -105,10 +114,46 @@ impl<'m> Lines<'m> {
     /// # Errors
     ///
     /// As [`output::text`].
-    pub fn sample(&self, t: f64, q: &[f64], u: &[f64]) -> Outcome {
+    pub fn sample(&mut self, t: f64, q: &[f64], u: &[f64]) -> Outcome {
         match self.format {
-            Format::Json => output::json(&Sample { t, q: self.coordinates(q), u: self.speeds(u) }),
-            Format::Csv => self.row(t, "", "", q, u),
+            Format::Table => self.summary.state(t, q, u),
+            Format::Csv => return self.row(t, "", "", q, u),
+            Format::Json => {
+                let line = json(&Sample { t, q: self.coordinates(q), u: self.speeds(u) })?;
+                return self.write(&line);
+            }
+        }
+        Ok(())
+    }
+
+    /// The energies at the time reached.
+    pub fn energy(&mut self, account: EnergyAccount) {
+        self.summary.energy(account);
+    }
+
+    /// Writes what was gathered.
+    ///
+    /// # Errors
+    ///
+    /// As [`output::text`].
+    pub fn finish(&self) -> Outcome {
+        match self.format {
+            Format::Table => output::text(&output::visible(&self.summary.text(self.mechanism.model()))),
+            Format::Json | Format::Csv => Ok(()),
+        }
+    }
+
+    /// Writes a line; where the reader has left, nothing, as long as the motion is wanted nevertheless.
+    fn write(&mut self, line: &str) -> Outcome {
+        if self.reader_gone {
+            return Ok(());
+        }
+        match output::line(line) {
+            Err(Stop::ReaderGone) if self.wanted => {
+                self.reader_gone = true;
+                Ok(())
+            }
+            other => other,
         }
     }
 
@@ -117,18 +162,26 @@ impl<'m> Lines<'m> {
     /// # Errors
     ///
     /// As [`output::text`].
-    pub fn event(&self, event: &Event) -> Outcome {
+    pub fn event(&mut self, event: &Event) -> Outcome {
         let name = |contact| self.mechanism.component(Of::Contact, contact).map(|component| component.name);
         let contact = event.contact.and_then(name);
-        if self.format == Format::Csv {
-            return self.row(
-                event.time,
-                event.kind.name(),
-                contact.unwrap_or(""),
-                &event.coordinates,
-                &event.speeds,
-            );
+        match self.format {
+            Format::Json => {}
+            Format::Table => {
+                self.summary.event(event, contact.unwrap_or(""));
+                return Ok(());
+            }
+            Format::Csv => {
+                let (kind, contact) = (event.kind.name(), contact.unwrap_or(""));
+                return self.row(event.time, kind, contact, &event.coordinates, &event.speeds);
+            }
         }
+        let line = self.object(event, contact)?;
+        self.write(&line)
+    }
+
+    /// An event as JSON.
+    fn object(&self, event: &Event, contact: Option<&str>) -> Outcome<String> {
         let mut line = Line {
             t: event.time,
             event: event.kind.name(),
@@ -166,7 +219,7 @@ impl<'m> Lines<'m> {
             EventKind::LiftOff { selection } | EventKind::Stick { selection } => certain(selection),
             _ => {}
         }
-        output::json(&line)
+        json(&line)
     }
 
     /// What belongs to an impact: the fields of `collide`, and the speeds before as `u`.
@@ -223,10 +276,15 @@ impl<'m> Lines<'m> {
         named(&self.mechanism.model().speeds, u.iter().map(|value| value + 0.0))
     }
 
-    fn row(&self, t: f64, event: &str, contact: &str, q: &[f64], u: &[f64]) -> Outcome {
+    fn row(&mut self, t: f64, event: &str, contact: &str, q: &[f64], u: &[f64]) -> Outcome {
         let numbers = q.iter().chain(u).map(|value| (value + 0.0).to_string());
         let cells: Vec<String> =
             [t.to_string(), event.to_owned(), contact.to_owned()].into_iter().chain(numbers).collect();
-        output::line(&cells.join(","))
+        self.write(&cells.join(","))
     }
+}
+
+/// A line of JSON.
+fn json(value: &impl Serialize) -> Outcome<String> {
+    serde_json::to_string(value).map_err(|error| Stop::Fault(format!("cannot write JSON: {error}")))
 }

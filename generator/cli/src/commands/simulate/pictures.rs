@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, Simulation};
 
-use super::curves::Curves;
+use super::figure::figure;
 use super::recording::Recording;
+use crate::animation::Setup;
 use crate::json::state::State;
 use crate::plot::file::Format;
 use crate::stop::{Outcome, Stop};
@@ -28,26 +29,27 @@ pub struct PictureFiles {
 }
 
 impl PictureFiles {
-    /// Refuses before the simulation what could not be written after it.
+    /// Refuses before the simulation what could not be written after it, or what would be written over one
+    /// of the files that are read.
     ///
     /// # Errors
     ///
-    /// [`Stop::Call`] where a figure has no known format or two files are one; [`Stop::Fault`] where a file
+    /// [`Stop::Call`] where a figure has no known format, or two files are one; [`Stop::Fault`] where a file
     /// cannot be written.
-    pub fn check(&self) -> Outcome {
+    pub fn check(&self, inputs: &[PathBuf]) -> Outcome {
         Format::of(None, self.plot.as_deref())?;
-        let files: Vec<&Path> =
-            [&self.plot, &self.html, &self.mcap].into_iter().filter_map(Option::as_deref).collect();
-        for (index, path) in files.iter().enumerate() {
-            if files[..index].contains(path) {
-                return Err(Stop::Call(format!(
-                    "{} is to be two files: give each its own name",
-                    path.display()
-                )));
-            }
-            output::check(path)?;
-        }
-        Ok(())
+        let files = self.files();
+        files.iter().try_for_each(|path| output::check(path))?;
+        output::apart(&files, inputs)
+    }
+
+    /// Whether any file is asked for.
+    pub fn wanted(&self) -> bool {
+        !self.files().is_empty()
+    }
+
+    fn files(&self) -> Vec<&Path> {
+        [&self.plot, &self.html, &self.mcap].into_iter().filter_map(Option::as_deref).collect()
     }
 
     /// Refuses times that a recording cannot hold.
@@ -69,37 +71,36 @@ impl PictureFiles {
 
 /// What is kept of a motion for these files.
 pub struct Pictures<'m> {
-    curves: Option<Curves<'m>>,
     recording: Option<Recording<'m>>,
     /// is anything kept?
     begun: bool,
 }
 
 impl<'m> Pictures<'m> {
-    /// Nothing yet.
-    pub fn new(files: &PictureFiles, mechanism: &'m InterpretedMechanism, state: &State) -> Self {
-        let recorded = files.html.is_some() || files.mcap.is_some();
-        Pictures {
-            curves: files.plot.as_ref().map(|_| Curves::new(mechanism)),
-            recording: recorded.then(|| Recording::new(mechanism, state)),
-            begun: false,
-        }
+    /// Nothing yet; `setup` says of which motion.
+    pub fn new(
+        files: &PictureFiles,
+        mechanism: &'m InterpretedMechanism,
+        state: &State,
+        setup: impl FnOnce() -> Setup,
+    ) -> Self {
+        let recording = files.wanted().then(|| Recording::new(mechanism, state, setup()));
+        Pictures { recording, begun: false }
     }
 
     /// The state of a simulation.
     pub fn add(&mut self, simulation: &Simulation<'_>) {
         self.begun = true;
-        if let Some(curves) = &mut self.curves {
-            curves.add(simulation);
-        }
         if let Some(recording) = &mut self.recording {
             recording.add(simulation);
         }
     }
 
-    /// Something that happened, where the simulation now is.
-    pub fn event(&mut self, event: &Event) {
+    /// Something that happened, where the simulation now is: the states before and after it.
+    pub fn event(&mut self, event: &Event, simulation: &Simulation<'_>) {
         if let Some(recording) = &mut self.recording {
+            recording.before(event, simulation);
+            recording.add(simulation);
             recording.event(event);
         }
     }
@@ -112,22 +113,21 @@ impl<'m> Pictures<'m> {
     /// That of the simulation; else that of the first file that cannot be written. The others are told on
     /// standard error.
     pub fn save(self, files: &PictureFiles, simulated: Outcome) -> Outcome {
-        if !self.begun {
-            return simulated;
-        }
+        let Some(recording) = self.recording.filter(|_| self.begun) else { return simulated };
+        let recorded = recording.finish();
+        recorded.notes.iter().for_each(|note| output::say(format_args!("note: {note}")));
         let mut outcomes = vec![simulated];
-        if let (Some(curves), Some(path)) = (self.curves, &files.plot) {
-            outcomes.push(curves.save(path));
+        if let Some(path) = &files.plot {
+            let format = Format::of(None, Some(path));
+            outcomes.push(format.and_then(|format| figure(&recorded).save(path, format)));
         }
-        if let Some(recorded) = self.recording.map(Recording::finish) {
-            if let Some(path) = &files.html {
-                outcomes.push(output::file(path, animation::page(&recorded.shown).as_bytes()));
-            }
-            if let Some(path) = &files.mcap {
-                let bytes = mcap_file::bytes(&recorded.shown, &recorded.states)
-                    .map_err(|error| Stop::Fault(format!("cannot make {}: {error}", path.display())));
-                outcomes.push(bytes.and_then(|bytes| output::file(path, &bytes)));
-            }
+        if let Some(path) = &files.html {
+            outcomes.push(output::file(path, animation::page(&recorded.shown).as_bytes()));
+        }
+        if let Some(path) = &files.mcap {
+            let bytes = mcap_file::bytes(&recorded.shown, &recorded.states)
+                .map_err(|error| Stop::Fault(format!("cannot make {}: {error}", path.display())));
+            outcomes.push(bytes.and_then(|bytes| output::file(path, &bytes)));
         }
         let mut failed = outcomes.into_iter().filter_map(Result::err);
         let first = failed.next();

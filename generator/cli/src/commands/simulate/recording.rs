@@ -1,4 +1,4 @@
-//! Records the states and events of a motion for its animated page and for viewers of robots.
+//! Records the states and events of a motion for its figure, its animated page and viewers of robots.
 
 use hodograph::{Contacts, Kind as Of, Mechanism, State as Borrowed};
 use hodograph_generator::model::mechanism::{LoadKind, Place, Variable, Vector};
@@ -8,21 +8,24 @@ use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, EventKind, Simulation};
 use nalgebra::Vector3;
 
+use super::energies::Energies;
 use super::gap::gap;
-use crate::animation::{self, Animation, Force, Frame, Point, Series, segments};
+use super::rigid;
+use crate::animation::{self, Animation, Force, Frame, Point, Series, Setup, segments};
 use crate::json::state::State;
 
 /// A motion as it will be shown.
 pub struct Recording<'m> {
     mechanism: &'m InterpretedMechanism,
     shown: Animation,
-    /// kinetic, potential and total energy, J
-    energies: [Vec<f64>; 3],
+    energies: Energies,
     /// per contact, m and N; empty without a gap
     gaps: Vec<Vec<f64>>,
     pressures: Vec<Vec<f64>>,
     coordinates: Vec<Vec<f64>>,
     speeds: Vec<Vec<f64>>,
+    /// per contact: its force at the last moment, along n, t, s
+    last: Vec<Option<Vector3<f64>>>,
 }
 
 /// A recorded motion.
@@ -31,11 +34,13 @@ pub struct Recorded {
     pub shown: Animation,
     /// coordinates and speeds at the same moments
     pub states: Vec<Series>,
+    /// what is not shown, and why
+    pub notes: Vec<String>,
 }
 
 impl<'m> Recording<'m> {
-    /// Nothing yet, of a motion from a state.
-    pub fn new(mechanism: &'m InterpretedMechanism, state: &State) -> Self {
+    /// Nothing yet, of a motion from a state; `setup` says of which.
+    pub fn new(mechanism: &'m InterpretedMechanism, state: &State, setup: Setup) -> Self {
         let model = mechanism.model();
         let from: Vec<Option<usize>> = model
             .points
@@ -45,8 +50,11 @@ impl<'m> Recording<'m> {
                 Place::Origin | Place::Velocity(_) => None,
             })
             .collect();
-        // A point defined from O moves by itself: no line leads there.
-        let from: Vec<Option<usize>> = from.into_iter().map(|from| from.filter(|&from| from != 0)).collect();
+        // A point that moves away from O by itself hangs on nothing: no line leads there.
+        let hangs = |(point, from): (usize, Option<usize>)| {
+            from.filter(|&from| from != 0 || rigid::turns_about_origin(mechanism, point, state))
+        };
+        let from: Vec<Option<usize>> = from.into_iter().enumerate().map(hangs).collect();
         let bodies: Vec<(usize, Vec<usize>)> = model
             .contacts
             .iter()
@@ -76,62 +84,88 @@ impl<'m> Recording<'m> {
                 .map(|contact| Force { name: contact.name.clone(), at: Vec::new(), force: Vec::new() })
                 .collect(),
             up: up(mechanism, state),
+            setup,
             ..Animation::default()
         };
         let none = |kind| vec![Vec::new(); mechanism.count(kind)];
         Recording {
             mechanism,
             shown,
-            energies: [const { Vec::new() }; 3],
+            energies: Energies::default(),
             gaps: none(Of::Contact),
             pressures: none(Of::Contact),
             coordinates: none(Of::Coordinate),
             speeds: none(Of::Speed),
+            last: vec![None; mechanism.count(Of::Contact)],
         }
     }
 
-    /// The state of a simulation.
+    /// The state of a simulation, after the events at its time.
     pub fn add(&mut self, simulation: &Simulation<'_>) {
-        let mechanism = self.mechanism;
         let state = Borrowed {
             time: simulation.time(),
             coordinates: simulation.coordinates(),
             speeds: simulation.speeds(),
             inputs: simulation.inputs(),
         };
+        let forces = simulation.contact_forces().map_or(Vec::new(), |(forces, _)| forces);
+        let force =
+            |contact: usize| forces.iter().find(|(index, _)| *index == contact).map(|(_, force)| *force);
+        self.moment(&state, force);
+    }
+
+    /// The state in which an event found the mechanism: curves jump there, instead of rising towards it from
+    /// the moment before.
+    pub fn before(&mut self, event: &Event, simulation: &Simulation<'_>) {
+        let speeds = match &event.kind {
+            EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => &struck.speeds_before,
+            EventKind::StruckTogether(struck) => &struck.speeds_before,
+            _ => &event.speeds,
+        };
+        let state = Borrowed {
+            time: event.time,
+            coordinates: &event.coordinates,
+            speeds,
+            inputs: simulation.inputs(),
+        };
+        // Which contacts were closed is known; their forces are those of the moment before.
+        let last = self.last.clone();
+        self.shown.before.push(self.shown.times.len());
+        self.moment(&state, |contact| last.get(contact).copied().flatten());
+    }
+
+    /// A moment, with the force of each closed contact along its n, t, s.
+    fn moment(&mut self, state: &Borrowed<'_>, force: impl Fn(usize) -> Option<Vector3<f64>>) {
+        let mechanism = self.mechanism;
         self.shown.times.push(state.time);
         self.coordinates.iter_mut().zip(state.coordinates).for_each(|(curve, &value)| curve.push(value));
         self.speeds.iter_mut().zip(state.speeds).for_each(|(curve, &value)| curve.push(value));
         for (index, point) in self.shown.points.iter_mut().enumerate() {
-            point.places.push(place(mechanism, index, &state));
+            point.places.push(place(mechanism, index, state));
         }
         let mut frames = self.shown.frames.iter_mut();
         for body in &mechanism.model().bodies {
             if let (Some(frame), Some(shown)) = (body.frame, body.frame.and_then(|_| frames.next())) {
                 // Its columns are the axes along N.
-                let turned = mechanism.orientation(frame.0, &state).unwrap_or_default();
+                let turned = mechanism.orientation(frame.0, state).unwrap_or_default();
                 shown.axes.push([0, 1, 2].map(|axis| turned.column(axis).into_owned().into()));
             }
         }
-        let forces = simulation.contact_forces().map_or(Vec::new(), |(forces, _)| forces);
         for (contact, shown) in self.shown.forces.iter_mut().enumerate() {
-            let here = mechanism.contact_state(contact, &state);
-            let force = forces.iter().find(|(index, _)| *index == contact).zip(here.ok());
-            shown.at.push(place(mechanism, mechanism.model().contacts[contact].point.0, &state));
-            shown.force.push(force.map(|((_, force), here)| {
+            let here = mechanism.contact_state(contact, state);
+            let along = force(contact);
+            self.last[contact] = along;
+            let force = along.zip(here.ok());
+            shown.at.push(place(mechanism, mechanism.model().contacts[contact].point.0, state));
+            shown.force.push(force.map(|(force, here)| {
                 (here.normal * force.x + here.first * force.y + here.second * force.z).into()
             }));
-            let pressure = force.map_or(0.0, |((_, force), _)| force.x);
-            if let Some(gap) = gap(mechanism, contact, &state) {
+            if let Some(gap) = gap(mechanism, contact, state) {
                 self.gaps[contact].push(gap);
-                self.pressures[contact].push(pressure);
+                self.pressures[contact].push(along.map_or(0.0, |force| force.x));
             }
         }
-        let kinetic = mechanism.kinetic_energy(&state).unwrap_or(f64::NAN);
-        let potential = mechanism.potential_energy(&state).ok().flatten().unwrap_or(0.0);
-        for (curve, value) in self.energies.iter_mut().zip([kinetic, potential, kinetic + potential]) {
-            curve.push(value);
-        }
+        self.energies.add(mechanism, state);
     }
 
     /// Something that happened, where the simulation now is.
@@ -175,14 +209,18 @@ impl<'m> Recording<'m> {
             unit: unit.to_owned(),
             values,
         };
-        let names = ["kinetic", "potential", "sum"];
-        for (name, values) in names.into_iter().zip(self.energies) {
+        let model = self.mechanism.model();
+        let (energies, note) = self.energies.curves(model);
+        for (name, values) in energies {
             self.shown.series.push(series("energy", name, "J", values));
         }
-        let model = self.mechanism.model();
+        let notes: Vec<String> = note.into_iter().collect();
+        self.shown.notes.clone_from(&notes);
         for (panel, unit, curves) in [("gap", "m", self.gaps), ("normal force", "N", self.pressures)] {
             for (contact, values) in model.contacts.iter().zip(curves) {
-                if !values.is_empty() {
+                // A contact that never presses has no curve of its force.
+                let flat = unit == "N" && values.iter().all(|&value| value == 0.0);
+                if !values.is_empty() && !flat {
                     self.shown.series.push(series(panel, &contact.name, unit, values));
                 }
             }
@@ -194,7 +232,7 @@ impl<'m> Recording<'m> {
                 |(variable, values): (&Variable, _)| series(panel, &variable.name, &variable.unit, values);
             variables.iter().zip(curves).map(of).collect::<Vec<_>>()
         });
-        Recorded { states: states.collect(), shown: self.shown }
+        Recorded { states: states.collect(), shown: self.shown, notes }
     }
 }
 

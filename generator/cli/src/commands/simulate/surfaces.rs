@@ -1,13 +1,14 @@
 //! The surfaces of a motion: one for all contacts, or one for each.
 
-use hodograph::{Contacts, ImpactError, Kind as Of, State, Surface};
+use hodograph::{Contacts, Kind as Of, State, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_interpreter::motion::{GivenSurface, surfaces};
 
-use super::gap::gap;
 use crate::json::{Failure, Kind};
+use crate::output;
 use crate::spelling;
 use crate::stop::{Outcome, Stop};
-use crate::surface::{Given, law};
+use crate::surface::{law, stated_in};
 
 /// Surfaces as they stand on the command line.
 #[derive(Clone, Debug, clap::Args)]
@@ -38,43 +39,40 @@ impl MotionSurfaces {
         model: &Mechanism,
         state: &State<'_>,
     ) -> Outcome<Vec<(usize, Surface<f64>)>> {
-        let count = mechanism.count(Of::Contact);
         let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
-        let given = Given { mu: self.mu, e: self.e, law: self.law.as_deref().map(law).transpose()? };
+        let law = self.law.as_deref().map(law).transpose()?;
         // What is given is checked even where it is not enough.
-        checked(Surface {
-            mu: given.mu.unwrap_or(0.0),
-            e: given.e.unwrap_or(0.0),
-            law: given.law.unwrap_or(hodograph::Law::Newton),
-        })?;
-        let mut own = vec![None; count];
+        let all = GivenSurface { mu: self.mu, e: self.e, law }.check().map_err(Failure::from)?;
+        let mut own: Vec<(usize, GivenSurface)> = Vec::new();
         for text in &self.surface {
             let (contact, surface) = one(text)?;
-            if own[place_of(contact, mechanism)?].replace(surface).is_some() {
+            let place = place_of(contact, mechanism)?;
+            if own.iter().any(|(other, _)| *other == place) {
                 return Err(Stop::Call(format!(
                     "--surface {text}: {contact} has two surfaces: leave one out"
                 )));
             }
+            own.push((place, surface));
         }
-        let mut surfaces = Vec::new();
-        for (contact, own) in own.into_iter().enumerate() {
-            if gap(mechanism, contact, state).is_none() {
-                eprintln!(
-                    "note: contact {} has no gap in the model: it is never seen to close",
-                    name(contact)
-                );
-                continue;
+        // What the options leave open stands in the model, if at all.
+        for (contact, stated) in model.contacts.iter().enumerate() {
+            if own.iter().all(|(other, _)| *other != contact) {
+                own.push((contact, stated_in(stated, all)));
             }
-            let stated = || model.contacts.get(contact).and_then(|contact| given.of(contact));
-            let Some(surface) = own.or_else(stated) else {
-                let name = name(contact);
-                return Err(Stop::Call(format!(
-                    "contact {name} has no surface: give --mu, --e and --law for all contacts, or --surface {name}=MU,E,LAW, or state `surface: {{ mu: .., e: .., law: .. }}` in the model"
-                )));
-            };
-            surfaces.push((contact, surface));
         }
-        Ok(surfaces)
+        let found = surfaces(mechanism, state, all, &own).map_err(|error| {
+            Stop::Call(format!(
+                "{error}: give --mu, --e and --law for all contacts, or --surface {}=MU,E,LAW, or state `surface: {{ mu: .., e: .., law: .. }}` in the model",
+                error.contact
+            ))
+        })?;
+        for contact in found.without_gap {
+            output::say(format_args!(
+                "note: contact {} has no gap in the model: it is never seen to close",
+                name(contact)
+            ));
+        }
+        Ok(found.of_contacts)
     }
 }
 
@@ -119,26 +117,12 @@ pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<V
 }
 
 /// A surface of one contact.
-fn one(text: &str) -> Outcome<(&str, Surface<f64>)> {
+fn one(text: &str) -> Outcome<(&str, GivenSurface)> {
     let wrong = || Stop::Call(format!("--surface {text}: give CONTACT=MU,E,LAW, as in tip=0.5,0.8,stronge"));
     let (contact, rest) = text.split_once('=').ok_or_else(wrong)?;
     let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
     let [mu, e, named] = parts[..] else { return Err(wrong()) };
     let number = |text: &str| text.parse::<f64>().map_err(|_| wrong());
-    Ok((contact.trim(), checked(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? })?))
-}
-
-/// A surface that the solver will take.
-fn checked(surface: Surface<f64>) -> Result<Surface<f64>, Failure> {
-    let Surface { mu, e, .. } = surface;
-    let wrong = if let Some(&value) = [mu, e].iter().find(|value| !value.is_finite()) {
-        ImpactError::NotFinite { value }
-    } else if mu < 0.0 {
-        ImpactError::NegativeFriction { mu }
-    } else if !(0.0..=1.0).contains(&e) {
-        ImpactError::RestitutionOutOfRange { e }
-    } else {
-        return Ok(surface);
-    };
-    Err(wrong.into())
+    let surface = GivenSurface::from(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? });
+    Ok((contact.trim(), surface.check().map_err(Failure::from)?))
 }

@@ -1,4 +1,4 @@
-//! Expressions of time in the syntax of the model language.
+//! Expressions of numbers, and of time, in the syntax of the model language.
 
 use std::sync::Arc;
 
@@ -26,7 +26,30 @@ enum Node {
 /// # Errors
 ///
 /// What cannot be read, in a sentence.
-pub fn read(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String> {
+pub fn of_time(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String> {
+    let node = read(text)?;
+    Ok(Arc::new(move |t| value(&node, t)))
+}
+
+/// A number, as `pi/4` or `-2.5e-3`.
+///
+/// # Errors
+///
+/// What cannot be read, or is not finite, in a sentence.
+pub fn number(text: &str) -> Result<f64, String> {
+    let node = read(text)?;
+    // What does not depend on time is the same at all times.
+    let [first, other] = [0.0, 0.7].map(|t| value(&node, t));
+    match first {
+        _ if first.to_bits() != other.to_bits() && !first.is_nan() => {
+            Err("it depends on the time t: give a number".to_owned())
+        }
+        number if number.is_finite() => Ok(number),
+        number => Err(format!("it is {number}: give a finite number")),
+    }
+}
+
+fn read(text: &str) -> Result<Node, String> {
     if text.len() > MOST {
         return Err(format!("the expression is longer than {MOST} characters"));
     }
@@ -51,8 +74,7 @@ pub fn read(text: &str) -> Result<Arc<dyn Fn(f64) -> f64 + Send + Sync>, String>
     let [definition] = &tree.definitions[..] else {
         return Err("give one expression of the time t, as in 2*sin(3*t)".to_owned());
     };
-    let node = node(&definition.value)?;
-    Ok(Arc::new(move |t| value(&node, t)))
+    node(&definition.value)
 }
 
 fn node(expression: &Expr) -> Result<Node, String> {
@@ -136,7 +158,7 @@ fn value(node: &Node, t: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::read;
+    use super::{number, of_time};
 
     #[test]
     fn expressions_of_time_are_read() {
@@ -146,11 +168,21 @@ mod tests {
             ("max(0, min(1, t))", 0.25, 0.25),
             ("5", 1.0, 5.0),
         ] {
-            let found = read(text).unwrap()(t);
+            let found = of_time(text).unwrap()(t);
             assert!((found - expected).abs() < 1e-15, "{text}: {found}");
         }
         for text in ["", "2*", "q1", "sin(t, t)", "foo(t)", "1; y = 2", "t }"] {
-            assert!(read(text).is_err(), "{text}");
+            assert!(of_time(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_read() {
+        for (text, expected) in [("pi/4", std::f64::consts::FRAC_PI_4), (" -2.5e-3", -2.5e-3), ("3", 3.0)] {
+            assert_eq!(number(text).unwrap(), expected, "{text}");
+        }
+        for text in ["", "t", "1/0", "sqrt(-1)", "NaN", "two", "1,2", "1e999"] {
+            assert!(number(text).is_err(), "{text}");
         }
     }
 }

@@ -1,0 +1,69 @@
+//! `hodograph new`: writes a commented model to begin with.
+
+use std::path::{Path, PathBuf};
+
+use crate::output;
+use crate::stop::{Outcome, Stop};
+
+/// The model, of a mechanism called `Pendulum`.
+const PENDULUM: &str = include_str!("pendulum.mech");
+
+/// Write a commented model to begin with: a pendulum whose tip strikes a wall
+///
+///   hodograph new pendulum
+///   hodograph simulate pendulum.mech --until 5 --mu 0.3 --e 0.7 --law stronge --html pendulum.html
+#[derive(Clone, Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// the name of the mechanism, in letters, digits and `_`; its file is NAME.mech
+    name: PathBuf,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Stop::Call`] where the name is none; [`Stop::Fault`] where the file exists or cannot be written.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let given = &arguments.name;
+    let stem = match given.extension() {
+        Some(extension) if extension == "mech" => given.file_stem(),
+        _ => given.file_name(),
+    };
+    let stem = stem.map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let Some((file, mechanism)) = names(&stem) else {
+        return Err(Stop::Call(format!(
+            "`{}` cannot be the name of a mechanism: give letters, digits and `_`, a letter first, as in my_pendulum",
+            given.display()
+        )));
+    };
+    let path = given.with_file_name(format!("{file}.mech"));
+    output::check(&path)?;
+    let text = PENDULUM.replace("mechanism Pendulum;", &format!("mechanism {mechanism};"));
+    output::new_file(&path, text.as_bytes())?;
+    let shown = path.display();
+    let page = Path::new(&file).with_extension("html");
+    output::say(format_args!(
+        "wrote {shown}. Next:\n  hodograph check {shown}\n  hodograph simulate {shown} --until 5 --mu 0.3 --e 0.7 --law stronge --html {}",
+        page.display()
+    ));
+    Ok(())
+}
+
+/// The names of file and mechanism: `my_pendulum` and `MyPendulum`, from either of them.
+fn names(given: &str) -> Option<(String, String)> {
+    let known = given.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
+    if !known || !given.starts_with(|letter: char| letter.is_ascii_alphabetic()) {
+        return None;
+    }
+    let mechanism: String = given
+        .split('_')
+        .map(|word| {
+            let mut letters = word.chars();
+            letters
+                .next()
+                .map_or(String::new(), |first| first.to_ascii_uppercase().to_string() + letters.as_str())
+        })
+        .collect();
+    Some((hodograph_generator::rust_names::snake_case(&mechanism), mechanism))
+}

@@ -1,0 +1,45 @@
+//! The energies of a motion over time.
+
+use hodograph::{Mechanism as _, State};
+use hodograph_generator::model::mechanism::{LoadKind, Mechanism};
+use hodograph_interpreter::InterpretedMechanism;
+
+/// Energies at the recorded moments, J.
+#[derive(Clone, Debug, Default)]
+pub struct Energies {
+    kinetic: Vec<f64>,
+    /// none where the mechanism has no potential energy that is known
+    potential: Vec<Option<f64>>,
+}
+
+impl Energies {
+    /// Those of a state.
+    pub fn add(&mut self, mechanism: &InterpretedMechanism, state: &State<'_>) {
+        self.kinetic.push(mechanism.kinetic_energy(state).unwrap_or(f64::NAN));
+        self.potential.push(mechanism.potential_energy(state).unwrap_or(Some(f64::NAN)));
+    }
+
+    /// The curves by name, and what is to be said where one is missing: a potential energy that is not
+    /// defined is not zero, and has no sum with the kinetic energy.
+    pub fn curves(self, model: &Mechanism) -> (Vec<(&'static str, Vec<f64>)>, Option<String>) {
+        let potential: Option<Vec<f64>> = self.potential.into_iter().collect();
+        let kinetic = self.kinetic;
+        let Some(potential) = potential else {
+            return (vec![("kinetic", kinetic)], missing(model));
+        };
+        let sum = kinetic.iter().zip(&potential).map(|(kinetic, potential)| kinetic + potential).collect();
+        (vec![("kinetic", kinetic), ("potential", potential), ("sum", sum)], None)
+    }
+}
+
+/// What is to be said of a model without potential energy: nothing where no load has one.
+pub fn missing(model: &Mechanism) -> Option<String> {
+    let conservative = |kind: &LoadKind| matches!(kind, LoadKind::Gravity(_) | LoadKind::Spring { .. });
+    model.loads.iter().any(|load| conservative(&load.kind)).then(|| {
+        format!(
+            "the potential energy of {} is not defined by its coordinates (the position of a body with weight, or of a spring, follows from \
+             velocities alone): neither it nor the sum of the energies is shown",
+            model.name
+        )
+    })
+}

@@ -1,0 +1,38 @@
+//! Which points turn about the origin O at a fixed distance, so that a line from O to them shows a link.
+
+use hodograph::{Kind, Mechanism as _, State as Borrowed};
+use hodograph_interpreter::InterpretedMechanism;
+use nalgebra::Vector3;
+
+use crate::json::state::State;
+
+/// States that are compared with the first.
+const OTHERS: usize = 3;
+/// A distance changes if it does by more than this part of it.
+const SAME: f64 = 1e-9;
+
+/// Whether the position of a point from O changes with the coordinates, and its length does not.
+pub fn turns_about_origin(mechanism: &InterpretedMechanism, point: usize, state: &State) -> bool {
+    let place = |coordinates: &[f64]| -> Option<Vector3<f64>> {
+        let inputs = vec![0.0; mechanism.count(Kind::Input)];
+        let speeds = vec![0.0; mechanism.count(Kind::Speed)];
+        let state = Borrowed { time: state.time, coordinates, speeds: &speeds, inputs: &inputs };
+        mechanism.position(point, &state).ok()
+    };
+    let Some(here) = place(&state.coordinates) else { return false };
+    let length = here.norm();
+    let mut turns = false;
+    for other in 1..=OTHERS {
+        let step = |(index, value): (usize, &f64)| value + 0.3 * (1.7 * (index + 3 * other) as f64).sin();
+        let mut moved: Vec<f64> = state.coordinates.iter().enumerate().map(step).collect();
+        if mechanism.normalize(&mut moved).is_err() {
+            return false;
+        }
+        let Some(there) = place(&moved) else { return false };
+        if !((there.norm() - length).abs() <= SAME * length) {
+            return false;
+        }
+        turns = turns || (there - here).norm() > 1e3 * SAME * length;
+    }
+    turns && length > 0.0
+}

@@ -1,0 +1,239 @@
+//! What a new user does first: a model from `new`, numbers by name, tables, completions, pages of `man`,
+//! mistakes for editors, and `check --watch`.
+
+mod common;
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use common::{hodograph, model, number};
+use serde_json::Value;
+
+fn place(folder: &tempfile::TempDir, name: &str) -> String {
+    folder.path().join(name).display().to_string()
+}
+
+/// The new model has no mistake, is not written over, and its contact closes.
+#[cfg(feature = "derive")]
+#[test]
+fn a_new_model_collides() {
+    let folder = tempfile::tempdir().unwrap();
+    let (name, path) = (place(&folder, "my_pendulum"), place(&folder, "my_pendulum.mech"));
+    let made = hodograph(&["new", &name], "");
+    assert_eq!(made.told().0, 0, "{}", made.stderr);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains("mechanism MyPendulum;"), "{text}");
+    let checked = hodograph(&["check", &path], "");
+    assert_eq!((checked.code, checked.stdout.as_str()), (0, ""));
+    let again = hodograph(&["new", &name], "");
+    assert!(again.told().0 == 1 && again.stderr.contains("exists"), "{}", again.stderr);
+    assert_eq!(fs::read_to_string(&path).unwrap(), text);
+    let page = place(&folder, "my_pendulum.html");
+    let surface = ["--mu", "0.3", "--e", "0.7", "--law", "stronge"];
+    let call = ["simulate", &path, "--until", "5", "--html", &page, "--format", "table"];
+    let run = hodograph(&[&call[..], &surface].concat(), "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    for part in ["q1 [rad]", "Events", "tip_wall", "impacts", "6 collisions; still in motion at t = 5 s."] {
+        assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+    let shown = fs::read_to_string(&page).unwrap();
+    for part in
+        ["Model, parameters and surfaces", "mechanism MyPendulum;", "restitution", "distance of the wall"]
+    {
+        assert!(shown.contains(part), "{part}");
+    }
+    for wrong in ["3x", "a b", "a-b", "", "ä"] {
+        assert_eq!(hodograph(&["new", wrong], "").told().0, 2, "{wrong}");
+    }
+}
+
+/// The README shows the model that `new` writes, without its comments; the one of CONTRIBUTING.md is the same.
+#[test]
+fn the_readme_shows_the_new_model() {
+    let bare = |text: &str| -> String {
+        let lines = text.lines().map(|line| line.split("//").next().unwrap_or_default());
+        let letters: String = lines.collect::<String>().split_whitespace().collect();
+        letters.replace(",}", "}")
+    };
+    let written = bare(include_str!("../src/commands/new/pendulum.mech"));
+    for page in ["README.md", "CONTRIBUTING.md"] {
+        let text = fs::read_to_string(common::root().join(page)).unwrap();
+        let block = text.split("```text\n").find(|block| block.contains("mechanism Pendulum;")).unwrap();
+        assert_eq!(bare(block.split("```").next().unwrap()), written, "{page}");
+    }
+}
+
+/// Numbers by name are those of the JSON state, in any order and with expressions.
+#[test]
+fn states_are_given_by_name() {
+    let model = model("two_sleds");
+    let eval = |more: &[&str]| hodograph(&[&["eval", &model], more].concat(), "");
+    let whole = eval(&["--state", r#"{"parameters":{"m":2},"q":{"q3":0.5},"u":{"u1":2,"u4":1}}"#]).line();
+    assert_eq!((number(&whole["q"]["q3"]), number(&whole["udot"]["u1"]).is_finite()), (0.5, true), "{whole}");
+    assert_ne!(eval(&["--state", "q3=0.5,u1=2,u4=1"]).line(), whole);
+    for more in [
+        &["--state", "q3=0.5,u1=2,u4=1", "--parameter", "m=2"][..],
+        &["--state", "u1=4/2", "--parameter", "m=2", "--state", "u4=cos(0), q3 = 1/2"],
+        &["--state", r#"{"q":{"q3":7},"u":{"u1":2,"u4":1}}"#, "--state", "q3=0.5", "--parameter", "m=2"],
+    ] {
+        assert_eq!(eval(more).line(), whole, "{more:?}");
+    }
+    for (more, kind) in [
+        (&["--state", "q9=1"][..], "unknown_name"),
+        (&["--parameter", "q3=1"][..], "unknown_name"),
+        (&["--state", "q3=two"][..], "not_finite"),
+        (&["--state", "q3=1/0"][..], "not_finite"),
+        (&["--state", "q3=t"][..], "not_finite"),
+        (&["--state", "u2=1"][..], "unknown_name"),
+    ] {
+        assert_eq!(eval(more).error_kind(), kind, "{more:?}");
+    }
+    for more in [&["--state", "q3=1,q3=2"][..], &["--state", "q3=1,4"], &["--state", "{}", "--state", "{}"]] {
+        assert_eq!(eval(more).told().0, 2, "{more:?}");
+    }
+    let singular = hodograph(&["eval", &common::model("planar_double_pendulum"), "--parameter", "l2=0"], "");
+    let message = singular.line()["error"]["message"].to_string();
+    assert!(message.contains("change the parameters: l2 is 0"), "{message}");
+}
+
+/// The tables of `eval` and `collide` have the numbers of the JSON, and errors are told beside them.
+#[test]
+fn tables_say_what_the_objects_say() {
+    let model = model("two_sleds");
+    let surface = ["--mu", "0.6", "--e", "0.8", "--law", "stronge"];
+    for call in [&["eval", &model][..], &[&["collide", &model][..], &surface].concat()] {
+        let object = hodograph(call, "").line();
+        let run = hodograph(&[call, &["--format", "table"]].concat(), "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let read: Vec<f64> = run
+            .stdout
+            .split_whitespace()
+            .filter_map(|word| word.trim_end_matches([',', ';']).parse().ok())
+            .collect();
+        let mut wanted = Vec::new();
+        leaves(&object, &mut wanted);
+        for number in wanted {
+            let near = |found: &f64| (found - number).abs() <= 5.1e-6 * number.abs() + 1e-300;
+            // Partial velocities are not in the tables: they are V of the objects.
+            assert!(read.iter().any(near), "{number} is not in\n{}", run.stdout);
+        }
+    }
+    let wrong = ["collide", &model, "--mu", "-1", "--e", "0.8", "--law", "stronge"];
+    assert_eq!(hodograph(&wrong, "").error_kind(), "negative_friction");
+    let told = hodograph(&[&wrong[..], &["--format", "table"]].concat(), "");
+    assert_eq!(told.told(), (1, "error: the coefficient of friction is -1: it must not be negative"));
+}
+
+/// All numbers of an object but those of fields that tables leave out.
+fn leaves(value: &Value, out: &mut Vec<f64>) {
+    match value {
+        Value::Number(_) => out.push(number(value)),
+        Value::Array(items) => items.iter().for_each(|item| leaves(item, out)),
+        Value::Object(fields) => fields
+            .iter()
+            .filter(|(name, _)| !["V", "remainder", "velocity"].contains(&name.as_str()))
+            .for_each(|(_, item)| leaves(item, out)),
+        _ => {}
+    }
+}
+
+#[test]
+fn shells_and_man_know_the_tool() {
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = hodograph(&["completions", shell], "");
+        assert_eq!(script.code, 0, "{}", script.stderr);
+        for word in ["simulate", "--tolerance", "completions"] {
+            let word = if shell == "fish" { word.trim_start_matches("--") } else { word };
+            assert!(script.stdout.contains(word), "{shell}: {word}");
+        }
+        assert!(!script.stdout.contains("derive-worker"), "{shell}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let pages = place(&folder, "man1");
+    let written = hodograph(&["man", &pages], "");
+    assert_eq!(written.told(), (0, ""));
+    let help = hodograph(&["--help"], "").stdout;
+    let commands = help.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let names = commands.lines().filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    for name in names.filter_map(|line| line.split_whitespace().next()).filter(|&name| name != "help") {
+        let page = fs::read_to_string(format!("{pages}/hodograph-{name}.1")).unwrap();
+        assert!(page.contains(".SH NAME") && page.contains(".SH OPTIONS"), "{name}");
+    }
+}
+
+const WRONG: &str =
+    "mechanism Rod;\ncoordinates { q1: rad }\nspeeds { u1: rad/s }\nframes { B = N.rotate(z, qq); }\n";
+
+/// Mistakes as objects and as SARIF have the code, the place and the cure that the text has.
+#[test]
+fn mistakes_are_written_for_programs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = place(&folder, "a rod.mech");
+    fs::write(&path, WRONG).unwrap();
+    let text = hodograph(&["check", &path], "");
+    assert!(text.stdout.contains("error[E020]"), "{}", text.stdout);
+    let objects = hodograph(&["check", "--format", "json", &path], "");
+    assert_eq!(objects.code, 1);
+    let lines = objects.lines();
+    let found = lines.iter().find(|line| line["code"] == "E020").unwrap();
+    assert_eq!((number(&found["line"]), number(&found["column"])), (4.0, 26.0), "{found}");
+    assert_eq!((number(&found["end_line"]), number(&found["end_column"])), (4.0, 28.0), "{found}");
+    assert_eq!(found["severity"], "error");
+    assert!(found["message"].as_str().unwrap().contains("qq"), "{found}");
+    let log = hodograph(&["check", "--format", "sarif", &path], "");
+    assert_eq!(log.code, 1);
+    let log = log.line();
+    assert_eq!(log["version"], "2.1.0");
+    let run = &log["runs"][0];
+    let results = run["results"].as_array().unwrap();
+    assert_eq!(results.len(), lines.len());
+    let result = results.iter().find(|result| result["ruleId"] == "E020").unwrap();
+    assert_eq!(result["level"], "error");
+    let at = &result["locations"][0]["physicalLocation"];
+    assert_eq!(at["region"]["startLine"], 4);
+    assert!(at["artifactLocation"]["uri"].as_str().unwrap().ends_with("a%20rod.mech"), "{at}");
+    for result in results {
+        let known = run["tool"]["driver"]["rules"].as_array().unwrap();
+        assert!(known.iter().any(|rule| rule["id"] == result["ruleId"]), "{result}");
+    }
+    let fine = hodograph(&["check", "--format", "sarif", &model("two_sleds")], "");
+    assert_eq!((fine.code, fine.line()["runs"][0]["results"].as_array().unwrap().len()), (0, 0));
+}
+
+/// A change of a model is checked when it is saved.
+#[test]
+fn changes_are_checked_as_they_are_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = place(&folder, "rod.mech");
+    fs::write(&path, WRONG).unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+        .args(["check", "--watch", &path])
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let stderr = BufReader::new(child.stderr.take().unwrap());
+    std::thread::spawn(move || {
+        stderr.lines().map_while(Result::ok).for_each(|line| drop(sender.send(line)));
+    });
+    let wait = |what: &str| {
+        let end = Instant::now() + Duration::from_secs(60);
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            match receiver.recv_timeout(left) {
+                Ok(line) if line.contains(what) => return true,
+                Ok(_) => {}
+                Err(_) => return false,
+            }
+        }
+    };
+    let first = wait("1 model checked, 1 with errors");
+    fs::copy(model("two_sleds"), &path).unwrap();
+    let second = wait("1 model checked, 0 with errors");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(first && second, "{first} {second}");
+}

@@ -1,0 +1,180 @@
+//! Files that are written whole or not at all, and never over what is read; energies that are not defined;
+//! tolerances that no step can meet.
+
+mod common;
+
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use common::{Run, hodograph, model, root};
+
+const BALL: [&str; 10] = ["--until", "2", "--step", "0.001", "--mu", "0", "--e", "0.5", "--law", "newton"];
+
+fn ball(folder: &Path) -> String {
+    let path = folder.join("ball.mech");
+    fs::copy(root().join("tests/data/motion/bouncing_ball.mech"), &path).unwrap();
+    // With its derivation: deriving is not what is tried here.
+    let kept = root().join("tests/data/motion/bouncing_ball.derivation");
+    if kept.exists() {
+        fs::copy(kept, folder.join("ball.derivation")).unwrap();
+    }
+    path.display().to_string()
+}
+
+fn simulate(model: &str, more: &[&str]) -> Run {
+    hodograph(&[&["simulate", model], &BALL[..], more].concat(), "")
+}
+
+/// Whoever reads three lines and leaves gets the whole recording, page and figure: the same as one who reads
+/// all.
+#[test]
+fn a_reader_who_leaves_does_not_cut_the_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ball(folder.path());
+    let files = |name: &str| {
+        ["mcap", "html", "svg"]
+            .map(|ending| folder.path().join(format!("{name}.{ending}")).display().to_string())
+    };
+    let (all, cut) = (files("all"), files("cut"));
+    let options = |[mcap, html, svg]: &[String; 3]| -> Vec<String> {
+        ["--mcap", mcap, "--html", html, "--plot", svg].map(str::to_owned).to_vec()
+    };
+    let run = simulate(&model, &options(&all).iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+        .args(["simulate", &model])
+        .args(BALL)
+        .args(options(&cut))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut begin = [0; 60];
+    child.stdout.take().unwrap().read_exact(&mut begin).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    for (all, cut) in all.iter().zip(&cut) {
+        assert!(fs::read(all).unwrap() == fs::read(cut).unwrap(), "{cut}");
+    }
+}
+
+/// A file that is read is not written, by whatever name.
+#[test]
+fn what_is_read_is_never_written_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ball(folder.path());
+    let text = fs::read(&model).unwrap();
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    fs::write(place("table.svg"), "t,F\n0,1\n").unwrap();
+    fs::write(place("state.json"), "{}").unwrap();
+    fs::create_dir(place("sub")).unwrap();
+    let around = place("sub/../ball.mech");
+    let (table, state) = (place("table.svg"), place("state.json"));
+    for more in [
+        &["--html", model.as_str()][..],
+        &["--mcap", &around][..],
+        &["--html", &place("ball.derivation")][..],
+        &["--inputs", &table, "--plot", &table][..],
+        &["--state", &state, "--html", &state][..],
+    ] {
+        let run = simulate(&model, more);
+        assert!(run.told().0 == 2 && run.stderr.contains("would be written over"), "{more:?} {}", run.stderr);
+    }
+    let (page, again) = (place("new.html"), place("sub/../new.html"));
+    let twice = simulate(&model, &["--html", &page, "--mcap", &again]);
+    assert!(twice.told().0 == 2 && twice.stderr.contains("is to be two files"), "{}", twice.stderr);
+    let drawn =
+        hodograph(&["plot", &model, "--mu", "0.1", "--e", "0.5", "--format", "svg", "--output", &model], "");
+    assert!(drawn.told().0 == 2 && drawn.stderr.contains("would be written over"), "{}", drawn.stderr);
+    assert_eq!(fs::read(&model).unwrap(), text);
+    assert_eq!(fs::read(&table).unwrap(), b"t,F\n0,1\n");
+    assert!(!Path::new(&page).exists());
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink(&model, place("link.html")).unwrap();
+        let run = simulate(&model, &["--html", &place("link.html")]);
+        assert!(run.told().0 == 2 && run.stderr.contains("would be written over"), "{}", run.stderr);
+    }
+}
+
+/// The potential energy of the bicycle is not a function of its coordinates: it is said, and neither it nor a
+/// sum is drawn or recorded.
+#[test]
+fn energies_that_are_not_defined_are_not_shown() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let (mcap, html, svg) = (place("b.mcap"), place("b.html"), place("b.svg"));
+    let call = ["simulate", &model("whipple_bicycle"), "--until", "0.1", "--step", "0.05"];
+    let files = ["--mcap", &mcap, "--html", &html, "--plot", &svg];
+    let run = hodograph(&[&call[..], &files].concat(), "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stderr.contains("the potential energy of WhippleBicycle is not defined"), "{}", run.stderr);
+    let page = fs::read_to_string(&html).unwrap();
+    let data = page.split("id=\"data\">").nth(1).unwrap().split("</script>").next().unwrap();
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let energies: Vec<&str> = data["series"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(|series| series["panel"] == "energy")
+        .map(|series| series["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(energies, ["kinetic"]);
+    assert!(data["notes"][0].as_str().unwrap().contains("not defined"), "{}", data["notes"]);
+    assert!(!fs::read_to_string(&svg).unwrap().contains(">potential<"));
+    let bytes = fs::read(&mcap).unwrap();
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        if message.channel.topic == "/energy" {
+            let numbers: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
+            assert_eq!(numbers.as_object().unwrap().len(), 1, "{numbers}");
+        }
+    }
+    let read = hodograph(&[&call[..], &["--format", "table"]].concat(), "");
+    assert!(
+        read.stdout.contains("is not defined") && !read.stdout.contains("potential  "),
+        "{}",
+        read.stdout
+    );
+}
+
+/// A tolerance below the rounding of a step is refused at once, and is no hang.
+#[test]
+fn tolerances_that_no_step_meets_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ball(folder.path());
+    for tolerance in ["1e-22", "1e-30", "1e-17", "0", "-1", "NaN"] {
+        let run = simulate(&model, &["--tolerance", tolerance]);
+        assert!(run.told().0 == 2 && run.stderr.contains("--tolerance"), "{tolerance} {}", run.stderr);
+    }
+    let fine = simulate(&model, &["--tolerance", "1e-15"]);
+    assert_eq!(fine.code, 0, "{}", fine.stderr);
+}
+
+/// Whatever is wrong with a motion is told in one way: a sentence on standard error, nothing on standard
+/// output.
+#[test]
+fn errors_of_simulate_have_one_form() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ball(folder.path());
+    for format in ["json", "csv", "table"] {
+        for more in [
+            &["--until", "1", "--mu", "0", "--e", "1.2", "--law", "newton"][..],
+            &["--until", "1", "--mu", "-1", "--e", "1", "--law", "newton"],
+            &["--until", "1", "--mu", "0", "--e", "1", "--law", "newtn"],
+            &["--until", "-1", "--mu", "0", "--e", "1", "--law", "newton"],
+            &["--until", "1", "--mu", "0", "--e", "1", "--law", "newton", "--state", "{"],
+            &["--until", "1", "--mu", "0", "--e", "1", "--law", "newton", "--state", "y=1"],
+            &["--until", "1", "--mu", "0", "--e", "1", "--law", "newton", "--parameter", "m=-1"],
+            &["--until", "1", "--mu", "0", "--e", "1", "--law", "newton", "--input", "F=1"],
+            &["--until", "1"],
+        ] {
+            let run = hodograph(&[&["simulate", &model, "--format", format], more].concat(), "");
+            let (code, told) = run.told();
+            let last = told.lines().last().unwrap_or_default();
+            assert!(code > 0 && last.starts_with("error: ") && !last.contains('{'), "{more:?} {told}");
+        }
+    }
+}
