@@ -29,7 +29,8 @@ pub fn turns_about_origin(mechanism: &InterpretedMechanism, point: usize, state:
             return false;
         }
         let Some(there) = place(&moved) else { return false };
-        if !((there.norm() - length).abs() <= SAME * length) {
+        let change = (there.norm() - length).abs();
+        if change.is_nan() || change > SAME * length {
             return false;
         }
         turns = turns || (there - here).norm() > 1e3 * SAME * length;
