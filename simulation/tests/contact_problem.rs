@@ -318,6 +318,12 @@ fn malformed_problems_are_refused() {
     assert!(matches!(solve(&with(&good, &[0.1, 0.2]), None), Err(Unsolved::Lengths)));
     assert!(matches!(with_modes(&with(&good, &[0.1]), &[]), Err(Impossible::Problem(Unsolved::Lengths))));
     assert!(enumerate(&with(&bad, &[0.1])).is_empty());
+    // No contacts have no forces.
+    let (none, nothing) = (DMatrix::zeros(0, 0), DVector::zeros(0));
+    let empty = Problem { w: &none, beta: &nothing, mu: &[], slip: &[], noise: None };
+    assert!(solve(&empty, None).unwrap().force.is_empty());
+    assert_eq!(enumerate(&empty).len(), 1);
+    assert_eq!(with_modes(&empty, &[]).unwrap().margin, 1.0);
 }
 
 /// With velocities for accelerations: a box that falls flat on four corners moves straight up.
