@@ -76,6 +76,7 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
     let mut wild = 0;
     let settled = larger(constant(1e-9), constant::<T>(64.0) * T::default_epsilon());
     let (mut least, mut since) = (size, 0);
+    let mut damped = constant::<T>(1e-2);
     for _ in 0..run.steps {
         if !size.is_finite() || size <= run.enough {
             break;
@@ -84,9 +85,9 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
             *step = -*f;
         }
         // Regularised by a part of the residual, so that steps stay bounded where the matrix is singular and
-        // convergence stays fast.
+        // convergence stays fast; by less of it after whole steps, which forces far greater than others need.
         let damping = larger(constant(1e-8), constant::<T>(8.0) * T::default_epsilon())
-            + smaller(constant(1e-2), size * constant(1e-2));
+            + smaller(constant(1e-2), size * damped);
         let blocks = |i: usize| derivative(&scaled.law(i), run.rho, &three(x, i), &three(v, i));
         let mut solved = steps.solve(scaled, &blocks, run.alpha + damping, step);
         if !solved {
@@ -113,6 +114,11 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
             }
             part *= constant(0.5);
         }
+        damped = if best_part == T::one() {
+            larger(damped * constant(0.1), constant(1e-8))
+        } else {
+            smaller(damped * constant(10.0), constant(1e-2))
+        };
         let stalled = since > PATIENCE;
         if stalled {
             (least, since) = (size, 0);
