@@ -115,7 +115,7 @@ fn one_contact_has_the_mode_of_the_exact_selection() {
             (exact, found) => panic!("{matrix} {beta} {slip} {mu}: {exact:?} {found:?}"),
         }
     }
-    assert!(compared > 3_000 && refused > 10, "{compared} {refused}");
+    assert!(compared > 3_000 && refused > 0, "{compared} {refused}");
 }
 
 #[test]
