@@ -1,9 +1,9 @@
 //! The forces in the middle of those that the laws allow.
 //!
-//! Forces x_0 + Z y give one and the same motion. Each cone is a second-order cone u_n >= abs(u_tan), where u_tan is
-//! lambda_tan / mu; contacts that slide ask u_n >= 0. The centre is the least of
-//! - sum ln(u_n^2 - abs(u_tan)^2) - sum ln u_n + abs(x)^2 / (2 load^2). Where the cones have no common point, the
-//! forces whose greatest lack of normal force is least are taken.
+//! Forces x_0 + Z y give one and the same motion. Each sticking contact asks u_n >= abs(u_tan), where u_tan is lambda_tan /
+//! mu, and each sliding one u_n >= 0. The centre has the least sum of -ln(u_n^2 - abs(u_tan)^2), of -ln u_n and of
+//! abs(x)^2 / (2 load^2). Where these conditions exclude each other, the forces are taken whose greatest lack of normal
+//! force is least.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
