@@ -41,7 +41,7 @@ fn steps(made: &Contacts) -> (usize, Option<f64>) {
     };
     let (mut memory, mut matrix) = (vec![0.0; memory_of_several(n / 3)], vec![0.0; n * n]);
     let (mut force, mut acceleration) = (vec![0.0; n], vec![0.0; n]);
-    let mut counted = Counted { inner: Dense { memory: &mut matrix }, steps: 0 };
+    let mut counted = Counted { inner: Dense::new(&mut matrix), steps: 0 };
     let found = solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut counted);
     (counted.steps, found.ok().map(|found| found.greatest()))
 }

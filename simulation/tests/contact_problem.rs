@@ -13,15 +13,11 @@ fn of(made: &Contacts) -> Problem<'_> {
     Problem { w: &made.w, beta: &made.beta, mu: &made.mu, slip: &made.slip, noise: None }
 }
 
-/// A rigid body or several in a plane (x to the right, z up): `points` are (body, x, z, angle of the normal from
-/// the vertical, sign), with the forces of gravity and pushes given as free accelerations.
-fn planar(
-    bodies: usize,
-    masses: &[[f64; 3]],
-    free: &[[f64; 3]],
-    points: &[Vec<(usize, f64, f64, f64, f64)>],
-    mu: f64,
-) -> Contacts {
+/// Body, x, z, angle of the normal from the vertical, sign.
+type Point = (usize, f64, f64, f64, f64);
+
+/// A rigid body or several in a plane (x to the right, z up): `points` are the two sides of each contact, with the forces of gravity and pushes given as free accelerations.
+fn planar(bodies: usize, masses: &[[f64; 3]], free: &[[f64; 3]], points: &[Vec<Point>], mu: f64) -> Contacts {
     let k = points.len();
     let mut partials = DMatrix::<f64>::zeros(3 * k, 3 * bodies);
     for (i, sides) in points.iter().enumerate() {
@@ -318,6 +314,12 @@ fn malformed_problems_are_refused() {
     assert!(matches!(solve(&with(&good, &[0.1, 0.2]), None), Err(Unsolved::Lengths)));
     assert!(matches!(with_modes(&with(&good, &[0.1]), &[]), Err(Impossible::Problem(Unsolved::Lengths))));
     assert!(enumerate(&with(&bad, &[0.1])).is_empty());
+    // No contacts have no forces.
+    let (none, nothing) = (DMatrix::zeros(0, 0), DVector::zeros(0));
+    let empty = Problem { w: &none, beta: &nothing, mu: &[], slip: &[], noise: None };
+    assert!(solve(&empty, None).unwrap().force.is_empty());
+    assert_eq!(enumerate(&empty).len(), 1);
+    assert_eq!(with_modes(&empty, &[]).unwrap().margin, 1.0);
 }
 
 /// With velocities for accelerations: a box that falls flat on four corners moves straight up.

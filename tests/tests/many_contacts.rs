@@ -72,7 +72,7 @@ fn run(mechanism: &InterpretedMechanism, start: &Start, options: Options, until:
     let state =
         State { time: 0.0, coordinates: &start.coordinates, speeds: &start.speeds, inputs: &start.inputs };
     let mut simulation = Simulation::new(mechanism, &state, options).unwrap();
-    let before = simulation.energy().unwrap().total();
+    let before = simulation.energy().unwrap().total().unwrap();
     let (mut events, mut error) = (Vec::new(), None);
     loop {
         match simulation.advance(until) {
@@ -89,7 +89,7 @@ fn run(mechanism: &InterpretedMechanism, start: &Start, options: Options, until:
         events,
         error,
         coordinates: simulation.coordinates().to_vec(),
-        account: after.total() - after.friction - after.impacts - after.inputs - before,
+        account: after.total().unwrap() - after.friction - after.impacts - after.inputs - before,
     }
 }
 

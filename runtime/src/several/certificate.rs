@@ -29,6 +29,12 @@ pub struct Certificate<T> {
 }
 
 impl<T: Scalar> Certificate<T> {
+    /// No violation.
+    pub(super) fn none() -> Self {
+        let zero = T::zero();
+        Self { approach: zero, pull: zero, complementarity: zero, cone: zero, friction: zero }
+    }
+
     /// The greatest one.
     #[inline]
     pub fn greatest(&self) -> T {
@@ -51,8 +57,7 @@ pub(super) fn certificate<T: Scalar>(
     terms: &[T],
 ) -> Certificate<T> {
     let zero = T::zero();
-    let mut worst =
-        Certificate { approach: zero, pull: zero, complementarity: zero, cone: zero, friction: zero };
+    let mut worst = Certificate::none();
     for i in 0..scaled.contacts() {
         let (law, x, v, terms) = (scaled.law(i), three(x, i), three(v, i), three(terms, i));
         let rate = larger(terms.x, larger(terms.y, terms.z));

@@ -20,8 +20,15 @@ pub trait NewtonSteps<T: Scalar> {
 
 /// The elimination of a full matrix, in memory of the caller.
 pub struct Dense<'a, T> {
-    /// (3 k)^2 numbers
-    pub memory: &'a mut [T],
+    memory: &'a mut [T],
+}
+
+impl<'a, T> Dense<'a, T> {
+    /// The elimination in memory of (3 k)^2 numbers; with less it solves nothing.
+    #[inline]
+    pub fn new(memory: &'a mut [T]) -> Self {
+        Self { memory }
+    }
 }
 
 impl<T: Scalar> NewtonSteps<T> for Dense<'_, T> {
@@ -33,8 +40,11 @@ impl<T: Scalar> NewtonSteps<T> for Dense<'_, T> {
         right: &mut [T],
     ) -> bool {
         let n = right.len();
+        let Some(memory) = self.memory.get_mut(..n * n).filter(|memory| !memory.is_empty()) else {
+            return false;
+        };
         // By rows.
-        for (i, rows) in self.memory.chunks_exact_mut(3 * n).enumerate() {
+        for (i, rows) in memory.chunks_exact_mut(3 * n).enumerate() {
             let (a, b) = blocks(i);
             let inactive = b.iter().all(|entry| entry.is_zero());
             for j in 0..n / 3 {
@@ -51,7 +61,7 @@ impl<T: Scalar> NewtonSteps<T> for Dense<'_, T> {
                 }
             }
         }
-        eliminate(self.memory, right)
+        eliminate(memory, right)
     }
 }
 

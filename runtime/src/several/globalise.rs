@@ -45,7 +45,7 @@ pub const fn memory_of_several(k: usize) -> usize {
 /// Forces and accelerations of k contacts; `force` holds a first guess, or zeros.
 ///
 /// `steps` solves linear systems: [`super::Dense`] is for few contacts. `memory` has at least
-/// [`memory_of_several`] numbers. No more than some 1500 steps of Newton's method are made; usual are 5 to 20.
+/// [`memory_of_several`] numbers. At most 5500 steps of Newton's method are made; usual are 5 to 30.
 ///
 /// # Errors
 /// See [`Unfound`]. Forces whose certificate is above 4096 eps (9e-13) are never returned.
@@ -63,14 +63,7 @@ pub fn solve_several<T: Scalar, S: NewtonSteps<T>>(
         return Err(Unfound::Lengths);
     }
     if k == 0 {
-        let zero = T::zero();
-        return Ok(Certificate {
-            approach: zero,
-            pull: zero,
-            complementarity: zero,
-            cone: zero,
-            friction: zero,
-        });
+        return Ok(Certificate::none());
     }
     let (scale, memory) = memory.split_at_mut(k);
     let (matrix, memory) = memory.split_at_mut(n * n);
@@ -122,6 +115,9 @@ pub fn certify<T: Scalar>(
     check(problem)?;
     if force.len() != n || memory.len() < memory_of_several(k) {
         return Err(Unfound::Lengths);
+    }
+    if k == 0 {
+        return Ok(Certificate::none());
     }
     let (scale, memory) = memory.split_at_mut(k);
     let (matrix, memory) = memory.split_at_mut(n * n);
@@ -242,7 +238,8 @@ impl<T: Scalar> Search<'_, T> {
     fn attempt<S: NewtonSteps<T>>(&mut self, rho: T, count: usize, steps: &mut S) -> Option<Certificate<T>> {
         let run = Run { rho, alpha: T::zero(), steps: count, enough: T::default_epsilon() };
         let size = newton(&self.scaled, &run, &mut self.vectors, steps);
-        let close = constant::<T>(1e-6) * larger(T::one(), self.scaled.size(self.vectors.x));
+        let close = larger(constant(1e-6), constant::<T>(64.0) * T::default_epsilon())
+            * larger(T::one(), self.scaled.size(self.vectors.x));
         if !size.is_finite() || size > close {
             return None;
         }

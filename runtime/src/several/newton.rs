@@ -73,7 +73,10 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
 ) -> T {
     let Vectors { x, v, f, trial, trial_v, step, centre, .. } = vectors;
     let mut size = evaluate(scaled, run, x, centre, v, f);
-    let mut failed = 0;
+    let mut wild = 0;
+    let settled = larger(constant(1e-9), constant::<T>(64.0) * T::default_epsilon());
+    let (mut least, mut since) = (size, 0);
+    let mut damped = constant::<T>(1e-2);
     for _ in 0..run.steps {
         if !size.is_finite() || size <= run.enough {
             break;
@@ -82,8 +85,9 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
             *step = -*f;
         }
         // Regularised by a part of the residual, so that steps stay bounded where the matrix is singular and
-        // convergence stays fast.
-        let damping = constant::<T>(1e-8) + smaller(constant(1e-2), size * constant(1e-2));
+        // convergence stays fast; by less of it after whole steps, which forces far greater than others need.
+        let damping = larger(constant(1e-8), constant::<T>(8.0) * T::default_epsilon())
+            + smaller(constant(1e-2), size * damped);
         let blocks = |i: usize| derivative(&scaled.law(i), run.rho, &three(x, i), &three(v, i));
         let mut solved = steps.solve(scaled, &blocks, run.alpha + damping, step);
         if !solved {
@@ -103,32 +107,37 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
             }
             let there = evaluate(scaled, run, trial, centre, trial_v, f);
             if there < best {
-                best = there;
-                best_part = part;
+                (best, best_part) = (there, part);
             }
             if there < size * (T::one() - constant::<T>(1e-4) * part) {
                 break;
             }
             part *= constant(0.5);
         }
-        if best_part.is_zero() {
-            // No descent: a whole step is taken a few times, since the norm is not smooth.
-            failed += 1;
-            if failed > WILD {
+        damped = if best_part == T::one() {
+            larger(damped * constant(0.1), constant(1e-8))
+        } else {
+            smaller(damped * constant(10.0), constant(1e-2))
+        };
+        let stalled = since > PATIENCE;
+        if stalled {
+            (least, since) = (size, 0);
+        }
+        if best_part.is_zero() || stalled {
+            // The norm is not smooth: a few steps are taken although it rises.
+            wild += 1;
+            if wild > WILD || size <= settled {
                 break;
             }
-            best_part = if failed % 2 == 1 { T::one() } else { constant(0.1) };
+            best_part = if wild % 2 == 1 { T::one() } else { constant(0.1) };
         }
         for (x, step) in x.iter_mut().zip(step.iter()) {
             *x += best_part * *step;
         }
-        let before = size;
         size = evaluate(scaled, run, x, centre, v, f);
-        if size.is_finite() && size <= larger(run.enough, before) {
-            continue;
-        }
-        if !size.is_finite() {
-            break;
+        since += 1;
+        if size < least * constant(0.9) {
+            (least, since) = (size, 0);
         }
     }
     size
@@ -137,5 +146,8 @@ pub(super) fn newton<T: Scalar, S: NewtonSteps<T>>(
 /// Halvings in a line search.
 const LINE: usize = 12;
 
-/// Steps against the norm of F.
-const WILD: usize = 2;
+/// Steps in which the norm of F rises.
+const WILD: usize = 4;
+
+/// Steps in which the norm falls by less than a tenth, after which a whole one is taken.
+const PATIENCE: usize = 12;

@@ -1,13 +1,17 @@
-//! The problem in units in which the block of each contact has trace one and the greatest free acceleration
-//! is one.
+//! The problem in units in which the traces of the contacts' blocks and the greatest free acceleration are about
+//! one.
 //!
 //! With forces lambda_i = c s_i x_i and accelerations a_i = c v_i / s_i, where s_i = tr(W_ii)^(-1/2) and c is
-//! one number, the laws keep their form, since s_i is one number for the three components of a contact.
+//! one number, the laws keep their form, since s_i is one number for the three components of a contact. All are
+//! rounded to powers of two, so that units add no rounding errors.
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::{SeveralContacts, law::Friction};
-use crate::{Scalar, scalar::larger};
+use crate::{
+    Scalar,
+    scalar::{constant, larger},
+};
 
 /// A problem in these units.
 pub struct Scaled<'a, T: Scalar> {
@@ -38,7 +42,7 @@ impl<'a, T: Scalar> Scaled<'a, T> {
             for row in 3 * i..3 * i + 3 {
                 trace += problem.matrix[row * n + row].abs();
             }
-            *scale = if trace > T::zero() { T::one() / trace.sqrt() } else { T::one() };
+            *scale = if trace > T::zero() { binary(T::one() / trace.sqrt()) } else { T::one() };
         }
         let mut unit = T::zero();
         for (row, (scaled, beta)) in beta.iter_mut().zip(problem.beta).enumerate() {
@@ -46,6 +50,7 @@ impl<'a, T: Scalar> Scaled<'a, T> {
             unit = larger(unit, scaled.abs());
         }
         if unit > T::zero() {
+            unit = binary(unit);
             beta.iter_mut().for_each(|beta| *beta /= unit);
         } else {
             unit = T::one();
@@ -124,6 +129,25 @@ impl<'a, T: Scalar> Scaled<'a, T> {
         }
     }
 }
+
+/// The greatest power of two that is not above a positive number.
+fn binary<T: Scalar>(number: T) -> T {
+    let (two, half) = (constant::<T>(2.0), constant::<T>(0.5));
+    let mut power = T::one();
+    for _ in 0..EXPONENTS {
+        if power > number {
+            power *= half;
+        } else if power * two <= number {
+            power *= two;
+        } else {
+            break;
+        }
+    }
+    if power.is_zero() { number } else { power }
+}
+
+/// More than the exponents of doubles.
+const EXPONENTS: usize = 1100;
 
 /// Three components of contact `i`.
 #[inline]

@@ -1,9 +1,9 @@
 //! The forces in the middle of those that the laws allow.
 //!
-//! Forces x_0 + Z y give one and the same motion. Each cone is a second-order cone u_n >= abs(u_tan), where u_tan is
-//! lambda_tan / mu; contacts that slide ask u_n >= 0. The centre is the least of
-//! - sum ln(u_n^2 - abs(u_tan)^2) - sum ln u_n + abs(x)^2 / (2 load^2). Where the cones have no common point, the
-//! forces whose greatest lack of normal force is least are taken.
+//! Forces x_0 + Z y give one and the same motion. Each sticking contact asks u_n >= abs(u_tan), where u_tan is lambda_tan /
+//! mu, and each sliding one u_n >= 0. The centre has the least sum of -ln(u_n^2 - abs(u_tan)^2), of -ln u_n and of
+//! abs(x)^2 / (2 load^2). Where these conditions exclude each other, the forces are taken whose greatest lack of normal
+//! force is least.
 //!
 //! Theory: docs/theory.md, section 17.10.
 
@@ -30,13 +30,14 @@ pub(super) fn least_reserve(cones: &[Cone], x: &DVector<f64>) -> f64 {
 }
 
 /// The centre of the forces x_0 + Z y, and whether it lies within all cones. `start` is a first guess of the
-/// forces.
+/// forces. With `decide` it ends as soon as it is known that none do.
 pub(super) fn centre(
     cones: &[Cone],
     least: &DVector<f64>,
     basis: &DMatrix<f64>,
     load: f64,
     start: Option<&DVector<f64>>,
+    decide: bool,
 ) -> (DVector<f64>, bool) {
     let project = |x: &DVector<f64>| least + basis * basis.tr_mul(&(x - least));
     let starts = start.map(project).into_iter().chain([least.clone()]);
@@ -45,7 +46,7 @@ pub(super) fn centre(
             return (follow(cones, basis, load, x), true);
         }
     }
-    match enter(cones, basis, load, least.clone()) {
+    match enter(cones, basis, load, least.clone(), decide) {
         Ok(x) => (follow(cones, basis, load, x), true),
         Err(x) => (x, false),
     }
@@ -145,6 +146,7 @@ fn enter(
     basis: &DMatrix<f64>,
     load: f64,
     mut x: DVector<f64>,
+    decide: bool,
 ) -> Result<DVector<f64>, DVector<f64>> {
     let p = basis.ncols();
     let mut s = least_reserve(cones, &x) - load;
@@ -188,7 +190,7 @@ fn enter(
                 break;
             }
         }
-        if !moved {
+        if !moved || (decide && s < -2.0 * degree / weight * load) {
             break;
         }
         weight *= 30.0;

@@ -15,13 +15,15 @@ pub(super) fn directions(problem: &Problem<'_>, chosen: &[Choice], open: &[usize
     let reduced = Reduced::new(problem, chosen, open);
     let angles = match open {
         [_] => reduced.of_one(),
-        _ => reduced.from_grid(),
+        _ => reduced.by_grid(),
     };
     angles.iter().map(|angles| angles.iter().map(|&angle| direction(angle)).collect()).collect()
 }
 
+/// Of a planar problem exactly along its axis.
 fn direction(angle: f64) -> Vector2<f64> {
-    Vector2::new(angle.cos(), angle.sin())
+    let exact = |part: f64| if part.abs() <= 4.0 * f64::EPSILON { 0.0 } else { part };
+    Vector2::new(exact(angle.cos()), exact(angle.sin()))
 }
 
 /// The problem of the contacts that begin to slip.
@@ -66,8 +68,8 @@ impl Reduced {
         let mut beta = DVector::from_fn(own.len(), |a, _| problem.beta[own[a]]);
         let from = DMatrix::from_fn(own.len(), m, |a, b| scale[b] * column(own[a], b));
         if m > 0 {
-            for b in 0..own.len() {
-                let x = solve(DVector::from_fn(m, |a, _| scale[a] * problem.w[(rows[a], own[b])]));
+            for (b, &from_own) in own.iter().enumerate() {
+                let x = solve(DVector::from_fn(m, |a, _| scale[a] * problem.w[(rows[a], from_own)]));
                 let mut column = w.column_mut(b);
                 column -= &from * x;
             }
@@ -109,7 +111,7 @@ impl Reduced {
     }
 
     /// Of several: Newton's method from a grid of directions.
-    fn from_grid(&self) -> Vec<Vec<f64>> {
+    fn by_grid(&self) -> Vec<Vec<f64>> {
         let u = self.mu.len();
         let count: usize = [1, 32, 12, 8, 6][u.min(4)];
         let step = std::f64::consts::TAU / count as f64;

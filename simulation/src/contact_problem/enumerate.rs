@@ -11,7 +11,7 @@ use super::{
     Mode, Problem, Solution, Solutions,
     directions::directions,
     motion::centred,
-    prescribed::{FITS, with_modes},
+    prescribed::{FITS, prescribed},
     solve::{attempt, certificate, modes},
 };
 
@@ -22,7 +22,7 @@ pub const MOST_ENUMERATED: usize = 4;
 /// more contacts, or of a problem that is not one, none.
 ///
 /// Where no or one contact begins to slip no solution is missed. Directions of more are looked for from a grid. Forces
-/// of one motion count once: they are the ones of [`with_modes`].
+/// of one motion count once: they are the ones of [`with_modes`](super::with_modes).
 pub fn enumerate(problem: &Problem<'_>) -> Vec<Solution> {
     let k = problem.contacts();
     if k > MOST_ENUMERATED || problem.check().is_err() {
@@ -109,7 +109,7 @@ const SAME: f64 = 1e-8;
 
 /// The forces of modes, if they obey the laws.
 pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option<Solution> {
-    let found = with_modes(problem, wanted).ok()?;
+    let found = prescribed(problem, wanted, None, true).ok()?;
     if found.margin < -FITS {
         return None;
     }

@@ -72,6 +72,16 @@ pub fn with_modes_near(
     modes: &[Mode],
     guess: Option<&DVector<f64>>,
 ) -> Result<Admissible, Impossible> {
+    prescribed(problem, modes, guess, false)
+}
+
+/// As [`with_modes_near`]; with `decide` the forces of modes that do not fit are any.
+pub(super) fn prescribed(
+    problem: &Problem<'_>,
+    modes: &[Mode],
+    guess: Option<&DVector<f64>>,
+    decide: bool,
+) -> Result<Admissible, Impossible> {
     let k = problem.contacts();
     if modes.len() != k || guess.is_some_and(|guess| guess.len() != 3 * k) {
         return Err(Impossible::Problem(Unsolved::Lengths));
@@ -97,7 +107,7 @@ pub fn with_modes_near(
         load = least.norm();
         if load > 0.0 {
             let start = guess.map(|guess| unknowns.of(guess));
-            x = centre(&cones, &least, &basis, load, start.as_ref()).0;
+            x = centre(&cones, &least, &basis, load, start.as_ref(), decide).0;
         } else {
             x = least;
         }
@@ -118,7 +128,7 @@ pub fn with_modes_near(
 /// with which they do.
 pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     let modes: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
-    let found = with_modes(problem, &modes).ok()?;
+    let found = prescribed(problem, &modes, None, true).ok()?;
     (found.margin >= -FITS && found.f > 0.0 && held(problem, &modes, &found.acceleration)).then_some(found)
 }
 

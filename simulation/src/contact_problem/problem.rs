@@ -58,10 +58,16 @@ impl Problem<'_> {
         self.noise.map_or(0.0, |noise| noise[row])
     }
 
-    /// s_i = tr(W_ii)^(-1/2): lambda = s x and a = v / s have the same laws.
+    /// s_i, about tr(W_ii)^(-1/2): lambda = s x and a = v / s have the same laws.
     pub(super) fn scale(&self, i: usize) -> f64 {
         let trace: f64 = (3 * i..3 * i + 3).map(|row| self.w[(row, row)]).sum();
-        if trace > 0.0 { 1.0 / trace.sqrt() } else { 1.0 }
+        if trace <= 0.0 {
+            return 1.0;
+        }
+        let scale = 1.0 / trace.sqrt();
+        // A power of two adds no rounding errors.
+        let power = f64::from_bits(scale.to_bits() & (0x7ff << 52));
+        if power > 0.0 { power } else { scale }
     }
 }
 

@@ -79,7 +79,7 @@ pub(super) fn attempt(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Re
         Some(mut steps) => solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps),
         None => {
             let mut matrix = vec![0.0; n * n];
-            let mut steps = Dense { memory: &mut matrix };
+            let mut steps = Dense::new(&mut matrix);
             solve_several(&contacts, &mut force, &mut acceleration, &mut memory, &mut steps)
         }
     }

@@ -30,16 +30,12 @@ impl Sparse {
             let zero = |i: usize, j: usize| w.view((3 * i, 3 * j), (3, 3)).iter().all(|entry| *entry == 0.0);
             !zero(i, j) || !zero(j, i)
         };
+        let pairs: Vec<(usize, usize)> =
+            (0..k).flat_map(|i| (0..i).map(move |j| (i, j))).filter(|&(i, j)| touches(i, j)).collect();
         let mut neighbours: Vec<Vec<bool>> = vec![vec![false; k]; k];
-        let mut pairs = Vec::new();
-        for i in 0..k {
-            for j in 0..i {
-                if touches(i, j) {
-                    neighbours[i][j] = true;
-                    neighbours[j][i] = true;
-                    pairs.push((i, j));
-                }
-            }
+        for &(i, j) in &pairs {
+            neighbours[i][j] = true;
+            neighbours[j][i] = true;
         }
         let (mut order, mut fronts) = (Vec::with_capacity(k), Vec::with_capacity(k));
         let mut degree: Vec<usize> =
