@@ -4,6 +4,9 @@ use hodograph::{Contacts, Kind, State, Surface};
 
 use crate::{Drive, Options, Reason, SimulationError};
 
+/// Below this the roundings of a step exceed what is asked for, and no step is short enough.
+const LEAST_TOLERANCE: f64 = 1e-16;
+
 /// Checks options and state, and gives each contact its surface; a contact without a gap has none.
 pub(crate) fn check(
     mechanism: &dyn Contacts<f64>,
@@ -21,6 +24,12 @@ pub(crate) fn check(
         if value.is_nan() || value <= 0.0 {
             return bad(format!("{what} is {value}: it must be positive"));
         }
+    }
+    if options.relative_tolerance < LEAST_TOLERANCE {
+        return bad(format!(
+            "the relative tolerance is {:e}: doubles have 16 digits, and the least is {LEAST_TOLERANCE:e}",
+            options.relative_tolerance
+        ));
     }
     let rising = |pair: &[f64]| pair[0] < pair[1];
     if !options.breaks.iter().all(|time| time.is_finite()) || !options.breaks.windows(2).all(rising) {

@@ -17,6 +17,11 @@ const LIFTED: f64 = 1e-11;
 /// body: it is zero but for rounding.
 const STILL: f64 = 2e-11;
 
+/// Beyond this place the rounding of a gap is found from what the gap depends on, m or rad; by this relative
+/// change of each coordinate.
+const FAR: f64 = 1e4;
+const SHARE: f64 = 1e-6;
+
 /// Angles turn by no more than this, in all, in a piece of a step that is looked at by nine points, rad.
 const TURN: f64 = 4.0;
 /// A step is looked at in no more pieces than these.
@@ -52,7 +57,6 @@ impl Transition<'_> {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(Kind::Coordinate);
         let size = self.front.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
-        let rounding = 4.0 * f64::EPSILON * size;
         for (contact, phase) in self.front.phases.iter().enumerate() {
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
@@ -63,7 +67,7 @@ impl Transition<'_> {
                     Leaving::Bounced => rate(),
                     Leaving::Lifted { risen, .. } if risen > 0.0 => h * rate(),
                     Leaving::Lifted { .. } => rate(),
-                    Leaving::Apart => rounding,
+                    Leaving::Apart => 4.0 * f64::EPSILON * self.gap_size(contact, size),
                 });
             }
         }
@@ -86,6 +90,28 @@ impl Transition<'_> {
             noise.push(1e-15);
         }
         (watched, noise)
+    }
+
+    /// The sizes of the terms that make up a gap: the greatest coordinate, or, far from the origin, the sum of
+    /// the changes of the gap that relative changes of the coordinates make. A particle that is far away along a
+    /// floor has a gap that is not rounded for that.
+    fn gap_size(&self, contact: usize, size: f64) -> f64 {
+        if size <= FAR {
+            return size;
+        }
+        let here = self.here();
+        let gap =
+            |coordinates: &[f64]| self.mechanism.gap(contact, &State { coordinates, ..here }).ok().flatten();
+        let Some(value) = gap(here.coordinates) else { return size };
+        let mut moved = here.coordinates.to_vec();
+        let mut sum = value.abs().max(1e-3);
+        for (index, &coordinate) in here.coordinates.iter().enumerate() {
+            moved[index] = coordinate * (1.0 + SHARE);
+            let Some(there) = gap(&moved) else { return size };
+            sum += (there - value).abs() / SHARE;
+            moved[index] = coordinate;
+        }
+        sum.min(size)
     }
 
     /// The sizes of the terms that make up the velocity of a contact.

@@ -277,3 +277,27 @@ fn a_steep_pull_begins_to_slip_once() {
         assert!((speed / expected - 1.0).abs() < 1e-6, "{rate:e} {told}: {speed} {expected}");
     }
 }
+
+/// A particle that is far away along the floor strikes it on time: its gap is not rounded for that.
+#[test]
+fn far_places_do_not_round_the_gap() {
+    let body = particle();
+    let fall = (2.0 / G).sqrt();
+    for x in [1e5, 1e10, 1e16] {
+        let mut simulation = start(&body, &[x, 1.0, 0.0], &[0.0; 3], surface(0.2, 0.5, Law::Newton));
+        let events = run(&mut simulation, 0.6);
+        assert!((collisions(&events)[0] - fall).abs() < 1e-12, "{x:e}: {:?}", names(&events));
+    }
+}
+
+/// No step is short enough for a tolerance below the rounding of its numbers: refused.
+#[test]
+fn tolerances_below_rounding_are_refused() {
+    let body = particle();
+    let state = State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
+    for tolerance in [1e-22, 1e-30] {
+        let options = Options { relative_tolerance: tolerance, ..surface(0.2, 0.5, Law::Newton) };
+        let error = Simulation::new(&body, &state, options).unwrap_err();
+        assert!(error.to_string().contains("the least is 1e-16"), "{error}");
+    }
+}
