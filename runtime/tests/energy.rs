@@ -34,7 +34,8 @@ fn the_whole_search_is_that_of_the_page() {
 fn lossless_collisions_gain_nothing() {
     for &law in Law::ALL {
         let (positive, gain, most) = energy::lossless(3000, law);
-        assert!(positive > 0 && gain == 0, "{law:?} {positive} {gain}");
+        // Newton's law gives v_n2 itself, which leaves no rounding.
+        assert!((positive > 0 || law == Law::Newton) && gain == 0, "{law:?} {positive} {gain}");
         // docs/theory.md, 18.8, says 36 of a million.
         assert!(most <= 36.0, "{most}");
     }

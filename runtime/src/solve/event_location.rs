@@ -90,8 +90,12 @@ impl<T: Real> EventLocation<'_, T> {
         let event = if ends { Event::end(restitution) } else { Event::Velocity(zero) };
         let found = self.find_here::<true>(&event, T::one(), limit, to).is_some();
         if ends {
-            if v < zero && to.state.velocity >= zero {
+            if v < zero && (found || to.state.velocity >= zero) {
                 restitution.compressed_somewhere();
+            }
+            if found && restitution.law() == Law::Newton {
+                // As in `follow`.
+                to.state.velocity = restitution.target;
             }
             return found;
         }
