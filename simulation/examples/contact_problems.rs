@@ -1,5 +1,6 @@
 //! Solves random problems of several contacts and prints how it went:
-//! `cargo run --release -p hodograph-simulation --example contact_problems [COUNT] [FAMILY]`.
+//! `cargo run --release -p hodograph-simulation --example contact_problems [COUNT] [FAMILY] [MOST]`, MOST
+//! greatest number of contacts.
 
 #[path = "../tests/contact_families/mod.rs"]
 mod contact_families;
@@ -50,6 +51,7 @@ fn main() {
     let mut arguments = std::env::args().skip(1);
     let count: u64 = arguments.next().and_then(|count| count.parse().ok()).unwrap_or(100);
     let wanted = arguments.next();
+    let most: usize = arguments.next().and_then(|most| most.parse().ok()).unwrap_or(32);
     println!(
         "| family | contacts | problems | unsolved | greatest violation | at rest | us | Newton alone: unsolved | violation | steps, median | most |"
     );
@@ -57,7 +59,7 @@ fn main() {
     for family in FAMILIES.into_iter().filter(|family| wanted.as_ref().is_none_or(|wanted| wanted == family))
     {
         for k in [1, 2, 3, 4, 6, 8, 12, 16, 24, 32] {
-            if family == "stack" && k % 4 != 0 {
+            if k > most || (family == "stack" && k % 4 != 0) {
                 continue;
             }
             let (mut unsolved, mut worst, mut still, mut micros) = (Vec::new(), 0.0_f64, 0, 0.0);

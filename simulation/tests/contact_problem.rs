@@ -105,6 +105,14 @@ fn check_laws(made: &Contacts, force: &DVector<f64>, acceleration: &DVector<f64>
     }
 }
 
+/// Newton's method with one parameter goes round in a circle here, from wherever it begins.
+#[test]
+fn a_circle_of_steps_is_left() {
+    let made = problem("planted", 6, 9476);
+    let found = solve(&of(&made), None).unwrap();
+    check_laws(&made, &found.force, &found.acceleration, "circle");
+}
+
 #[test]
 fn a_ladder_stands_where_friction_holds_it() {
     let mut standing = 0;
