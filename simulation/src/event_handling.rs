@@ -30,6 +30,7 @@ impl Transition<'_> {
         self.front.next = whole.next.min((10.0 * step.h).max(1e-7));
         let start = self.front.t;
         self.commit(&mut step)?;
+        self.reached = Some(self.front.clone());
         self.crowded(start)?;
         match watched {
             Watched::Gap(contact) => {

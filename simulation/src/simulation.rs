@@ -108,17 +108,26 @@ impl<'m> Simulation<'m> {
             front: self.front.clone(),
             events: Vec::new(),
             step: None,
+            reached: None,
         }
     }
 
-    /// Makes a transition and takes its front and its events; nothing of one that fails is taken.
+    /// Makes a transition and takes its front and its events. Of one that fails only the step to its event is
+    /// taken, if it came so far.
     fn take(
         &mut self,
         change: impl FnOnce(&mut Transition<'_>) -> Result<(), SimulationError>,
     ) -> Result<(), SimulationError> {
         let mut transition = self.transition();
-        change(&mut transition)?;
-        let Transition { front, events, step, .. } = transition;
+        let done = change(&mut transition);
+        let Transition { front, events, step, reached, .. } = transition;
+        if let Err(error) = done {
+            if let Some(front) = reached {
+                self.front = front;
+                self.step = step;
+            }
+            return Err(error);
+        }
         self.front = front;
         self.queue.extend(events);
         if step.is_some() {
@@ -220,6 +229,7 @@ impl<'m> Simulation<'m> {
                     front: self.front.clone(),
                     events: Vec::new(),
                     step: None,
+                    reached: None,
                 };
                 transition.within_step(step, modes, time).or_else(|| Some(step.at((time - step.t) / step.h)))
             }

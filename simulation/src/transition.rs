@@ -22,6 +22,9 @@ pub(crate) struct Transition<'s> {
     pub events: Vec<Event>,
     /// the step that led to the front, and the modes during it
     pub step: Option<(Step, Modes)>,
+    /// the front at the end of that step, before its event was handled: the motion is right up to there even if
+    /// the event cannot be handled
+    pub reached: Option<Front>,
 }
 
 impl Transition<'_> {

@@ -74,7 +74,7 @@ impl SurfaceArguments {
         contact.and_then(|contact| stated_in(contact, given).whole()).ok_or_else(|| {
             let name = contact.map_or("", |contact| contact.name.as_str());
             Stop::Call(format!(
-                "contact {name} has no surface: give --mu, --e and --law, or state `surface: {{ mu: .., e: .., law: .. }}` in the model"
+                "contact {name} has no surface: give --mu, --e and --law, or state its `surface` in the model"
             ))
         })
     }

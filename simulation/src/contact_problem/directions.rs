@@ -8,7 +8,14 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use super::{Mode, Problem, enumerate::Choice, linear::Elimination, prescribed::SINGULAR};
+use super::{Mode, Problem, linear::Elimination, prescribed::SINGULAR};
+
+/// A mode whose direction may be open.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Choice {
+    Known(Mode),
+    Begin,
+}
 
 /// All sets of directions found for the contacts in `open`.
 pub(super) fn directions(problem: &Problem<'_>, chosen: &[Choice], open: &[usize]) -> Vec<Vec<Vector2<f64>>> {

@@ -5,14 +5,13 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
-use nalgebra::{DVector, Vector2};
+use nalgebra::Vector2;
 
 use super::{
     Mode, Problem, Solution, Solutions,
-    directions::directions,
+    certified::{attempt, with_certificate},
+    directions::{Choice, directions},
     motion::centred,
-    prescribed::{FITS, prescribed},
-    solve::{attempt, certificate, modes},
 };
 
 /// The greatest number of contacts of which all modes are tried.
@@ -60,13 +59,6 @@ fn rank(mode: &Mode) -> usize {
     }
 }
 
-/// A mode whose direction may be open.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Choice {
-    Known(Mode),
-    Begin,
-}
-
 fn choices(problem: &Problem<'_>, i: usize) -> Vec<Choice> {
     match problem.slip[i] {
         Some(d) => vec![Choice::Known(Mode::Slide(d)), Choice::Known(Mode::Separate)],
@@ -106,38 +98,3 @@ fn accept(problem: &Problem<'_>, wanted: &[Mode], found: &mut Vec<Solution>) {
 
 /// Accelerations that differ by less beside the greatest one are one motion.
 const SAME: f64 = 1e-8;
-
-/// The forces of modes, if they obey the laws.
-pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option<Solution> {
-    let found = prescribed(problem, wanted, None, true).ok()?;
-    if found.margin < -FITS {
-        return None;
-    }
-    let force = within(problem, wanted, found.force);
-    let certificate = certificate(problem, &force).ok()?;
-    if certificate.greatest() > super::solve::ACCEPTED {
-        return None;
-    }
-    let acceleration = problem.w * &force + problem.beta;
-    let modes = modes(problem, &force, &acceleration);
-    Some(Solution { force, acceleration, modes, certificate, solutions: Solutions::Unknown })
-}
-
-/// The forces without what rounding takes out of the cones.
-fn within(problem: &Problem<'_>, modes: &[Mode], mut force: DVector<f64>) -> DVector<f64> {
-    for (i, mode) in modes.iter().enumerate() {
-        let normal = force[3 * i].max(0.0);
-        let friction = Vector2::new(force[3 * i + 1], force[3 * i + 2]);
-        let most = problem.mu[i] * normal;
-        let size = friction.norm();
-        let friction = match mode {
-            Mode::Slide(d) => d * -most,
-            _ if size > most => friction * (most / size),
-            _ => friction,
-        };
-        force[3 * i] = normal;
-        force[3 * i + 1] = friction.x;
-        force[3 * i + 2] = friction.y;
-    }
-    force
-}

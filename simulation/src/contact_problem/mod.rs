@@ -15,6 +15,7 @@
 //! Theory: docs/theory.md, section 17.10.
 
 mod centre;
+mod certified;
 mod directions;
 mod enumerate;
 mod linear;
@@ -26,9 +27,10 @@ mod solve;
 mod sparse;
 
 pub use self::{
+    certified::certificate,
     enumerate::{MOST_ENUMERATED, enumerate},
     natural_map::natural_residual,
     prescribed::{Admissible, Impossible, rest, with_modes, with_modes_near},
     problem::{Mode, Problem, Solution, Solutions, Unsolved},
-    solve::{certificate, solve},
+    solve::solve,
 };

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{
     Mode, Problem, Solution,
-    enumerate::with_certificate,
+    certified::with_certificate,
     prescribed::{Admissible, with_modes_near},
 };
 

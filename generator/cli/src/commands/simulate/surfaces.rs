@@ -62,7 +62,7 @@ impl MotionSurfaces {
         }
         let found = surfaces(mechanism, state, all, &own).map_err(|error| {
             Stop::Call(format!(
-                "{error}: give --mu, --e and --law for all contacts, or --surface {}=MU,E,LAW, or state `surface: {{ mu: .., e: .., law: .. }}` in the model",
+                "{error}: give --mu, --e and --law for all contacts, or --surface {}=MU,E,LAW, or state its `surface` in the model",
                 error.contact
             ))
         })?;
