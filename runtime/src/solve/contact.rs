@@ -28,7 +28,7 @@ pub(crate) struct Contact<T: Real> {
 }
 
 impl<T: Real> Contact<T> {
-    #[inline]
+    #[inline(always)]
     pub fn new(matrix: &ReducedMatrix<T>, mu: T) -> Self {
         // Quotients, not products with 1 / m_nn: that may overflow where the quotients do not.
         let nn = matrix.nn;
@@ -63,7 +63,7 @@ impl<T: Real> Contact<T> {
     }
 
     /// b - mu T d: the rate of the tangential velocity by I_n while slip has the direction d.
-    #[inline]
+    #[inline(always)]
     pub fn slip_rate(&self, d: &Vector2<T>) -> Vector2<T> {
         Vector2::new(
             self.b.x - dot(self.mu_tt, d.x, self.mu_ts, d.y),
@@ -72,13 +72,13 @@ impl<T: Real> Contact<T> {
     }
 
     /// f (31): the rate of v_n by I_n.
-    #[inline]
+    #[inline(always)]
     pub fn normal_rate(&self, d: &Vector2<T>) -> T {
         self.nn - dot(self.mu_b.x, d.x, self.mu_b.y, d.y)
     }
 
     /// f, g and h (31)-(33).
-    #[inline]
+    #[inline(always)]
     pub fn rates(&self, d: &Vector2<T>) -> [T; 3] {
         let rate = self.slip_rate(d);
         [self.normal_rate(d), dot(rate.x, d.x, rate.y, d.y), dot(rate.y, d.x, -rate.x, d.y)]
@@ -86,7 +86,7 @@ impl<T: Real> Contact<T> {
 
     /// g + h' = -mu d'.T d' (theory, 2.8), where d' is d turned by a right angle and h' the derivative of h
     /// with respect to phi.
-    #[inline]
+    #[inline(always)]
     pub fn convergence(&self, d: &Vector2<T>) -> T {
         let twice = self.mu_ts + self.mu_ts;
         -dot(fma(self.mu_tt, d.y, -twice * d.x), d.y, self.mu_ss * d.x, d.x)
@@ -107,39 +107,39 @@ impl<T: Real> Contact<T> {
     }
 
     /// mu T x.
-    #[inline]
+    #[inline(always)]
     pub fn dragged(&self, x: &Vector2<T>) -> Vector2<T> {
         Vector2::new(dot(self.mu_tt, x.x, self.mu_ts, x.y), dot(self.mu_ts, x.x, self.mu_ss, x.y))
     }
 
     /// The sum of the sizes of the terms of f. f has an error of about this times the rounding unit.
-    #[inline]
+    #[inline(always)]
     pub fn normal_size(&self) -> T {
         self.nn + self.mu_b.x.abs() + self.mu_b.y.abs()
     }
 
     /// The size of v_n that is taken for zero where slip stops at this normal impulse: some roundings of its
     /// terms.
-    #[inline]
+    #[inline(always)]
     pub fn together(&self, normal: T) -> T {
         constant::<T>(8.0) * T::default_epsilon() * fma(normal, self.normal_size(), T::one())
     }
 
     /// Whether slip is no more than some roundings of the terms that have brought it down to this at this
     /// normal impulse.
-    #[inline]
+    #[inline(always)]
     pub fn slip_is_rounding(&self, slip: T, normal: T) -> bool {
         slip <= constant::<T>(32.0) * T::default_epsilon() * fma(normal, self.slip_size(), T::one())
     }
 
     /// The sum of the sizes of the terms of g and h, likewise.
-    #[inline]
+    #[inline(always)]
     pub fn slip_size(&self) -> T {
         self.b.x.abs() + self.b.y.abs() + self.mu_tt + self.mu_ss
     }
 
     /// Whether sixth powers of the rates stay within the range of the number type.
-    #[inline]
+    #[inline(always)]
     pub fn is_ordinary(&self) -> bool {
         // The compiler evaluates this.
         let most = if single::<T>() { WIDE.0 } else { WIDE.1 };

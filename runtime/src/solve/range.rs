@@ -96,15 +96,18 @@ fn slide_here<T: Real>(
     speed: T,
     restitution: &mut Restitution<T>,
 ) -> Slide<T> {
-    let mut units = Units { normal: speed, tangential: speed, rub: c.mu, contact: *c };
-    let (mut slip, mut size) = (from, speed);
+    let mut units = None;
     if !c.is_ordinary() {
-        let Some(other) = units_apart(c, speed, restitution) else {
+        units_apart(c, speed, restitution, &mut units);
+        if units.is_none() {
             return still(c, from, speed, restitution);
-        };
-        (slip, size, units) = (from / other.tangential, speed / other.tangential, other);
+        }
     }
-    let slide = arc_here(&units.contact, slip, size, restitution);
+    let (contact, slip, size) = match &units {
+        Some(Units { contact, tangential, .. }) => (contact, from / *tangential, speed / *tangential),
+        None => (c, from, speed),
+    };
+    let slide = arc_here(contact, slip, size, restitution);
     // Asked anew: from the answer of before the compiler would make two arcs.
     if c.is_ordinary() { slide } else { back_apart(&units, slide, restitution) }
 }
@@ -176,15 +179,27 @@ impl<T: Real> Units<T> {
 /// [`Units::of`] as a function of its own.
 #[cold]
 #[inline(never)]
-fn units_apart<T: Real>(c: &Contact<T>, speed: T, restitution: &mut Restitution<T>) -> Option<Units<T>> {
-    Units::of(c, speed, restitution)
+fn units_apart<T: Real>(
+    c: &Contact<T>,
+    speed: T,
+    restitution: &mut Restitution<T>,
+    to: &mut Option<Units<T>>,
+) {
+    *to = Units::of(c, speed, restitution);
 }
 
 /// [`Units::back`] as a function of its own.
 #[cold]
 #[inline(never)]
-fn back_apart<T: Real>(units: &Units<T>, slide: Slide<T>, restitution: &mut Restitution<T>) -> Slide<T> {
-    units.back(slide, restitution)
+fn back_apart<T: Real>(
+    units: &Option<Units<T>>,
+    slide: Slide<T>,
+    restitution: &mut Restitution<T>,
+) -> Slide<T> {
+    match units {
+        Some(units) => units.back(slide, restitution),
+        None => slide,
+    }
 }
 
 /// [`slide`] where slip does not change, as a function of its own.

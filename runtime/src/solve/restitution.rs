@@ -90,7 +90,9 @@ impl<T: Real> Restitution<T> {
             target: e,
             least_work: T::zero(),
             ended: T::zero(),
-            wanted: T::zero(),
+            // Means nothing before compression ends. A zero too many in a row, and the compiler calls a function
+            // that fills memory.
+            wanted: if T::INLINED { e } else { T::zero() },
             lost: T::zero(),
             compressions: 0,
             first: None,
