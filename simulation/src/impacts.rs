@@ -16,6 +16,8 @@ use crate::{EventKind, Reason, SimulationError, Struck, StruckTogether, Together
 /// Touching contacts approach where their normal velocity, relative to the first approach, is below minus
 /// this.
 const APPROACH: f64 = 1e-12;
+/// Normal velocities below this, relative to the greatest that the motion has energy for, are rounding.
+const ROUNDING: f64 = 1e-15;
 /// Approaches slower than this, relative to the first, end without restitution.
 const FADED: f64 = 1e-9;
 /// Most impacts at one time.
@@ -103,7 +105,7 @@ impl Transition<'_> {
             let rate = support.velocity[3 * place];
             let size =
                 support.velocity_size(place, speeds).max(support.velocity_size(place, &self.front.scale));
-            if rate > 1e-11 * size {
+            if rate > (1e-11 * size).max(self.slowest(&support, place)) {
                 phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
                 // Slip may have changed in the impact.
@@ -119,6 +121,12 @@ impl Transition<'_> {
         self.front.phases = phases;
         self.decide(&stay, was)?;
         self.look_for_rest()
+    }
+
+    /// The slowest normal velocity of a contact that is more than rounding, m/s: relative to the one that all
+    /// kinetic energy so far would give it. A body at rest beside others that move has only rounding.
+    fn slowest(&self, support: &ClosedContacts, place: usize) -> f64 {
+        ROUNDING * (2.0 * self.front.greatest * support.coupled[(3 * place, 3 * place)]).sqrt()
     }
 
     /// Contacts whose gaps are closed, or close now.
@@ -165,12 +173,11 @@ impl Transition<'_> {
         let mut list = Vec::new();
         for (place, &contact) in touching.iter().enumerate() {
             let rate = support.velocity[3 * place];
-            // A contact that lasts has no normal velocity but rounding, also where all speeds are small now.
-            let rounding = (1e-13 * support.velocity_size(place, speeds))
-                .max(1e-15 * support.velocity_size(place, &self.front.scale));
-            let closed = self.front.phases[contact].is_closed();
-            let least = first.map_or(0.0, |first| APPROACH * first).max(if closed { rounding } else { 0.0 });
-            if rate < -least.max(if first.is_some() { rounding } else { 0.0 }) {
+            let rounding = 1e-13 * support.velocity_size(place, speeds);
+            let closed = self.front.phases[contact].is_closed() || first.is_some();
+            let least = first.map_or(0.0, |first| APPROACH * first);
+            let least = least.max(if closed { rounding } else { 0.0 });
+            if rate < -least.max(self.slowest(&support, place)) {
                 list.push((contact, -rate));
             }
         }
