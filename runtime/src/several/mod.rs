@@ -21,7 +21,7 @@
 //! }
 //! let beta = [-9.81, 2.0, 0.0, -9.81, 2.0, 0.0];
 //! let problem = SeveralContacts { matrix: &matrix, beta: &beta, mu: &[0.4, 0.4], slip: &[None, None] };
-//! let (mut force, mut acceleration) = ([0.0; 6], [0.0; 6]);
+//! let (mut force, mut acceleration) = ([0.0_f64; 6], [0.0; 6]);
 //! let (mut memory, mut space) = ([0.0; memory_of_several(2)], [0.0; 36]);
 //! let proof =
 //!     solve_several(&problem, &mut force, &mut acceleration, &mut memory, &mut Dense::new(&mut space))?;
