@@ -135,6 +135,7 @@ fn beyond<const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
 /// [`beyond`], compiled with the routine that calls it.
 #[cold]
 #[inline(never)]
+#[expect(clippy::extra_unused_type_parameters, reason = "functions without are compiled with this package")]
 fn far<T: Scalar, const N: usize>(angles: [f64; N]) -> ([f64; N], [f64; N]) {
     one_by_one(angles)
 }
