@@ -7,8 +7,8 @@ use std::path::Path;
 
 use hodograph_generator::emit::{self, Options, Requests};
 use hodograph_generator::model::mechanism::Mechanism;
-use hodograph_generator::rust_names::{self, snake_case};
-use hodograph_generator::source::Source;
+use hodograph_generator::reading;
+use hodograph_generator::rust_names::snake_case;
 use hodograph_generator::{artifact, check::check};
 
 fn main() {
@@ -27,7 +27,7 @@ fn main() {
         println!("cargo::rerun-if-changed={}", path.display());
         println!("cargo::rerun-if-changed={}", derivation.display());
         // A model that is not accepted or not derived is a matter for the tests, which say so.
-        let Some(mechanism) = check(&Source::read(&path)).mechanism else { continue };
+        let Some(mechanism) = check(&reading::model(&path)).mechanism else { continue };
         let Ok(derived) = std::fs::read_to_string(derivation) else { continue };
         let Ok(artifact) = artifact::decode(&derived) else { continue };
         let module = path.file_stem().expect("a stem").to_string_lossy().into_owned();
@@ -157,7 +157,7 @@ impl Method<'_> {
 /// Writes the calls of a module's methods.
 fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
     let path = format!("hodograph_models::{module}");
-    let name = rust_names::type_name(&mechanism.name);
+    let name = emit::identifiers::type_name(&mechanism.name);
     let contact_of = |method: &Method| {
         let contact = method.name.strip_prefix("collide_")?;
         mechanism.contacts.iter().position(|of| snake_case(&of.name) == contact)

@@ -1,51 +1,20 @@
-//! From the text of a model to Rust code, in stages:
+//! From the text of a model to Rust code, in stages, each of which is a crate of its own:
 //!
 //! ```text
-//! source text -> syntax      tokens and an untyped tree, with the place of everything
-//!             -> model       names resolved, dimensions checked, all mistakes collected
-//!             -> check       the model as a whole, counted and in numbers
-//!             -> kinematics  frames, points, velocities, contact bases            (feature `derive`)
-//!             -> kane        partial velocities, generalized forces, constraints  (feature `derive`)
-//!             -> program     straight-line operations: shared, hoisted, factorised
-//!             -> emit        Rust tokens
-//!              | interpret   numbers
-//!              | explain     equations to read
-//!              | artifact    the checked-in derivation
-//!              | expand      what `mechanism!` becomes: all of this in the compiler
+//! hodograph-model    source text -> syntax -> model -> check
+//! hodograph-derive   model -> kinematics -> kane               (feature `derive`)
+//! hodograph-program  program -> interpret | explain | artifact
+//! hodograph-emit     program -> Rust tokens
+//! expand             what `mechanism!` becomes: all of this in the compiler
 //! ```
-//!
-//! Only `algebra` (feature `derive`) names the algebra engine; everything else builds without it.
 
-#[cfg(feature = "derive")]
-pub mod algebra;
-pub mod arithmetic;
-pub mod artifact;
-pub mod check;
-mod compiler;
-pub mod diagnostics;
-mod dimension;
-pub mod emit;
 pub mod expand;
-pub mod explain;
-pub mod explanations;
-pub mod interpret;
-#[cfg(feature = "derive")]
-mod kane;
-#[cfg(feature = "derive")]
-mod kinematics;
-mod letters;
-pub mod model;
-mod number;
-pub mod numeric;
-pub mod program;
-pub mod reading;
-pub mod rendering;
-pub mod rust_names;
-pub mod source;
-mod span;
-pub mod suggest;
-pub mod syntax;
-mod vocabulary;
 
 #[cfg(feature = "derive")]
-pub use kane::{DerivationError, derive};
+pub use hodograph_derive::{DerivationError, algebra, derive};
+pub use hodograph_emit as emit;
+pub use hodograph_model::{
+    arithmetic, check, diagnostics, explanations, model, numeric, rendering, rust_names, source, suggest,
+    syntax,
+};
+pub use hodograph_program::{artifact, explain, interpret, program, reading};

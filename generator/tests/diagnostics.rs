@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use hodograph_generator::expand::Inline;
 use hodograph_generator::{
     check::{Checked, check},
     rendering::render,
@@ -60,15 +61,16 @@ fn inline_models_have_the_same_mistakes() {
         // what is not a sequence of Rust tokens does not reach the macro
         let Ok(stream) = text.parse::<proc_macro2::TokenStream>() else { continue };
         let file = check(&Source::file("x.mech", text));
-        let source = Source::inline("here", stream);
-        let inline = check(&source);
+        let model = Inline::new("here", stream);
+        let source = &model.source;
+        let inline = check(source);
         let said = |checked: &Checked| -> Vec<(String, String)> {
             checked.diagnostics.iter().map(|d| (d.code.to_string(), d.message.clone())).collect()
         };
         assert_eq!(said(&file), said(&inline), "{}", path.display());
         for diagnostic in &inline.diagnostics {
             let empty = source.tokens().is_ok_and(|tokens| tokens.is_empty());
-            assert!(empty || source.rust_spans(diagnostic.primary.span).is_some());
+            assert!(empty || model.rust_spans(diagnostic.primary.span).is_some());
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use hodograph_generator::artifact::model_hash;
 use hodograph_generator::diagnostics::{Diagnostic, codes};
+use hodograph_generator::expand::Inline;
 use hodograph_generator::{
     check::check,
     model::mechanism::{Mechanism, Variable},
@@ -168,7 +169,7 @@ fn units_of_all_sizes() {
 fn inline_and_file_agree() {
     for text in [ROD, SLEDS] {
         let stream: proc_macro2::TokenStream = text.parse().expect("Rust tokens");
-        let inline = Source::inline("here", stream);
+        let inline = Inline::new("here", stream).source;
         let file = Source::file("x.mech", text);
         assert_eq!(model_hash(&inline), model_hash(&file));
         let other = Source::file("x.mech", text.replace('\n', "\r\n").replace("    ", "\t// a comment\n"));

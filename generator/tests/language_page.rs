@@ -4,6 +4,7 @@ use std::path::Path;
 
 use hodograph_generator::artifact::model_hash;
 use hodograph_generator::diagnostics::codes;
+use hodograph_generator::expand::Inline;
 use hodograph_generator::explanations::within;
 use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
@@ -52,7 +53,7 @@ fn examples_are_correct_models() {
         }
         // the same model as the input of a macro
         let stream = source.text().unwrap_or_default().parse().expect("Rust tokens");
-        let inline = Source::inline("here", stream);
+        let inline = Inline::new("here", stream).source;
         assert_eq!(model_hash(&inline), model_hash(&source), "line {}", example.line);
     }
     assert!(wrong.is_empty(), "{wrong}");

@@ -235,7 +235,7 @@ impl Imports {
 
 fn holds(source: &str, head: &str) {
     let imports = Imports::read(&repository().join(source));
-    assert!(imports.edges.len() > 20, "{source}: the imports are not read");
+    assert!(imports.edges.len() > 10, "{source}: the imports are not read");
     let order = listed(head);
     let missing: Vec<&Module> =
         imports.edges.keys().filter(|m| m.first().is_some_and(|name| !order.contains(name))).collect();
@@ -246,7 +246,9 @@ fn holds(source: &str, head: &str) {
 
 #[test]
 fn the_generator_imports_downwards_only() {
-    holds("generator/src", "generator:");
+    for stage in ["model", "program", "derive"] {
+        holds(&format!("generator/{stage}/src"), &format!("{stage}:"));
+    }
 }
 
 #[test]
@@ -255,8 +257,15 @@ fn the_runtime_imports_downwards_only() {
 }
 
 #[test]
-fn no_files_of_the_tool_the_interpreter_and_the_library_of_motions_import_each_other() {
-    for source in ["generator/cli/src", "generator/interpreter/src", "simulation/src"] {
+fn no_files_import_each_other() {
+    let sources = [
+        "generator/src",
+        "generator/emit/src",
+        "generator/cli/src",
+        "generator/interpreter/src",
+        "simulation/src",
+    ];
+    for source in sources {
         let wrong = Imports::read(&repository().join(source)).circles();
         assert!(wrong.is_empty(), "{source}:\n{}", wrong.join("\n"));
     }

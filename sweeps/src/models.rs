@@ -71,15 +71,10 @@ impl Model {
             return Err(rendering::render(&checked.diagnostics, &source));
         };
         let advice = format!("run `hodograph derive` on {}.mech", self.name);
-        let artifact = artifact::decode(&self.derivation)
-            .map_err(|error| format!("{}.derivation is damaged: {error}; {advice}", self.name))?;
-        if artifact.model != artifact::model_hash(&source) {
-            return Err(format!(
-                "{}.derivation was derived from another text of the model; {advice}",
-                self.name
-            ));
-        }
-        InterpretedMechanism::new(mechanism, artifact.program).map_err(|error| error.to_string())
+        let program = artifact::load_text(&self.derivation, &source)
+            .program()
+            .map_err(|fault| format!("{}.derivation {fault}; {advice}", self.name))?;
+        InterpretedMechanism::new(mechanism, program).map_err(|error| error.to_string())
     }
 
     /// The digest of both texts, by which processes find out whether they mean the same model.

@@ -2,8 +2,8 @@
 
 #[allow(missing_docs)]
 mod golden {
-    include!("../../generator/tests/golden/pendulum.rs");
-    include!("../../generator/tests/golden/pendulum_in_parts.rs");
+    include!("../../generator/emit/tests/golden/pendulum.rs");
+    include!("../../generator/emit/tests/golden/pendulum_in_parts.rs");
 }
 
 use golden::pendulum::{Coordinates, Inputs, Parameters, Pendulum, Speeds};
@@ -15,7 +15,7 @@ use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
 #[test]
 fn the_same_bits() {
     let artifact =
-        artifact::decode(include_str!("../../generator/tests/golden/pendulum.derivation")).unwrap();
+        artifact::decode(include_str!("../../generator/program/tests/golden/pendulum.derivation")).unwrap();
     let evaluator = Evaluator::new(&artifact.program);
     for step in 0..200 {
         let x = f64::from(step) * 0.37 - 30.0;

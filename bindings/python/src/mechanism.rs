@@ -7,7 +7,8 @@ use hodograph::{Kind, Mechanism as _, StateError};
 use hodograph_generator::explain::{self, Format};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
-use hodograph_generator::{artifact, check, reading};
+use hodograph_generator::artifact::{self, Loaded};
+use hodograph_generator::check;
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::{Columns, evaluate_rows};
 use numpy::PyArrayDyn;
@@ -83,25 +84,16 @@ impl Mechanism {
             None => artifact::place::beside(model.as_ref()).display().to_string(),
         };
         let advice = "`hodograph derive` writes it";
-        let text = reading::text(path.as_ref(), artifact::MAX_BYTES).map_err(|error| {
-            wrong(
-                format!("cannot read the derivation {path}: {error}; {advice}"),
-                "no_derivation",
-                Some(path.clone()),
-            )
+        let found = artifact::load(path.as_ref(), &source);
+        let kind = match found {
+            Loaded::Fresh(_) | Loaded::Absent => "no_derivation",
+            Loaded::Stale => "stale_derivation",
+            Loaded::Damaged(_) => "damaged_derivation",
+        };
+        let program = found.program().map_err(|fault| {
+            wrong(format!("the derivation {path} {fault}; {advice}"), kind, Some(path.clone()))
         })?;
-        let artifact = artifact::decode(&text).map_err(|error| {
-            wrong(
-                format!("{path} is no derivation: {error}; {advice}"),
-                "damaged_derivation",
-                Some(path.clone()),
-            )
-        })?;
-        if artifact.model != artifact::model_hash(&source) {
-            let message = format!("{path} was derived from another text of the model; {advice} anew");
-            return Err(wrong(message, "stale_derivation", Some(path)));
-        }
-        InterpretedMechanism::new(mechanism, artifact.program)
+        InterpretedMechanism::new(mechanism, program)
             .map_err(|error| wrong(error.to_string(), "parameters", None))
     }
 

@@ -6,7 +6,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
-use hodograph_generator::artifact::{self, Artifact, place};
+use hodograph_generator::artifact::{self, place};
 use hodograph_generator::program::Program;
 use hodograph_generator::reading;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -59,47 +59,6 @@ impl Limits {
     }
 }
 
-/// What was found where a derivation is kept.
-#[derive(Clone, Debug)]
-pub enum Found {
-    /// that of the model
-    Fresh(Box<Program>),
-    /// nothing
-    Absent,
-    /// that of another text of the model
-    Stale,
-    /// what is none, or was changed since it was written: why
-    Damaged(String),
-}
-
-/// Looks for the derivation of a model.
-pub fn find(path: &Path, model: &Model) -> Found {
-    let text = match reading::text(path, artifact::MAX_BYTES) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Found::Absent,
-        Err(error) => return Found::Damaged(format!("it cannot be read: {error}")),
-    };
-    match artifact::decode(&text) {
-        Ok(Artifact { model: hash, program, .. }) if hash == artifact::model_hash(&model.source) => {
-            Found::Fresh(Box::new(program))
-        }
-        Ok(_) => Found::Stale,
-        Err(error) => Found::Damaged(error.to_string()),
-    }
-}
-
-impl Found {
-    /// What is wrong with it, as the rest of a sentence about it; nothing if it is fresh.
-    pub fn fault(&self) -> Option<String> {
-        match self {
-            Found::Fresh(_) => None,
-            Found::Absent => Some("is not there".to_owned()),
-            Found::Stale => Some("is stale: it was derived from another text of the model".to_owned()),
-            Found::Damaged(why) => Some(format!("is damaged: {why}")),
-        }
-    }
-}
-
 /// A model with its equations: the derivation beside it if that is fresh, else one made now and not kept.
 ///
 /// # Errors
@@ -108,13 +67,12 @@ impl Found {
 pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
     let model = model::load(path)?;
     let kept = place::beside(path);
-    let program = match find(&kept, &model) {
-        Found::Fresh(program) => *program,
-        other => {
+    let program = match artifact::load(&kept, &model.source).program() {
+        Ok(program) => program,
+        Err(fault) => {
             output::say(format_args!(
-                "note: {} {}; deriving in memory, `hodograph derive {}` keeps the result",
+                "note: {} {fault}; deriving in memory, `hodograph derive {}` keeps the result",
                 kept.display(),
-                other.fault().unwrap_or_default(),
                 path.display()
             ));
             derive(&model, limits)?.0

@@ -115,6 +115,7 @@ pub fn package(path: &Path) -> Outcome<PathBuf> {
 #[cfg(test)]
 mod tests {
     use hodograph_generator::artifact::model_hash;
+    use hodograph_generator::expand::Inline;
 
     use super::*;
 
@@ -149,7 +150,7 @@ mod tests {
             let hash = model_hash(&source);
             assert_eq!(hash, model_hash(&Source::file("model", text.clone())), "{name}");
             let tokens = TokenStream::from_str(&text).unwrap();
-            assert_eq!(hash, model_hash(&Source::inline("model", tokens)), "{name}");
+            assert_eq!(hash, model_hash(&Inline::new("model", tokens).source), "{name}");
         }
     }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use hodograph_generator::check::check;
 use hodograph_generator::diagnostics::Severity;
 use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
@@ -29,7 +30,7 @@ pub fn load(path: &Path) -> Outcome<Model> {
     if let Err(error) = std::fs::metadata(path) {
         return Err(Stop::unreadable(path, &error));
     }
-    checked(Source::read(path))
+    checked(reading::model(path))
 }
 
 /// Checks a model; says what is wrong on stderr, and what makes numbers doubtful. What is only superfluous or

@@ -1,5 +1,6 @@
 //! One run of the fuzzer: checks a text, renders the diagnostics, and tests properties that must always hold.
 
+use hodograph_generator::expand::Inline;
 use hodograph_generator::artifact::model_hash;
 use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
@@ -24,13 +25,14 @@ pub fn run_inline(text: &str) {
         return;
     }
     let Ok(stream) = text.parse::<proc_macro2::TokenStream>() else { return };
-    let source = Source::inline("fuzz", stream);
-    let checked = check(&source);
+    let inline = Inline::new("fuzz", stream);
+    let source = &inline.source;
+    let checked = check(source);
     for diagnostic in &checked.diagnostics {
         // a model without tokens has no place of its own
         let empty = source.tokens().is_ok_and(|tokens| tokens.is_empty());
-        assert!(empty || source.rust_spans(diagnostic.primary.span).is_some());
-        let _ = diagnostic.compiler_text(&source);
+        assert!(empty || inline.rust_spans(diagnostic.primary.span).is_some());
+        let _ = diagnostic.compiler_text(source);
     }
     let file = Source::file("fuzz.mech", text);
     // a text that both can read means the same to both

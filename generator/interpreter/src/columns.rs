@@ -9,9 +9,9 @@ use hodograph::{
     CollisionError, CollisionOutcome, Impact, ImpactError, Kind, Mechanism, ReducedMatrix, StateError,
     Surface, solve,
 };
-use hodograph_generator::interpret::columns::LANES;
-pub use hodograph_generator::interpret::{Column, Columns, Failed, Table};
-use hodograph_generator::program::Quantity;
+use hodograph_program::interpret::columns::LANES;
+pub use hodograph_program::interpret::{Column, Columns, Failed, Table};
+use hodograph_program::program::Quantity;
 
 use crate::InterpretedMechanism;
 use crate::contacts::{COLLISION_NEEDS, NO_COLLISION};

@@ -10,8 +10,8 @@ use hodograph::{
     Budgeted, ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome,
     ContactState, ContactSurface, Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, Surface,
 };
-use hodograph_generator::program::operation::Operation;
-use hodograph_generator::program::{ContactQuantity, Quantity, Structure};
+use hodograph_program::program::operation::Operation;
+use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
 use crate::InterpretedMechanism;
 use crate::routines::{CLOSED, COLLISION, OfContact, Request};

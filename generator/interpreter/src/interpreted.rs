@@ -5,11 +5,11 @@ use std::sync::Arc;
 
 use hodograph::generated::check_length;
 use hodograph::{ParameterError, State, StateError};
-use hodograph_generator::interpret::{Arguments, Constants};
-use hodograph_generator::model::mechanism::{self, Mechanism, Orientation};
-use hodograph_generator::program::Program;
-use hodograph_generator::source::Source;
-use hodograph_generator::{artifact, check, emit, reading, rendering};
+use hodograph_model::model::mechanism::{self, Mechanism, Orientation};
+use hodograph_model::{check, rendering};
+use hodograph_program::interpret::{Arguments, Constants};
+use hodograph_program::program::Program;
+use hodograph_program::{artifact, program, reading};
 
 use crate::routines::{Request, Routines};
 use crate::{Error, parameters};
@@ -65,30 +65,21 @@ impl InterpretedMechanism {
     ///
     /// [`Error`]
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let source = Source::read(path);
+        let source = reading::model(path);
         let checked = check::check(&source);
         let Some(model) = checked.mechanism else {
             return Err(Error::Model(rendering::render(&checked.diagnostics, &source)));
         };
         let kept = artifact::place::beside(path);
         let advice = format!("run `hodograph derive {}`", path.display());
-        let text = reading::text(&kept, artifact::MAX_BYTES).map_err(|error| {
-            Error::Derivation(format!("cannot read the derivation {}: {error}; {advice}", kept.display()))
+        let program = artifact::load(&kept, &source).program().map_err(|fault| {
+            Error::Derivation(format!("the derivation {} {fault}; {advice}", kept.display()))
         })?;
-        let artifact = artifact::decode(&text).map_err(|error| {
-            Error::Derivation(format!("{} is no derivation: {error}; {advice}", kept.display()))
-        })?;
-        if artifact.model != artifact::model_hash(&source) {
-            let kept = kept.display();
-            return Err(Error::Derivation(format!(
-                "{kept} was derived from another text of the model; {advice}"
-            )));
-        }
-        Self::new(model, artifact.program)
+        Self::new(model, program)
     }
 
     fn with(model: Mechanism, program: Program, parameters: Vec<f64>) -> Result<Self, Error> {
-        emit::fits(&model, &program).map_err(Error::Derivation)?;
+        program::fits(&model, &program).map_err(Error::Derivation)?;
         let constants = parameters::constants(&model, &program, &parameters)?;
         let quaternions = model.frames.iter().filter_map(|frame| match &frame.orientation {
             Orientation::Quaternion(ids) => Some(ids.map(|id| id.0)),

@@ -3,9 +3,9 @@
 use hodograph::generated::{check_length, normalize_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};
 use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
-use hodograph_generator::model::mechanism::Variable;
-use hodograph_generator::numeric;
-use hodograph_generator::program::{PointQuantity, Quantity};
+use hodograph_model::model::mechanism::Variable;
+use hodograph_model::numeric;
+use hodograph_program::program::{PointQuantity, Quantity};
 
 use crate::InterpretedMechanism;
 use crate::routines::Request;

@@ -4,9 +4,9 @@
 use std::fmt;
 
 use hodograph::{Contacts, ImpactError, Kind, Law, State, Surface};
-use hodograph_generator::program::Program;
-use hodograph_generator::program::graph::Input;
-use hodograph_generator::program::operation::Operation;
+use hodograph_program::program::Program;
+use hodograph_program::program::graph::Input;
+use hodograph_program::program::operation::Operation;
 
 /// Time from sample to sample, s.
 pub const STEP: f64 = 0.01;

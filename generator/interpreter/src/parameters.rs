@@ -2,10 +2,10 @@
 
 use hodograph::ParameterError;
 use hodograph::generated::{abs, check_inertia, check_mass, exp, log, power, recip, sqrt};
-use hodograph_generator::arithmetic::Function;
-use hodograph_generator::interpret::Constants;
-use hodograph_generator::model::mechanism::{DefinitionValue, Mechanism, Scalar};
-use hodograph_generator::program::Program;
+use hodograph_model::arithmetic::Function;
+use hodograph_model::model::mechanism::{DefinitionValue, Mechanism, Scalar};
+use hodograph_program::interpret::Constants;
+use hodograph_program::program::Program;
 
 use crate::intern::intern;
 

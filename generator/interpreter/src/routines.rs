@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use hodograph_generator::interpret::{Constants, Prepared};
-use hodograph_generator::model::mechanism::Mechanism;
-use hodograph_generator::program::Program;
-use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
+use hodograph_model::model::mechanism::Mechanism;
+use hodograph_program::interpret::{Constants, Prepared};
+use hodograph_program::program::Program;
+use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
 
 /// Quantities of the whole mechanism.
 const WHOLE: [Quantity; 11] = [

@@ -7,8 +7,8 @@ use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Parser};
 use syn::{Error, LitFloat, LitInt, Result, Token, parenthesized, token};
 
-use crate::emit::{LAWS, Requests, Set, Specialised};
-use crate::suggest::nearest;
+use hodograph_emit::{LAWS, Requests, Set, Specialised};
+use hodograph_model::suggest::nearest;
 
 const SET: &str = "as in `evaluate control(mass_matrix, forcing)`";
 const COLLISION: &str = "as in `specialise strike(tip_wall, law = Stronge, mu = 0.3)`";

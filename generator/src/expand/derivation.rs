@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use crate::artifact;
-use crate::model::mechanism::Mechanism;
-use crate::program::Program;
-use crate::reading;
-use crate::source::Source;
+use hodograph_model::model::mechanism::Mechanism;
+use hodograph_model::source::Source;
+use hodograph_program::artifact::{self, Loaded};
+use hodograph_program::program::Program;
 
 /// Finds the program of a model. `path` is where its derivation should be, `shown` how messages call that
 /// file, `command` what writes it.
@@ -17,25 +16,15 @@ pub fn find(
     shown: &str,
     command: &str,
 ) -> Result<Program, String> {
-    let text = match reading::text(path, artifact::MAX_BYTES) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            return absent(source, mechanism, shown, command);
-        }
-        Err(error) => return Err(format!("the derivation `{shown}` cannot be read: {error}")),
-    };
-    let repair = format!(
-        "run this in the folder of the package's Cargo.toml and check the result in:\n\n    {command}\n"
-    );
-    let artifact = artifact::decode(&text).map_err(|error| {
-        format!("the derivation `{shown}` is damaged or of another version ({error}); {repair}")
-    })?;
-    if artifact.model != artifact::model_hash(source) {
-        return Err(format!(
-            "the derivation `{shown}` is stale: the model has changed since it was derived; {repair}"
-        ));
+    match artifact::load(path, source) {
+        Loaded::Absent => absent(source, mechanism, shown, command),
+        found => found.program().map_err(|fault| {
+            format!(
+                "the derivation `{shown}` {fault}; run this in the folder of the package's Cargo.toml and check the \
+                 result in:\n\n    {command}\n"
+            )
+        }),
     }
-    Ok(artifact.program)
 }
 
 #[cfg(feature = "derive")]
@@ -73,7 +62,7 @@ fn absent(_source: &Source, _mechanism: &Mechanism, shown: &str, command: &str) 
 
 #[cfg(test)]
 mod tests {
-    use crate::check::check;
+    use hodograph_model::check::check;
 
     use super::*;
 

@@ -4,9 +4,9 @@ use proc_macro2::{Span, TokenStream};
 
 use super::arguments::Arguments;
 use super::report;
-use crate::emit::{self, Options};
-use crate::model::mechanism::Mechanism;
-use crate::program::Program;
+use hodograph_emit::{self as emit, Options};
+use hodograph_model::model::mechanism::Mechanism;
+use hodograph_program::program::Program;
 
 /// The module of a mechanism whose program `found` finds, or the errors: those about arguments where they stand,
 /// others at `at`.

@@ -9,15 +9,16 @@ use syn::parse::{Parse, ParseStream, Parser};
 use syn::{Error, LitStr, Result, Token};
 
 use super::arguments::{Arguments, WORDS};
+use super::compiler;
 use super::emitted::emitted;
 use super::{derivation, report};
-use crate::check::check;
-use crate::compiler;
-use crate::emit;
-use crate::rust_names;
-use crate::source::Source;
-use crate::suggest::nearest;
-use crate::syntax::token::TokenKind;
+use hodograph_emit as emit;
+use hodograph_model::check::check;
+use hodograph_model::rust_names;
+use hodograph_model::source::Source;
+use hodograph_model::suggest::nearest;
+use hodograph_model::syntax::token::TokenKind;
+use hodograph_program::reading;
 
 /// The path that the user wrote, and where.
 pub struct ModelPath {
@@ -109,7 +110,7 @@ pub fn expand(path: &ModelPath, arguments: &Arguments, krate: &TokenStream, pack
         }
     };
     let mut tracked_files = vec![tracked(&path.text, place.in_package)];
-    let source = Source::read_as(path.text.clone(), &place.path);
+    let source = reading::model_as(path.text.clone(), &place.path);
     let name = name(&source).unwrap_or(stem);
     let failed = |error: &TokenStream, tracked: &[TokenStream]| {
         emit::stub(&module, &name, error, tracked, &arguments.types())

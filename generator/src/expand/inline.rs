@@ -7,21 +7,22 @@ use proc_macro2::{Span, TokenStream, TokenTree};
 use quote::quote;
 
 use super::arguments::Arguments;
+use super::compiler;
 use super::emitted::emitted;
+use super::tokens::Inline;
 use super::{derivation, report};
-use crate::check::check;
-use crate::compiler;
-use crate::emit;
-use crate::rust_names;
-use crate::source::Source;
+use hodograph_emit as emit;
+use hodograph_model::check::check;
+use hodograph_model::rust_names;
 
 /// The module of an inline model.
 pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, package: &Path) -> TokenStream {
     // The tokens are the user's; the call itself stands in the wrapper of the runtime.
     let first = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
     let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
-    let source = Source::inline("mechanism!", model);
-    let checked = check(&source);
+    let model = Inline::new("mechanism!", model);
+    let source = &model.source;
+    let checked = check(source);
     let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let failed = |error: &TokenStream, tracked: &[TokenStream]| match &name {
         Some(name) => emit::stub(&module, name, error, tracked, &arguments.types()),
@@ -29,7 +30,7 @@ pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, pa
         None => error.clone(),
     };
     let Some(mechanism) = checked.mechanism else {
-        return failed(&report::of_inline(&source, &checked.diagnostics), &[]);
+        return failed(&report::of_inline(&model, &checked.diagnostics), &[]);
     };
     let shown = format!("derived/{module}.derivation");
     let command = format!("hodograph derive {}", invoking_file(first, package));
@@ -40,7 +41,7 @@ pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, pa
     let tracked: Vec<TokenStream> = tracked.into_iter().collect();
     let (krate, files, requests) = (krate.clone(), tracked.clone(), arguments.requests.clone());
     let options = emit::Options { krate, module: module.clone(), tracked: files, requests };
-    let found = || derivation::find(&source, &mechanism, &path, &shown, &command);
+    let found = || derivation::find(source, &mechanism, &path, &shown, &command);
     let result = emitted(&mechanism, arguments, at, &options, found);
     result.unwrap_or_else(|errors| failed(&errors, &tracked))
 }

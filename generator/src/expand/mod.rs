@@ -3,20 +3,23 @@
 //! threads.
 
 mod arguments;
+mod compiler;
 mod derivation;
 mod emitted;
 mod file;
 mod inline;
 mod report;
+mod tokens;
 
 use std::path::{Path, PathBuf};
 
 use proc_macro2::{Delimiter, Span, TokenStream, TokenTree};
 use quote::quote;
 
-use crate::syntax::tree::Section;
+use hodograph_model::syntax::tree::Section;
 
 pub use arguments::Arguments;
+pub use tokens::Inline;
 
 /// The tokens that the input of `mechanism!` becomes: a module, or errors and a stand-in for it. The input is
 /// `($crate) "models/two_sleds.mech"` or `($crate) mechanism Name; ..`; without the first group the runtime

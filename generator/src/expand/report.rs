@@ -1,7 +1,8 @@
 //! Converts mistakes to calls of `compile_error!`.
 
-use crate::diagnostics::{Diagnostic, Severity};
-use crate::source::Source;
+use super::tokens::Inline;
+use hodograph_model::diagnostics::{Diagnostic, Severity};
+use hodograph_model::source::Source;
 use proc_macro2::{Delimiter, Group, Ident, Literal, Punct, Spacing, Span, TokenStream, TokenTree};
 
 /// A `compile_error!` that underlines from the first to the last token.
@@ -25,13 +26,13 @@ pub fn of_file(source: &Source, diagnostics: &[Diagnostic], at: Span) -> TokenSt
 }
 
 /// The errors of an inline model, each at the user's own tokens.
-pub fn of_inline(source: &Source, diagnostics: &[Diagnostic]) -> TokenStream {
+pub fn of_inline(model: &Inline, diagnostics: &[Diagnostic]) -> TokenStream {
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.severity == Severity::Error);
     errors
         .map(|diagnostic| {
             let call = (Span::call_site(), Span::call_site());
-            let (first, last) = source.rust_spans(diagnostic.primary.span).unwrap_or(call);
-            error(first, last, &diagnostic.compiler_text(source))
+            let (first, last) = model.rust_spans(diagnostic.primary.span).unwrap_or(call);
+            error(first, last, &diagnostic.compiler_text(&model.source))
         })
         .collect()
 }

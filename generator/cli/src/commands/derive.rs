@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::artifact::MAX_BYTES;
+use hodograph_generator::artifact::{self, Loaded, MAX_BYTES};
 use hodograph_generator::reading;
 
-use crate::derivation::{self, Found, Limits};
+use crate::derivation::{self, Limits};
 use crate::files::{Entry, collect};
 use crate::model::{self, Model};
 use crate::output;
@@ -76,7 +76,7 @@ fn one(
     path: PathBuf,
     report: &mut output::Report,
 ) -> Outcome<bool> {
-    let found = derivation::find(&path, model);
+    let found = artifact::load(&path, &model.source);
     if arguments.check || arguments.verify {
         let fault = match found.fault() {
             None if arguments.verify => difference(model, &path, &arguments.limits)?,
@@ -84,11 +84,11 @@ fn one(
         };
         let Some(fault) = fault else { return Ok(true) };
         let (path, model) = (path.display(), entry.path.display());
-        let force = if matches!(found, Found::Fresh(_)) { " --force" } else { "" };
+        let force = if matches!(found, Loaded::Fresh(_)) { " --force" } else { "" };
         report.text(&format!("{path} {fault}; run `hodograph derive{force} {model}`\n"))?;
         return Ok(false);
     }
-    if matches!(found, Found::Fresh(_)) && !arguments.force {
+    if matches!(found, Loaded::Fresh(_)) && !arguments.force {
         output::say(format_args!("{} is fresh", path.display()));
         return Ok(true);
     }

@@ -1,0 +1,224 @@
+//! Base parameters of robot dynamics: combines and regroups the inertia parameters, so that fewer of them
+//! describe the same mechanism.
+//!
+//! Mass that moves rigidly with a frame is described, about a reference point of the frame, by mass, first
+//! moment and second moments (the matrix of `integral r r' dm`, the pseudo-inertia). Bodies with the same
+//! frame and reference point are added. Mass on the axis of a revolute joint moves with the bodies on both
+//! sides of it; its mass, first moment and second moment along the axis are therefore moved to the body on
+//! the inner side. Mass on an axis that is fixed in N does not move and is dropped.
+
+use std::collections::BTreeMap;
+
+use crate::algebra::{Expr, Intermediates};
+use crate::kinematics::Kinematics;
+use crate::kinematics::axes::{ENTRIES, Symmetric, entry, unit};
+use crate::kinematics::linear_forms::{self, Triple};
+use hodograph_model::model::mechanism::{FrameId, PointId};
+use hodograph_model::number::Number;
+
+/// Where a lump is: the frame it turns with and its reference point (`None`: a point at rest).
+pub type Seat = (FrameId, Option<PointId>);
+
+/// Mass that moves rigidly with a frame, about its reference point, along the home axes of the frame.
+#[derive(Clone, Debug)]
+pub struct Lump {
+    /// kg
+    pub mass: Expr,
+    /// first moment, kg m
+    pub moment: Triple,
+    /// second moments xx, yy, zz, xy, yz, zx, kg m^2
+    pub second: Symmetric,
+}
+
+impl Lump {
+    fn empty() -> Self {
+        Lump {
+            mass: Expr::zero(),
+            moment: linear_forms::zero(),
+            second: std::array::from_fn(|_| Expr::zero()),
+        }
+    }
+
+    /// Adds another lump whose reference point is at `r`, along the same axes.
+    fn add_at(&mut self, other: &Lump, r: &Triple) {
+        for (i, j) in ENTRIES {
+            let shift = other.mass.mul(&r[i]).mul(&r[j]);
+            let mixed = other.moment[i].mul(&r[j]).add(&other.moment[j].mul(&r[i]));
+            let at = entry(i, j);
+            self.second[at] = self.second[at].add(&other.second[at]).add(&shift).add(&mixed);
+        }
+        let shifted = linear_forms::add(&other.moment, &linear_forms::scale(&other.mass, r));
+        self.moment = linear_forms::add(&self.moment, &shifted);
+        self.mass = self.mass.add(&other.mass);
+    }
+
+    fn tidy(&mut self, k: &mut Kinematics<'_>) {
+        let mut tidy = |c: &Expr| {
+            let c = k.z.simplify(c);
+            k.z.name(c)
+        };
+        self.mass = tidy(&self.mass);
+        self.moment = std::array::from_fn(|i| tidy(&self.moment[i]));
+        self.second = std::array::from_fn(|i| tidy(&self.second[i]));
+    }
+
+    /// Inertia about the reference point: trace 1 - second.
+    pub fn inertia(&self, k: &mut Kinematics<'_>) -> Symmetric {
+        std::array::from_fn(|i| {
+            if i < 3 {
+                let value = self.second[(i + 1) % 3].add(&self.second[(i + 2) % 3]);
+                gathered(&mut k.z, &value)
+            } else {
+                k.z.name(self.second[i].neg())
+            }
+        })
+    }
+}
+
+/// A sum or difference of second moments by its parameters: what the model states as moments of inertia
+/// stands there again, without the rounding errors of the way there and back. Larger sums stay in parts,
+/// which round less than one long sum.
+pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
+    const LARGEST: usize = 40;
+    let opened = z.opened(value, LARGEST);
+    let simple = z.simplify(&opened);
+    z.name(simple)
+}
+
+/// Where the mass of a body that turns on a joint is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Masses {
+    /// on the other side of the joint, as everything that lies on its axis: fewest parameters
+    Handed,
+    /// in the body itself. Articulated inertias want that: handed on, the masses of all that follows would
+    /// stand in one number, from which most is taken again where hinges give way, and what is left would
+    /// have the rounding of the whole.
+    Kept,
+}
+
+/// All inertia of the mechanism.
+pub fn lumps(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Seat, Lump> {
+    let mut lumps: BTreeMap<Seat, Lump> = BTreeMap::new();
+    for body in &k.mechanism.bodies {
+        let mut lump = Lump::empty();
+        let place = format!("body `{}`", body.name);
+        let mass = k.within(place, |k| k.scalar(&body.mass));
+        lump.mass = k.z.name(mass);
+        let own = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N);
+        let frame = own.or_else(|| carrier(k, body.centre)).unwrap_or(FrameId::N);
+        if own.is_some()
+            && let Some((inertia, axes)) = super::bodies::central_inertia(k, body)
+        {
+            let home = k.frames[frame.0].home;
+            let inertia = k.tree.convert_symmetric(&mut k.z, &inertia, axes, home);
+            // second moments: 1/2 trace 1 - I
+            let half = Expr::number(&Number::ratio(1, 2));
+            let trace = inertia[0].add(&inertia[1]).add(&inertia[2]).mul(&half);
+            lump.second =
+                std::array::from_fn(|i| if i < 3 { trace.sub(&inertia[i]) } else { inertia[i].neg() });
+        }
+        let (reference, r) = rigid_way(k, frame, Some(body.centre));
+        lumps.entry((frame, reference)).or_insert_with(Lump::empty).add_at(&lump, &r);
+    }
+    regroup(k, &mut lumps, masses);
+    for lump in lumps.values_mut() {
+        lump.tidy(k);
+    }
+    lumps
+}
+
+/// The frame that carries a particle rigidly from its base point, if one does.
+fn carrier(k: &mut Kinematics<'_>, point: PointId) -> Option<FrameId> {
+    let motion = &k.points[point.0];
+    match &motion.arms[..] {
+        [arm] if motion.relative.is_empty() => Some(arm.frame),
+        _ => None,
+    }
+}
+
+/// Follows a point back as long as each step is an arm fixed in the frame: the point reached (`None`: one at
+/// rest) and the way from there, along the frame's home axes.
+fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (Option<PointId>, Triple) {
+    let home = k.frames[frame.0].home;
+    let mut way = linear_forms::zero();
+    let mut at = from;
+    while let Some(point) = at {
+        let motion = k.points[point.0].clone();
+        if motion.base.is_none() && motion.arms.is_empty() && motion.relative.is_empty() {
+            return (None, way);
+        }
+        let mut step = linear_forms::zero();
+        let mut rigid = motion.relative.is_empty();
+        for arm in &motion.arms {
+            rigid &= arm.frame == frame && k.turning(k.tree.owner(arm.axes)) == frame;
+            rigid = rigid && linear_forms::is_zero(&k.change_of(&arm.arm));
+            if rigid {
+                let turned = k.tree.convert(&mut k.z, &arm.arm, arm.axes, home);
+                rigid = linear_forms::is_zero(&k.change_of(&turned));
+                step = linear_forms::add(&step, &turned);
+            }
+        }
+        if !rigid {
+            break;
+        }
+        way = linear_forms::add(&way, &step);
+        at = motion.base;
+    }
+    (at, linear_forms::name(&mut k.z, way))
+}
+
+/// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
+fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Masses) {
+    let mut frames: Vec<FrameId> = lumps.keys().map(|seat| seat.0).filter(|&f| f != FrameId::N).collect();
+    for frame in frames.clone() {
+        frames.extend(k.ancestry(frame).into_iter().map(|frame| k.turning(frame)));
+    }
+    frames.retain(|&frame| frame != FrameId::N);
+    frames.sort_by_key(|&frame| (std::cmp::Reverse(k.ancestry(frame).len()), frame));
+    frames.dedup();
+    for frame in frames {
+        let Some(axis) = joint_axis(k, frame) else { continue };
+        let base = k.turning(k.frames[frame.0].base);
+        let seats: Vec<Seat> = lumps.keys().copied().filter(|seat| seat.0 == frame).collect();
+        for seat in seats {
+            // Points on the axis move with the base as they do with the frame, whether the joint is fixed in
+            // the base or not; where it is, the way goes on to the base's own reference point.
+            let (target, r) =
+                if base == FrameId::N { (seat.1, linear_forms::zero()) } else { rigid_way(k, base, seat.1) };
+            let Some(lump) = lumps.get_mut(&seat) else { continue };
+            let mut rod = Lump::empty();
+            if masses == Masses::Handed {
+                rod.mass = std::mem::replace(&mut lump.mass, Expr::zero());
+            }
+            rod.moment[axis] = std::mem::replace(&mut lump.moment[axis], Expr::zero());
+            rod.second[axis] = std::mem::replace(&mut lump.second[axis], Expr::zero());
+            lump.tidy(k);
+            if base == FrameId::N {
+                // about an axis that keeps its direction only the mass matters
+                rod.moment[axis] = Expr::zero();
+                rod.second[axis] = Expr::zero();
+            }
+            let (home, base_home) = (k.frames[frame.0].home, k.frames[base.0].home);
+            let along = k.tree.convert(&mut k.z, &unit(axis), home, base_home);
+            let turned = Lump {
+                mass: rod.mass.clone(),
+                moment: linear_forms::scale(&rod.moment[axis], &along),
+                second: ENTRIES.map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
+            };
+            lumps.entry((base, target)).or_insert_with(Lump::empty).add_at(&turned, &r);
+        }
+    }
+}
+
+/// The coordinate axis about which a frame turns against its base, if it is one that is fixed in both.
+fn joint_axis(k: &mut Kinematics<'_>, frame: FrameId) -> Option<usize> {
+    let motion = k.frames[frame.0].clone();
+    let partials: Vec<&Triple> = motion.relative.terms.values().chain([&motion.relative.rest]).collect();
+    let axis = (0..3).find(|&i| partials.iter().all(|p| (0..3).all(|j| j == i || p[j].is_zero())))?;
+    let base = k.turning(motion.base);
+    let base_home = k.frames[base.0].home;
+    let along = k.tree.convert(&mut k.z, &unit(axis), motion.home, base_home);
+    let back = k.tree.owner(motion.home);
+    let fixed = linear_forms::is_zero(&k.change_of(&along)) && k.turning(back) == frame;
+    fixed.then_some(axis)
+}

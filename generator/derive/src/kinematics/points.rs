@@ -1,0 +1,139 @@
+//! Positions of points, and their velocities while the kinematical equations are being set up.
+
+use super::linear_forms::{self, LinearVector};
+use super::vectors::{add, add_linear, scale};
+use super::{Kinematics, Mixed, MixedLinear};
+use crate::algebra::Expr;
+use hodograph_model::model::mechanism::{FrameId, Place, PointId};
+
+impl Kinematics<'_> {
+    /// The way from a point back to where it starts: itself first.
+    pub(super) fn way(&self, point: PointId) -> Vec<PointId> {
+        let mut way = vec![point];
+        let mut at = point;
+        while let Place::Offset { from, .. } | Place::Material { from, .. } =
+            &self.mechanism.points[at.0].place
+        {
+            at = *from;
+            way.push(at);
+        }
+        way
+    }
+
+    /// Whether the difference of the positions of two points is known.
+    pub fn connected(&self, a: PointId, b: PointId) -> bool {
+        self.way(a).last() == self.way(b).last()
+    }
+
+    /// Position of one point from another.
+    pub fn position(&mut self, of: PointId, from: PointId) -> Mixed {
+        let (mut ahead, mut behind) = (self.way(of), self.way(from));
+        while ahead.len() > 1 && behind.len() > 1 && ahead[ahead.len() - 2] == behind[behind.len() - 2] {
+            ahead.pop();
+            behind.pop();
+        }
+        // A common point on the way need not be the last but one of either.
+        if let Some(i) = ahead.iter().position(|p| behind.contains(p)) {
+            let common = ahead[i];
+            ahead.truncate(i + 1);
+            let j = behind.iter().position(|&p| p == common).unwrap_or(0);
+            behind.truncate(j + 1);
+        }
+        let mut sum = Mixed::new();
+        for (way, sign) in [(ahead, 1), (behind, -1)] {
+            for point in way.iter().take(way.len() - 1) {
+                let step = self.step(*point);
+                sum = add(&sum, &scale(&Expr::integer(sign), &step));
+            }
+        }
+        sum
+    }
+
+    /// The last step to a point.
+    pub(super) fn step(&mut self, point: PointId) -> Mixed {
+        let mechanism = self.mechanism;
+        match &mechanism.points[point.0].place {
+            Place::Offset { by, .. } | Place::Material { by, .. } => {
+                let place = format!("the position of point `{}`", mechanism.points[point.0].name);
+                let step = self.within(place, |k| k.vector(by));
+                step.into_iter().map(|(axes, v)| (axes, linear_forms::name(&mut self.z, v))).collect()
+            }
+            Place::Origin | Place::Velocity(_) => Mixed::new(),
+        }
+    }
+
+    /// Rate of a vector free of speeds, as a form, by differentiation with angular velocities from
+    /// orientations.
+    pub(super) fn derived_rate(&mut self, v: &Mixed) -> MixedLinear {
+        let mut sum = MixedLinear::new();
+        for (&axes, components) in v {
+            let mut rate = LinearVector::zero();
+            for (i, component) in components.iter().enumerate() {
+                let change = self.rate_of(component);
+                rate = rate.add(&LinearVector::along(&change, &super::axes::unit(i)));
+            }
+            let owner = self.tree.owner(axes);
+            let turning = self.derived_angular_velocity(owner);
+            let turning = self.express_linear(&turning, axes);
+            rate = rate.add(&turning.map(|w| linear_forms::cross(w, components)));
+            if !rate.is_zero() {
+                sum = add_linear(&sum, &[(axes, rate)].into());
+            }
+        }
+        sum
+    }
+
+    /// Angular velocity in N from orientations (declared only where there is no other).
+    pub(super) fn derived_angular_velocity(&mut self, frame: FrameId) -> MixedLinear {
+        let mechanism = self.mechanism;
+        let mut sum = MixedLinear::new();
+        let mut at = frame;
+        while let Some(parent) = mechanism.frames[at.0].parent {
+            match self.derived_relative(at) {
+                Ok(relative) => {
+                    if !relative.is_zero() {
+                        let home = self.home_axes(at);
+                        sum = add_linear(&sum, &[(home, relative)].into());
+                    }
+                    at = parent;
+                }
+                Err(_) => match &mechanism.frames[at.0].angular_velocity {
+                    Some((base, declared)) => {
+                        let declared = self.linear_vector(declared);
+                        sum = add_linear(&sum, &declared);
+                        at = *base;
+                    }
+                    None => at = parent,
+                },
+            }
+        }
+        sum
+    }
+
+    /// Velocity by differentiation of positions (declared only where there is no position).
+    pub(super) fn derived_velocity(&mut self, point: PointId) -> MixedLinear {
+        let mechanism = self.mechanism;
+        match &mechanism.points[point.0].place {
+            Place::Origin => MixedLinear::new(),
+            Place::Offset { from, .. } => {
+                let step = self.step(point);
+                let rate = self.derived_rate(&step);
+                add_linear(&self.derived_velocity(*from), &rate)
+            }
+            Place::Material { frame, from, .. } => {
+                let step = self.step(point);
+                let turning = self.derived_angular_velocity(*frame);
+                let mut sum = self.derived_velocity(*from);
+                for (axes, arm) in step {
+                    let turning = self.express_linear(&turning, axes);
+                    let part = turning.map(|w| linear_forms::cross(w, &arm));
+                    if !part.is_zero() {
+                        sum = add_linear(&sum, &[(axes, part)].into());
+                    }
+                }
+                sum
+            }
+            Place::Velocity(declared) => self.linear_vector(declared),
+        }
+    }
+}

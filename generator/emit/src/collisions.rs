@@ -1,0 +1,299 @@
+//! Emits the methods for the collision and the impact without collision of a contact, and their result type.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::Emitter;
+use super::record;
+use super::routine::Arguments;
+use super::values::local;
+use hodograph_program::program::Output;
+use hodograph_program::program::{ContactQuantity, Quantity, Structure};
+
+/// What a collision needs of its contact, in any case.
+const NEEDED: [ContactQuantity; 6] = [
+    ContactQuantity::Normal,
+    ContactQuantity::First,
+    ContactQuantity::Second,
+    ContactQuantity::Velocity,
+    ContactQuantity::Reduced,
+    ContactQuantity::Response,
+];
+
+impl Emitter<'_> {
+    /// Whether the collision of this contact can be computed.
+    pub fn collides(&self, contact: usize) -> bool {
+        NEEDED.iter().all(|&quantity| self.contact_output(contact, quantity).is_some())
+    }
+
+    /// The type of solved collisions, where there is a contact.
+    pub fn collision_type(&self) -> TokenStream {
+        if !(0..self.mechanism.contacts.len()).any(|contact| self.collides(contact)) {
+            return quote!();
+        }
+        let krate = self.krate;
+        let vector = quote!(#krate::nalgebra::Vector3<T>);
+        let dependent = (!self.dependent.is_empty()).then(|| {
+            quote! {
+                /// dependent speeds after the collision
+                pub dependent_speeds: DependentSpeeds<T>,
+            }
+        });
+        let dependent_field = (!self.dependent.is_empty()).then_some("dependent_speeds");
+        let fields = [
+            "impulse",
+            "impulse_on_point",
+            "impulse_on_struck",
+            "normal",
+            "tangent",
+            "binormal",
+            "approach",
+            "separation",
+            "reduced",
+            "energy_change",
+            "path",
+            "impact",
+        ];
+        let fields: Vec<&str> = ["speeds"].into_iter().chain(dependent_field).chain(fields).collect();
+        let written = record::outcome(krate, "Collision", &fields);
+        quote! {
+            /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
+            #[derive(Clone, Copy, Debug, PartialEq)]
+            #[must_use]
+            #[non_exhaustive]
+            pub struct Collision<T: #krate::nalgebra::Scalar = f64> {
+                /// independent speeds after the collision (12a)
+                pub speeds: Speeds<T>,
+                #dependent
+                /// impulse on the striking point along n, t, s, in N s
+                pub impulse: #vector,
+                /// impulse on the striking point along N.x, N.y, N.z, in N s
+                pub impulse_on_point: #vector,
+                /// impulse on what is struck along N.x, N.y, N.z, in N s: the opposite of `impulse_on_point`
+                pub impulse_on_struck: #vector,
+                /// n along N.x, N.y, N.z
+                pub normal: #vector,
+                /// t along N.x, N.y, N.z
+                pub tangent: #vector,
+                /// s along N.x, N.y, N.z
+                pub binormal: #vector,
+                /// velocity of approach along n, t, s, in m/s
+                pub approach: #vector,
+                /// velocity of separation along n, t, s, in m/s
+                pub separation: #vector,
+                /// reduced mass matrix along n, t, s, in 1/kg
+                pub reduced: #krate::ReducedMatrix<T>,
+                /// change of the kinetic energy, in J; it differs from `impact.contact_work` where motion is prescribed (24)
+                pub energy_change: T,
+                /// the phases of the collision
+                pub path: #krate::Path,
+                /// the outcome of the impact solver, along n, t, s: works, phases, sensitivity
+                pub impact: #krate::Impact<T>,
+            }
+
+            impl<T: #krate::Scalar> Collision<T> {
+                /// The collision in the type that all mechanisms share, without the speeds after it.
+                #[inline]
+                #[must_use]
+                pub fn outcome(&self) -> #krate::CollisionOutcome<T> {
+                    #krate::CollisionOutcome {
+                        normal: self.normal,
+                        tangent: self.tangent,
+                        binormal: self.binormal,
+                        approach: self.approach,
+                        reduced: self.reduced,
+                        impulse_on_point: self.impulse_on_point,
+                        energy_change: self.energy_change,
+                        impact: self.impact,
+                    }
+                }
+            }
+
+            #written
+        }
+    }
+
+    /// What a collision is computed from.
+    pub fn collision_quantities(&self, contact: usize) -> Vec<Quantity> {
+        let index = contact as u32;
+        let mut quantities: Vec<Quantity> =
+            NEEDED.iter().map(|&quantity| Quantity::Contact(index, quantity)).collect();
+        let optional = [
+            Quantity::Contact(index, ContactQuantity::Remainder),
+            Quantity::Contact(index, ContactQuantity::PrescribedWork),
+            Quantity::Contact(index, ContactQuantity::DependentResponse),
+        ];
+        quantities.extend(optional.into_iter().filter(|&quantity| self.program.output(quantity).is_some()));
+        if !self.dependent.is_empty() {
+            quantities.push(Quantity::DependentSpeeds);
+        }
+        quantities
+    }
+
+    /// The arguments of a collision but for the surface.
+    pub fn collision_arguments(&self, contact: usize) -> Arguments {
+        Arguments { speeds: true, ..self.arguments(&self.collision_quantities(contact)) }
+    }
+
+    /// What the runtime reads of a contact, as an expression of its `Contact`.
+    pub fn known_contact(&self, contact: usize) -> TokenStream {
+        let krate = self.krate;
+        let vector = |quantity: ContactQuantity| match self.contact_output(contact, quantity) {
+            Some(output) => {
+                let entries = output.values.iter().map(|&value| local(value));
+                quote!(#krate::nalgebra::Vector3::new(#(#entries),*))
+            }
+            None => quote!(#krate::nalgebra::Vector3::zeros()),
+        };
+        let [normal, first, second] =
+            [ContactQuantity::Normal, ContactQuantity::First, ContactQuantity::Second].map(vector);
+        let [velocity, remainder, prescribed] =
+            [ContactQuantity::Velocity, ContactQuantity::Remainder, ContactQuantity::PrescribedWork]
+                .map(vector);
+        let reduced =
+            self.contact_output(contact, ContactQuantity::Reduced).map(|output| self.reduced(output));
+        quote! {
+            #krate::generated::Contact {
+                normal: #normal,
+                first: #first,
+                second: #second,
+                velocity: #velocity,
+                reduced: #reduced,
+                remainder: #remainder,
+                prescribed_work: #prescribed,
+            }
+        }
+    }
+
+    /// The values of a quantity, each more by its response times `i0`, `i1`, `i2`.
+    pub fn changed(
+        &self,
+        quantity: Quantity,
+        contact: usize,
+        response: ContactQuantity,
+    ) -> Option<Vec<TokenStream>> {
+        let output = self.program.output(quantity)?;
+        let before = output.values.iter().map(|&value| local(value)).map(|value| quote!(#value)).collect();
+        Some(self.after(before, self.contact_output(contact, response)))
+    }
+
+    /// `collide_..` and `impact_without_collision_..`, and the routine that they share.
+    pub fn collide(&self, contact: usize) -> TokenStream {
+        let krate = self.krate;
+        let words = self.contact_words(contact);
+        let named = |prefix: &str| crate::identifiers::ident(&self.contact_method(prefix, contact));
+        let [collide, without, shared] = ["collide", "impact_without_collision", "struck"].map(named);
+        let docs = crate::identifiers::docs(&format!(
+            "Solves the collision at {words}.\n\nThe coordinates do not change; the speeds change by M^-1 V^T I (12a), I being the impulse."
+        ));
+        let docs_without = crate::identifiers::docs(&format!(
+            "Solves the impact without collision at {words}. The contact is closed, slides with f < 0 (31) and is pressed together, so that no finite force \
+             exists (Painleve's paradox). The normal velocity is taken for zero; the speeds change as in `{collide}`. Where f > 0 or without slip \
+             a finite force exists, and the error is `NoImpact`."
+        ));
+        let resolve = match self.structure(contact) {
+            Some(marker) => {
+                quote!(#krate::generated::resolve_structured::<#krate::structure::#marker, T>)
+            }
+            None => quote!(#krate::generated::resolve),
+        };
+        let arguments = self.collision_arguments(contact);
+        let (signature, passed) = (self.signature(arguments), self.passed(arguments));
+        let body = self.struck(contact, &quote!(resolve(&contact)));
+        let result = quote!(::core::result::Result<Collision<T>, #krate::CollisionError<T>>);
+        quote! {
+            #docs
+            #[inline]
+            pub fn #collide(#signature surface: &impl #krate::ContactSurface<T>) -> #result {
+                Self::#shared(self, #passed |contact| #resolve(contact, surface))
+            }
+
+            #docs_without
+            #[inline]
+            pub fn #without(#signature surface: &impl #krate::ContactSurface<T>) -> #result {
+                Self::#shared(self, #passed |contact| #krate::generated::resolve_without_collision(contact, surface))
+            }
+
+            #[inline]
+            fn #shared(
+                #signature
+                resolve: impl ::core::ops::FnOnce(
+                    &#krate::generated::Contact<T>,
+                ) -> ::core::result::Result<#krate::generated::Resolved<T>, #krate::ImpactError<T>>,
+            ) -> #result {
+                #body
+            }
+        }
+    }
+
+    /// The closed form that the symbols of the reduced matrix allow.
+    pub fn structure(&self, contact: usize) -> Option<TokenStream> {
+        match self.program.structures.get(contact) {
+            Some(Structure::Planar) => Some(quote!(Planar)),
+            Some(Structure::Balanced) => Some(quote!(Balanced)),
+            Some(Structure::Diagonal) => Some(quote!(Diagonal)),
+            Some(Structure::Isotropic) => Some(quote!(Isotropic)),
+            Some(Structure::General) | None => None,
+        }
+    }
+
+    /// The statements from a state to a solved collision; `solved` is the expression that solves that of
+    /// `contact`.
+    pub fn struck(&self, contact: usize, solved: &TokenStream) -> TokenStream {
+        let known = self.known_contact(contact);
+        let speeds: Vec<TokenStream> = self.speeds.fields().map(|field| quote!(u.#field)).collect();
+        let speeds = self.after(speeds, self.contact_output(contact, ContactQuantity::Response));
+        let speeds = self.speeds.construct(&speeds);
+        let dependent = (!self.dependent.is_empty())
+            .then(|| self.changed(Quantity::DependentSpeeds, contact, ContactQuantity::DependentResponse))
+            .flatten()
+            .map(|after| {
+                let value = self.dependent.construct(&after);
+                quote!(dependent_speeds: #value,)
+            });
+        let body = self.compute(&self.collision_quantities(contact));
+        quote! {
+            #body
+            let contact = #known;
+            let hit = #solved?;
+            let [[i0, i1, i2]] = hit.impulse.data.0;
+            ::core::result::Result::Ok(Collision {
+                speeds: #speeds,
+                #dependent
+                impulse: hit.impact.impulse,
+                impulse_on_point: hit.impulse_on_point,
+                impulse_on_struck: -hit.impulse_on_point,
+                normal: contact.normal,
+                tangent: hit.tangent,
+                binormal: hit.binormal,
+                approach: hit.approach,
+                separation: hit.impact.velocity,
+                reduced: hit.reduced,
+                energy_change: hit.energy_change,
+                path: hit.impact.path,
+                impact: hit.impact,
+            })
+        }
+    }
+
+    /// Speeds plus response times impulse; structural zeros are left out.
+    pub fn after(&self, before: Vec<TokenStream>, response: Option<&Output>) -> Vec<TokenStream> {
+        let impulse = [quote!(i0), quote!(i1), quote!(i2)];
+        let after = before.into_iter().enumerate().map(|(row, before)| {
+            let terms = impulse.iter().enumerate().filter_map(|(column, impulse)| {
+                let value = *response?.values.get(row * 3 + column)?;
+                if self.is_zero(value) {
+                    return None;
+                }
+                let value = local(value);
+                Some(quote!(#value * #impulse))
+            });
+            quote!(#before #(+ #terms)*)
+        });
+        after.collect()
+    }
+
+    fn is_zero(&self, value: hodograph_program::program::operation::Value) -> bool {
+        matches!(self.program.operation(value), hodograph_program::program::operation::Operation::Constant(bits) if bits.get() == 0.0)
+    }
+}

@@ -1,0 +1,234 @@
+//! Emits the methods of a contact: gap, velocities, reduced matrix, and those of `collisions` and `closed`.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::Emitter;
+use super::methods::about;
+use super::record::number;
+use super::routine::Routine;
+use super::values::local;
+use hodograph_model::model::mechanism::{Law, Surface};
+use hodograph_program::program::Output;
+use hodograph_program::program::{ContactQuantity, Quantity};
+
+impl Emitter<'_> {
+    pub fn contact_output(&self, contact: usize, quantity: ContactQuantity) -> Option<&Output> {
+        let output = self.program.output(Quantity::Contact(contact as u32, quantity))?;
+        (!output.values.is_empty()).then_some(output)
+    }
+
+    /// The methods of all contacts.
+    pub fn contacts(&self) -> TokenStream {
+        let methods = (0..self.mechanism.contacts.len()).map(|contact| self.contact(contact));
+        quote! { #(#methods)* }
+    }
+
+    fn contact(&self, contact: usize) -> TokenStream {
+        let routines = self.contact_routines(contact);
+        let routines = routines.iter().map(|routine| self.routine(routine));
+        let collide = self.collides(contact).then(|| self.collide(contact));
+        let closed = self.closes(contact).then(|| self.closed(contact));
+        let derivatives = self.collides(contact).then(|| self.derivatives(contact));
+        let surface = self.surface(contact);
+        quote! { #(#routines)* #collide #closed #derivatives #surface }
+    }
+
+    /// Friction and restitution, where the model states them.
+    fn surface(&self, contact: usize) -> Option<TokenStream> {
+        let krate = self.krate;
+        let stated = self.mechanism.contacts.get(contact)?;
+        let Surface { mu, e, law } = stated.surface?;
+        let name = crate::identifiers::ident(&self.contact_method("surface", contact));
+        let docs = format!(
+            " Friction and restitution that the model states for {}.",
+            about(&stated.name, &stated.docs)
+        );
+        let law = match law {
+            Law::Newton => quote!(Newton),
+            Law::Poisson => quote!(Poisson),
+            Law::Stronge => quote!(Stronge),
+        };
+        let [mu, e] = [mu, e].map(|value| number(krate, value));
+        Some(quote! {
+            #[doc = #docs]
+            #[inline]
+            #[must_use]
+            pub fn #name() -> #krate::Surface<T> {
+                #krate::Surface { mu: #mu, e: #e, law: #krate::Law::#law }
+            }
+        })
+    }
+
+    /// The routines of a contact but for its derivatives.
+    pub fn contact_routines(&self, contact: usize) -> Vec<Routine> {
+        let queries = [
+            (
+                ContactQuantity::Gap,
+                "gap",
+                "Gap (distance of the striking point from what it strikes), in m, at",
+            ),
+            (
+                ContactQuantity::Velocity,
+                "contact_velocity",
+                "Velocity of the striking point relative to what is struck, along the contact basis (rows: normal, first, second), in m/s, at",
+            ),
+            (
+                ContactQuantity::PartialVelocities,
+                "partial_velocities",
+                "Partial velocities V_n, V_t, V_s of the relative velocity along the contact basis (rows) for the independent speeds (columns) at",
+            ),
+            (
+                ContactQuantity::Response,
+                "response",
+                "Response M^-1 V^T: change of the independent speeds (rows) per N s of impulse along the contact basis (columns), or of their rates per N of force, at",
+            ),
+            (
+                ContactQuantity::FreeAcceleration,
+                "free_acceleration",
+                "Free acceleration: time derivatives of the three components of the contact velocity (rows: normal, first, second) without contact forces and at constant named inputs, in m/s^2, at",
+            ),
+            (
+                ContactQuantity::Remainder,
+                "remainder_velocity",
+                "The part of the relative velocity that prescribed motion causes, along the contact basis, in m/s, at",
+            ),
+        ];
+        let queries = queries.into_iter().filter_map(|(quantity, prefix, docs)| {
+            let output = self.contact_output(contact, quantity)?;
+            let (result, value) = self.shaped(output);
+            let docs = format!("{docs} {}.", self.contact_words(contact));
+            let name = self.contact_method(prefix, contact);
+            Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+        });
+        let several = [
+            self.contact_basis(contact),
+            self.reduced_matrix(contact),
+            self.contact_matrices(contact),
+            self.contact_state(contact),
+        ];
+        queries.chain(several.into_iter().flatten()).collect()
+    }
+
+    /// What the state of a contact is made of.
+    pub fn contact_state_quantities(&self, contact: usize) -> Vec<Quantity> {
+        let all = [
+            ContactQuantity::Gap,
+            ContactQuantity::Normal,
+            ContactQuantity::First,
+            ContactQuantity::Second,
+            ContactQuantity::Velocity,
+            ContactQuantity::Reduced,
+        ];
+        all.into_iter()
+            .filter_map(|quantity| self.contact_output(contact, quantity))
+            .map(|output| output.quantity)
+            .collect()
+    }
+
+    /// Gap, basis, velocity and reduced matrix at once.
+    fn contact_state(&self, contact: usize) -> Option<Routine> {
+        let krate = self.krate;
+        let reduced = self.reduced(self.contact_output(contact, ContactQuantity::Reduced)?);
+        let vector = |quantity: ContactQuantity| {
+            let output = self.contact_output(contact, quantity)?;
+            let entries = output.values.iter().map(|&value| local(value));
+            Some(quote!(#krate::nalgebra::Vector3::new(#(#entries),*)))
+        };
+        let [normal, first, second, velocity] = [
+            vector(ContactQuantity::Normal)?,
+            vector(ContactQuantity::First)?,
+            vector(ContactQuantity::Second)?,
+            vector(ContactQuantity::Velocity)?,
+        ];
+        let gap = self.contact_output(contact, ContactQuantity::Gap).and_then(|output| output.values.first());
+        let gap = match gap.map(|&value| local(value)) {
+            Some(gap) => quote!(::core::option::Option::Some(#gap)),
+            None => quote!(::core::option::Option::None),
+        };
+        let docs = format!(
+            "Gap, contact basis, velocity and reduced mass matrix at {} in one call.",
+            self.contact_words(contact)
+        );
+        let value = quote! {
+            #krate::ContactState {
+                gap: #gap,
+                normal: #normal,
+                first: #first,
+                second: #second,
+                velocity: #velocity,
+                reduced: #reduced,
+            }
+        };
+        let name = self.contact_method("contact_state", contact);
+        let quantities = self.contact_state_quantities(contact);
+        Some(Routine { name, docs, quantities, result: quote!(#krate::ContactState<T>), value })
+    }
+
+    pub fn contact_words(&self, contact: usize) -> String {
+        self.mechanism
+            .contacts
+            .get(contact)
+            .map_or(String::new(), |contact| about(&contact.name, &contact.docs))
+    }
+
+    fn contact_basis(&self, contact: usize) -> Option<Routine> {
+        let axes = [ContactQuantity::Normal, ContactQuantity::First, ContactQuantity::Second];
+        let outputs: Vec<&Output> =
+            axes.iter().filter_map(|&axis| self.contact_output(contact, axis)).collect();
+        if outputs.len() != 3 {
+            return None;
+        }
+        let krate = self.krate;
+        let quantities: Vec<Quantity> = outputs.iter().map(|output| output.quantity).collect();
+        let columns = outputs.iter().map(|output| {
+            let entries = output.values.iter().map(|&value| local(value));
+            quote!([#(#entries),*])
+        });
+        let value = quote!(#krate::nalgebra::SMatrix::from([#(#columns),*]));
+        let docs = format!(
+            "Contact basis (columns: normal, first, second) along N.x, N.y, N.z at {}.",
+            self.contact_words(contact)
+        );
+        let name = self.contact_method("contact_basis", contact);
+        Some(Routine { name, docs, quantities, result: quote!(#krate::nalgebra::Matrix3<T>), value })
+    }
+
+    fn reduced_matrix(&self, contact: usize) -> Option<Routine> {
+        let krate = self.krate;
+        let output = self.contact_output(contact, ContactQuantity::Reduced)?;
+        let value = self.reduced(output);
+        let docs = format!(
+            "Reduced mass matrix V M^-1 V^T along the contact basis, in 1/kg, at {}.",
+            self.contact_words(contact)
+        );
+        let name = self.contact_method("reduced_matrix", contact);
+        let result = quote!(#krate::ReducedMatrix<T>);
+        Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+    }
+
+    /// Both at once, for what they share.
+    fn contact_matrices(&self, contact: usize) -> Option<Routine> {
+        let krate = self.krate;
+        let partial = self.contact_output(contact, ContactQuantity::PartialVelocities)?;
+        let reduced = self.contact_output(contact, ContactQuantity::Reduced)?;
+        let (shape, velocities) = self.matrix(partial);
+        let matrix = self.reduced(reduced);
+        let docs = format!(
+            "Partial velocities and reduced mass matrix at {} in one call: those of `{}` and `{}`.",
+            self.contact_words(contact),
+            self.contact_method("partial_velocities", contact),
+            self.contact_method("reduced_matrix", contact)
+        );
+        let name = self.contact_method("contact_matrices", contact);
+        let result = quote!((#shape, #krate::ReducedMatrix<T>));
+        let quantities = vec![partial.quantity, reduced.quantity];
+        Some(Routine { name, docs, quantities, result, value: quote!((#velocities, #matrix)) })
+    }
+
+    pub fn reduced(&self, output: &Output) -> TokenStream {
+        let krate = self.krate;
+        let entries = output.values.iter().map(|&value| local(value));
+        quote!(#krate::ReducedMatrix::new(#(#entries),*))
+    }
+}

@@ -1,0 +1,149 @@
+//! Arrays that loops over columns read. The parts of a long routine write them straight; a short routine
+//! writes them down as they are.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::{Ident, Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::values::local;
+use hodograph_program::program::operation::Value;
+
+/// A place in an array.
+#[derive(Clone)]
+pub struct Home {
+    /// the array
+    pub array: Ident,
+    /// the place in it
+    pub index: TokenStream,
+}
+
+/// An array that a routine fills: rows of values of equal length.
+struct Filled {
+    name: Ident,
+    rows: Vec<Vec<Value>>,
+    /// length of its rows with what fills them up, as the loop reads them; `None`: the only row, and the
+    /// array is one of numbers
+    width: Option<usize>,
+}
+
+/// All arrays that the loops of a routine read, and where in them each value belongs.
+#[derive(Default)]
+pub struct Homes {
+    arrays: Vec<Filled>,
+    places: BTreeMap<Value, Vec<Home>>,
+}
+
+impl Homes {
+    /// Adds an array of numbers.
+    pub fn list(&mut self, name: &str, values: Vec<Value>) {
+        self.add(Filled { name: format_ident!("{name}"), rows: vec![values], width: None });
+    }
+
+    /// Adds an array of rows, filled up with zeros to a length.
+    pub fn table(&mut self, name: &Ident, rows: Vec<Vec<Value>>, width: usize) {
+        self.add(Filled { name: name.clone(), rows, width: Some(width) });
+    }
+
+    fn add(&mut self, filled: Filled) {
+        for (row, values) in filled.rows.iter().enumerate() {
+            for (column, &value) in values.iter().enumerate() {
+                let [row, column] = [row, column].map(Literal::usize_unsuffixed);
+                let index = if filled.width.is_some() { quote!([#row][#column]) } else { quote!([#column]) };
+                self.places.entry(value).or_default().push(Home { array: filled.name.clone(), index });
+            }
+        }
+        self.arrays.push(filled);
+    }
+
+    /// Where a value belongs.
+    pub fn of(&self, value: Value) -> &[Home] {
+        self.places.get(&value).map_or(&[], Vec::as_slice)
+    }
+
+    /// All values that belong somewhere.
+    pub fn values(&self) -> impl Iterator<Item = Value> {
+        self.places.keys().copied()
+    }
+
+    /// The type of an array.
+    pub fn shape(&self, array: &Ident) -> Option<TokenStream> {
+        self.arrays.iter().find(|filled| filled.name == *array).map(Filled::shape)
+    }
+
+    /// The arrays before anything is in them.
+    pub fn empty(&self) -> TokenStream {
+        let arrays = self.arrays.iter().map(|filled| {
+            let (name, empty) = (&filled.name, filled.empty());
+            quote!(let mut #name = #empty;)
+        });
+        quote!(#(#arrays)*)
+    }
+
+    /// The statements that store every value but those that are stored already.
+    pub fn stores(&self, stored: &BTreeSet<Value>) -> TokenStream {
+        let left = self.places.iter().filter(|(value, _)| !stored.contains(value));
+        let stores = left.flat_map(|(&value, homes)| homes.iter().map(move |home| home.store(value)));
+        quote!(#(#stores)*)
+    }
+
+    /// The arrays with all values at once.
+    pub fn full(&self) -> TokenStream {
+        let arrays = self.arrays.iter().map(|filled| {
+            let (name, full) = (&filled.name, filled.full());
+            quote!(let #name = #full;)
+        });
+        quote!(#(#arrays)*)
+    }
+}
+
+impl Home {
+    /// The value in it.
+    pub fn tokens(&self) -> TokenStream {
+        let (array, index) = (&self.array, &self.index);
+        quote!(#array #index)
+    }
+
+    /// The statement that stores a value.
+    pub fn store(&self, value: Value) -> TokenStream {
+        let (place, value) = (self.tokens(), local(value));
+        quote!(#place = #value;)
+    }
+}
+
+impl Filled {
+    fn shape(&self) -> TokenStream {
+        let count = Literal::usize_unsuffixed(self.rows.len());
+        match self.width.map(Literal::usize_unsuffixed) {
+            Some(width) => quote!([[T; #width]; #count]),
+            None => {
+                let count = Literal::usize_unsuffixed(self.rows[0].len());
+                quote!([T; #count])
+            }
+        }
+    }
+
+    fn empty(&self) -> TokenStream {
+        let count = Literal::usize_unsuffixed(self.rows.len());
+        match self.width.map(Literal::usize_unsuffixed) {
+            Some(width) => quote!([[T::zero(); #width]; #count]),
+            None => {
+                let count = Literal::usize_unsuffixed(self.rows[0].len());
+                quote!([T::zero(); #count])
+            }
+        }
+    }
+
+    fn full(&self) -> TokenStream {
+        let rows = self.rows.iter().map(|values| {
+            let values = values.iter().map(|&value| local(value)).map(|name| quote!(#name));
+            let fill = self.width.unwrap_or(0).saturating_sub(values.len());
+            let values = values.chain(std::iter::repeat_n(quote!(T::zero()), fill));
+            quote!([#(#values),*])
+        });
+        match self.width {
+            Some(_) => quote!([#(#rows),*]),
+            None => quote!(#(#rows)*),
+        }
+    }
+}

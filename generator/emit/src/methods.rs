@@ -1,0 +1,298 @@
+//! Emits a method for each quantity of the mechanism, its points and its frames, with its documentation.
+
+use std::ops::Range;
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::Emitter;
+use super::record::Record;
+use super::routine::Routine;
+use super::values::local;
+use crate::identifiers::prose;
+use hodograph_model::rust_names::snake_case;
+use hodograph_program::program::Output;
+use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
+
+impl Emitter<'_> {
+    /// All methods that do not belong to a contact.
+    pub fn methods(&self) -> TokenStream {
+        let routines = self.routines();
+        let methods = routines.iter().map(|routine| self.routine(routine));
+        let linearise = self.linearise();
+        quote! { #(#methods)* #linearise }
+    }
+
+    /// The routines that do not belong to a contact.
+    pub fn routines(&self) -> Vec<Routine> {
+        let described = |output: &Output| {
+            let (name, docs) = self.describe(output.quantity).filter(|_| !output.values.is_empty())?;
+            let (result, value) = self.shaped(output);
+            Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+        };
+        let described = self.program.outputs.iter().filter_map(described);
+        described.chain(self.all_accelerations()).chain(self.mass_matrix_lower()).collect()
+    }
+
+    /// One triangle of the mass matrix.
+    fn mass_matrix_lower(&self) -> Option<Routine> {
+        let output = self.program.output(Quantity::MassMatrix).filter(|output| output.rows > 1)?;
+        let lower =
+            (0..output.rows).flat_map(|row| (0..=row).map(move |column| row * output.columns + column));
+        let values = lower.map(|place| output.values.get(place).map(|&value| local(value)));
+        let values = values.collect::<Option<Vec<_>>>()?;
+        let count = Literal::usize_unsuffixed(values.len());
+        Some(Routine {
+            name: "mass_matrix_lower".to_string(),
+            docs: "The lower triangle of the mass matrix, row by row: entry (i, j) with j <= i stands at i (i + 1) / 2 + j. LAPACK calls this layout the packed upper triangle. \
+                   The values are those of `mass_matrix`, with fewer numbers to store."
+                .to_string(),
+            quantities: vec![output.quantity],
+            result: quote!([T; #count]),
+            value: quote!([#(#values),*]),
+        })
+    }
+
+    /// Rates of independent and dependent speeds at once: the second follow from the first.
+    fn all_accelerations(&self) -> Option<Routine> {
+        let output = |quantity| self.program.output(quantity).filter(|output| !output.values.is_empty());
+        let own = output(Quantity::Accelerations)?;
+        let dependent = output(Quantity::DependentAccelerations)?;
+        let [(of_own, own_value), (of_dependent, dependent_value)] =
+            [own, dependent].map(|output| self.shaped(output));
+        Some(Routine {
+            name: "all_accelerations".to_string(),
+            docs: "Rates of the independent and of the dependent speeds without contact forces in one call: those of `accelerations` and `dependent_accelerations`."
+                .to_string(),
+            quantities: vec![own.quantity, dependent.quantity],
+            result: quote!((#of_own, #of_dependent)),
+            value: quote!((#own_value, #dependent_value)),
+        })
+    }
+
+    /// The method of a routine.
+    pub fn routine(&self, routine: &Routine) -> TokenStream {
+        let krate = self.krate;
+        let Routine { name, docs, quantities, result, value } = routine;
+        let name = crate::identifiers::ident(name);
+        let docs = crate::identifiers::docs(docs);
+        let signature = self.signature(self.arguments(quantities));
+        let (statements, wrong) = self.computed(quantities);
+        let right = quote!(::core::result::Result::Ok(#value));
+        let not_finite = quote!(::core::result::Result::Err(#krate::StateError::NotFinite));
+        let answer = match wrong {
+            None => right,
+            Some(wrong) if self.answers_in_place(quantities) => quote! {
+                let mut answer = #right;
+                if #wrong {
+                    answer = #not_finite;
+                }
+                answer
+            },
+            Some(wrong) => quote! {
+                if #wrong {
+                    return #not_finite;
+                }
+                #right
+            },
+        };
+        quote! {
+            #docs
+            #[inline]
+            pub fn #name(#signature) -> ::core::result::Result<#result, #krate::StateError> {
+                #statements
+                #answer
+            }
+        }
+    }
+
+    /// Whether the answer of a routine is made before it is checked: each number is then stored once, where
+    /// the caller wants it. Short answers stay in registers until they are checked.
+    pub fn answers_in_place(&self, quantities: &[Quantity]) -> bool {
+        /// More numbers than there are registers.
+        const MANY: usize = 16;
+        let outputs = quantities.iter().filter_map(|&quantity| self.program.output(quantity));
+        let count: usize = outputs.map(|output| output.values.len()).sum();
+        // The response is mostly written into a slice by `Contacts`.
+        let written =
+            |quantity: &Quantity| matches!(quantity, Quantity::Contact(_, ContactQuantity::Response));
+        count > MANY && !quantities.iter().all(written)
+    }
+
+    /// The type and the expression of an output.
+    pub fn shaped(&self, output: &Output) -> (TokenStream, TokenStream) {
+        let values: Vec<TokenStream> =
+            output.values.iter().map(|&value| local(value)).map(|value| quote!(#value)).collect();
+        let record = |record: &Record| {
+            let name = record.name();
+            (quote!(#name<T>), record.construct(&values))
+        };
+        match output.quantity {
+            Quantity::CoordinateRates if values.len() == self.coordinates.len() => record(&self.coordinates),
+            Quantity::Accelerations if values.len() == self.speeds.len() => record(&self.speeds),
+            Quantity::DependentSpeeds | Quantity::DependentAccelerations
+                if values.len() == self.dependent.len() =>
+            {
+                record(&self.dependent)
+            }
+            Quantity::AccelerationsDerivatives | Quantity::InverseDynamicsDerivatives => {
+                self.value_and_derivatives(output)
+            }
+            _ if values.len() == 1 && is_scalar(output.quantity) => (quote!(T), quote!(#(#values)*)),
+            _ => self.matrix(output),
+        }
+    }
+
+    /// An output as a matrix of static size.
+    pub fn matrix(&self, output: &Output) -> (TokenStream, TokenStream) {
+        self.block(output, 0..output.columns)
+    }
+
+    /// Some columns of an output.
+    pub fn block(&self, output: &Output, columns: Range<usize>) -> (TokenStream, TokenStream) {
+        let krate = self.krate;
+        let (rows, count) =
+            (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(columns.len()));
+        let entry = |row: usize, column: usize| {
+            output.values.get(row * output.columns + column).map(|&value| local(value))
+        };
+        let shape = quote!(#krate::nalgebra::SMatrix<T, #rows, #count>);
+        if columns.is_empty() {
+            return (shape, quote!(#krate::nalgebra::SMatrix::zeros()));
+        }
+        let columns_of = columns.map(|column| {
+            let entries = (0..output.rows).filter_map(|row| entry(row, column));
+            quote!([#(#entries),*])
+        });
+        let data = quote!([#(#columns_of),*]);
+        (shape, quote!(#krate::nalgebra::SMatrix::from(#data)))
+    }
+
+    /// Name and documentation of the method of a quantity; contacts have their own.
+    fn describe(&self, quantity: Quantity) -> Option<(String, String)> {
+        let plain = |name: &str, docs: &str| Some((name.to_string(), docs.to_string()));
+        match quantity {
+            Quantity::CoordinateRates => plain(
+                "coordinate_rates",
+                "Rates q' of the generalized coordinates, in their units per second.",
+            ),
+            Quantity::DependentSpeeds => plain(
+                "dependent_speeds",
+                "Dependent generalized speeds, which the velocity constraints determine from the independent ones.",
+            ),
+            Quantity::MassMatrix => plain(
+                "mass_matrix",
+                "Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.",
+            ),
+            Quantity::Forcing => plain(
+                "forcing",
+                "Forcing, the right side of M u' = forcing: loads, and inertia terms without u'. An entry times its speed is in W.",
+            ),
+            Quantity::Accelerations => plain(
+                "accelerations",
+                "Rates u' of the independent speeds without contact forces, in the units of the speeds per second.",
+            ),
+            Quantity::DependentAccelerations => plain(
+                "dependent_accelerations",
+                "Rates of the dependent speeds without contact forces, in the units of the speeds per second.",
+            ),
+            Quantity::InverseDynamics => plain(
+                "inverse_dynamics",
+                "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing. An entry times its speed is in W.",
+            ),
+            Quantity::StateTangent => plain(
+                "state_tangent",
+                "Derivative of the rates of the independent coordinates and speeds along a direction: a linear combination of the columns of `linearise`.",
+            ),
+            Quantity::AccelerationsDerivatives => plain(
+                "accelerations_derivatives",
+                "Rates u' of the independent speeds and their derivatives. Dependent coordinates and speeds follow the independent ones; parameters and \
+                 time are constant. The value is that of `accelerations` up to rounding.",
+            ),
+            Quantity::InverseDynamicsDerivatives => plain(
+                "inverse_dynamics_derivatives",
+                "The value of `inverse_dynamics` (up to rounding) and its derivatives at constant rates `acceleration` of the independent speeds; its derivative with \
+                 respect to these rates is `mass_matrix`. Dependent coordinates and speeds follow the independent ones; parameters and time are constant. At zero \
+                 rates the value is minus `forcing`.",
+            ),
+            Quantity::RatesDerivatives => plain(
+                "coordinate_rates_derivatives",
+                "Derivatives of the rates of the independent coordinates (rows) with respect to the independent coordinates, the independent speeds and the named inputs (columns).",
+            ),
+            Quantity::KineticEnergy => {
+                plain("kinetic_energy", "Kinetic energy of the motion relative to N, in J.")
+            }
+            Quantity::PotentialEnergy => {
+                plain("potential_energy", "Potential energy of gravity and springs, in J.")
+            }
+            Quantity::ConfigurationResidual => plain(
+                "configuration_residual",
+                "Left side minus right side of the configuration equations; zero where the loops are closed.",
+            ),
+            Quantity::ConfigurationJacobian => plain(
+                "configuration_jacobian",
+                "Derivatives of the configuration equations (rows) with respect to the dependent coordinates (columns).",
+            ),
+            Quantity::ConstraintResidual => plain(
+                "constraint_residual",
+                "Left side minus right side of the velocity constraints with the dependent speeds inserted; zero up to rounding.",
+            ),
+            Quantity::Contact(..) => None,
+            Quantity::Point(index, quantity) => {
+                let point = self.mechanism.points.get(index as usize)?;
+                let (name, docs) = (snake_case(&point.name), about(&point.name, &point.docs));
+                Some(match quantity {
+                    PointQuantity::Position => (
+                        format!("position_{name}"),
+                        format!("Position of {docs} from O along N.x, N.y, N.z, in m."),
+                    ),
+                    PointQuantity::Velocity => (
+                        format!("velocity_{name}"),
+                        format!("Velocity of {docs} in N along N.x, N.y, N.z, in m/s."),
+                    ),
+                    PointQuantity::Acceleration => (
+                        format!("acceleration_{name}"),
+                        format!(
+                            "Acceleration of {docs} in N along N.x, N.y, N.z, in m/s^2, for given rates `acceleration` of the independent speeds, such as those of `accelerations` or those under contact forces."
+                        ),
+                    ),
+                    PointQuantity::Jacobian => (
+                        format!("jacobian_{name}"),
+                        format!(
+                            "Partial velocities of {docs} along N.x, N.y, N.z (rows) for the independent speeds (columns)."
+                        ),
+                    ),
+                })
+            }
+            Quantity::Orientation(index) => {
+                let frame = self.mechanism.frames.get(index as usize)?;
+                let docs = about(&frame.name, &frame.docs);
+                Some((
+                    format!("orientation_{}", snake_case(&frame.name)),
+                    format!("Orientation of {docs}: the columns are its axes x, y, z along N.x, N.y, N.z."),
+                ))
+            }
+        }
+    }
+
+    /// Name of a method of a contact.
+    pub fn contact_method(&self, prefix: &str, contact: usize) -> String {
+        let name = self.mechanism.contacts.get(contact).map_or("", |contact| contact.name.as_str());
+        format_ident!("{prefix}_{}", snake_case(name)).to_string()
+    }
+}
+
+/// A name with its documentation: `P (the end that strikes)`.
+pub fn about(name: &str, docs: &str) -> String {
+    let prose = prose(docs);
+    let paragraph: Vec<&str> =
+        prose.lines().take_while(|line| !line.is_empty() && !line.starts_with("```")).collect();
+    let docs = paragraph.join(" ");
+    let docs = docs.trim_end_matches('.');
+    if docs.is_empty() { format!("`{name}`") } else { format!("`{name}` ({docs})") }
+}
+
+fn is_scalar(quantity: Quantity) -> bool {
+    use hodograph_program::program::ContactQuantity::Gap;
+    matches!(quantity, Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::Contact(_, Gap))
+}

@@ -1,0 +1,210 @@
+//! Emits the body of a routine (statements, checks, result) and its arguments.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::Emitter;
+use super::lanes::{self, Lanes};
+use super::values::local;
+use hodograph_program::program::Guard;
+use hodograph_program::program::Quantity;
+use hodograph_program::program::graph::Input;
+use hodograph_program::program::operation::{Operation, Stage, Value};
+
+/// A method that computes quantities and answers with an expression made of their values.
+pub struct Routine {
+    /// its name in the module
+    pub name: String,
+    /// what it gives
+    pub docs: String,
+    /// what it computes
+    pub quantities: Vec<Quantity>,
+    /// the type of its answer
+    pub result: TokenStream,
+    /// its answer, from the local variables of the values
+    pub value: TokenStream,
+}
+
+impl Emitter<'_> {
+    /// The statements that compute quantities and check them; their values are local variables afterwards.
+    pub fn compute(&self, quantities: &[Quantity]) -> TokenStream {
+        let krate = self.krate;
+        let (statements, wrong) = self.computed(quantities);
+        let check = wrong.map(|wrong| {
+            quote! {
+                if #wrong {
+                    return ::core::result::Result::Err(#krate::StateError::NotFinite.into());
+                }
+            }
+        });
+        quote! { #statements #check }
+    }
+
+    /// The statements that compute quantities and check what must not vanish, and the expression that tells
+    /// whether a result is not finite.
+    pub fn computed(&self, quantities: &[Quantity]) -> (TokenStream, Option<TokenStream>) {
+        let slice = self.program.slice(quantities);
+        let needed = self.needed(
+            &slice.outputs.iter().flat_map(|output| output.values.clone()).collect::<Vec<_>>(),
+            &slice.guards,
+        );
+        let order: Vec<Value> = slice.order.iter().copied().filter(|value| needed.contains(value)).collect();
+        let order = self.program.with_few_live(&order, |value| !self.is_work(value));
+        let guards = slice
+            .guards
+            .iter()
+            .filter(|guard| self.guard_stage(guard) > Stage::Parameter)
+            .map(|guard| self.guard(guard));
+        let results: BTreeSet<Value> =
+            slice.outputs.iter().flat_map(|output| output.values.iter().copied()).collect();
+        let late = slice.guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter);
+        let checked = late.flat_map(|guard| [Some(guard.value), guard.scale]).flatten();
+        let looked_at: BTreeSet<Value> = checked.collect();
+        let wanted: BTreeSet<Value> = results.union(&looked_at).copied().collect();
+        let solved = slice.outputs.iter().find(|output| output.quantity.is_solved_by_columns());
+        let lanes: Vec<Lanes> = solved.map_or_else(Vec::new, |solved| {
+            let others = slice.outputs.iter().filter(|output| output.quantity != solved.quantity);
+            let others = others.flat_map(|output| output.values.iter().copied());
+            self.lanes(solved, &order, &looked_at.iter().copied().chain(others).collect())
+        });
+        let in_lanes: BTreeSet<Value> = lanes.iter().flat_map(Lanes::computed).collect();
+        let order: Vec<Value> = order.into_iter().filter(|value| !in_lanes.contains(value)).collect();
+        let statements = self.statements(&order, &wanted, &lanes::homes(&lanes));
+        let loops = lanes::loops(&lanes, self);
+        let wrong = self.not_finite(&results, &lanes);
+        let fetch = lanes.iter().zip(0..).map(|(lanes, number)| lanes.fetch(number));
+        // What loops give is fetched last: fetched before the checks, it would be stored and fetched again.
+        (quote! { #statements #loops #(#guards)* #(#fetch)* }, wrong)
+    }
+
+    /// The values that a method computes: what depends on parameters alone is only fetched.
+    fn needed(&self, results: &[Value], guards: &[&Guard]) -> BTreeSet<Value> {
+        let mut needed = BTreeSet::new();
+        let mut stack: Vec<Value> = results.to_vec();
+        for guard in guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter) {
+            stack.push(guard.value);
+            stack.extend(guard.scale);
+        }
+        while let Some(value) = stack.pop() {
+            if needed.insert(value) && self.stage(value) > Stage::Parameter {
+                stack.extend(self.program.operation(value).operands());
+            }
+        }
+        needed
+    }
+
+    /// The statement that checks a value that must not vanish.
+    pub fn guard(&self, guard: &Guard) -> TokenStream {
+        let krate = self.krate;
+        let value = local(guard.value);
+        let message = &guard.message;
+        match guard.scale {
+            Some(scale) => {
+                let scale = local(scale);
+                quote! {
+                    if #krate::generated::vanishes_beside(#value, #scale) {
+                        return ::core::result::Result::Err(#krate::generated::singular(#value, #scale, #message).into());
+                    }
+                }
+            }
+            None => quote! {
+                if #krate::generated::vanishes(#value) {
+                    return ::core::result::Result::Err(#krate::generated::singular(#value, #value, #message).into());
+                }
+            },
+        }
+    }
+
+    /// The arguments of a routine for these quantities after `&self`.
+    pub fn arguments(&self, quantities: &[Quantity]) -> Arguments {
+        let loads = quantities.iter().any(|&quantity| super::takes_loads(quantity));
+        let velocity = quantities.iter().any(|&quantity| self.takes_speeds(quantity));
+        Arguments {
+            time: self.uses_time,
+            coordinates: !self.coordinates.is_empty(),
+            speeds: velocity,
+            accelerations: quantities.iter().any(|quantity| {
+                matches!(
+                    quantity,
+                    Quantity::InverseDynamics
+                        | Quantity::InverseDynamicsDerivatives
+                        | Quantity::Point(_, hodograph_program::program::PointQuantity::Acceleration)
+                )
+            }),
+            inputs: !self.inputs.is_empty() && (loads || self.kinematic_inputs),
+            tangent: quantities.iter().any(|quantity| {
+                matches!(
+                    quantity,
+                    Quantity::StateTangent
+                        | Quantity::Contact(_, hodograph_program::program::ContactQuantity::Tangent)
+                )
+            }),
+        }
+    }
+
+    /// Whether the quantity depends on speeds, by definition or in fact.
+    fn takes_speeds(&self, quantity: Quantity) -> bool {
+        use hodograph_program::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
+        let by_definition = match quantity {
+            Q::MassMatrix
+            | Q::PotentialEnergy
+            | Q::ConfigurationResidual
+            | Q::ConfigurationJacobian
+            | Q::Orientation(_) => false,
+            Q::Contact(_, C::Velocity | C::FreeAcceleration | C::Tangent | C::Derivatives) => true,
+            Q::Contact(..) => false,
+            Q::Point(_, P::Velocity | P::Acceleration) => true,
+            Q::Point(..) => false,
+            _ => true,
+        };
+        by_definition || self.uses(quantity, |input| matches!(input, Input::Speed(_)))
+    }
+
+    fn uses(&self, quantity: Quantity, which: impl Fn(Input) -> bool) -> bool {
+        let slice = self.program.slice(&[quantity]);
+        slice
+            .order
+            .iter()
+            .any(|&value| matches!(self.program.operation(value), Operation::Input(input) if which(input)))
+    }
+
+    /// The signature after the name: arguments in their order.
+    pub fn signature(&self, arguments: Arguments) -> TokenStream {
+        let time = arguments.time.then(|| quote!(time: T,));
+        let coordinates = arguments.coordinates.then(|| quote!(q: &Coordinates<T>,));
+        let speeds = arguments.speeds.then(|| quote!(u: &Speeds<T>,));
+        let accelerations = arguments.accelerations.then(|| quote!(acceleration: &Speeds<T>,));
+        let inputs = arguments.inputs.then(|| quote!(inputs: &Inputs<T>,));
+        let tangent = arguments.tangent.then(|| self.tangent_argument());
+        quote!(&self, #time #coordinates #speeds #accelerations #inputs #tangent)
+    }
+
+    /// The same arguments, handed on to another routine.
+    pub fn passed(&self, arguments: Arguments) -> TokenStream {
+        let time = arguments.time.then(|| quote!(time,));
+        let coordinates = arguments.coordinates.then(|| quote!(q,));
+        let speeds = arguments.speeds.then(|| quote!(u,));
+        let accelerations = arguments.accelerations.then(|| quote!(acceleration,));
+        let inputs = arguments.inputs.then(|| quote!(inputs,));
+        quote!(#time #coordinates #speeds #accelerations #inputs)
+    }
+}
+
+/// Which arguments a routine has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Arguments {
+    /// time
+    pub time: bool,
+    /// coordinates
+    pub coordinates: bool,
+    /// independent speeds
+    pub speeds: bool,
+    /// derivatives of the independent speeds
+    pub accelerations: bool,
+    /// named inputs
+    pub inputs: bool,
+    /// direction of a linearisation
+    pub tangent: bool,
+}

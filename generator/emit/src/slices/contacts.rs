@@ -1,0 +1,222 @@
+//! Emits the implementation of the trait `Contacts`.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::{format_ident, quote};
+
+use super::super::Emitter;
+use super::Written;
+use crate::identifiers::ident;
+use hodograph_program::program::{ContactQuantity, Quantity};
+
+impl Emitter<'_> {
+    /// The implementation; without contacts there is none of any number.
+    pub(super) fn contacts_trait(&self) -> TokenStream {
+        let (krate, name) = (self.krate, &self.name);
+        let vector = quote!(#krate::nalgebra::Vector3<T>);
+        let state =
+            self.contact_values(ContactQuantity::Reduced, "contact_state", "reduced matrix of this contact");
+        let gap = self.gaps();
+        let velocity =
+            self.contact_values(ContactQuantity::Velocity, "contact_velocity", "velocity of this contact");
+        let free = self.contact_values(
+            ContactQuantity::FreeAcceleration,
+            "free_acceleration",
+            "free acceleration of this contact",
+        );
+        let partial = self.contact_matrix(
+            ContactQuantity::PartialVelocities,
+            "partial_velocities",
+            "the partial velocities",
+        );
+        let response = self.contact_matrix(ContactQuantity::Response, "response", "the response");
+        let collide = self.collisions("collide", "collision of this contact");
+        let within = &collide;
+        let without = self.collisions("impact_without_collision", "impact without collision of this contact");
+        let mode = self.closed_contacts("contact_mode", "mode of this contact", &quote!());
+        let force = self.closed_contacts("contact_force", "force of this contact", &quote!(mode,));
+        let outcome =
+            quote!(::core::result::Result<#krate::ContactOutcome<T>, #krate::ClosedContactError<T>>);
+        quote! {
+            /// The methods for each contact, by its number, with slices.
+            impl<T: #krate::Scalar> #krate::Contacts<T> for #name<T> {
+                fn contact_state(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                ) -> ::core::result::Result<#krate::ContactState<T>, #krate::StateError> {
+                    #state
+                }
+                fn gap(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                ) -> ::core::result::Result<::core::option::Option<T>, #krate::StateError> {
+                    #gap
+                }
+                fn contact_velocity(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                ) -> ::core::result::Result<#vector, #krate::StateError> {
+                    #velocity
+                }
+                fn free_acceleration(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                ) -> ::core::result::Result<#vector, #krate::StateError> {
+                    #free
+                }
+                fn partial_velocities(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    partial_velocities: &mut [T],
+                ) -> ::core::result::Result<(), #krate::StateError> {
+                    #partial
+                }
+                fn response(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    response: &mut [T],
+                ) -> ::core::result::Result<(), #krate::StateError> {
+                    #response
+                }
+                fn collide(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    speeds: &mut [T],
+                ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
+                    #collide
+                }
+                fn collide_within(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Budgeted<T>,
+                    speeds: &mut [T],
+                ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
+                    #within
+                }
+                fn impact_without_collision(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    speeds: &mut [T],
+                ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
+                    #without
+                }
+                fn contact_mode(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    accelerations: &mut [T],
+                ) -> #outcome {
+                    #mode
+                }
+                fn contact_force(
+                    &self,
+                    contact: usize,
+                    mode: #krate::ContactMode,
+                    state: &#krate::State<'_, T>,
+                    surface: &#krate::Surface<T>,
+                    accelerations: &mut [T],
+                ) -> #outcome {
+                    #force
+                }
+            }
+        }
+    }
+
+    /// An arm for every contact.
+    fn by_contact(&self, body: impl Fn(usize) -> TokenStream) -> TokenStream {
+        let arms = (0..self.mechanism.contacts.len()).map(|contact| (contact, body(contact)));
+        self.by_number("contact", "Contact", arms.collect())
+    }
+
+    /// What the method `prefix_<contact>` answers, where the program has this quantity.
+    fn contact_values(&self, quantity: ContactQuantity, prefix: &str, what: &str) -> TokenStream {
+        self.by_contact(|contact| {
+            if self.contact_output(contact, quantity).is_none() {
+                return self.undefined(what);
+            }
+            let quantities = match prefix {
+                "contact_state" => self.contact_state_quantities(contact),
+                _ => vec![Quantity::Contact(contact as u32, quantity)],
+            };
+            let method = ident(&self.contact_method(prefix, contact));
+            let (unpack, call) = self.own(&method, &quantities);
+            quote!(#unpack #call)
+        })
+    }
+
+    fn gaps(&self) -> TokenStream {
+        self.by_contact(|contact| {
+            let quantity = Quantity::Contact(contact as u32, ContactQuantity::Gap);
+            if self.contact_output(contact, ContactQuantity::Gap).is_none() {
+                return quote! {
+                    DESCRIPTION.check(state)?;
+                    ::core::result::Result::Ok(::core::option::Option::None)
+                };
+            }
+            let method = ident(&self.contact_method("gap", contact));
+            let (unpack, call) = self.own(&method, &[quantity]);
+            quote!(#unpack ::core::result::Result::map(#call, ::core::option::Option::Some))
+        })
+    }
+
+    fn contact_matrix(&self, quantity: ContactQuantity, prefix: &str, what: &'static str) -> TokenStream {
+        self.by_contact(|contact| {
+            let to = Written {
+                method: ident(&self.contact_method(prefix, contact)),
+                slice: format_ident!("{prefix}"),
+                what,
+            };
+            self.written(Quantity::Contact(contact as u32, quantity), &to)
+        })
+    }
+
+    fn collisions(&self, prefix: &str, what: &str) -> TokenStream {
+        let krate = self.krate;
+        let size = Literal::usize_unsuffixed(self.speeds.len());
+        self.by_contact(|contact| {
+            if !self.collides(contact) {
+                return self.undefined(what);
+            }
+            let arguments = self.collision_arguments(contact);
+            let (unpack, passed) = (self.unpack(arguments), self.passed(arguments));
+            let method = ident(&self.contact_method(prefix, contact));
+            quote! {
+                #unpack
+                let hit = Self::#method(self, #passed surface)?;
+                #krate::generated::write_array::<T, #size>(speeds, hit.speeds, "the speeds after the collision")?;
+                ::core::result::Result::Ok(hit.outcome())
+            }
+        })
+    }
+
+    /// `contact_mode` or `contact_force`, which takes the mode before the surface.
+    fn closed_contacts(&self, prefix: &str, what: &str, mode: &TokenStream) -> TokenStream {
+        let krate = self.krate;
+        let size = Literal::usize_unsuffixed(self.speeds.len());
+        self.by_contact(|contact| {
+            if !self.closes(contact) {
+                return self.undefined(what);
+            }
+            let arguments = self.closed_arguments(contact);
+            let (unpack, passed) = (self.unpack(arguments), self.passed(arguments));
+            let method = ident(&self.contact_method(prefix, contact));
+            quote! {
+                #unpack
+                let closed = Self::#method(self, #passed #mode surface)?;
+                #krate::generated::write_array::<T, #size>(accelerations, closed.accelerations, "the accelerations")?;
+                ::core::result::Result::Ok(closed.outcome)
+            }
+        })
+    }
+}

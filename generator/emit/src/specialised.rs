@@ -1,0 +1,138 @@
+//! Emits a collision that is one routine, specialised to its contact: the solver is part of it, and what is
+//! known of the surface while compiling is folded in.
+
+use proc_macro2::{Ident, Span, TokenStream};
+use quote::{format_ident, quote};
+
+use super::{Emitter, record};
+use hodograph_model::suggest::nearest;
+
+/// The laws of restitution, by the names of the runtime's variants.
+pub const LAWS: [&str; 3] = ["Newton", "Poisson", "Stronge"];
+
+/// A specialised collision: `specialise strike(tip_wall, law = Stronge, mu = 0.3)`.
+#[derive(Clone, Debug)]
+pub struct Specialised {
+    /// the name of its method
+    pub name: Ident,
+    /// the name of its contact in the module, `tip_wall` for `collide_tip_wall`
+    pub contact: Ident,
+    /// the law of restitution, one of [`LAWS`]; an argument of the method if it is not given, as are the next
+    /// two
+    pub law: Option<&'static str>,
+    /// the coefficient of friction
+    pub mu: Option<f64>,
+    /// the coefficient of restitution
+    pub e: Option<f64>,
+    /// the greatest number of quadratures, where there is a limit
+    pub budget: Option<u32>,
+}
+
+impl Emitter<'_> {
+    /// The contact of this name in the module.
+    fn named_contact(&self, name: &Ident) -> Option<usize> {
+        let wanted = format!("collide_{name}");
+        let mut contacts = 0..self.mechanism.contacts.len();
+        contacts.find(|&contact| self.collides(contact) && self.contact_method("collide", contact) == wanted)
+    }
+
+    /// What is wrong with the contact of a specialised collision.
+    pub fn contact_mistake(&self, specialised: &Specialised) -> Option<(Span, String)> {
+        let name = &specialised.contact;
+        if self.named_contact(name).is_some() {
+            return None;
+        }
+        let collide: Vec<String> = (0..self.mechanism.contacts.len())
+            .filter(|&contact| self.collides(contact))
+            .map(|contact| self.contact_method("collide", contact))
+            .collect();
+        let known = || collide.iter().filter_map(|method| method.strip_prefix("collide_"));
+        let machine = &self.name;
+        let help = match nearest(&name.to_string(), known()) {
+            Some(meant) => format!("did you mean `{meant}`?"),
+            None if collide.is_empty() => "it has none".to_owned(),
+            None => {
+                let listed: Vec<String> = known().map(|contact| format!("`{contact}`")).collect();
+                format!("it has {}", listed.join(", "))
+            }
+        };
+        Some((name.span(), format!("`{machine}` has no contact `{name}` that collides; {help}")))
+    }
+
+    /// The methods of specialised collisions.
+    pub fn specialised(&self, all: &[Specialised]) -> TokenStream {
+        // Long routines are not split here, and sines and cosines are no functions of their own.
+        let emitter = Emitter {
+            inlined: true,
+            longest: usize::MAX,
+            ..Emitter::new(self.mechanism, self.program, self.krate)
+        };
+        all.iter().filter_map(|specialised| emitter.specialised_collision(specialised)).collect()
+    }
+
+    fn specialised_collision(&self, specialised: &Specialised) -> Option<TokenStream> {
+        let krate = self.krate;
+        let Specialised { name, law, mu, e, budget, .. } = specialised;
+        let contact = self.named_contact(&specialised.contact)?;
+        let argument = |name: &str, ty: TokenStream| {
+            let name = format_ident!("{name}");
+            quote!(#name: #ty,)
+        };
+        let arguments = [
+            mu.is_none().then(|| argument("mu", quote!(T))),
+            e.is_none().then(|| argument("e", quote!(T))),
+            law.is_none().then(|| argument("law", quote!(#krate::Law))),
+        ];
+        let given = [("mu", mu), ("e", e)].map(|(name, value)| {
+            let name = format_ident!("{name}");
+            value.map(|value| {
+                let value = record::number(krate, value);
+                quote!(let #name = #value;)
+            })
+        });
+        let marker = law.map_or_else(|| format_ident!("AnyLaw"), |law| format_ident!("{law}"));
+        let given_law = law.map(|law| {
+            let law = format_ident!("{law}");
+            quote!(let law = #krate::Law::#law;)
+        });
+        let within = budget.map(|budget| quote!(.within(#budget)));
+        let solved = match self.structure(contact) {
+            Some(structure) => quote! {
+                #krate::generated::resolve_structured_inlined::<#krate::structure::#structure, #krate::generated::#marker, T>
+            },
+            None => quote!(#krate::generated::resolve_inlined::<#krate::generated::#marker, T>),
+        };
+        let body = self.struck(contact, &quote!(#solved(&contact, &surface)));
+        let signature = self.signature(self.collision_arguments(contact));
+        let docs = crate::identifiers::docs(&self.about_specialised(specialised, contact));
+        Some(quote! {
+            #docs
+            #[inline(never)]
+            pub fn #name(#signature #(#arguments)*)
+                -> ::core::result::Result<Collision<T>, #krate::CollisionError<T>>
+            {
+                #(#given)*
+                #given_law
+                let surface = #krate::Surface { mu, e, law } #within;
+                #body
+            }
+        })
+    }
+
+    fn about_specialised(&self, specialised: &Specialised, contact: usize) -> String {
+        let Specialised { law, mu, e, budget, .. } = specialised;
+        let known = [
+            law.map(|law| format!("{law}'s law")),
+            mu.map(|mu| format!("mu = {mu}")),
+            e.map(|e| format!("e = {e}")),
+            budget.map(|budget| format!("a budget of {budget} quadratures")),
+        ];
+        let known: Vec<String> = known.into_iter().flatten().collect();
+        let known = if known.is_empty() { String::new() } else { format!(" for {}", known.join(", ")) };
+        format!(
+            "Solves the collision at {}{known}, as `{}` does, with the same bits, in one routine: on the usual way it calls no function.",
+            self.contact_words(contact),
+            self.contact_method("collide", contact)
+        )
+    }
+}

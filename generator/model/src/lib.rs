@@ -1,0 +1,28 @@
+//! Reads the text of a mechanism, gives it its meaning and checks it, without files, without the algebra engine
+//! and without a compiler: an editor or a page in a browser links this crate alone.
+//!
+//! ```text
+//! source text -> syntax   tokens and an untyped tree, with the place of everything
+//!             -> model    names resolved, dimensions checked, all mistakes collected
+//!             -> check    the model as a whole, counted and in numbers (numeric)
+//! ```
+//!
+//! A mistake is a [`diagnostics::Diagnostic`]; `rendering` shows it with its line, `explanations` explains its
+//! code.
+
+pub mod arithmetic;
+pub mod check;
+pub mod diagnostics;
+pub mod dimension;
+pub mod explanations;
+pub mod letters;
+pub mod model;
+pub mod number;
+pub mod numeric;
+pub mod rendering;
+pub mod rust_names;
+pub mod source;
+pub mod span;
+pub mod suggest;
+pub mod syntax;
+pub mod vocabulary;

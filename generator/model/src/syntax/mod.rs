@@ -1,0 +1,13 @@
+//! Parses text to an untyped tree. Parsing never fails: it returns a tree and the mistakes found.
+
+mod entries;
+mod expressions;
+pub mod lexer;
+mod outline;
+mod parser;
+mod sections;
+pub mod token;
+pub mod tree;
+pub mod units;
+
+pub use parser::{MAX_DEPTH, parse};

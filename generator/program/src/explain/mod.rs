@@ -1,0 +1,255 @@
+//! Writes the equations of a mechanism for people: as text, LaTeX or HTML.
+//!
+//! The operations of a program are converted back to expressions, with like terms collected and without the
+//! operations that only correct rounding. An expression that is used more than once, or would make a line too
+//! long, gets a name: z1, z2 .. as in the paper.
+
+mod arithmetic;
+mod collect;
+mod exact;
+mod headings;
+mod html;
+mod latex;
+pub mod symbols;
+mod text;
+
+use crate::program::Program;
+use crate::program::operation::Stage;
+use crate::program::{ContactQuantity, Quantity};
+use hodograph_model::model::mechanism::Mechanism;
+
+/// How equations are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// plain text
+    Text,
+    /// a LaTeX document
+    Latex,
+    /// an HTML page with MathML
+    Html,
+}
+
+/// The equations of some quantities of a mechanism.
+pub fn explain(mechanism: &Mechanism, program: &Program, quantities: &[Quantity], format: Format) -> String {
+    let document = collect::collect(mechanism, program, quantities);
+    match format {
+        Format::Text => text::write(&document),
+        Format::Latex => latex::write(&document),
+        Format::Html => html::write(&document),
+    }
+}
+
+/// The quantities that a reader of the paper looks for, as far as the program has them.
+pub fn usual(program: &Program) -> Vec<Quantity> {
+    let wanted = |quantity: &Quantity| match quantity {
+        Quantity::CoordinateRates
+        | Quantity::DependentSpeeds
+        | Quantity::MassMatrix
+        | Quantity::Forcing
+        | Quantity::KineticEnergy => true,
+        Quantity::Contact(_, quantity) => {
+            use ContactQuantity::*;
+            matches!(
+                quantity,
+                Normal | First | Second | Velocity | PartialVelocities | Remainder | Reduced | Gap
+            )
+        }
+        _ => false,
+    };
+    program.outputs.iter().map(|output| output.quantity).filter(wanted).collect()
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+enum Term {
+    Number(f64),
+    /// a name of the model
+    Name(String),
+    /// the time derivative of a name
+    Rate(String),
+    /// an intermediate symbol, counted from 1
+    Z(usize),
+    Neg(Box<Term>),
+    Sum(Vec<Term>),
+    Product(Vec<Term>),
+    Quotient(Box<Term>, Box<Term>),
+    Power(Box<Term>, u32),
+    Call(&'static str, Vec<Term>),
+}
+
+/// What stands where, to know where brackets are needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Sum,
+    Product,
+    Atom,
+}
+
+impl Term {
+    fn rank(&self) -> Rank {
+        match self {
+            Term::Sum(_) | Term::Neg(_) => Rank::Sum,
+            Term::Number(number) if *number < 0.0 => Rank::Sum,
+            Term::Product(_) | Term::Quotient(..) => Rank::Product,
+            _ => Rank::Atom,
+        }
+    }
+
+    /// The term without its sign, and whether it has one.
+    fn unsigned(&self) -> (bool, Term) {
+        match self {
+            Term::Neg(term) => (true, (**term).clone()),
+            Term::Number(number) if *number < 0.0 => (true, Term::Number(-number)),
+            Term::Product(factors) => match factors[..] {
+                [Term::Number(number), ref rest @ ..] if number < 0.0 => {
+                    let number = (number != -1.0).then_some(Term::Number(-number));
+                    (true, product(number.into_iter().chain(rest.iter().cloned()).collect()))
+                }
+                _ => (false, self.clone()),
+            },
+            _ => (false, self.clone()),
+        }
+    }
+}
+
+/// A product of factors, which may be a single one.
+fn product(mut factors: Vec<Term>) -> Term {
+    if factors.len() == 1 { factors.remove(0) } else { Term::Product(factors) }
+}
+
+/// An equation: what it is for, and what that is.
+#[derive(Clone, Debug)]
+struct Equation {
+    left: Left,
+    right: Term,
+}
+
+/// The left side of an equation.
+#[derive(Clone, Debug)]
+enum Left {
+    /// an intermediate symbol
+    Z(usize),
+    /// an entry of a quantity: its symbol, and its indices where it has more than one entry
+    Entry(String, Vec<String>),
+    /// a quantity that belongs to a name of the model, such as a rate
+    Of(String, bool),
+}
+
+/// Equations under a heading.
+#[derive(Clone, Debug)]
+struct Section {
+    /// what it belongs to, such as a contact; may be empty
+    group: String,
+    title: String,
+    /// may be empty
+    unit: String,
+    /// of the whole quantity, unless a name of the model has it
+    symbol: Option<String>,
+    /// which equations stand in which row of a matrix; empty for what is no matrix
+    matrix: Vec<Vec<usize>>,
+    equations: Vec<Equation>,
+}
+
+/// An entry of a matrix with more symbols than this is written below it.
+const SHORT: usize = 4;
+/// The same for matrices of many columns.
+const SHORTEST: usize = 2;
+const MANY_COLUMNS: usize = 4;
+
+/// What intermediate symbols stand under.
+const INTERMEDIATE: &str = "Intermediate symbols";
+
+impl Section {
+    /// The heading in one line.
+    fn line(&self) -> String {
+        match self.group.is_empty() || self.group == INTERMEDIATE {
+            true => self.title.clone(),
+            false => format!("{}: {}", self.group, self.title),
+        }
+    }
+
+    /// Where the equations form a matrix that is worth showing: for each place the term that stands there, or
+    /// else the equation that is to be written below; and the equations to be written.
+    fn laid_out(&self) -> (Vec<Vec<Place<'_>>>, Vec<&Equation>) {
+        let many = self.matrix.first().is_some_and(|row| row.len() > MANY_COLUMNS);
+        let short = if many { SHORTEST } else { SHORT };
+        let is_short =
+            |equation: &Equation| collect::size(&equation.right) <= short && is_flat(&equation.right);
+        let vector = self.matrix.iter().all(|row| row.len() == 1);
+        if self.matrix.is_empty() || (vector && !self.equations.iter().all(is_short)) {
+            return (Vec::new(), self.equations.iter().collect());
+        }
+        let mut below: Vec<usize> = Vec::new();
+        let mut places = Vec::new();
+        for (row, line) in self.matrix.iter().enumerate() {
+            let mut cells = Vec::new();
+            for (column, &index) in line.iter().enumerate() {
+                let equation = &self.equations[index];
+                if is_short(equation) {
+                    cells.push(Place::Term(&equation.right));
+                    continue;
+                }
+                // In a symmetric matrix the entry is that of the mirror place.
+                let mirror = self.matrix.get(column).and_then(|line| line.get(row)).copied();
+                let index =
+                    mirror.filter(|&mirror| column < row && self.equations[mirror].right == equation.right);
+                let index = index.unwrap_or(line[column]);
+                if !below.contains(&index) {
+                    below.push(index);
+                }
+                cells.push(Place::Symbol(&self.equations[index].left));
+            }
+            places.push(cells);
+        }
+        (places, below.into_iter().map(|index| &self.equations[index]).collect())
+    }
+}
+
+/// Whether no part is higher than a line.
+fn is_flat(term: &Term) -> bool {
+    match term {
+        Term::Number(_) | Term::Name(_) | Term::Rate(_) | Term::Z(_) => true,
+        Term::Neg(term) | Term::Power(term, _) => is_flat(term),
+        Term::Sum(terms) | Term::Product(terms) | Term::Call(_, terms) => terms.iter().all(is_flat),
+        Term::Quotient(..) => false,
+    }
+}
+
+/// What stands at a place of a matrix.
+enum Place<'a> {
+    Term(&'a Term),
+    Symbol(&'a Left),
+}
+
+/// A name of the model and what it stands for.
+#[derive(Clone, Debug)]
+struct Entry {
+    name: String,
+    unit: String,
+    docs: String,
+    /// that of the model, in its unit
+    value: Option<f64>,
+}
+
+/// Everything to be written.
+#[derive(Clone, Debug)]
+struct Document {
+    title: String,
+    docs: String,
+    symbols: symbols::Symbols,
+    names: Vec<(&'static str, Vec<Entry>)>,
+    sections: Vec<Section>,
+}
+
+/// Heading of the intermediate symbols of a stage.
+fn stage_title(stage: Stage) -> &'static str {
+    match stage {
+        Stage::Constant => "Constants",
+        Stage::Parameter => "From the parameters alone",
+        Stage::Configuration => "From the configuration",
+        Stage::Velocity => "From the speeds and loads",
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,388 @@
+//! From a program to steps on slots: what depends on parameters alone is a number already, and a slot is used
+//! again when nobody reads it any more.
+
+use std::collections::{HashMap, HashSet, VecDeque};
+use std::mem::discriminant;
+
+use crate::interpret::prepared::Constants;
+use crate::program::graph::Input;
+use crate::program::operation::{Operation, Stage, Value};
+use crate::program::{Program, Quantity};
+use hodograph_model::arithmetic::Function;
+
+/// What a step does with the operands `a`, `b`, `c`. The letters at the end say for each of them whether it
+/// is in a slot (`S`) or the same for all states (`U`); factors and terms may have changed places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Code {
+    Load(Input),
+    Neg,
+    Recip,
+    SineCosine,
+    AddSS,
+    AddSU,
+    SubSS,
+    SubSU,
+    SubUS,
+    MulSS,
+    MulSU,
+    DivSS,
+    DivSU,
+    DivUS,
+    MulAddSSS,
+    MulAddSUS,
+    MulAddSSU,
+    MulAddSUU,
+    MulAddUUS,
+    MulSubSSS,
+    MulSubSUS,
+    MulSubSSU,
+    MulSubSUU,
+    MulSubUUS,
+    NegMulAddSSS,
+    NegMulAddSUS,
+    NegMulAddSSU,
+    NegMulAddSUU,
+    NegMulAddUUS,
+    Call(Function),
+    CallSS(Function),
+    CallSU(Function),
+    CallUS(Function),
+    /// the result of number `to` is in slot `a`
+    Result,
+    /// `a` must not vanish: check number `to`
+    NotZeroS,
+    /// `a` must not vanish beside `b`: check number `to`
+    NotSmallSS,
+    NotSmallSU,
+    NotSmallUS,
+}
+
+/// A step: its result goes to `to`; a pair of sine and cosine to `to` and `b`.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    pub code: Code,
+    pub to: u32,
+    pub a: u32,
+    pub b: u32,
+    pub c: u32,
+}
+
+/// Some quantities of a program, ready to be evaluated at many states at the parameters it was prepared for.
+#[derive(Clone, Debug)]
+pub struct Columns {
+    pub(super) steps: Vec<Step>,
+    /// how many slots the steps need
+    pub(super) slots: usize,
+    /// numbers that are the same for all states: which value of the program each is, and the number
+    pub(super) uniforms: Vec<(Value, f64)>,
+    /// results that are the same for all states: their place, and which of `uniforms`
+    pub(super) uniform_results: Vec<(usize, u32)>,
+    /// how many results a state has
+    pub(super) len: usize,
+    /// the guards of the program that are checked, in the order in which they are reported
+    pub(super) guards: Vec<usize>,
+}
+
+impl Columns {
+    /// Prepares those of the quantities that the program has, in this order.
+    pub fn new(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Self {
+        columns(program, constants, quantities)
+    }
+
+    /// Goes over to other parameters.
+    pub fn refresh(&mut self, constants: &Constants) {
+        for (value, number) in &mut self.uniforms {
+            *number = constants.get(*value);
+        }
+    }
+
+    /// How many results a state has: the quantities one after the other, each by rows.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none, because the program has none of the quantities.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// How many slots a block needs, of `8 LANES` bytes each.
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+}
+
+/// A number of every state: a value of the program, or the cosine of a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Varying {
+    value: u32,
+    cosine: bool,
+}
+
+/// An operand before slots are given out.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    Varying(Varying),
+    Uniform(u32),
+}
+
+/// A step before slots are given out: what it defines, and its operands.
+struct Draft {
+    code: Code,
+    defines: [Option<Varying>; 2],
+    number: u32,
+    operands: [Option<Place>; 3],
+}
+
+/// Compiles those of the quantities that the program has.
+fn columns(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Columns {
+    let slice = program.slice(quantities);
+    let mut compiler = Compiler { program, constants, uniforms: Vec::new(), numbers: HashMap::new() };
+    let mut results: HashMap<Varying, Vec<u32>> = HashMap::new();
+    let mut uniform_results = Vec::new();
+    let mut len = 0;
+    for &value in slice.outputs.iter().flat_map(|output| &output.values) {
+        match compiler.place(value) {
+            Place::Varying(varying) => results.entry(varying).or_default().push(len as u32),
+            Place::Uniform(uniform) => uniform_results.push((len, uniform)),
+        }
+        len += 1;
+    }
+    let (mut checks, mut guards) = (Vec::new(), Vec::new());
+    for guard in &slice.guards {
+        if program.guard_stage(guard, &constants.stages) > Stage::Parameter {
+            checks.push((compiler.place(guard.value), guard.scale.map(|scale| compiler.place(scale))));
+            guards.push(program.guards.iter().position(|other| other == *guard).unwrap_or(usize::MAX));
+        }
+    }
+    let mut drafts = Vec::new();
+    let mut defined: HashMap<Varying, ()> = HashMap::new();
+    let mut open: Vec<usize> = (0..checks.len()).collect();
+    for &value in &slice.order {
+        if constants.stage(value) <= Stage::Parameter {
+            continue;
+        }
+        let Some(draft) = compiler.draft(value) else { continue };
+        let defines = draft.defines;
+        drafts.push(draft);
+        for varying in defines.into_iter().flatten() {
+            defined.insert(varying, ());
+            for &number in results.get(&varying).into_iter().flatten() {
+                drafts.push(Draft::of(Code::Result, number, [Some(Place::Varying(varying)), None, None]));
+            }
+        }
+        open.retain(|&check| {
+            let (value, scale) = checks[check];
+            let known = |place: Place| match place {
+                Place::Varying(varying) => defined.contains_key(&varying),
+                Place::Uniform(_) => true,
+            };
+            let ready = known(value) && scale.is_none_or(known);
+            if ready {
+                let code = match (value, scale) {
+                    (Place::Varying(_), None) => Code::NotZeroS,
+                    (Place::Varying(_), Some(Place::Varying(_))) => Code::NotSmallSS,
+                    (Place::Varying(_), Some(Place::Uniform(_))) => Code::NotSmallSU,
+                    (Place::Uniform(_), _) => Code::NotSmallUS,
+                };
+                drafts.push(Draft::of(code, check as u32, [Some(value), scale, None]));
+            }
+            !ready
+        });
+    }
+    let (steps, slots) = with_slots(&grouped(drafts));
+    Columns { steps, slots, uniforms: compiler.uniforms, uniform_results, len, guards }
+}
+
+impl Draft {
+    fn of(code: Code, number: u32, operands: [Option<Place>; 3]) -> Self {
+        Draft { code, defines: [None; 2], number, operands }
+    }
+}
+
+struct Compiler<'a> {
+    program: &'a Program,
+    constants: &'a Constants,
+    uniforms: Vec<(Value, f64)>,
+    numbers: HashMap<Value, u32>,
+}
+
+impl Compiler<'_> {
+    fn place(&mut self, value: Value) -> Place {
+        if self.constants.stage(value) <= Stage::Parameter {
+            let (uniforms, constants) = (&mut self.uniforms, self.constants);
+            return Place::Uniform(*self.numbers.entry(value).or_insert_with(|| {
+                uniforms.push((value, constants.get(value)));
+                uniforms.len() as u32 - 1
+            }));
+        }
+        // A sine is the first, a cosine the second number of its pair.
+        Place::Varying(match self.program.operation(value) {
+            Operation::Sine(pair) => Varying { value: pair.0, cosine: false },
+            Operation::Cosine(pair) => Varying { value: pair.0, cosine: true },
+            _ => Varying { value: value.0, cosine: false },
+        })
+    }
+
+    /// The step of a value that depends on the state; none for a number of a pair, which comes with it.
+    fn draft(&mut self, value: Value) -> Option<Draft> {
+        use Operation as O;
+        let first = Varying { value: value.0, cosine: false };
+        let mut defines = [Some(first), None];
+        let operation = self.program.operation(value);
+        let mut places = operation.operands().map(|operand| self.place(operand));
+        let mut operands: [Option<Place>; 3] = std::array::from_fn(|_| places.next());
+        drop(places);
+        // factors and terms that are the same for all states go last; of three operands, the first two are
+        // factors
+        let exchangeable =
+            matches!(operation, O::Add(..) | O::Mul(..) | O::MulAdd(..) | O::MulSub(..) | O::NegMulAdd(..));
+        if exchangeable && matches!(operands[0], Some(Place::Uniform(_))) {
+            operands.swap(0, 1);
+        }
+        let uniform = operands.map(|operand| matches!(operand, Some(Place::Uniform(_))));
+        let code = match operation {
+            O::Constant(_) | O::Sine(_) | O::Cosine(_) => return None,
+            O::Input(input) => Code::Load(input),
+            O::Neg(_) => Code::Neg,
+            O::Recip(_) => Code::Recip,
+            O::SinCos(_) => {
+                defines[1] = Some(Varying { value: value.0, cosine: true });
+                Code::SineCosine
+            }
+            O::Add(..) => {
+                if uniform[1] {
+                    Code::AddSU
+                } else {
+                    Code::AddSS
+                }
+            }
+            O::Mul(..) => {
+                if uniform[1] {
+                    Code::MulSU
+                } else {
+                    Code::MulSS
+                }
+            }
+            O::Sub(..) => pick([Code::SubSS, Code::SubSU, Code::SubUS], uniform),
+            O::Div(..) => pick([Code::DivSS, Code::DivSU, Code::DivUS], uniform),
+            O::MulAdd(..) => pick_of_five(
+                [Code::MulAddSSS, Code::MulAddSUS, Code::MulAddSSU, Code::MulAddSUU, Code::MulAddUUS],
+                uniform,
+            ),
+            O::MulSub(..) => pick_of_five(
+                [Code::MulSubSSS, Code::MulSubSUS, Code::MulSubSSU, Code::MulSubSUU, Code::MulSubUUS],
+                uniform,
+            ),
+            O::NegMulAdd(..) => pick_of_five(
+                [
+                    Code::NegMulAddSSS,
+                    Code::NegMulAddSUS,
+                    Code::NegMulAddSSU,
+                    Code::NegMulAddSUU,
+                    Code::NegMulAddUUS,
+                ],
+                uniform,
+            ),
+            O::Call(function, _) => Code::Call(function),
+            O::Call2(function, ..) => {
+                pick([Code::CallSS(function), Code::CallSU(function), Code::CallUS(function)], uniform)
+            }
+        };
+        Some(Draft { code, defines, number: 0, operands })
+    }
+}
+
+/// Of the codes for two operands in slots, the second the same for all states, the first.
+fn pick(codes: [Code; 3], uniform: [bool; 3]) -> Code {
+    codes[if uniform[0] { 2 } else { usize::from(uniform[1]) }]
+}
+
+/// Of the codes for the operands SSS, SUS, SSU, SUU, UUS.
+fn pick_of_five(codes: [Code; 5], uniform: [bool; 3]) -> Code {
+    codes[if uniform[0] { 4 } else { usize::from(uniform[1]) + 2 * usize::from(uniform[2]) }]
+}
+
+/// So many of the steps that wait are looked at for one that does the same as the last.
+const WINDOW: usize = 128;
+
+/// The steps in an order in which those that do the same follow each other where their operands allow it: the
+/// processor then foresees what the next one does. They stay near their place, so that few more numbers must
+/// be held at a time.
+fn grouped(drafts: Vec<Draft>) -> Vec<Draft> {
+    let mut waiting = VecDeque::from(drafts);
+    let mut defined = HashSet::<Varying>::new();
+    let mut ordered: Vec<Draft> = Vec::with_capacity(waiting.len());
+    loop {
+        let last = ordered.last().map(|draft| discriminant(&draft.code));
+        let alike = waiting.iter().take(WINDOW).position(|draft| {
+            let known = |place: &Place| match place {
+                Place::Varying(varying) => defined.contains(varying),
+                Place::Uniform(_) => true,
+            };
+            Some(discriminant(&draft.code)) == last && draft.operands.iter().flatten().all(known)
+        });
+        // the operands of the first one come from steps before it
+        let Some(draft) = waiting.remove(alike.unwrap_or(0)) else { return ordered };
+        defined.extend(draft.defines.iter().flatten());
+        ordered.push(draft);
+    }
+}
+
+/// Gives out slots: the latest that became free is the next to be used.
+fn with_slots(drafts: &[Draft]) -> (Vec<Step>, usize) {
+    let mut last: HashMap<Varying, usize> = HashMap::new();
+    for (index, draft) in drafts.iter().enumerate() {
+        let used = draft.operands.iter().flatten().filter_map(|place| match place {
+            Place::Varying(varying) => Some(*varying),
+            Place::Uniform(_) => None,
+        });
+        for varying in used.chain(draft.defines.into_iter().flatten()) {
+            last.insert(varying, index);
+        }
+    }
+    let (mut held, mut free, mut count) = (HashMap::<Varying, u32>::new(), Vec::new(), 0_u32);
+    let mut steps = Vec::with_capacity(drafts.len());
+    for (index, draft) in drafts.iter().enumerate() {
+        let operands = draft.operands.map(|place| match place {
+            Some(Place::Varying(varying)) => held.get(&varying).copied().unwrap_or(0),
+            Some(Place::Uniform(uniform)) => uniform,
+            None => 0,
+        });
+        for place in draft.operands.iter().flatten() {
+            if let Place::Varying(varying) = place
+                && last.get(varying) == Some(&index)
+                && let Some(slot) = held.remove(varying)
+            {
+                free.push(slot);
+            }
+        }
+        let defined = draft.defines.map(|varying| {
+            varying.map(|varying| {
+                let slot = free.pop().unwrap_or_else(|| {
+                    count += 1;
+                    count - 1
+                });
+                held.insert(varying, slot);
+                slot
+            })
+        });
+        for varying in draft.defines.into_iter().flatten() {
+            // nobody reads it
+            if last.get(&varying) == Some(&index)
+                && let Some(slot) = held.remove(&varying)
+            {
+                free.push(slot);
+            }
+        }
+        let [a, b, c] = operands;
+        steps.push(Step {
+            code: draft.code,
+            to: defined[0].unwrap_or(draft.number),
+            a,
+            b: defined[1].unwrap_or(b),
+            c,
+        });
+    }
+    (steps, count as usize)
+}

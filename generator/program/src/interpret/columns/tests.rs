@@ -1,0 +1,171 @@
+//! Columns against [`Prepared`]: the same bits and the same errors.
+
+use super::*;
+use crate::artifact;
+use crate::interpret::prepared::{Arguments, Constants, Failed, Prepared};
+use crate::program::operation::{Bits, Operation as O, Value};
+use crate::program::{Guard, Output, Program, Quantity, graph::Input};
+
+/// A program in which every form of every operation occurs, with guards whose scale varies and does not.
+fn program() -> Program {
+    use hodograph_model::arithmetic::Function as F;
+    let mut operations = vec![
+        O::Input(Input::Parameter(0)),
+        O::Constant(Bits::new(0.75)),
+        O::Input(Input::Coordinate(0)),
+        O::Input(Input::Speed(0)),
+        O::Input(Input::Time),
+    ];
+    let [p, k, q, u, t] = [0, 1, 2, 3, 4].map(Value);
+    let mut results = vec![p, k, q, u, t];
+    let mut add = |operation| {
+        operations.push(operation);
+        Value(operations.len() as u32 - 1)
+    };
+    for make in [O::Add, O::Sub, O::Mul, O::Div] {
+        results.extend([(q, u), (q, p), (k, u), (t, t)].map(|(a, b)| add(make(a, b))));
+    }
+    for make in [O::MulAdd, O::MulSub, O::NegMulAdd] {
+        let all = [(q, u, t), (q, p, t), (p, q, u), (q, u, k), (q, p, k), (k, u, p), (p, k, t), (q, q, q)];
+        results.extend(all.map(|(a, b, c)| add(make(a, b, c))));
+    }
+    let (both, only_cosine) = (add(O::SinCos(q)), add(O::SinCos(u)));
+    results.extend([add(O::Cosine(both)), add(O::Sine(both)), add(O::Cosine(only_cosine))]);
+    for function in [F::Sin, F::Cos, F::Tan, F::Atan, F::Exp, F::Sinh, F::Cosh, F::Tanh, F::Abs, F::Sign] {
+        results.push(add(O::Call(function, u)));
+    }
+    for function in [F::Atan2, F::Min, F::Max] {
+        results.extend([(q, u), (q, k), (p, t)].map(|(a, b)| add(O::Call2(function, a, b))));
+    }
+    results.extend([add(O::Neg(q)), add(O::Recip(u))]);
+    let difference = add(O::Sub(q, u));
+    results.push(difference);
+    let guard = |value, scale, message: &str| Guard { value, scale, message: message.into() };
+    Program {
+        outputs: vec![Output {
+            quantity: Quantity::Forcing,
+            rows: results.len(),
+            columns: 1,
+            values: results,
+        }],
+        operations,
+        guards: vec![
+            guard(u, None, "u"),
+            guard(difference, Some(q), "beside a coordinate"),
+            guard(t, Some(k), "beside a constant"),
+            guard(p, Some(t), "a parameter beside the time"),
+        ],
+        structures: Vec::new(),
+    }
+}
+
+/// Every kind of state that has no results, among states that have some.
+fn states(rows: usize) -> [Vec<f64>; 3] {
+    let number = |row: usize, step: f64| (row as f64 * step).sin() * 3.0;
+    let mut all =
+        [0.611, 0.173, 0.377].map(|step| (0..rows).map(|row| number(row + 1, step)).collect::<Vec<_>>());
+    let mut set = |row: usize, values: [f64; 3]| {
+        if row < rows {
+            all.iter_mut().zip(values).for_each(|(column, value)| column[row] = value);
+        }
+    };
+    set(3, [f64::NAN, 1.0, 1.0]);
+    set(5, [1.0, f64::NAN, 1.0]);
+    set(6, [0.5, 0.0, 1.0]);
+    set(7, [0.5, 0.5, 1.0]);
+    set(11, [0.5, 0.7, 1e-300]);
+    set(12, [0.5, 0.7, f64::INFINITY]);
+    set(13, [0.5, 0.7, 1e300]);
+    set(14, [1e9, 1e-320, 1.0]);
+    set(31, [f64::INFINITY, 1.0, 1.0]);
+    set(32, [0.0, 0.0, 0.0]);
+    all
+}
+
+fn compared(program: &Program, constants: &Constants, quantities: &[Quantity], rows: usize) -> [usize; 2] {
+    let prepared = Prepared::new(program, constants, quantities);
+    let columns = Columns::new(program, constants, quantities);
+    assert_eq!(columns.len(), prepared.len());
+    let [q, u, t] = states(rows);
+    let column = |numbers| vec![Column::new(numbers)];
+    let table = Table {
+        rows,
+        time: Some(Column::new(&t)),
+        coordinates: column(&q),
+        speeds: column(&u),
+        ..Table::default()
+    };
+    let mut numbers = vec![0.0; rows * columns.len()];
+    let mut failures = vec![None; rows];
+    columns.by_rows(&table, 0..rows, &mut numbers, &mut failures);
+    let mut stored = vec![vec![0.0; rows]; columns.len()];
+    let mut again = vec![None; rows];
+    let mut slices: Vec<&mut [f64]> = stored.iter_mut().map(Vec::as_mut_slice).collect();
+    columns.by_columns(&table, 0..rows, &mut slices, &mut again);
+    assert_eq!(failures, again);
+    for row in 0..rows {
+        let arguments = Arguments {
+            time: t[row],
+            coordinates: &q[row..=row],
+            speeds: &u[row..=row],
+            ..Arguments::default()
+        };
+        let mut expected = vec![f64::NAN; prepared.len()];
+        let outcome = prepared.evaluate(&arguments, |index, number| expected[index] = number);
+        assert_eq!(failures[row], outcome.err(), "row {row}");
+        for (result, expected) in expected.iter().enumerate() {
+            let found = numbers[row * columns.len() + result];
+            assert_eq!(found.to_bits(), stored[result][row].to_bits());
+            let same = found.to_bits() == expected.to_bits() || found.is_nan() && expected.is_nan();
+            assert!(same, "row {row}, result {result}: {found} {expected}");
+        }
+    }
+    [true, false].map(|failed| failures.iter().filter(|failure| failure.is_some() == failed).count())
+}
+
+#[test]
+fn every_operation_and_every_error_are_those_of_one_state() {
+    let program = program();
+    let constants = Constants::new(&program, &[1.3]);
+    for rows in [0, 1, 7, 8, 9, 63, 64, 65, 150] {
+        let [failed, fine] = compared(&program, &constants, &[Quantity::Forcing], rows);
+        assert!(rows < 33 || failed == 10 && fine == rows - 10, "{rows}: {failed} {fine}");
+    }
+}
+
+#[test]
+fn other_parameters() {
+    let program = program();
+    let constants = Constants::new(&program, &[1.3]);
+    let mut columns = Columns::new(&program, &constants, &[Quantity::Forcing]);
+    columns.refresh(&Constants::new(&program, &[-0.4]));
+    let fresh = Columns::new(&program, &Constants::new(&program, &[-0.4]), &[Quantity::Forcing]);
+    let of = |columns: &Columns| {
+        let table = Table {
+            rows: 1,
+            time: Some(Column::new(&[0.2])),
+            coordinates: vec![Column::new(&[0.3])],
+            speeds: vec![Column::new(&[0.7])],
+            ..Table::default()
+        };
+        let (mut numbers, mut failures) = (vec![0.0; columns.len()], [None]);
+        columns.by_rows(&table, 0..1, &mut numbers, &mut failures);
+        assert_eq!(failures, [None]);
+        numbers
+    };
+    assert_eq!(of(&columns), of(&fresh));
+    assert_ne!(of(&columns)[0], 1.3);
+}
+
+#[test]
+fn columns_that_are_missing_or_short_hold_no_numbers() {
+    let artifact = artifact::decode(include_str!("../../../tests/golden/pendulum.derivation")).unwrap();
+    let constants = Constants::new(&artifact.program, &[1.3, 0.7, 9.81]);
+    let columns = Columns::new(&artifact.program, &constants, &[Quantity::Accelerations]);
+    let table = Table { rows: 3, coordinates: vec![Column::new(&[0.1, 0.2])], ..Table::default() };
+    let (mut numbers, mut failures) = (vec![0.0; 3], [None; 3]);
+    columns.by_rows(&table, 0..3, &mut numbers, &mut failures);
+    assert_eq!(failures, [Some(Failed::NotFinite); 3]);
+    assert!(numbers.iter().all(|number| number.is_nan()));
+    assert!(columns.slots() > 0 && !columns.is_empty());
+}

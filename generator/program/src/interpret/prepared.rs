@@ -1,0 +1,233 @@
+//! Prepares quantities that are evaluated often: selects and renumbers the operations that they need, and
+//! computes once what depends on parameters only. The results have the same bits as those of
+//! [`super::Evaluator`].
+
+use crate::program::graph::Input;
+use crate::program::operation::{Operation, Stage, Value};
+use crate::program::{Inputs, Program, Quantity, VANISHING, operate};
+use hodograph_model::arithmetic::DoubleDouble;
+
+/// The numbers from outside but for parameters, borrowed; each in the unit that the model declares, in file
+/// order.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Arguments<'a> {
+    /// time, s
+    pub time: f64,
+    /// coordinates
+    pub coordinates: &'a [f64],
+    /// independent speeds
+    pub speeds: &'a [f64],
+    /// named inputs
+    pub inputs: &'a [f64],
+    /// rates of the independent speeds
+    pub accelerations: &'a [f64],
+    /// direction of a linearisation
+    pub tangent: &'a [f64],
+}
+
+impl Arguments<'_> {
+    /// One of the numbers; what is not there is not a number.
+    fn get(&self, input: Input) -> f64 {
+        let (list, index) = match input {
+            Input::Time => return self.time,
+            Input::Parameter(_) => return f64::NAN,
+            Input::Coordinate(index) => (self.coordinates, index),
+            Input::Speed(index) => (self.speeds, index),
+            Input::Input(index) => (self.inputs, index),
+            Input::Acceleration(index) => (self.accelerations, index),
+            Input::Tangent(index) => (self.tangent, index),
+        };
+        list.get(index as usize).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// What a program computes of parameters alone, in twice the digits and rounded once.
+#[derive(Clone, Debug)]
+pub struct Constants {
+    pub(super) stages: Vec<Stage>,
+    /// by the number of the value; later values are 0
+    rounded: Vec<(f64, f64)>,
+}
+
+impl Constants {
+    /// For all parameters in file order, `fixed` ones too (which are not read).
+    pub fn new(program: &Program, parameters: &[f64]) -> Self {
+        let stages = program.stages();
+        let inputs = Inputs { parameters: parameters.to_vec(), ..Inputs::default() };
+        let zero = DoubleDouble::new(0.0);
+        let mut early = vec![(zero, zero); program.operations.len()];
+        let mut rounded = vec![(0.0, 0.0); program.operations.len()];
+        for (index, &operation) in program.operations.iter().enumerate() {
+            if stages[index] <= Stage::Parameter {
+                early[index] = operate(operation, &inputs, |value| early[value.index()]);
+                rounded[index] = (early[index].0.rounded(), early[index].1.rounded());
+            }
+        }
+        Constants { stages, rounded }
+    }
+
+    /// The stage of a value.
+    pub fn stage(&self, value: Value) -> Stage {
+        self.stages.get(value.index()).copied().unwrap_or(Stage::Velocity)
+    }
+
+    /// A value that depends on parameters alone.
+    pub fn get(&self, value: Value) -> f64 {
+        self.rounded.get(value.index()).map_or(f64::NAN, |numbers| numbers.0)
+    }
+
+    /// Whether all that later values need of them is finite.
+    pub fn finite(&self, program: &Program) -> bool {
+        program.kept(&self.stages).into_iter().all(|value| self.get(value).is_finite())
+    }
+
+    /// The first guard on parameters alone that fails at these: its message, and whether its value is finite.
+    pub fn failure<'p>(&self, program: &'p Program) -> Option<(&'p str, bool)> {
+        let early = program
+            .guards
+            .iter()
+            .filter(|guard| program.guard_stage(guard, &self.stages) <= Stage::Parameter);
+        early.into_iter().find_map(|guard| {
+            let (value, scale) = (self.get(guard.value), guard.scale.map_or(0.0, |scale| self.get(scale)));
+            let holds = holds(value, VANISHING * scale.abs());
+            (!holds).then_some((guard.message.as_str(), value.is_finite() && scale.is_finite()))
+        })
+    }
+}
+
+/// Whether a value does not vanish. A divisor that overflows is large, and what it divides is 0.
+pub(super) fn holds(value: f64, bound: f64) -> bool {
+    value.abs() > bound || value.is_infinite()
+}
+
+/// A check of a prepared routine.
+#[derive(Clone, Debug)]
+struct Check {
+    value: usize,
+    scale: Option<usize>,
+    /// the number of the guard in the program
+    guard: usize,
+}
+
+/// Some quantities of a program, ready to be evaluated many times at the parameters it was prepared for.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// what the numbers are before anything is computed: constants, and what depends on parameters alone
+    template: Vec<(f64, f64)>,
+    /// which value of the program each number is
+    values: Vec<Value>,
+    inputs: Vec<(usize, Input)>,
+    /// where each result goes, and its operation on results with smaller numbers
+    steps: Vec<(usize, Operation)>,
+    checks: Vec<Check>,
+    /// the results, quantity by quantity, by rows
+    results: Vec<usize>,
+    /// those of them that are not constant
+    computed: Vec<usize>,
+}
+
+/// Why a prepared routine has no result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failed {
+    /// a value vanishes that must not: the number of its guard in the program
+    Singular(usize),
+    /// a result, or a value that must not vanish, is infinite or not a number
+    NotFinite,
+}
+
+impl Prepared {
+    /// Prepares those of the quantities that the program has, in this order.
+    pub fn new(program: &Program, constants: &Constants, quantities: &[Quantity]) -> Self {
+        let slice = program.slice(quantities);
+        let mut place = vec![usize::MAX; program.operations.len()];
+        let mut prepared = Prepared {
+            template: Vec::new(),
+            values: slice.order.clone(),
+            inputs: Vec::new(),
+            steps: Vec::new(),
+            checks: Vec::new(),
+            results: Vec::new(),
+            computed: Vec::new(),
+        };
+        for &value in &slice.order {
+            let at = prepared.template.len();
+            place[value.index()] = at;
+            prepared.template.push(constants.rounded[value.index()]);
+            if constants.stage(value) > Stage::Parameter {
+                match program.operation(value) {
+                    Operation::Input(input) => prepared.inputs.push((at, input)),
+                    operation => {
+                        let renumbered = operation.map(|operand| Value(place[operand.index()] as u32));
+                        prepared.steps.push((at, renumbered));
+                    }
+                }
+            }
+        }
+        for guard in &slice.guards {
+            if program.guard_stage(guard, &constants.stages) > Stage::Parameter {
+                prepared.checks.push(Check {
+                    value: place[guard.value.index()],
+                    scale: guard.scale.map(|scale| place[scale.index()]),
+                    guard: program.guards.iter().position(|other| other == *guard).unwrap_or(usize::MAX),
+                });
+            }
+        }
+        for &value in slice.outputs.iter().flat_map(|output| &output.values) {
+            prepared.results.push(place[value.index()]);
+            if constants.stage(value) > Stage::Parameter {
+                prepared.computed.push(place[value.index()]);
+            }
+        }
+        prepared
+    }
+
+    /// Goes over to other parameters.
+    pub fn refresh(&mut self, constants: &Constants) {
+        for (number, value) in self.template.iter_mut().zip(&self.values) {
+            *number = constants.rounded[value.index()];
+        }
+    }
+
+    /// How many numbers there are.
+    pub fn len(&self) -> usize {
+        self.results.len()
+    }
+
+    /// Whether there are none, because the program has none of the quantities.
+    pub fn is_empty(&self) -> bool {
+        self.results.is_empty()
+    }
+
+    /// Computes the quantities; `with` receives each number's index and value.
+    ///
+    /// # Errors
+    ///
+    /// [`Failed`]
+    pub fn evaluate(
+        &self,
+        arguments: &Arguments<'_>,
+        mut with: impl FnMut(usize, f64),
+    ) -> Result<(), Failed> {
+        let mut numbers = self.template.clone();
+        for &(at, input) in &self.inputs {
+            numbers[at].0 = arguments.get(input);
+        }
+        let none = Inputs::default();
+        for &(at, operation) in &self.steps {
+            numbers[at] = operate(operation, &none, |value| numbers[value.index()]);
+        }
+        for check in &self.checks {
+            let value = numbers[check.value].0;
+            let bound = check.scale.map_or(0.0, |scale| VANISHING * numbers[scale].0.abs());
+            if !holds(value, bound) {
+                let finite = value.is_finite() && bound.is_finite();
+                return Err(if finite { Failed::Singular(check.guard) } else { Failed::NotFinite });
+            }
+        }
+        if !self.computed.iter().all(|&at| numbers[at].0.is_finite()) {
+            return Err(Failed::NotFinite);
+        }
+        self.results.iter().enumerate().for_each(|(index, &at)| with(index, numbers[at].0));
+        Ok(())
+    }
+}

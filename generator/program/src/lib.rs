@@ -1,0 +1,14 @@
+//! A mechanism's equations as a straight-line program.
+//!
+//! ```text
+//! program     straight-line operations: shared, hoisted, factorised
+//!  | interpret   their numbers
+//!  | explain     equations to read
+//!  | artifact    the checked-in derivation
+//! ```
+
+pub mod artifact;
+pub mod explain;
+pub mod interpret;
+pub mod program;
+pub mod reading;
