@@ -160,9 +160,10 @@ fn emitted() -> String {
     prettyplease::unparse(&syn::parse2(tokens).expect("generated code is Rust"))
 }
 
-/// Compares with a reviewed file; `HODOGRAPH_GOLDEN=write cargo test -p hodograph-generator` rewrites it.
+/// Compares with a reviewed file; `HODOGRAPH_GOLDEN=write cargo test -p hodograph-emit` rewrites it.
 fn reviewed(name: &str, text: &str) {
-    let path = format!("{}/tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
+    let folder = if name.ends_with(".derivation") { "../program" } else { "." };
+    let path = format!("{}/{folder}/tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
     if std::env::var_os("HODOGRAPH_GOLDEN").is_some() {
         std::fs::write(&path, text).unwrap();
     }
