@@ -234,3 +234,33 @@ mod deriving {
         });
     }
 }
+
+/// One style: written to the file or to standard output, asked for with `--check`, refused where there are
+/// mistakes. The hash of the equations stays.
+#[test]
+fn models_are_laid_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("rod.mech");
+    let written = ROD.replace("m: kg = 1, l:", "// lengths\n  m:kg=1,   l:");
+    fs::write(&path, &written).unwrap();
+    let asked = run(&["fmt", "--check", &text(&path)]);
+    assert_eq!((asked.code, asked.stdout.trim()), (1, text(&path).as_str()), "{}", asked.stderr);
+    assert_eq!(fs::read_to_string(&path).unwrap(), written);
+    assert_eq!(run(&["derive", &text(&path)]).code, 0);
+    let laid_out = run(&["fmt", &text(folder.path())]);
+    assert_eq!(laid_out.code, 0, "{}", laid_out.stderr);
+    let now = fs::read_to_string(&path).unwrap();
+    assert!(now.contains("parameters {\n    // lengths\n    m: kg    = 1,\n    l: m     = 0.5,\n"), "{now}");
+    assert_eq!(run(&["derive", "--check", &text(&path)]).code, 0, "the derivation is fresh");
+    assert_eq!(run(&["fmt", "--check", &text(&path)]).code, 0);
+    let streamed = hodograph(&["fmt", "-"], &written);
+    assert_eq!((streamed.code, streamed.stdout), (0, now));
+    assert_eq!(hodograph(&["fmt", "--check", "-"], &written).code, 1);
+    // what cannot be read stays as it is
+    fs::write(&path, "mechanism A;\nframes { A = ; }\n").unwrap();
+    let refused = run(&["fmt", &text(&path)]);
+    assert_eq!((refused.code, refused.stderr.contains("rod.mech:2:")), (1, true), "{}", refused.stderr);
+    assert_eq!(fs::read_to_string(&path).unwrap(), "mechanism A;\nframes { A = ; }\n");
+    assert_eq!(run(&["fmt", "no/such.mech"]).code, 1);
+    assert_eq!(run(&["fmt", "-", &text(&path)]).code, 2);
+}

@@ -15,6 +15,7 @@ pub mod check;
 pub mod diagnostics;
 pub mod dimension;
 pub mod explanations;
+pub mod format;
 pub mod letters;
 pub mod model;
 pub mod number;
