@@ -110,7 +110,7 @@ pub(super) const TABLE: &[Explanation] = &[
         text: "The motion keeps a configuration equation with the values that the parameters have in the \
             model, and does not with others: a number or another parameter stands in the constraints where \
             the configuration has this one. As soon as it is set at run time, the motion leaves the \
-            configuration.",
+            configuration. The message says whether exact arithmetic or numbers at closed states decided.",
         wrong: Some(
             "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, n: 1 = 2 }\n\
             coordinates { q1: rad, dependent q2: rad }\n\

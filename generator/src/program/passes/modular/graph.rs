@@ -8,7 +8,7 @@ use crate::program::graph::{Graph, Node, NodeKind};
 
 impl Graph {
     /// What every node is at arbitrary inputs.
-    pub(in crate::program::passes) fn residues(&self) -> Vec<Option<Residues>> {
+    pub fn residues(&self) -> Vec<Option<Residues>> {
         self.at_both()
     }
 }
