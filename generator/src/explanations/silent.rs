@@ -138,7 +138,8 @@ pub(super) const TABLE: &[Explanation] = &[
         code: NO_GAP,
         text: "A simulation sees that a contact closes by its gap, the distance of the point that strikes, \
             along the normal, from what is struck. This contact has none: bodies pass through each other \
-            there. A model that is used for collisions at given instants alone needs no gap.",
+            there. A contact whose collisions are computed at \
+            given instants alone, where a state says that it closes, has `gap: none`.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }"),
     },
