@@ -159,7 +159,9 @@ impl Lowering<'_> {
     /// none.
     pub(super) fn without_gap(&mut self) {
         let mut warnings = Vec::new();
-        for contact in self.out.contacts.iter().filter(|contact| contact.gap.is_none() && !contact.without_gap) {
+        for contact in
+            self.out.contacts.iter().filter(|contact| contact.gap.is_none() && !contact.without_gap)
+        {
             let root = |point: PointId| self.points[point.0].root;
             let other = match contact.against {
                 Against::Fixed | Against::Velocity(_) => 0,
