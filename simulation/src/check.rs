@@ -91,11 +91,15 @@ pub(crate) fn check(
             continue;
         }
         let own = options.surfaces.iter().rev().find(|(index, _)| *index == contact);
-        *slot = own.map(|(_, surface)| *surface).or(options.surface);
+        let given = own.map(|(_, surface)| *surface).or(options.surface);
+        *slot = given.or_else(|| mechanism.surface(contact));
         if slot.is_none() {
             return Err(error(
                 Some(contact),
-                Reason::Option("no surface is given for it: it needs mu, e and a law".to_owned()),
+                Reason::Option(
+                    "no surface is given for it, and the model states none: it needs mu, e and a law"
+                        .to_owned(),
+                ),
             ));
         }
     }

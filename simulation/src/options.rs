@@ -43,7 +43,8 @@ pub struct Options {
     pub breaks: Vec<f64>,
     /// the surfaces of the contacts that have one of their own, by number
     pub surfaces: Vec<(usize, Surface<f64>)>,
-    /// the surfaces of all other contacts
+    /// the surfaces of all other contacts; without it they have those that the model states
+    /// ([`Contacts::surface`](hodograph::Contacts::surface))
     pub surface: Option<Surface<f64>>,
     /// where inputs come from
     pub drive: Drive,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use hodograph::{Kind, Mechanism as _, StateError};
+use hodograph::{Contacts as _, Kind, Mechanism as _, StateError};
 use hodograph_generator::explain::{self, Format};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
@@ -361,6 +361,16 @@ impl Mechanism {
         let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
         let of = (&self.inner, self.machines.as_ref(), contact);
         collisions::collide(py, of, states, (mu, e, law), raises(py, errors)?)
+    }
+
+    /// Friction and restitution that the model states for a contact.
+    fn _surface<'py>(&self, py: Python<'py>, contact: usize) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(surface) = self.inner.surface(contact) else { return Ok(None) };
+        let found = PyDict::new(py);
+        found.set_item("mu", surface.mu)?;
+        found.set_item("e", surface.e)?;
+        found.set_item("law", surface.law.name())?;
+        Ok(Some(found))
     }
 
     /// A motion from a state to a time.

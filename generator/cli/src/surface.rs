@@ -1,8 +1,7 @@
 //! Reads laws of restitution by name, and finds the surface of a contact: what options say, else what the
 //! model states.
 
-use hodograph::{Law, Surface};
-use hodograph_generator::model::mechanism::{self, Mechanism};
+use hodograph::{Contacts, Kind as Of, Law, Surface};
 use hodograph_interpreter::motion::GivenSurface;
 
 use crate::json::{Failure, Kind};
@@ -22,13 +21,8 @@ pub fn law(name: &str) -> Result<Law, Failure> {
 
 /// What is given of the surface of a contact, and for what that leaves open what the model states. What is
 /// taken from the model is told on standard error.
-pub fn stated_in(contact: &mechanism::Contact, given: GivenSurface) -> GivenSurface {
-    let Some(stated) = contact.surface else { return given };
-    let law = match stated.law {
-        mechanism::Law::Newton => Law::Newton,
-        mechanism::Law::Poisson => Law::Poisson,
-        mechanism::Law::Stronge => Law::Stronge,
-    };
+pub fn stated_in(mechanism: &dyn Contacts<f64>, contact: usize, given: GivenSurface) -> GivenSurface {
+    let Some(stated) = mechanism.surface(contact) else { return given };
     let says = [
         given.mu.is_none().then(|| format!("mu = {}", stated.mu)),
         given.e.is_none().then(|| format!("e = {}", stated.e)),
@@ -36,9 +30,10 @@ pub fn stated_in(contact: &mechanism::Contact, given: GivenSurface) -> GivenSurf
     ];
     let says: Vec<String> = says.into_iter().flatten().collect();
     if !says.is_empty() {
-        output::say(format_args!("note: contact {}: {} of the model", contact.name, says.join(", ")));
+        let name = mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
+        output::say(format_args!("note: contact {name}: {} of the model", says.join(", ")));
     }
-    given.or(GivenSurface { mu: Some(stated.mu), e: Some(stated.e), law: Some(law) })
+    given.or(stated.into())
 }
 
 /// The surface as it stands on the command line.
@@ -61,7 +56,7 @@ impl SurfaceArguments {
     /// # Errors
     ///
     /// `unknown_name`, `not_finite`, and [`Stop::Call`] where a number stands neither here nor in the model.
-    pub fn surface(&self, model: &Mechanism, contact: usize) -> Outcome<Surface<f64>> {
+    pub fn surface(&self, mechanism: &dyn Contacts<f64>, contact: usize) -> Outcome<Surface<f64>> {
         for (option, value) in [("--mu", self.mu), ("--e", self.e)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
                 let message = format!("{option} is {value}: give a finite number");
@@ -70,9 +65,8 @@ impl SurfaceArguments {
         }
         let law = self.law.as_deref().map(law).transpose()?;
         let given = GivenSurface { mu: self.mu, e: self.e, law };
-        let contact = model.contacts.get(contact);
-        contact.and_then(|contact| stated_in(contact, given).whole()).ok_or_else(|| {
-            let name = contact.map_or("", |contact| contact.name.as_str());
+        stated_in(mechanism, contact, given).whole().ok_or_else(|| {
+            let name = mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
             Stop::Call(format!(
                 "contact {name} has no surface: give --mu, --e and --law, or state its `surface` in the model"
             ))

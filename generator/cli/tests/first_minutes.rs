@@ -31,12 +31,14 @@ fn a_new_model_collides() {
     assert!(again.told().0 == 1 && again.stderr.contains("exists"), "{}", again.stderr);
     assert_eq!(fs::read_to_string(&path).unwrap(), text);
     let page = place(&folder, "my_pendulum.html");
-    let surface = ["--mu", "0.3", "--e", "0.7", "--law", "stronge"];
-    let call = ["simulate", &path, "--until", "5", "--html", &page, "--format", "table"];
-    let run = hodograph(&[&call[..], &surface].concat(), "");
+    // what the command leaves open is said: the surface stands in the model, and the motion ends at 10 s
+    let run = hodograph(&["simulate", &path, "--html", &page, "--format", "table"], "");
     assert_eq!(run.code, 0, "{}", run.stderr);
-    for part in ["q1 [rad]", "Events", "tip_wall", "impacts", "6 collisions; still in motion at t = 5 s."] {
+    for part in ["q1 [rad]", "Events", "tip_wall", "impacts", "10 collisions; still in motion at t = 10 s."] {
         assert!(run.stdout.contains(part), "{part}: {}", run.stdout);
+    }
+    for part in ["tip_wall: mu = 0.3, e = 0.7, law = stronge of the model", "until t = 10 s"] {
+        assert!(run.stderr.contains(part), "{part}: {}", run.stderr);
     }
     let shown = fs::read_to_string(&page).unwrap();
     for part in
@@ -47,6 +49,34 @@ fn a_new_model_collides() {
     for wrong in ["3x", "a b", "a-b", "", "ä"] {
         assert_eq!(hodograph(&["new", wrong], "").told().0, 2, "{wrong}");
     }
+}
+
+/// Without `--until` a motion ends where all is at rest, 10 s after its start at the latest.
+#[cfg(feature = "derive")]
+#[test]
+fn motions_end_by_themselves() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = place(&folder, "ball.mech");
+    let ball = "mechanism Ball; parameters { m: kg = 1, g: m/s^2 = 9.81 } inputs { F: N = 0 } coordinates { z: m = 0.3 } \
+                speeds { v: m/s } points { P = O + z*N.z; } particles { Ball { point: P, mass: m } } \
+                loads { gravity: -g*N.z; force on P: F*N.z; } kinematics { d(z)/dt = v; } \
+                contacts { floor { point: P, normal: N.z, gap: z, surface: { e: 0.5 } } }";
+    fs::write(&path, ball).unwrap();
+    let last = |more: &[&str]| {
+        let run = hodograph(&[&["simulate", &path, "--format", "json"], more].concat(), "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let lines: Vec<Value> = run.stdout.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let times = lines.iter().filter_map(|line| line["t"].as_f64());
+        times.fold(f64::NEG_INFINITY, f64::max)
+    };
+    // it comes to rest after sqrt(2 h/g) (1 + e)/(1 - e) = 0.742 s
+    let rests = (0.6_f64 / 9.81).sqrt() * 3.0;
+    let ended = last(&[]);
+    assert!(ended > rests && ended < rests + 0.2, "{ended}");
+    assert_eq!(last(&["--until", "2"]), 2.0);
+    // what depends on time may begin to move again, and a start is counted from
+    assert_eq!(last(&["--input", "F = 0*t"]), 10.0);
+    assert_eq!(last(&["--state", r#"{"t":3}"#, "--input", "F = 20*sin(t)"]), 13.0);
 }
 
 /// The README shows the model that `new` writes, without its comments; the one of CONTRIBUTING.md is the same.

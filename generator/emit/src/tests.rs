@@ -87,6 +87,7 @@ fn mechanism() -> Mechanism {
             against_span: span,
             normal_span: span,
             gap: None,
+            without_gap: false,
             gap_span: span,
             surface: None,
             span,

@@ -8,8 +8,10 @@ use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
     Budgeted, ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome,
-    ContactState, ContactSurface, Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, Surface,
+    ContactState, ContactSurface, Contacts, ImpactError, Kind, Law, ReducedMatrix, State, StateError,
+    Surface,
 };
+use hodograph_model::model::mechanism::Law as Stated;
 use hodograph_program::program::operation::Operation;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
@@ -241,6 +243,16 @@ impl Contacts for InterpretedMechanism {
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::Gap));
         let [gap] = self.array::<1>(request, state, &[])?;
         Ok(self.has(request).then_some(gap))
+    }
+
+    fn surface(&self, contact: usize) -> Option<Surface<f64>> {
+        let stated = self.model().contacts.get(contact)?.surface?;
+        let law = match stated.law {
+            Stated::Newton => Law::Newton,
+            Stated::Poisson => Law::Poisson,
+            Stated::Stronge => Law::Stronge,
+        };
+        Some(Surface { mu: stated.mu, e: stated.e, law })
     }
 
     fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {

@@ -127,8 +127,8 @@ impl fmt::Display for NoSurface {
 
 impl std::error::Error for NoSurface {}
 
-/// The surface of every contact that has a gap in a state: its own, and for what that leaves open, the one of
-/// all contacts. There are no other values: which friction is meant cannot be guessed.
+/// The surface of every contact that has a gap in a state: its own, for what that leaves open the one of all
+/// contacts, then that of the model. There are no other values: which friction is meant cannot be guessed.
 ///
 /// # Errors
 ///
@@ -147,7 +147,8 @@ pub fn surfaces(
             continue;
         }
         let own = own.iter().rev().find(|(index, _)| *index == contact).map(|(_, surface)| *surface);
-        let given = own.unwrap_or_default().or(all);
+        let stated = mechanism.surface(contact).map(GivenSurface::from).unwrap_or_default();
+        let given = own.unwrap_or_default().or(all).or(stated);
         let Some(surface) = given.whole() else {
             let name = mechanism.component(Kind::Contact, contact).map_or("", |component| component.name);
             return Err(NoSurface { contact: name.to_owned(), missing: given.missing() });

@@ -16,6 +16,7 @@ pub mod diagnostics;
 pub mod dimension;
 pub mod explanations;
 pub mod format;
+pub mod graph;
 pub mod letters;
 pub mod model;
 pub mod number;

@@ -71,6 +71,12 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     fn contact_state(&self, contact: usize, state: &State<'_, T>) -> Result<ContactState<T>, StateError>;
     /// Gap alone, m; `None` where the model gives none.
     fn gap(&self, contact: usize, state: &State<'_, T>) -> Result<Option<T>, StateError>;
+    /// Friction and restitution that the model states for a contact; `None` where it states none. A simulation
+    /// takes it where its options say nothing else.
+    fn surface(&self, contact: usize) -> Option<Surface<T>> {
+        let _ = contact;
+        None
+    }
     /// Velocity of the striking point relative to what it strikes, along the contact basis, m/s.
     fn contact_velocity(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;
     /// beta: rates of the three components of the contact velocity without contact forces, m/s^2. It is the

@@ -88,16 +88,21 @@ impl Batch {
         }
     }
 
-    /// The surface of a row.
+    /// The surface of a row; what is not given is as `stated`.
     ///
     /// # Errors
     ///
     /// The kind of a row whose law is unknown.
-    pub fn surface(&self, row: usize) -> Result<Surface<f64>, &'static str> {
-        let number = |place| self.given(place).map_or(f64::NAN, |column| column.get(row));
-        let name = self.law.as_ref().map_or("", |law| law.value(row));
-        let law = Law::named(name).ok_or(UNKNOWN_LAW)?;
-        Ok(Surface { mu: number(Place::Mu), e: number(Place::E), law })
+    pub fn surface(&self, row: usize, stated: Option<Surface<f64>>) -> Result<Surface<f64>, &'static str> {
+        let number = |place, stated: Option<f64>| {
+            self.given(place).map(|column| column.get(row)).or(stated).unwrap_or(f64::NAN)
+        };
+        let law = match &self.law {
+            Some(law) => Law::named(law.value(row)),
+            None => stated.map(|stated| stated.law),
+        };
+        let (mu, e) = (stated.map(|stated| stated.mu), stated.map(|stated| stated.e));
+        Ok(Surface { mu: number(Place::Mu, mu), e: number(Place::E, e), law: law.ok_or(UNKNOWN_LAW)? })
     }
 
     /// The contact of a row: the named one, or the only one.

@@ -159,7 +159,7 @@ impl ModelFunction {
                 self.prepared()?.known.iter().map(|(name, _)| name.as_str()).next().unwrap_or("time")
             );
         };
-        let places = places::resolve(&self.name, &self.prepared()?.known, self.collides(), given)?;
+        let places = places::resolve(&self.name, self.mechanism()?, &self.prepared()?.known, self.collides(), given)?;
         if self.collides() && self.prepared()?.contacts.is_empty() {
             return plan_err!("{}: the model has no contacts", self.name);
         }
@@ -213,13 +213,14 @@ fn push(answers: &mut Answers, solved: Solved<'_>) {
 
 impl ModelFunction {
     fn collide(&self, batch: &Batch, prepared: &Prepared, answers: &mut Answers) -> Result<()> {
-        let table = batch.table(&prepared.defaults);
+        let (table, mechanism) = (batch.table(&prepared.defaults), self.mechanism()?);
         // rows that cannot be asked get a refusal in their turn
         let asked = |row: usize| -> Result<(usize, Surface<f64>), &'static str> {
             if !batch.valid[row] {
                 return Err(NULL);
             }
-            Ok((batch.contact(&prepared.contacts, row)?, batch.surface(row)?))
+            let contact = batch.contact(&prepared.contacts, row)?;
+            Ok((contact, batch.surface(row, mechanism.surface(contact))?))
         };
         let asked: Vec<_> = (0..batch.rows).map(asked).collect();
         let nowhere = Surface { mu: f64::NAN, e: f64::NAN, law: Law::Newton };
@@ -262,7 +263,7 @@ impl ModelFunction {
                     (_, false, _) => answers.refuse(NULL),
                     (Some(error), ..) => answers.refuse(error.kind()),
                     (_, _, Err(kind)) => answers.refuse(kind),
-                    (None, true, Ok(contact)) => match batch.surface(row) {
+                    (None, true, Ok(contact)) => match batch.surface(row, machine.surface(contact)) {
                         Err(kind) => answers.refuse(kind),
                         Ok(surface) => {
                             state.read(&table, row);

@@ -3,7 +3,7 @@
 
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use datafusion::common::{Result, plan_err};
-use hodograph::{Kind, Mechanism};
+use hodograph::{Contacts as _, Kind, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 
 use super::{is_number, is_text};
@@ -67,6 +67,7 @@ pub fn known(mechanism: &InterpretedMechanism, collision: bool) -> Vec<(String, 
 /// A field that the model does not know, that is there twice, whose type is wrong, or that is missing.
 pub fn resolve(
     function: &str,
+    mechanism: &InterpretedMechanism,
     known: &[(String, Place)],
     collision: bool,
     given: &Fields,
@@ -83,11 +84,14 @@ pub fn resolve(
         check(function, field, place)?;
         places.push(place);
     }
+    // what is not given is that of the model, where it states the surface of every contact
+    let mut contacts = 0..Mechanism::count(mechanism, Kind::Contact);
+    let needed = collision && !contacts.all(|contact| mechanism.surface(contact).is_some());
     for (name, place) in SURFACE.iter().take(3) {
-        if collision && !places.contains(place) {
+        if needed && !places.contains(place) {
             return plan_err!(
-                "{function} needs the field `{name}`: a collision has 'mu', 'e' and 'law' ('newton', 'poisson' or 'stronge'), and the state \
-                 where it differs from the initial one of the model"
+                "{function} needs the field `{name}`: a collision has 'mu', 'e' and 'law' ('newton', 'poisson' or 'stronge') unless the model states \
+                 the `surface` of its contacts, and the state where it differs from the initial one of the model"
             );
         }
     }

@@ -227,13 +227,34 @@ class Mechanism(_native.Mechanism):
             gap = None
         return Contact(*basis, gap, of("partial_velocities"), of("response"))
 
-    def collide(self, contact, q=None, u=None, inputs=None, time=None, *, mu, e, law, errors="raise"):
-        """Collisions of a contact (its name), as :class:`Collision`. ``mu``, ``e``: numbers or (k,); ``law``: 'newton', 'poisson', 'stronge'."""
+    def surface(self, contact):
+        """Friction and restitution that the model states for a contact (its name), as {"mu": .., "e": .., "law": ..}; None where it states none."""
+        return self._surface(_index("contact", contact, self.contacts))
+
+    def _of_contact(self, contact, mu, e, law):
+        """What is given of a surface, and for what is not, what the model states."""
+        given = {"mu": mu, "e": e, "law": law}
+        missing = [name for name, value in given.items() if value is None]
+        if missing:
+            stated = self.surface(contact)
+            if stated is None:
+                raise ArgumentError(
+                    f"{contact} has no {missing[0]}: give mu, e and law, or state its `surface` in the model",
+                    kind="bad_option", place=missing[0],
+                )  # fmt: skip
+            given.update((name, stated[name]) for name in missing)
+        return given["mu"], given["e"], given["law"]
+
+    def collide(self, contact, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, errors="raise"):
+        """Collisions of a contact (its name), as :class:`Collision`. ``mu``, ``e``: numbers or (k,); ``law``: 'newton', 'poisson', 'stronge'; what is
+        not given is that of the model."""
         index = _index("contact", contact, self.contacts)
+        mu, e, law = self._of_contact(contact, mu, e, law)
         return Collision(self._collide(index, (q, u, inputs, time), mu, e, law, errors))
 
-    def characteristics(self, contact, q=None, u=None, inputs=None, time=None, *, mu, e, law, errors="raise"):
+    def characteristics(self, contact, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, errors="raise"):
         """Characteristic quantities of the collisions of :meth:`collide`, along its n, t, s, as :class:`Characteristics`."""
+        mu, e, law = self._of_contact(contact, mu, e, law)
         hit = self.collide(contact, q, u, inputs, time, mu=mu, e=e, law=law, errors=errors)
         found = Characteristics(_native.characteristics(hit.reduced, hit.approach, mu, e, law, errors))
         # A state without a collision has the reason of the collision.
@@ -247,7 +268,7 @@ class Mechanism(_native.Mechanism):
         """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
 
         ``mu``, ``e``, ``law``: the surface of all contacts; ``surfaces``: {contact: {"mu": .., "e": .., "law": ..}} for contacts with another one. A contact
-        that can close (it has a gap) needs all three: they have no defaults. The other defaults are those of the command line tool: ``step`` 0.01 s,
+        that can close (it has a gap) needs all three: what is not given is that of the model, if it states a ``surface``. The other defaults are those of the command line tool: ``step`` 0.01 s,
         ``tolerance`` 1e-12, ``max_step`` 0.05 s where something depends on time by itself, else unbounded.
         ``control``: a function of time, q (n,) and u (p,) that gives the inputs (w,): with ``period`` (s) at these times and held in between, otherwise
         continuously (it must be smooth then). What it raises ends the motion. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.

@@ -81,6 +81,7 @@ class Mechanism:
     def contact(
         self, contact: str, q: Rows = ..., u: Rows = ..., inputs: Rows = ..., time: Optional[Column] = ..., *, errors: str = ...
     ) -> Contact: ...
+    def surface(self, contact: str) -> Optional[dict[str, Any]]: ...
     def collide(
         self,
         contact: str,
@@ -89,9 +90,9 @@ class Mechanism:
         inputs: Rows = ...,
         time: Optional[Column] = ...,
         *,
-        mu: Column,
-        e: Column,
-        law: str,
+        mu: Optional[Column] = ...,
+        e: Optional[Column] = ...,
+        law: Optional[str] = ...,
         errors: str = ...,
     ) -> Collision: ...
     def characteristics(
@@ -102,9 +103,9 @@ class Mechanism:
         inputs: Rows = ...,
         time: Optional[Column] = ...,
         *,
-        mu: Column,
-        e: Column,
-        law: str,
+        mu: Optional[Column] = ...,
+        e: Optional[Column] = ...,
+        law: Optional[str] = ...,
         errors: str = ...,
     ) -> Characteristics: ...
     def simulate(

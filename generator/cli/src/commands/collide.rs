@@ -53,8 +53,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let solve = || {
         let index = machine.contact(arguments.contact.as_deref())?;
-        let surface = arguments.surface.surface(&machine.mechanism, index)?;
         let state = arguments.state.state(&machine)?;
+        let surface = arguments.surface.surface(&machine.interpreted(&state)?, index)?;
         let budget = surface.within(arguments.budget.unwrap_or(u32::MAX));
         let (mut collision, found) = collide(&machine, &state, index, &budget)?;
         let asked = arguments.characteristics.form;

@@ -26,11 +26,13 @@ use self::surfaces::MotionSurfaces;
 use crate::answers::is_read;
 use crate::derivation::{self, Limits};
 use crate::json::state::State;
+use crate::output;
 use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 
 /// Simulate a model from a state: motion, collisions and contact that lasts
 ///
+///   hodograph simulate pendulum.mech --html pendulum.html
 ///   hodograph simulate models/free_box_corner.mech --until 1 --mu 0.3 --e 0.5 --law stronge --html box.html
 ///
 /// At a terminal the answer is a set of tables and a summary, else JSON lines: {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
@@ -43,9 +45,9 @@ pub struct Arguments {
     model: PathBuf,
     #[command(flatten)]
     state: StateArguments,
-    /// when to end, s
+    /// when to end, s [default: 10 s after the start, or when all is at rest]
     #[arg(long, value_name = "TIME", allow_hyphen_values = true)]
-    until: f64,
+    until: Option<f64>,
     /// a line each so many seconds
     #[arg(long, value_name = "SECONDS", default_value_t = motion::STEP, allow_hyphen_values = true)]
     step: f64,
@@ -113,10 +115,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 fn simulated(arguments: &Arguments) -> Outcome {
-    let (until, step) = (arguments.until, arguments.step);
+    let step = arguments.step;
     let positive = |number: f64| number.is_finite() && number > 0.0;
     let max_step = arguments.max_step.is_none_or(positive);
-    if !(until.is_finite() && positive(step) && max_step) {
+    if !(arguments.until.is_none_or(f64::is_finite) && positive(step) && max_step) {
         return Err(Stop::Call("--step and --max-step must be positive and --until finite".to_owned()));
     }
     let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
@@ -127,6 +129,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
     arguments.pictures.check(&read)?;
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let state = arguments.state.state(&machine)?;
+    let until = arguments.until.unwrap_or(state.time + LASTS);
     if until < state.time {
         return Err(Stop::Call(format!(
             "--until is {until}, before the start at t = {}: give a later time",
@@ -135,15 +138,22 @@ fn simulated(arguments: &Arguments) -> Outcome {
     }
     let mechanism = machine.interpreted(&state)?;
     arguments.pictures.check_times(state.time, until)?;
-    let surfaces = arguments.surfaces.of(&mechanism, &machine.mechanism, &borrowed(&state))?;
+    let surfaces = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
     if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
         return Err(Stop::Call(
             "--stiffness is of --together lzb alone: give that, or leave it out".to_owned(),
         ));
     }
+    if arguments.until.is_none() {
+        output::say(format_args!(
+            "note: until t = {until} s or until all is at rest: --until says otherwise"
+        ));
+    }
     let driven = inputs::drive(&machine.mechanism, &arguments.input, arguments.inputs.as_deref())?;
     let greatest = motion::greatest_step(&machine.program, driven.is_some());
+    // what is pushed by time or by inputs does not stay at rest
+    let at_rest = arguments.until.is_none() && greatest.is_infinite();
     let (drive, breaks) = driven.map_or_else(Default::default, |driven| (driven.drive, driven.breaks));
     let options = Options {
         relative_tolerance: tolerance,
@@ -168,11 +178,27 @@ fn simulated(arguments: &Arguments) -> Outcome {
     let setup = || setup::setup(&arguments.model, &machine.mechanism, &state, &options.surfaces);
     let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state, setup);
     let progress = bar(state.time, until, format);
-    let done = follow(&mechanism, &state, options, (until, step), &mut lines, &mut pictures, &progress);
+    let span = Span { until, step, at_rest };
+    let done = follow(&mechanism, &state, options, &span, &mut lines, &mut pictures, &progress);
     progress.finish_and_clear();
     // What was seen before the motion ended is worth seeing, above all where it ended with an error.
     let told = lines.finish();
     pictures.save(&arguments.pictures, done.and(told))
+}
+
+/// How long a motion lasts where nothing is said, s.
+const LASTS: f64 = 10.0;
+/// Speeds below count as none, in their units.
+const STILL: f64 = 1e-9;
+/// All is at rest where this many samples show no speed.
+const RESTS: u32 = 10;
+
+/// Which stretch of time is simulated.
+struct Span {
+    until: f64,
+    step: f64,
+    /// whether it ends earlier where all is at rest
+    at_rest: bool,
 }
 
 /// Follows the motion and writes it.
@@ -180,7 +206,7 @@ fn follow(
     mechanism: &InterpretedMechanism,
     state: &State,
     options: Options,
-    (until, step): (f64, f64),
+    &Span { until, step, at_rest }: &Span,
     lines: &mut Lines<'_>,
     pictures: &mut Pictures<'_>,
     progress: &indicatif::ProgressBar,
@@ -193,6 +219,7 @@ fn follow(
         progress.set_position(((t - state.time) * 1e3) as u64);
         progress.set_message(format!("t = {t:.3} s"));
     };
+    let mut still = 0;
     for count in 1_u64.. {
         let end = (state.time + count as f64 * step).min(until);
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
@@ -205,7 +232,9 @@ fn follow(
         }
         pictures.add(&simulation);
         shown(end);
-        if end >= until {
+        let is_still = simulation.speeds().iter().all(|speed| speed.abs() <= STILL);
+        still = if is_still { still + 1 } else { 0 };
+        if end >= until || at_rest && still >= RESTS {
             break;
         }
     }

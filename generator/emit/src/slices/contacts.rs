@@ -9,6 +9,30 @@ use crate::identifiers::ident;
 use hodograph_program::program::{ContactQuantity, Quantity};
 
 impl Emitter<'_> {
+    /// The surfaces that the model states, if it states any.
+    fn stated_surfaces(&self) -> Option<TokenStream> {
+        let krate = self.krate;
+        let stated =
+            self.mechanism.contacts.iter().enumerate().filter(|(_, contact)| contact.surface.is_some());
+        let arms: Vec<TokenStream> = stated
+            .map(|(index, _)| {
+                let (index, name) =
+                    (Literal::usize_unsuffixed(index), ident(&self.contact_method("surface", index)));
+                quote!(#index => ::core::option::Option::Some(Self::#name()),)
+            })
+            .collect();
+        (!arms.is_empty()).then(|| {
+            quote! {
+                fn surface(&self, contact: usize) -> ::core::option::Option<#krate::Surface<T>> {
+                    match contact {
+                        #(#arms)*
+                        _ => ::core::option::Option::None,
+                    }
+                }
+            }
+        })
+    }
+
     /// The implementation; without contacts there is none of any number.
     pub(super) fn contacts_trait(&self) -> TokenStream {
         let (krate, name) = (self.krate, &self.name);
@@ -16,6 +40,7 @@ impl Emitter<'_> {
         let state =
             self.contact_values(ContactQuantity::Reduced, "contact_state", "reduced matrix of this contact");
         let gap = self.gaps();
+        let surface = self.stated_surfaces();
         let velocity =
             self.contact_values(ContactQuantity::Velocity, "contact_velocity", "velocity of this contact");
         let free = self.contact_values(
@@ -53,6 +78,7 @@ impl Emitter<'_> {
                 ) -> ::core::result::Result<::core::option::Option<T>, #krate::StateError> {
                     #gap
                 }
+                #surface
                 fn contact_velocity(
                     &self,
                     contact: usize,

@@ -1,8 +1,9 @@
 //! Checks that the motion keeps the configuration equations: the rate of each must follow from the velocity
 //! constraints and the kinematical equations, at every state at which the loops are closed. Loops are stated
 //! twice, by velocities and by positions; where the two disagree, one of them is wrong, and the motion leaves
-//! the configuration.
+//! the configuration. Exact arithmetic decides where it can ([`super::exact`]), numbers at closed states else.
 
+use super::exact::{self, Parameters};
 use super::independent_constraints::with_parameters_moved;
 use super::states::{self, Seen};
 use super::vector_constraints::{components as nonzero, turned};
@@ -93,30 +94,102 @@ fn free_coordinate(m: &Mechanism, state: &State, dependent: &[usize]) -> Option<
     Some((0..dependent.len()).find(without).map(|column| dependent[column]))
 }
 
+/// Which of the two roads decided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Decided {
+    Exactly,
+    ByNumbers,
+}
+
+/// Whether the motion keeps a configuration equation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kept {
+    Always,
+    WithTheseValues(Decided),
+    /// not by symbols; with the values of the model numbers show no difference
+    NotBySymbols,
+    No(Decided),
+}
+
 /// Configuration equations that the motion does not keep.
 pub fn not_kept(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
+    let exactly = |parameters: Parameters| -> Vec<Option<bool>> {
+        let nearest =
+            seen.iter().rfind(|seen| seen.number >= states::NEAR).filter(|_| !m.configuration.is_empty());
+        let states =
+            nearest.and_then(|seen| Some((seen.state, states::arbitrary(m).into_iter().nth(seen.number)?)));
+        states.map_or(vec![None; m.configuration.len()], |(closed, open)| {
+            exact::kept(m, parameters, closed, &open)
+        })
+    };
+    let free = exactly(Parameters::Free);
+    // with values much more is known, so that it is asked where it matters alone
+    let with_values = match free.iter().all(|kept| *kept == Some(true)) {
+        true => free.clone(),
+        false => exactly(Parameters::Values),
+    };
+    let of_equation = |((equation, free), with_values): ((&Equation, &Option<bool>), &Option<bool>)| {
+        let by_numbers = || of_numbers(m, seen, equation);
+        match (free, with_values) {
+            (Some(true), _) => Kept::Always,
+            (_, Some(false)) => Kept::No(Decided::Exactly),
+            (Some(false), Some(true)) => Kept::WithTheseValues(Decided::Exactly),
+            (Some(false), None) if !matches!(by_numbers(), Kept::No(_)) => Kept::NotBySymbols,
+            _ => by_numbers(),
+        }
+    };
+    let all: Vec<Kept> = m.configuration.iter().zip(&free).zip(&with_values).map(of_equation).collect();
     let mut out = Vec::new();
-    for equation in &m.configuration {
-        let at: Vec<(usize, bool)> = seen
-            .iter()
-            .filter_map(|seen| Some((seen.number, keeps(m, seen.state, &seen.views, equation)?)))
-            .collect();
-        // far from the start the loops may close in another way, which the constraints need not fit
-        let near = at.iter().any(|(number, keeps)| !keeps && *number >= states::NEAR);
-        if near || !at.is_empty() && at.iter().all(|(_, keeps)| !keeps) {
-            out.push(broken(m, equation));
+    for (equation, kept) in m.configuration.iter().zip(&all) {
+        if let Kept::No(decided) = kept {
+            out.push(broken(m, equation, *decided));
         }
     }
     if out.is_empty() {
-        out.extend(m.configuration.iter().filter(|e| !kept_by_others(m, seen, e)).map(|e| by_chance(m, e)));
+        for (equation, kept) in m.configuration.iter().zip(&all) {
+            match kept {
+                Kept::WithTheseValues(decided) => out.push(by_chance(m, equation, Some(*decided))),
+                Kept::NotBySymbols => out.push(by_chance(m, equation, None)),
+                Kept::Always | Kept::No(_) => {}
+            }
+        }
     }
     out
 }
 
-fn broken(m: &Mechanism, equation: &Equation) -> Diagnostic {
+/// What numbers at closed states say of a configuration equation.
+fn of_numbers(m: &Mechanism, seen: &[Seen<'_>], equation: &Equation) -> Kept {
+    let at: Vec<(usize, bool)> = seen
+        .iter()
+        .filter_map(|seen| Some((seen.number, keeps(m, seen.state, &seen.views, equation)?)))
+        .collect();
+    // far from the start the loops may close in another way, which the constraints need not fit
+    let near = at.iter().any(|(number, keeps)| !keeps && *number >= states::NEAR);
+    if near || !at.is_empty() && at.iter().all(|(_, keeps)| !keeps) {
+        Kept::No(Decided::ByNumbers)
+    } else if kept_by_others(m, seen, equation) {
+        Kept::Always
+    } else {
+        Kept::WithTheseValues(Decided::ByNumbers)
+    }
+}
+
+impl Decided {
+    fn words(self) -> &'static str {
+        match self {
+            Decided::Exactly => "by exact arithmetic",
+            Decided::ByNumbers => "by numbers at closed states",
+        }
+    }
+}
+
+fn broken(m: &Mechanism, equation: &Equation, decided: Decided) -> Diagnostic {
     let dependent: Vec<String> =
         m.speeds.iter().filter(|u| u.dependent).map(|u| format!("`{}`", u.name)).collect();
-    let message = "the motion does not keep this equation: its rate does not follow from the constraints";
+    let message = format!(
+        "the motion does not keep this equation: its rate does not follow from the constraints ({})",
+        decided.words()
+    );
     let help = if m.constraints.is_empty() && dependent.is_empty() {
         "add the rate of this equation under `constraints`, with a speed under `dependent` for it".to_owned()
     } else {
@@ -138,8 +211,19 @@ fn with_causes(m: &Mechanism, message: Diagnostic) -> Diagnostic {
     causes.take(SHOWN).fold(message, |message, cause| message.related(cause.span, "this says how it moves"))
 }
 
-fn by_chance(m: &Mechanism, equation: &Equation) -> Diagnostic {
-    let message = "the motion keeps this equation only with these values of the parameters";
+/// A warning; of what symbols do not keep nothing has decided whether it holds for these values.
+fn by_chance(m: &Mechanism, equation: &Equation, decided: Option<Decided>) -> Diagnostic {
+    let message = match decided {
+        Some(decided) => format!(
+            "the motion keeps this equation only with these values of the parameters ({})",
+            decided.words()
+        ),
+        None => {
+            "the motion does not keep this equation with all values of the parameters (by exact arithmetic); \
+                 with these values numbers at closed states show no difference above 1e-7"
+                .to_owned()
+        }
+    };
     let help =
         "name the same parameters in the constraints and here, or make those whose values matter `fixed`";
     let warning = Diagnostic::new(codes::KEPT_BY_VALUES, equation.span, message).help(help);

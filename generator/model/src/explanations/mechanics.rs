@@ -232,7 +232,9 @@ pub(super) const TABLE: &[Explanation] = &[
             coordinates are computed, and by velocities under `constraints`, which the equations of motion \
             need. The rate of each configuration equation must follow from the constraints (and the \
             kinematical equations) wherever the loops are closed. Here it does not: the motion would leave \
-            the configuration at once. Look for a sign, a factor or a point that differs, for a term with \
+            the configuration at once. The message says what decided: exact arithmetic where the configuration \
+            equations can be solved by symbols, which sees every difference; numbers at closed states else, \
+            which see differences above 1e-7 of the terms. Look for a sign, a factor or a point that differs, for a term with \
             `time` on one side only, or for a constraint that is missing.",
         wrong: Some(
             "coordinates { q1: rad, dependent q2: rad }\n\

@@ -110,7 +110,7 @@ pub(super) const TABLE: &[Explanation] = &[
         text: "The motion keeps a configuration equation with the values that the parameters have in the \
             model, and does not with others: a number or another parameter stands in the constraints where \
             the configuration has this one. As soon as it is set at run time, the motion leaves the \
-            configuration.",
+            configuration. The message says whether exact arithmetic or numbers at closed states decided.",
         wrong: Some(
             "parameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81, n: 1 = 2 }\n\
             coordinates { q1: rad, dependent q2: rad }\n\
@@ -138,7 +138,8 @@ pub(super) const TABLE: &[Explanation] = &[
         code: NO_GAP,
         text: "A simulation sees that a contact closes by its gap, the distance of the point that strikes, \
             along the normal, from what is struck. This contact has none: bodies pass through each other \
-            there. A model that is used for collisions at given instants alone needs no gap.",
+            there. A contact whose collisions are computed at \
+            given instants alone, where a state says that it closes, has `gap: none`.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }"),
     },

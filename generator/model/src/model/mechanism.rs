@@ -433,6 +433,8 @@ pub struct Contact {
     pub normal_span: Span,
     /// distance, m
     pub gap: Option<Scalar>,
+    /// whether the model says that there is none, `gap: none`
+    pub without_gap: bool,
     /// where the gap is stated; else where the contact is declared
     pub gap_span: Span,
     /// friction and restitution, where the model states them

@@ -8,8 +8,6 @@ mod build;
 mod conformance;
 pub mod cost;
 mod derivation;
-pub mod differentiate;
-pub mod graph;
 mod inputs;
 pub mod jacobian;
 pub mod ldl;
@@ -27,6 +25,7 @@ mod straight_line;
 
 pub use conformance::fits;
 pub use derivation::Derived;
+pub use hodograph_model::graph::{self, differentiate};
 pub use inputs::Inputs;
 pub use output::{Guard, Output, VANISHING};
 pub use quantity::{ContactQuantity, PointQuantity, Quantity, Structure};

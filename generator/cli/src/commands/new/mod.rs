@@ -11,7 +11,7 @@ const PENDULUM: &str = include_str!("pendulum.mech");
 /// Write a commented model to begin with: a pendulum whose tip strikes a wall
 ///
 ///   hodograph new pendulum
-///   hodograph simulate pendulum.mech --until 5 --mu 0.3 --e 0.7 --law stronge --html pendulum.html
+///   hodograph simulate pendulum.mech --html pendulum.html
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -44,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let shown = path.display();
     let page = Path::new(&file).with_extension("html");
     output::say(format_args!(
-        "wrote {shown}. Next:\n  hodograph check {shown}\n  hodograph simulate {shown} --until 5 --mu 0.3 --e 0.7 --law stronge --html {}",
+        "wrote {shown}. Next:\n  hodograph check {shown}\n  hodograph simulate {shown} --html {}",
         page.display()
     ));
     Ok(())

@@ -1,7 +1,6 @@
 //! The surfaces of a motion: one for all contacts, or one for each.
 
 use hodograph::{Contacts, Kind as Of, State, Surface};
-use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_interpreter::motion::{GivenSurface, surfaces};
 
 use crate::json::{Failure, Kind};
@@ -36,7 +35,6 @@ impl MotionSurfaces {
     pub fn of(
         &self,
         mechanism: &dyn Contacts<f64>,
-        model: &Mechanism,
         state: &State<'_>,
     ) -> Outcome<Vec<(usize, Surface<f64>)>> {
         let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
@@ -55,9 +53,10 @@ impl MotionSurfaces {
             own.push((place, surface));
         }
         // What the options leave open stands in the model, if at all.
-        for (contact, stated) in model.contacts.iter().enumerate() {
-            if own.iter().all(|(other, _)| *other != contact) {
-                own.push((contact, stated_in(stated, all)));
+        for contact in 0..mechanism.count(Of::Contact) {
+            let has_gap = !matches!(mechanism.gap(contact, state), Ok(None));
+            if has_gap && own.iter().all(|(other, _)| *other != contact) {
+                own.push((contact, stated_in(mechanism, contact, all)));
             }
         }
         let found = surfaces(mechanism, state, all, &own).map_err(|error| {

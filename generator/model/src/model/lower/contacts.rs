@@ -48,11 +48,17 @@ impl Lowering<'_> {
             self.need_free_of_speeds(&typed, "the normal");
             Some(vector)
         });
+        // `gap: none`, unless a quantity has this name
+        let is_none = |field: &&Field| matches!(&field.value.kind, ExprKind::Name(name) if name == "none");
+        let without_gap = gap.filter(is_none).is_some() && self.names.get("none").is_none();
         let gap = gap.map(|field| {
             self.notes(field, &[]);
+            if without_gap {
+                return Some(None);
+            }
             let (scalar, typed) = self.scalar_like(&field.value, Dimension::of(1, 0, 0), "a gap")?;
             self.need_free_of_speeds(&typed, "a gap");
-            Some(scalar)
+            Some(Some(scalar))
         });
         let surface = surface.map(|field| self.surface(field));
         if let (Some(p), Some(Against::Point(q, _))) = (point, &against)
@@ -77,7 +83,8 @@ impl Lowering<'_> {
             point_span,
             against_span,
             normal_span,
-            gap: gap.flatten(),
+            gap: gap.flatten().flatten(),
+            without_gap,
             gap_span,
             surface,
             span: record.name.span,
@@ -148,10 +155,13 @@ impl Lowering<'_> {
         law
     }
 
-    /// Warns of contacts that no simulation sees, where a gap could be stated.
+    /// Warns of contacts that no simulation sees, where a gap could be stated and it is not said that there is
+    /// none.
     pub(super) fn without_gap(&mut self) {
         let mut warnings = Vec::new();
-        for contact in self.out.contacts.iter().filter(|contact| contact.gap.is_none()) {
+        for contact in
+            self.out.contacts.iter().filter(|contact| contact.gap.is_none() && !contact.without_gap)
+        {
             let root = |point: PointId| self.points[point.0].root;
             let other = match contact.against {
                 Against::Fixed | Against::Velocity(_) => 0,
@@ -172,7 +182,7 @@ impl Lowering<'_> {
                 _ => format!("dot(position({point}), n)"),
             };
             let help = format!(
-                "add `gap: ..`, the distance along the normal n, as in `gap: {distance}` plus a length; collisions at given instants need none"
+                "add `gap: ..`, the distance along the normal n, as in `gap: {distance}` plus a length, or `gap: none` where collisions happen at given instants alone"
             );
             warnings.push(Diagnostic::new(codes::NO_GAP, contact.span, message).help(help));
         }

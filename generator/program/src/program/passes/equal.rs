@@ -9,10 +9,10 @@
 use std::collections::{HashMap, HashSet};
 
 use super::adjoint::Weighed;
-use super::modular::Residues;
 use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Stage, Value};
 use crate::program::straight_line::Program;
+use hodograph_model::graph::modular::Residues;
 
 /// A value may stand for another if the bound of its rounding error is at most this many times the other's.
 const AS_ACCURATE: f64 = 2.0;

@@ -6,11 +6,11 @@
 
 use std::collections::HashMap;
 
-use super::modular::Residues;
 use super::rewrite::{Survey, rebuild, rewrite};
 use crate::program::derivation::Derived;
 use crate::program::graph::{Node, NodeKind};
 use crate::program::operation::Stage;
+use hodograph_model::graph::modular::Residues;
 use hodograph_model::number::Number;
 
 /// Numbers that are found are multiples of the reciprocal of this, up to [`LARGEST`].

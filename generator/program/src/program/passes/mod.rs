@@ -14,7 +14,7 @@ mod flat_sums;
 mod fold;
 mod frequent_pairs;
 mod identities;
-mod modular;
+pub mod modular;
 mod prune;
 mod reassociate;
 mod rewrite;

@@ -3,10 +3,13 @@
 //! Nodes refer only to earlier nodes, so the order of the nodes is an order of evaluation. Equal expressions
 //! are one node.
 
+pub mod differentiate;
+pub mod modular;
+
 use std::collections::HashMap;
 
-use hodograph_model::arithmetic::Function;
-use hodograph_model::number::Number;
+use crate::arithmetic::Function;
+use crate::number::Number;
 
 /// A node of a [`Graph`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

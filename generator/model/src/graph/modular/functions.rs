@@ -13,8 +13,8 @@ use num_rational::BigRational;
 use num_traits::{One, ToPrimitive, Zero};
 
 use super::residue::Residue;
-use hodograph_model::arithmetic::Function;
-use hodograph_model::number::Number;
+use crate::arithmetic::Function;
+use crate::number::Number;
 
 /// D: multiples of 1 / D of a value are seen to belong to it.
 const DENOMINATOR: i64 = 5040;
@@ -141,7 +141,7 @@ fn terms<const P: u64>(values: &impl Values<P>, value: usize) -> Option<BTreeMap
 mod tests {
     use super::super::residue::FIRST_PRIME;
     use super::*;
-    use crate::program::graph::{Graph, Input, Node};
+    use crate::graph::{Graph, Input, Node};
 
     /// The residues of nodes that are made of two angles.
     fn residues(build: impl FnOnce(&mut Graph, Node, Node) -> Vec<Node>) -> Vec<Residue<FIRST_PRIME>> {
@@ -155,11 +155,11 @@ mod tests {
     /// A multiple of a node.
     fn times(graph: &mut Graph, n: i64, d: i64, node: Node) -> Node {
         let number = graph.number(Number::ratio(n, d));
-        graph.intern(crate::program::graph::NodeKind::Product(vec![number, node]))
+        graph.intern(crate::graph::NodeKind::Product(vec![number, node]))
     }
 
     fn of(graph: &mut Graph, function: Function, node: Node) -> Node {
-        graph.intern(crate::program::graph::NodeKind::Call(function, vec![node]))
+        graph.intern(crate::graph::NodeKind::Call(function, vec![node]))
     }
 
     #[test]
@@ -205,9 +205,9 @@ mod tests {
     fn what_is_not_known_spreads() {
         let mut graph = Graph::new();
         let (x, zero) = (graph.input(Input::Coordinate(0)), graph.integer(0));
-        let infinite = graph.intern(crate::program::graph::NodeKind::Power(zero, -1));
+        let infinite = graph.intern(crate::graph::NodeKind::Power(zero, -1));
         let sine = of(&mut graph, Function::Sin, infinite);
-        let sum = graph.intern(crate::program::graph::NodeKind::Sum(vec![sine, x]));
+        let sum = graph.intern(crate::graph::NodeKind::Sum(vec![sine, x]));
         let residues = graph.residues();
         assert!([infinite, sine, sum].iter().all(|node| residues[node.0 as usize].is_none()));
         assert!(residues[x.0 as usize].is_some());

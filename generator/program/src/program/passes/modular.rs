@@ -2,30 +2,13 @@
 
 use num_rational::BigRational;
 
-use super::functions::{Parts, Values, call, unknown};
-use super::residue::Residue;
-use super::{Evaluate, Residues};
-use crate::program::graph::Input;
 use crate::program::operation::{Operation, Value};
 use crate::program::straight_line::Program;
 use hodograph_model::arithmetic::Function;
+use hodograph_model::graph::modular::functions::{Parts, Values, call, unknown};
+use hodograph_model::graph::modular::residue::Residue;
+use hodograph_model::graph::modular::{Evaluate, Residues};
 use hodograph_model::number::Number;
-
-impl Input {
-    /// What stands for it at a place.
-    pub(super) fn residue<const P: u64>(self, place: u64) -> Residue<P> {
-        let (kind, index) = match self {
-            Input::Time => (0, 0),
-            Input::Parameter(index) => (1, index),
-            Input::Coordinate(index) => (2, index),
-            Input::Speed(index) => (3, index),
-            Input::Input(index) => (4, index),
-            Input::Acceleration(index) => (5, index),
-            Input::Tangent(index) => (6, index),
-        };
-        Residue::arbitrary(&[place, kind, u64::from(index)])
-    }
-}
 
 impl Program {
     /// What every operation is at arbitrary inputs, of a pair of sine and cosine the angle.
@@ -129,7 +112,7 @@ impl<const P: u64> Values<P> for Operations<'_, P> {
 
 /// Whether it belongs to the computation of what rounding takes from a sum t = a + b (Knuth's two-sum): the part
 /// of b in t, t - a, or what is left of a and of b, `a - (t - (t - a))` and `b - (t - a)`. Their operations are
-/// not fused ([`super::super::contract`]).
+/// not fused ([`super::contract`]).
 fn is_rounding(program: &Program, operation: Operation) -> bool {
     let (first, second) = match operation {
         Operation::Add(a, b) | Operation::Sub(a, b) => (a, b),

@@ -10,10 +10,9 @@
 //! (roots, magnitudes, arc functions) count as unknowns, which are equal where their arguments are. An
 //! unknown hides some identities and makes up none.
 
-mod functions;
-mod graph;
-mod operations;
-mod residue;
+pub mod functions;
+mod nodes;
+pub mod residue;
 
 use residue::{FIRST_PRIME, Residue, SECOND_PRIME};
 
@@ -22,6 +21,29 @@ use residue::{FIRST_PRIME, Residue, SECOND_PRIME};
 pub struct Residues(Residue<FIRST_PRIME>, Residue<SECOND_PRIME>);
 
 impl Residues {
+    /// 0
+    pub const ZERO: Self = Residues(Residue::ZERO, Residue::ZERO);
+
+    /// The sum.
+    pub fn plus(self, other: Self) -> Self {
+        Residues(self.0 + other.0, self.1 + other.1)
+    }
+
+    /// The product.
+    pub fn times(self, other: Self) -> Self {
+        Residues(self.0 * other.0, self.1 * other.1)
+    }
+
+    /// The reciprocal; `None` where the value is 0 at one of the places.
+    pub fn reciprocal(self) -> Option<Self> {
+        Some(Residues(self.0.reciprocal()?, self.1.reciprocal()?))
+    }
+
+    /// Whether the value is 0 at both places.
+    pub fn is_zero(self) -> bool {
+        self == Residues::ZERO
+    }
+
     /// The opposite.
     pub fn opposite(self) -> Self {
         Residues(-self.0, -self.1)
@@ -44,7 +66,7 @@ impl Residues {
 }
 
 /// What can be evaluated modulo a prime.
-trait Evaluate {
+pub trait Evaluate {
     /// Every value at a place: `None` where it is not known, as behind a division by zero.
     fn at<const P: u64>(&self, place: u64) -> Vec<Option<Residue<P>>>;
 

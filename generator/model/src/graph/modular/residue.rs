@@ -6,7 +6,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
 
-use hodograph_model::number::Number;
+use crate::number::Number;
 
 /// The greatest prime below 2^64 that is 4 q + 1 with a prime q: it has a root of -1, and powers of a residue
 /// repeat after q of them or after at most four.

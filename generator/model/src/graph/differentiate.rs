@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::graph::{Graph, Input, Node, NodeKind};
-use hodograph_model::arithmetic::Function;
+use super::{Graph, Input, Node, NodeKind};
+use crate::arithmetic::Function;
 
 /// The derivatives of `nodes` along the direction in which each input changes as `rates` says (others do
 /// not).

@@ -3,12 +3,28 @@
 use super::functions::{Parts, Values, call, unknown};
 use super::residue::Residue;
 use super::{Evaluate, Residues};
-use crate::program::graph::{Graph, Node, NodeKind};
-use hodograph_model::number::Number;
+use crate::graph::{Graph, Input, Node, NodeKind};
+use crate::number::Number;
+
+impl Input {
+    /// What stands for it at a place.
+    pub fn residue<const P: u64>(self, place: u64) -> Residue<P> {
+        let (kind, index) = match self {
+            Input::Time => (0, 0),
+            Input::Parameter(index) => (1, index),
+            Input::Coordinate(index) => (2, index),
+            Input::Speed(index) => (3, index),
+            Input::Input(index) => (4, index),
+            Input::Acceleration(index) => (5, index),
+            Input::Tangent(index) => (6, index),
+        };
+        Residue::arbitrary(&[place, kind, u64::from(index)])
+    }
+}
 
 impl Graph {
     /// What every node is at arbitrary inputs.
-    pub(in crate::program::passes) fn residues(&self) -> Vec<Option<Residues>> {
+    pub fn residues(&self) -> Vec<Option<Residues>> {
         self.at_both()
     }
 }
