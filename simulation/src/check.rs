@@ -2,17 +2,18 @@
 
 use hodograph::{Contacts, Kind, State, Surface};
 
+use crate::pair::Pair;
 use crate::{Drive, Options, Reason, SimulationError};
 
 /// Below this the roundings of a step exceed what is asked for, and no step is short enough.
 const LEAST_TOLERANCE: f64 = 1e-16;
 
-/// Checks options and state, and gives each contact its surface; a contact without a gap has none.
+/// Checks options and state, and gives each contact its surfaces; a contact without a gap has none.
 pub(crate) fn check(
     mechanism: &dyn Contacts<f64>,
     state: &State<'_>,
     options: &Options,
-) -> Result<Vec<Option<Surface<f64>>>, SimulationError> {
+) -> Result<Vec<Option<Pair>>, SimulationError> {
     let error =
         |contact: Option<usize>, reason: Reason| SimulationError::new(mechanism, state.time, contact, reason);
     let bad = |message: String| Err(error(None, Reason::Option(message)));
@@ -70,6 +71,9 @@ pub(crate) fn check(
     {
         return bad(message);
     }
+    if let Some((contact, _)) = options.laws.iter().find(|(contact, _)| *contact >= count) {
+        return bad(format!("there is a law for contact {contact}, but the mechanism has {count} contacts"));
+    }
     for &(contact, stiffness) in &options.stiffness {
         if contact >= count {
             return bad(format!(
@@ -81,7 +85,7 @@ pub(crate) fn check(
             return Err(error(Some(contact), Reason::Option(message)));
         }
     }
-    let mut surfaces = vec![None; count];
+    let mut surfaces: Vec<Option<Pair>> = vec![None; count];
     for (contact, slot) in surfaces.iter_mut().enumerate() {
         let gap = mechanism
             .gap(contact, state)
@@ -92,8 +96,7 @@ pub(crate) fn check(
         }
         let own = options.surfaces.iter().rev().find(|(index, _)| *index == contact);
         let given = own.map(|(_, surface)| *surface).or(options.surface);
-        *slot = given.or_else(|| mechanism.surface(contact));
-        if slot.is_none() {
+        let Some(surface) = given.or_else(|| mechanism.surface(contact)) else {
             return Err(error(
                 Some(contact),
                 Reason::Option(
@@ -101,7 +104,12 @@ pub(crate) fn check(
                         .to_owned(),
                 ),
             ));
-        }
+        };
+        let own = options.laws.iter().rev().find(|(index, _)| *index == contact);
+        let law = own.map_or(&options.law, |(_, law)| law);
+        let pair = Pair { surface, law: law.clone() };
+        pair.check().map_err(|message| error(Some(contact), Reason::Option(message)))?;
+        *slot = Some(pair);
     }
     Ok(surfaces)
 }

@@ -73,6 +73,7 @@ impl Transition<'_> {
         let motion = Motion {
             mechanism: self.mechanism,
             drive: &self.options.drive,
+            surfaces: self.surfaces,
             held: &modes.held,
             closed: &modes.closed,
             resting: modes.resting,

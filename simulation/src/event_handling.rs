@@ -8,7 +8,8 @@ use crate::forces::Hold;
 use crate::mode_changes::Ending;
 use crate::mode_selection::{Decision, choose};
 use crate::motion::{Evaluation, Failure};
-use crate::phase::{Closed, Leaving, Phase, mus};
+use crate::pair::Friction;
+use crate::phase::{Closed, Leaving, Phase};
 use crate::slip_end::{ENDING, may_end, time_of_slip};
 use crate::stepper::Step;
 use crate::transition::Transition;
@@ -94,14 +95,31 @@ impl Transition<'_> {
         for &place in &stopped {
             slips[place] = None;
         }
-        let mu = mus(closed);
         let before = here.forces.as_ref().map_or_else(|| DVector::zeros(0), |forces| forces.lambda.clone());
-        match choose(&here.support, &slips, &mu, &before) {
+        let sticking = |friction: &[Friction]| match choose(&here.support, &slips, friction, &before) {
             Ok(choice) => {
-                stopped.into_iter().filter(|&place| choice.decisions[place] == Decision::Stick).collect()
+                let sticks = |place: &usize| choice.decisions[*place] == Decision::Stick;
+                stopped.iter().copied().filter(sticks).collect()
             }
             Err(_) => Vec::new(),
+        };
+        // Slip falls to zero where sliding friction could hold the contact; static friction holds it only once it
+        // is there, which is where slip has no other direction.
+        let slides = |place: usize| closed[place].slides.is_some();
+        let sliding: Vec<Friction> = closed.iter().map(|closed| Friction::same(closed.mu)).collect();
+        let found: Vec<usize> = sticking(&sliding);
+        if !found.is_empty() {
+            return found;
         }
+        let mut friction = sliding.clone();
+        for (place, friction) in friction.iter_mut().enumerate().filter(|(place, _)| slides(*place)) {
+            if stopped.contains(&place) && straight(here, place) {
+                friction.sticks = self.pair(closed[place].contact).map_or(friction.sticks, |pair| {
+                    pair.friction(0.0).map_or(friction.sticks, |friction| friction.sticks)
+                });
+            }
+        }
+        if friction == sliding { Vec::new() } else { sticking(&friction) }
     }
 
     /// Slip of contacts ends after a short time.
@@ -138,3 +156,13 @@ impl Transition<'_> {
         Ok(())
     }
 }
+
+/// Whether slip falls along its direction: it meets zero, and does not turn before.
+fn straight(here: &Evaluation, place: usize) -> bool {
+    let (Hold::Slide(d), Some(forces)) = (&here.holds[place], here.forces.as_ref()) else { return false };
+    let rate = Vector2::new(forces.acceleration[3 * place + 1], forces.acceleration[3 * place + 2]);
+    rate.dot(d) <= -STRAIGHT * rate.norm()
+}
+
+/// The cosine of the angle between slip that falls straight to zero and its rate, at least.
+const STRAIGHT: f64 = 1.0 - 1e-9;

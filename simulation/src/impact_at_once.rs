@@ -11,6 +11,7 @@ use nalgebra::{DVector, Vector2};
 use crate::closed_contacts::ClosedContacts;
 use crate::contact_problem::{self, Problem};
 use crate::motion::Failure;
+use crate::pair::Pair;
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
 use crate::{Reason, Share, SimulationError};
@@ -42,8 +43,8 @@ impl Transition<'_> {
         let mut restitution = Vec::with_capacity(contacts.len());
         let mut bounces = Vec::new();
         for (i, &contact) in contacts.iter().enumerate() {
-            let e = if faded { 0.0 } else { self.surface(contact)?.e };
             let before = -support.velocity[3 * i];
+            let e = if faded { 0.0 } else { self.surface_in_impact(contact, before)?.e };
             let ends = if e > 0.0 && e < 1.0 && before > 0.0 {
                 self.last_bounce(contact, speeds, before, e * before)?
             } else {
@@ -75,7 +76,8 @@ impl Transition<'_> {
         restitution: &[f64],
         bounces: Vec<(usize, f64)>,
     ) -> Result<Hit, SimulationError> {
-        let mu: Vec<f64> = contacts.iter().map(|&contact| self.mu(contact)).collect();
+        let mu: Vec<f64> =
+            contacts.iter().map(|&contact| self.pair(contact).map_or(0.0, Pair::mu_in_impacts)).collect();
         let solve = |share: f64| {
             let e: Vec<f64> = restitution.iter().map(|e| share * e).collect();
             solve(support, &mu, &e).map_err(|unsolved| {

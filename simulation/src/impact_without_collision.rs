@@ -42,14 +42,14 @@ impl Transition<'_> {
         let n = self.mechanism.count(Kind::Coordinate);
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
-        let Some(surface) = self.surfaces[contact] else {
-            return Err(self.error(Some(contact), Reason::Option("the contact has no surface".to_owned())));
-        };
         let fault = |error| self.failure(Failure::State(error));
         let here = self.mechanism.contact_state(contact, &state).map_err(fault)?;
         let speed = here.velocity.y.hypot(here.velocity.z);
         let (cos, sin) = (here.velocity.y / speed, here.velocity.z / speed);
         let reduced = here.reduced.turned(cos, sin);
+        // Friction is that of the slip that jams, not that of impacts.
+        let surface =
+            Surface { mu: self.friction(contact, speed)?.slips, ..self.surface_in_impact(contact, 0.0)? };
         let surface = jammed(&reduced, surface);
         let impact = impact_without_collision(&reduced, &Vector2::new(speed, 0.0), &surface)
             .map_err(|error| self.error(Some(contact), Reason::Collision(error.into())))?;

@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::ClosedContacts;
 use crate::motion::Failure;
+use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
@@ -195,7 +196,7 @@ impl Transition<'_> {
         let mut hits: Vec<Hit> = Vec::new();
         let mut speeds = speeds.to_vec();
         let mut first = None;
-        let plastic = touching.iter().all(|&contact| self.surfaces[contact].is_none_or(|s| s.e == 0.0));
+        let plastic = touching.iter().all(|&contact| self.pair(contact).is_none_or(Pair::is_plastic));
         let patience = PATIENCE[usize::from(plastic)] * touching.len();
         while hits.len() < MOST {
             let approaching = self.approaching(touching, &speeds, first)?;

@@ -32,6 +32,7 @@
 mod check;
 mod closed_contacts;
 mod commit;
+mod contact_law;
 pub mod contact_problem;
 mod drift;
 mod drive;
@@ -53,6 +54,7 @@ mod mode_changes;
 mod mode_selection;
 mod motion;
 mod options;
+mod pair;
 mod phase;
 mod rattling;
 mod scheduled_events;
@@ -68,6 +70,7 @@ mod time_step;
 mod transition;
 
 pub use crate::{
+    contact_law::{ContactLaw, Restitution, Sliding, SpeedFunction},
     drive::{Controller, Drive, InputFunction},
     energy::EnergyAccount,
     error::{Reason, SimulationError},

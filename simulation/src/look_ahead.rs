@@ -166,8 +166,8 @@ impl Transition<'_> {
                 _ => None,
             })
             .collect();
-        let mu: Vec<f64> = contacts.iter().map(|&contact| self.mu(contact)).collect();
-        Ok(choose(&support, &slips, &mu, &self.forces_before(contacts)))
+        let friction = self.frictions(contacts, &slips, &support)?;
+        Ok(choose(&support, &slips, &friction, &self.forces_before(contacts)))
     }
 
     /// Takes back what was said of the modes of contacts at this instant.

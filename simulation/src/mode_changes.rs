@@ -7,6 +7,7 @@ use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, hold_good};
 use crate::mode_selection::{Choice, Decision, choose};
 use crate::motion::Failure;
+use crate::pair::Friction;
 use crate::phase::{Leaving, Phase, mus};
 use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError};
@@ -21,6 +22,14 @@ const FIRST: f64 = 1e-7;
 pub(crate) enum Ending {
     Friction,
     NormalForce,
+}
+
+/// Whether contacts without slip are held by static friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Held {
+    ByStaticFriction,
+    /// It is used up: only the sliding coefficient counts.
+    No,
 }
 
 impl Transition<'_> {
@@ -69,7 +78,7 @@ impl Transition<'_> {
         let before = self.force_of(contact)?;
         let front = self.front.clone();
         let events = self.events.len();
-        let decided = self.decide(&[contact], &was);
+        let decided = self.decide_where(&[contact], &was, Held::No);
         if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
             // On the edge neither sticking nor slipping fits: it begins to slip.
             self.front = front;
@@ -130,6 +139,15 @@ impl Transition<'_> {
     /// Decides the modes of contacts whose gaps are closed and which do not approach or part; `was` are the
     /// phases before.
     pub(crate) fn decide(&mut self, candidates: &[usize], was: &[Phase]) -> Result<(), SimulationError> {
+        self.decide_where(candidates, was, Held::ByStaticFriction)
+    }
+
+    fn decide_where(
+        &mut self,
+        candidates: &[usize],
+        was: &[Phase],
+        held: Held,
+    ) -> Result<(), SimulationError> {
         if candidates.is_empty() {
             return Ok(());
         }
@@ -151,9 +169,12 @@ impl Transition<'_> {
         };
         let support = ClosedContacts::new(self.mechanism, &state, candidates, true)
             .map_err(|error| self.failure(Failure::State(error)))?;
-        let mu: Vec<f64> = candidates.iter().map(|&contact| self.mu(contact)).collect();
+        let mut friction = self.frictions(candidates, &slips, &support)?;
+        if held == Held::No {
+            friction.iter_mut().for_each(|friction| friction.sticks = friction.slips);
+        }
         let before = self.forces_before(candidates);
-        match choose(&support, &slips, &mu, &before) {
+        match choose(&support, &slips, &friction, &before) {
             Ok(choice) => {
                 self.apply(candidates, was, &choice);
                 self.confirm(candidates, was)
@@ -188,6 +209,17 @@ impl Transition<'_> {
                 .iter()
                 .flat_map(|&contact| self.front.forces[contact].iter().copied().collect::<Vec<_>>()),
         )
+    }
+
+    /// The coefficients of friction of contacts with these directions of slip.
+    pub(crate) fn frictions(
+        &self,
+        contacts: &[usize],
+        slips: &[Option<Vector2<f64>>],
+        support: &ClosedContacts,
+    ) -> Result<Vec<Friction>, SimulationError> {
+        let speed = |i: usize| slips[i].map_or(0.0, |_| support.slip(i).norm());
+        contacts.iter().enumerate().map(|(i, &contact)| self.friction(contact, speed(i))).collect()
     }
 
     /// The directions of slip; none where there is none.

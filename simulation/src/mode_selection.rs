@@ -2,7 +2,8 @@
 //!
 //! One contact has an exact answer in the runtime. Of several contacts, rest is taken where it fits: all that
 //! do not slip keep sticking. Otherwise the forces of all contacts are found at once
-//! ([`contact_problem::solve`]), and the modes follow from them.
+//! ([`contact_problem::solve`]), and the modes follow from them. Contacts that leave their static cones slip with the
+//! sliding coefficient (docs/theory.md, section 17.15).
 
 use hodograph::{ContactError, ContactMode, Selection, contact_mode_after};
 use nalgebra::{DMatrix, DVector, Vector2, Vector3};
@@ -10,6 +11,7 @@ use nalgebra::{DMatrix, DVector, Vector2, Vector3};
 use crate::closed_contacts::{ClosedContacts, least_squares};
 use crate::contact_problem::{self, MOST_ENUMERATED, Mode, Problem, Unsolved};
 use crate::forces::{Forces, Lacking};
+use crate::pair::Friction;
 
 /// What a closed contact does from an event on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,18 +35,89 @@ pub(crate) struct Choice {
 pub(crate) fn choose(
     support: &ClosedContacts,
     slips: &[Option<Vector2<f64>>],
-    mu: &[f64],
+    friction: &[Friction],
     before: &DVector<f64>,
 ) -> Result<Choice, Lacking> {
     if support.len() == 1 {
-        return one(support, slips[0], mu[0], before);
+        return one(support, slips[0], friction[0], before);
     }
-    let problem = support.problem(mu, slips);
-    if let Some(rest) = contact_problem::rest(&problem) {
+    // What does not slip is held by static friction, until it is seen to slip.
+    let mut held: Vec<bool> = slips.iter().map(Option::is_none).collect();
+    loop {
+        let mu = coefficients(friction, &held);
+        let problem = support.problem(&mu, slips);
+        let mut choice = choose_with(support, &problem, before)?;
+        let begins = |i: usize| held[i] && matches!(choice.decisions[i], Decision::Slide(..));
+        let leave: Vec<usize> =
+            (0..held.len()).filter(|&i| begins(i) && friction[i].sticks > friction[i].slips).collect();
+        if leave.is_empty() {
+            if choice.selection.contains(&Selection::Unique) && others_fit(support, slips, friction, &choice)
+            {
+                choice.selection.fill(Selection::SeveralModes);
+            }
+            return Ok(choice);
+        }
+        for i in leave {
+            held[i] = false;
+        }
+    }
+}
+
+/// The coefficients of contacts that are held by static friction, or slip or begin to.
+fn coefficients(friction: &[Friction], held: &[bool]) -> Vec<f64> {
+    friction.iter().zip(held).map(|(mu, &held)| if held { mu.sticks } else { mu.slips }).collect()
+}
+
+/// Whether other modes fit where contacts without slip may be held by static friction or slip with less: those of
+/// every share of them that is held.
+fn others_fit(
+    support: &ClosedContacts,
+    slips: &[Option<Vector2<f64>>],
+    friction: &[Friction],
+    choice: &Choice,
+) -> bool {
+    let open: Vec<usize> =
+        (0..slips.len()).filter(|&i| slips[i].is_none() && friction[i].sticks > friction[i].slips).collect();
+    if open.is_empty() || slips.len() > MOST_ENUMERATED {
+        return false;
+    }
+    (0..1_usize << open.len()).any(|share| {
+        let mut held: Vec<bool> = slips.iter().map(Option::is_none).collect();
+        for (bit, &i) in open.iter().enumerate() {
+            held[i] = share >> bit & 1 == 1;
+        }
+        let mu = coefficients(friction, &held);
+        let lawful = |solution: &contact_problem::Solution| {
+            (0..held.len())
+                .all(|i| !(held[i] && open.contains(&i) && matches!(solution.modes[i], Mode::Slide(_))))
+        };
+        let differs = |solution: &contact_problem::Solution| {
+            solution.modes.iter().zip(&choice.decisions).any(|(mode, decision)| {
+                !matches!(
+                    (mode, decision),
+                    (Mode::Separate, Decision::Separate)
+                        | (Mode::Stick, Decision::Stick)
+                        | (Mode::Slide(_), Decision::Slide(..))
+                )
+            })
+        };
+        let solutions = contact_problem::enumerate(&support.problem(&mu, slips));
+        solutions.iter().any(|solution| lawful(solution) && differs(solution))
+    })
+}
+
+/// Chooses the modes where each contact has one coefficient of friction.
+fn choose_with(
+    support: &ClosedContacts,
+    problem: &Problem<'_>,
+    before: &DVector<f64>,
+) -> Result<Choice, Lacking> {
+    let slips = problem.slip;
+    if let Some(rest) = contact_problem::rest(problem) {
         let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
-        return Ok(chosen(&problem, &modes, &rest.force));
+        return Ok(chosen(problem, &modes, &rest.force));
     }
-    let solution = contact_problem::solve(&problem, Some(before)).map_err(|unsolved| match unsolved {
+    let solution = contact_problem::solve(problem, Some(before)).map_err(|unsolved| match unsolved {
         Unsolved::Jam { contact, .. } => {
             let free_acceleration = support.beta[3 * contact];
             Lacking::Contact(contact, ContactError::Jam { free_acceleration })
@@ -52,9 +125,9 @@ pub(crate) fn choose(
         _ => Lacking::Together,
     })?;
     // Among many forces for this motion, those in the middle.
-    match contact_problem::with_modes(&problem, &solution.modes) {
-        Ok(middle) if middle.margin >= 0.0 => Ok(chosen(&problem, &solution.modes, &middle.force)),
-        _ => Ok(chosen(&problem, &solution.modes, &solution.force)),
+    match contact_problem::with_modes(problem, &solution.modes) {
+        Ok(middle) if middle.margin >= 0.0 => Ok(chosen(problem, &solution.modes, &middle.force)),
+        _ => Ok(chosen(problem, &solution.modes, &solution.force)),
     }
 }
 
@@ -86,17 +159,32 @@ fn selection(problem: &Problem<'_>, modes: &[Mode]) -> Selection {
 fn one(
     support: &ClosedContacts,
     slip: Option<Vector2<f64>>,
-    mu: f64,
+    friction: Friction,
     before: &DVector<f64>,
 ) -> Result<Choice, Lacking> {
-    let answer = contact_mode_after(
-        &support.reduced(0),
-        &ClosedContacts::three(&support.beta, 0),
-        &slip.unwrap_or_else(Vector2::zeros),
-        mu,
-        &ClosedContacts::three(before, 0),
-    )
-    .map_err(|error| Lacking::Contact(0, error))?;
+    let with = |mu: f64| {
+        contact_mode_after(
+            &support.reduced(0),
+            &ClosedContacts::three(&support.beta, 0),
+            &slip.unwrap_or_else(Vector2::zeros),
+            mu,
+            &ClosedContacts::three(before, 0),
+        )
+        .map_err(|error| Lacking::Contact(0, error))
+    };
+    let slipping = with(friction.slips);
+    // Static friction may hold what sliding friction does not.
+    let held =
+        if slip.is_none() && friction.sticks > friction.slips { with(friction.sticks).ok() } else { None };
+    let answer = match held {
+        Some(mut held) if held.mode == ContactMode::Stick => {
+            if !slipping.is_ok_and(|other| other.mode == ContactMode::Stick) {
+                held.selection = Selection::SeveralModes;
+            }
+            held
+        }
+        _ => slipping?,
+    };
     Ok(Choice {
         decisions: vec![decision(answer.mode, answer.direction)],
         forces: vec![answer.force],
@@ -188,3 +276,113 @@ pub(crate) fn begin_along(
 /// Steps of Newton's method at most, and the difference by which its derivatives are formed, rad.
 const TURNS: usize = 30;
 const TURN: f64 = 1e-6;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that look random, in [-1, 1].
+    fn numbers(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+        move || {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// One body with contacts at random places, pressed down.
+    fn support(k: usize, random: &mut impl FnMut() -> f64) -> ClosedContacts {
+        let mut partials = DMatrix::zeros(3 * k, 6);
+        for i in 0..k {
+            let arm = Vector3::new(random(), random(), -0.3 + 0.1 * random());
+            for (row, axis) in [Vector3::z(), Vector3::x(), Vector3::y()].into_iter().enumerate() {
+                let turn = arm.cross(&axis);
+                for c in 0..3 {
+                    partials[(3 * i + row, c)] = axis[c];
+                    partials[(3 * i + row, 3 + c)] = turn[c];
+                }
+            }
+        }
+        let inverse = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 1.0, 1.0, 9.0, 7.0, 5.0]));
+        let response = &inverse * partials.transpose();
+        let load = DVector::from_vec(vec![
+            4.0 * random(),
+            4.0 * random(),
+            -9.81,
+            2.0 * random(),
+            2.0 * random(),
+            2.0 * random(),
+        ]);
+        ClosedContacts {
+            contacts: (0..k).collect(),
+            coupled: &partials * &response,
+            beta: &partials * load,
+            partials,
+            response,
+            velocity: DVector::zeros(3 * k),
+        }
+    }
+
+    /// What is chosen obeys the law of two coefficients: what sticks does not accelerate and stays in the static
+    /// cone, what slips has sliding friction against its acceleration, and what does not exceed a static cone in
+    /// rest rests.
+    #[test]
+    fn choices_obey_both_coefficients() {
+        let mut seen = [0; 4];
+        for seed in 1..240_u64 {
+            let mut random = numbers(seed);
+            let k = 1 + seed as usize % 3;
+            let support = support(k, &mut random);
+            let friction: Vec<Friction> = (0..k)
+                .map(|_| {
+                    let slips = 0.2 + 0.15 * random();
+                    Friction { slips, sticks: slips + 0.2 + 0.15 * random() }
+                })
+                .collect();
+            let slips = vec![None; k];
+            let choice = choose(&support, &slips, &friction, &DVector::zeros(3 * k)).unwrap();
+            let mut all = DVector::zeros(3 * k);
+            for (i, force) in choice.forces.iter().enumerate() {
+                all.rows_mut(3 * i, 3).copy_from(force);
+            }
+            let acceleration = &support.coupled * &all + &support.beta;
+            let size = 1e-9 * (all.amax() * support.coupled.amax() + support.beta.amax());
+            let mut rests = true;
+            for (i, friction) in friction.iter().enumerate() {
+                let (force, a) = (ClosedContacts::three(&all, i), ClosedContacts::three(&acceleration, i));
+                let tangential = Vector2::new(force.y, force.z);
+                match choice.decisions[i] {
+                    Decision::Separate => {
+                        seen[0] += 1;
+                        rests = false;
+                        assert!(force.norm() == 0.0 && a.x > -size, "{seed}");
+                    }
+                    Decision::Stick => {
+                        seen[1] += 1;
+                        assert!(a.norm() < size, "{seed}: {a}");
+                        assert!(tangential.norm() <= friction.sticks * force.x + size, "{seed}");
+                    }
+                    Decision::Slide(d, begins) => {
+                        seen[2] += 1;
+                        rests = false;
+                        assert!(begins && force.x >= -size && a.x.abs() < size, "{seed}");
+                        assert!((tangential + d * (friction.slips * force.x)).norm() < size, "{seed}");
+                        assert!(d.dot(&Vector2::new(a.y, a.z)) > -size, "{seed}");
+                        assert!((d.x * a.z - d.y * a.y).abs() < size, "{seed}");
+                    }
+                }
+            }
+            let mu: Vec<f64> = friction.iter().map(|friction| friction.sticks).collect();
+            assert_eq!(rests, contact_problem::rest(&support.problem(&mu, &slips)).is_some(), "{seed}");
+            // Sliding friction alone would have let it slip.
+            let mu: Vec<f64> = friction.iter().map(|friction| friction.slips).collect();
+            if rests && contact_problem::rest(&support.problem(&mu, &slips)).is_none() {
+                seen[3] += 1;
+                assert_eq!(choice.selection[0], Selection::SeveralModes, "{seed}");
+            }
+        }
+        assert!(seen.iter().all(|&seen| seen > 20), "{seen:?}");
+    }
+}

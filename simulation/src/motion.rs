@@ -7,6 +7,7 @@ use nalgebra::Vector2;
 use crate::Drive;
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking, forces};
+use crate::pair::Pair;
 use crate::phase::Closed;
 use crate::slip_direction::settle_directions;
 
@@ -20,6 +21,8 @@ pub(crate) enum Failure {
     State(StateError),
     Contact(usize, ContactError<f64>),
     Together,
+    /// A function of the surfaces of a contact fails.
+    Law(usize, String),
     Input(String),
 }
 
@@ -33,6 +36,7 @@ impl From<StateError> for Failure {
 pub(crate) struct Motion<'a> {
     pub mechanism: &'a dyn Contacts<f64>,
     pub drive: &'a Drive,
+    pub surfaces: &'a [Option<Pair>],
     pub held: &'a [f64],
     pub closed: &'a [Closed],
     /// Nothing moves: what is left of the rates is rounding.
@@ -93,6 +97,18 @@ impl Motion<'_> {
             .collect()
     }
 
+    /// The coefficients of friction in these modes at these velocities.
+    fn mus(&self, support: &ClosedContacts, holds: &[Hold]) -> Result<Vec<f64>, Failure> {
+        let mu = |(i, (closed, hold)): (usize, (&Closed, &Hold))| match (hold, &self.surfaces[closed.contact])
+        {
+            (Hold::Slide(_), Some(pair)) => {
+                pair.sliding(support.slip(i).norm()).map_err(|message| Failure::Law(closed.contact, message))
+            }
+            _ => Ok(closed.mu),
+        };
+        self.closed.iter().zip(holds).enumerate().map(mu).collect()
+    }
+
     /// Rates, and the forces of the closed contacts.
     pub fn evaluate(&self, t: f64, y: &[f64]) -> Result<Evaluation, Failure> {
         let (q, u) = self.split(y);
@@ -107,7 +123,7 @@ impl Motion<'_> {
         let mut holds = self.holds(&support, u);
         let mut found = None;
         if !contacts.is_empty() {
-            let mu: Vec<f64> = self.closed.iter().map(|closed| closed.mu).collect();
+            let mu = self.mus(&support, &holds)?;
             let lacking = |lacking| match lacking {
                 Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
                 Lacking::Together => Failure::Together,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use hodograph::Surface;
 
-use crate::Drive;
+use crate::{ContactLaw, Drive};
 
 /// A function of time, coordinates and speeds whose zeros are events.
 pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
@@ -46,6 +46,10 @@ pub struct Options {
     /// the surfaces of all other contacts; without it they have those that the model states
     /// ([`Contacts::surface`](hodograph::Contacts::surface))
     pub surface: Option<Surface<f64>>,
+    /// what contacts that have a law of their own do beyond mu, e and law of their surfaces, by number
+    pub laws: Vec<(usize, ContactLaw)>,
+    /// what all other contacts do beyond that
+    pub law: ContactLaw,
     /// where inputs come from
     pub drive: Drive,
     /// what happens where several contacts are struck together
@@ -69,6 +73,8 @@ impl Default for Options {
             breaks: Vec::new(),
             surfaces: Vec::new(),
             surface: None,
+            laws: Vec::new(),
+            law: ContactLaw::default(),
             drive: Drive::Held,
             together: Together::default(),
             stiffness: Vec::new(),
@@ -87,6 +93,8 @@ impl fmt::Debug for Options {
             .field("breaks", &self.breaks.len())
             .field("surfaces", &self.surfaces)
             .field("surface", &self.surface)
+            .field("laws", &self.laws)
+            .field("law", &self.law)
             .field("drive", &self.drive)
             .field("together", &self.together)
             .field("stiffness", &self.stiffness)

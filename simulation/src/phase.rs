@@ -49,6 +49,7 @@ pub enum ContactPhase {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Closed {
     pub contact: usize,
+    /// coefficient of friction up to which it sticks, or with which its slip begins and ends
     pub mu: f64,
     /// none while it sticks; else the direction in which slip began, for as long as slip is too small to
     /// have one

@@ -2,12 +2,13 @@
 
 use std::collections::VecDeque;
 
-use hodograph::{Contacts, Kind, State, Surface};
+use hodograph::{Contacts, Kind, State};
 use nalgebra::Vector3;
 
 use crate::check::check;
 use crate::front::Front;
 use crate::motion::Failure;
+use crate::pair::Pair;
 use crate::phase::{ContactPhase, Modes, Phase};
 use crate::stepper::Step;
 use crate::transition::Transition;
@@ -22,8 +23,8 @@ use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
 pub struct Simulation<'m> {
     mechanism: &'m dyn Contacts<f64>,
     options: Options,
-    /// the surface of each contact; none where a contact has no gap
-    surfaces: Vec<Option<Surface<f64>>>,
+    /// the surfaces of each contact; none where a contact has no gap
+    surfaces: Vec<Option<Pair>>,
     start: f64,
     front: Front,
     /// the step that led to the front, and the modes during it

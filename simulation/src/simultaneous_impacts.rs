@@ -4,6 +4,7 @@ use hodograph::{Kind, Law, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::ClosedContacts;
+use crate::contact_law::Restitution;
 use crate::lzb::{self, Fault};
 use crate::motion::Failure;
 use crate::transition::Transition;
@@ -88,14 +89,22 @@ impl Transition<'_> {
     /// The energetic coefficient of restitution of a contact without friction.
     fn energetic(&self, contact: usize) -> Result<f64, SimulationError> {
         let refused = |message: String| Err(self.error(Some(contact), Reason::Lzb(message)));
-        let Some(surface) = self.surfaces[contact] else {
+        let Some(pair) = self.pair(contact) else {
             return refused("the contact has no surface".to_owned());
         };
-        if surface.mu != 0.0 {
+        let (surface, mu) = (&pair.surface, pair.mu_in_impacts());
+        if pair.law.restitution != Restitution::Constant {
+            return refused(format!(
+                "it is struck together with others and e depends on the speed of approach, {}: Liu, Zhao and Brogliato take one e; give a constant one, or let contacts \
+                 answer one after the other (sequential)",
+                pair.law.restitution
+            ));
+        }
+        if mu != 0.0 {
             return refused(format!(
                 "it is struck together with others and has mu = {}: impacts after Liu, Zhao and Brogliato are solved without friction only; give mu = 0, or let \
                  contacts answer one after the other (sequential)",
-                surface.mu
+                mu
             ));
         }
         if surface.law != Law::Stronge {

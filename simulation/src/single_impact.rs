@@ -59,7 +59,9 @@ impl Transition<'_> {
         let n = self.mechanism.count(Kind::Coordinate);
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
-        let surface = self.surface(contact)?;
+        let velocity = self.mechanism.contact_velocity(contact, &state);
+        let velocity = velocity.map_err(|error| self.failure(Failure::State(error)))?;
+        let surface = self.surface_in_impact(contact, -velocity.x)?;
         let fault = |error: CollisionError<f64>| self.error(Some(contact), Reason::Collision(error));
         let solve = |surface: &Surface<f64>, bounces: Vec<(usize, f64)>| {
             let mut after = speeds.to_vec();
@@ -90,13 +92,19 @@ impl Transition<'_> {
     ) -> Result<Option<f64>, SimulationError> {
         let pull = self.pull(contact, speeds)?;
         let low = pull < 0.0 && rebound * rebound / (-2.0 * pull) < self.options.absolute_tolerance;
-        Ok(low.then(|| 2.0 * rebound / (-pull * (1.0 - rebound / before))))
+        let pair = self.pair(contact);
+        Ok(if low { pair.and_then(|pair| pair.bounces_for(before, rebound, -pull)) } else { None })
     }
 
-    /// The surface of a contact that strikes.
-    pub(crate) fn surface(&self, contact: usize) -> Result<Surface<f64>, SimulationError> {
-        self.surfaces[contact]
-            .ok_or_else(|| self.error(Some(contact), Reason::Option("the contact has no surface".to_owned())))
+    /// The surface of a contact that strikes with this speed of approach, as impacts have it.
+    pub(crate) fn surface_in_impact(
+        &self,
+        contact: usize,
+        approach: f64,
+    ) -> Result<Surface<f64>, SimulationError> {
+        let pair = self.pair(contact).ok_or("the contact has no surface".to_owned());
+        pair.and_then(|pair| pair.in_impact(approach))
+            .map_err(|message| self.error(Some(contact), Reason::Option(message)))
     }
 
     /// The normal acceleration of a contact without its own force, while the others that last keep their

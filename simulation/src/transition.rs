@@ -3,10 +3,11 @@
 //! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] makes one from its
 //! front, and takes its front and its events only when all of it has succeeded.
 
-use hodograph::{Contacts, Kind, State, Surface};
+use hodograph::{Contacts, Kind, State};
 
 use crate::front::Front;
 use crate::motion::{Failure, Motion};
+use crate::pair::{Friction, Pair};
 use crate::phase::{Closed, Modes, Phase};
 use crate::stepper::Step;
 use crate::{Event, EventKind, Options, Reason, SimulationError};
@@ -15,8 +16,8 @@ use crate::{Event, EventKind, Options, Reason, SimulationError};
 pub(crate) struct Transition<'s> {
     pub mechanism: &'s dyn Contacts<f64>,
     pub options: &'s Options,
-    /// the surface of each contact; none where a contact has no gap
-    pub surfaces: &'s [Option<Surface<f64>>],
+    /// the surfaces of each contact; none where a contact has no gap
+    pub surfaces: &'s [Option<Pair>],
     pub front: Front,
     /// the events so far
     pub events: Vec<Event>,
@@ -65,7 +66,7 @@ impl Transition<'_> {
                 };
                 Some(Closed {
                     contact,
-                    mu: self.mu(contact),
+                    mu: self.mu_in_mode(contact, slides.is_some()),
                     omega: slides.and(self.front.omegas[contact]),
                     slides,
                 })
@@ -73,14 +74,29 @@ impl Transition<'_> {
             .collect()
     }
 
-    pub(crate) fn mu(&self, contact: usize) -> f64 {
-        self.surfaces.get(contact).copied().flatten().map_or(0.0, |surface| surface.mu)
+    /// The surfaces of a contact that has a gap.
+    pub(crate) fn pair(&self, contact: usize) -> Option<&Pair> {
+        self.surfaces.get(contact).and_then(Option::as_ref)
+    }
+
+    /// The coefficients of friction of a contact at a speed of slip, 0 without slip.
+    pub(crate) fn friction(&self, contact: usize, slip: f64) -> Result<Friction, SimulationError> {
+        let found = self.pair(contact).map_or(Ok(Friction::NONE), |pair| pair.friction(slip));
+        found.map_err(|message| self.error(Some(contact), Reason::Option(message)))
+    }
+
+    /// The coefficient of a contact that sticks, or of one whose slip is small.
+    fn mu_in_mode(&self, contact: usize, slides: bool) -> f64 {
+        // Functions that fail at no slip are refused at the start.
+        let friction = self.pair(contact).and_then(|pair| pair.friction(0.0).ok()).unwrap_or(Friction::NONE);
+        if slides { friction.slips } else { friction.sticks }
     }
 
     pub(crate) fn motion<'a>(&'a self, closed: &'a [Closed]) -> Motion<'a> {
         Motion {
             mechanism: self.mechanism,
             drive: &self.options.drive,
+            surfaces: self.surfaces,
             held: &self.front.held,
             closed,
             resting: self.front.resting,
@@ -124,6 +140,7 @@ impl Transition<'_> {
                         .to_owned(),
                 ),
             ),
+            Failure::Law(contact, message) => self.error(Some(contact), Reason::Option(message)),
             Failure::Input(message) => self.error(None, Reason::Input(message)),
         }
     }
