@@ -14,7 +14,7 @@ pub(crate) struct ClosedContacts {
     pub contacts: Vec<usize>,
     /// W = V M^-1 V^T (3k x 3k).
     pub coupled: DMatrix<f64>,
-    /// V (3k x p).
+    /// V^T (p x 3k).
     pub partials: DMatrix<f64>,
     /// M^-1 V^T (p x 3k).
     pub response: DMatrix<f64>,
@@ -33,26 +33,38 @@ impl ClosedContacts {
         accelerate: bool,
     ) -> Result<Self, StateError> {
         let (k, p) = (contacts.len(), mechanism.count(Kind::Speed));
-        let mut partials = DMatrix::zeros(3 * k, p);
+        let mut partials = DMatrix::zeros(p, 3 * k);
         let mut response = DMatrix::zeros(p, 3 * k);
         let mut velocity = DVector::zeros(3 * k);
         let mut beta = DVector::zeros(3 * k);
         let mut numbers = vec![0.0; 3 * p];
         for (i, &contact) in contacts.iter().enumerate() {
-            mechanism.partial_velocities(contact, state, &mut numbers)?;
-            partials.view_mut((3 * i, 0), (3, p)).copy_from(&DMatrix::from_row_slice(3, p, &numbers));
+            // By rows V is V^T by columns.
+            mechanism.partial_velocities(
+                contact,
+                state,
+                &mut partials.as_mut_slice()[3 * p * i..][..3 * p],
+            )?;
             mechanism.response(contact, state, &mut numbers)?;
-            response.view_mut((0, 3 * i), (p, 3)).copy_from(&DMatrix::from_row_slice(p, 3, &numbers));
+            for (place, number) in numbers.iter().enumerate() {
+                response[(place / 3, 3 * i + place % 3)] = *number;
+            }
             velocity.rows_mut(3 * i, 3).copy_from(&mechanism.contact_velocity(contact, state)?);
             if accelerate {
                 beta.rows_mut(3 * i, 3).copy_from(&free_acceleration(mechanism, contact, state)?);
             }
         }
-        let mut coupled = &partials * &response;
-        // Symmetric but for rounding.
+        let mut coupled = DMatrix::zeros(3 * k, 3 * k);
+        let product = |row: usize, column: usize| -> f64 {
+            let (left, right) =
+                (&partials.as_slice()[row * p..][..p], &response.as_slice()[column * p..][..p]);
+            left.iter().zip(right).map(|(left, right)| left * right).sum()
+        };
         for row in 0..3 * k {
+            coupled[(row, row)] = product(row, row);
             for column in 0..row {
-                let mean = 0.5 * (coupled[(row, column)] + coupled[(column, row)]);
+                // Symmetric but for rounding.
+                let mean = 0.5 * (product(row, column) + product(column, row));
                 coupled[(row, column)] = mean;
                 coupled[(column, row)] = mean;
             }
@@ -90,7 +102,7 @@ impl ClosedContacts {
     pub fn velocity_size(&self, i: usize, speeds: &[f64]) -> f64 {
         (0..3)
             .map(|row| {
-                self.partials.row(3 * i + row).iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum::<f64>()
+                self.partials.column(3 * i + row).iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum::<f64>()
             })
             .fold(0.0, f64::max)
     }

@@ -78,7 +78,7 @@ impl Transition<'_> {
             closed: &modes.closed,
             resting: modes.resting,
         };
-        let part = part_of(&motion, step.t, step.start(), time - step.t)?;
+        let part = part_of(&motion, (step.t, step.start(), step.first()), time - step.t)?;
         let mut y = part.end;
         self.project_onto_constraints(modes, time, &mut y).ok()?;
         Some(y)
@@ -86,15 +86,20 @@ impl Transition<'_> {
 
     /// A part of the step from the front, integrated anew.
     pub(crate) fn part(&self, closed: &[Closed], h: f64) -> Option<Step> {
-        part_of(&self.motion(closed), self.front.t, &self.front.y, h)
+        part_of(&self.motion(closed), (self.front.t, &self.front.y, None), h)
+    }
+
+    /// A part of a step from the front in the same modes, integrated anew.
+    pub(crate) fn part_again(&self, closed: &[Closed], whole: &Step, h: f64) -> Option<Step> {
+        part_of(&self.motion(closed), (whole.t, whole.start(), whole.first()), h)
     }
 }
 
 /// The motion from a state on, over exactly so long.
-fn part_of(motion: &Motion<'_>, t: f64, y: &[f64], h: f64) -> Option<Step> {
-    let rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
+fn part_of(motion: &Motion<'_>, from: (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
+    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
         Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
         Err(_) => rates.fill(f64::NAN),
     };
-    stepper::part(&rates, t, y, h)
+    stepper::part(&mut rates, from, h)
 }

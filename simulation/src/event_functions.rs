@@ -260,7 +260,7 @@ impl Transition<'_> {
     }
 
     /// Contacts that were about to leave are apart once their gaps are open; the step has just been taken.
-    pub(crate) fn arm(&mut self, step: &mut Step) -> Result<(), SimulationError> {
+    pub(crate) fn arm(&mut self, step: &Step) -> Result<(), SimulationError> {
         for contact in 0..self.front.phases.len() {
             let before = match self.front.phases[contact] {
                 Phase::Open(Leaving::Bounced) if step.h > 0.0 => 0.0,
@@ -275,7 +275,7 @@ impl Transition<'_> {
     }
 
     /// A contact that leaves, after a step.
-    fn risen(&self, contact: usize, before: f64, step: &mut Step) -> Result<Leaving, SimulationError> {
+    fn risen(&self, contact: usize, before: f64, step: &Step) -> Result<Leaving, SimulationError> {
         let (step_start, h) = (step.t, step.h);
         let mut at = |after: f64| if h > 0.0 { step.at(after / h) } else { step.end.clone() };
         let mean = self.mean_rate_from(step_start, contact, h, &mut at);

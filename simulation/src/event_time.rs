@@ -39,7 +39,7 @@ impl Transition<'_> {
     ) -> Result<Step, SimulationError> {
         let mut step = whole.clone();
         for _ in 0..8 {
-            let Some(part) = self.part(closed, after) else { break };
+            let Some(part) = self.part_again(closed, whole, after) else { break };
             step = part;
             let (gap, rate) = self.gap_at(&step, contact)?;
             let gap = match self.front.phases[contact] {
@@ -67,7 +67,7 @@ impl Transition<'_> {
     /// which it is negative once these are known.
     fn at_zero(&self, closed: &[Closed], whole: &Step, watched: Watched, mut after: f64) -> Step {
         let trial = |after: f64| {
-            let mut step = self.part(closed, after)?;
+            let step = self.part_again(closed, whole, after)?;
             let h = step.h;
             let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
             let value = self.values(closed, &[watched], h, &mut at).ok()?[0];

@@ -171,7 +171,7 @@ mod tests {
                 contacts: vec![0, 1],
                 beta: -(&coupled * &wanted),
                 coupled: coupled.clone(),
-                partials: partials.clone(),
+                partials: partials.transpose(),
                 response: response.clone(),
                 velocity: DVector::zeros(6),
             };

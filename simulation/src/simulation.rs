@@ -219,7 +219,7 @@ impl<'m> Simulation<'m> {
 
     /// Looks at the state at a time in the last step.
     fn look(&mut self, time: f64) {
-        let state = match &mut self.step {
+        let state = match &self.step {
             _ if time >= self.front.t => Some(self.front.y.clone()),
             None => None,
             Some((step, modes)) => {

@@ -125,6 +125,6 @@ impl Transition<'_> {
         let Some(forces) = evaluation.forces else { return Ok(beta) };
         let own = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
         let rates = forces.rates(&evaluation.support);
-        Ok(beta + (own.partials.row(0) * rates)[0])
+        Ok(beta + own.partials.column(0).dot(&rates))
     }
 }

@@ -1,19 +1,30 @@
 //! Makes one step of the integration, with dense output.
 //!
-//! Dormand and Prince's method of order 8 of the crate `differential-equations`. Only its steps, its step
-//! size control and its dense output are used; time is local to the step, so that short steps late in a
-//! motion lose no digits.
+//! Dormand and Prince's method of order 8, with the coefficients of the crate `differential-equations` (E. Hairer,
+//! S. P. Norsett and G. Wanner, *Solving Ordinary Differential Equations I*, section II.5 and II.6). Time is local to the
+//! step, so that short steps late in a motion lose no digits. Rates that are known are not evaluated again, and a
+//! step allocates its memory once.
 
-use differential_equations::error::Error;
-use differential_equations::interpolate::Interpolation;
-use differential_equations::methods::{DormandPrince, ExplicitRungeKutta, Ordinary};
-use differential_equations::ode::{ODE, OrdinaryNumericalMethod};
-use differential_equations::status::Status;
+use std::sync::LazyLock;
 
-type Method = ExplicitRungeKutta<Ordinary, DormandPrince, f64, Vec<f64>, 8, 12, 16>;
+use differential_equations::tableau::ButcherTableau;
+
+/// Stages of the method, those of its dense output with the rates at the end, and its order.
+const STAGES: usize = 12;
+const ALL_STAGES: usize = 16;
+const ORDER: usize = 8;
+
+static METHOD: LazyLock<ButcherTableau<f64, STAGES, ALL_STAGES>> = LazyLock::new(ButcherTableau::dop853);
 
 /// Most halvings (or so) of a step that is refused.
 const REFUSALS: usize = 60;
+/// Steps aim at this part of the size that the error allows, and change by no more than these factors.
+const SAFETY: f64 = 0.9;
+const LEAST_FACTOR: f64 = 0.2;
+const GREATEST_FACTOR: f64 = 10.0;
+
+/// The rates y' = f(t, y) of a system; not a number where it has none.
+pub(crate) type Rates<'r> = dyn FnMut(f64, &[f64], &mut [f64]) + 'r;
 
 /// A step that was made: from `t` over `h`.
 #[derive(Clone)]
@@ -24,13 +35,17 @@ pub(crate) struct Step {
     pub next: f64,
     pub end: Vec<f64>,
     start: Vec<f64>,
-    method: Option<Method>,
+    /// The rates at the start; none of a step in which nothing moves.
+    first: Vec<f64>,
+    /// Coefficients of the dense output, [`ORDER`] vectors; none of a step in which nothing moves.
+    dense: Vec<f64>,
 }
 
 impl Step {
     /// Nothing moves over this time.
     pub fn still(t: f64, h: f64, state: &[f64]) -> Self {
-        Self { t, h, next: h, end: state.to_vec(), start: state.to_vec(), method: None }
+        let (end, start) = (state.to_vec(), state.to_vec());
+        Self { t, h, next: h, end, start, first: Vec::new(), dense: Vec::new() }
     }
 
     /// The state at the beginning.
@@ -38,41 +53,40 @@ impl Step {
         &self.start
     }
 
+    /// The rates at the beginning, if they are known.
+    pub fn first(&self) -> Option<&[f64]> {
+        (!self.first.is_empty()).then_some(&self.first)
+    }
+
     /// The state at a fraction of the step.
-    pub fn at(&mut self, fraction: f64) -> Vec<f64> {
-        if fraction >= 1.0 {
+    pub fn at(&self, fraction: f64) -> Vec<f64> {
+        let n = self.start.len();
+        if fraction >= 1.0 || self.dense.is_empty() {
             return self.end.clone();
         }
         if fraction <= 0.0 {
             return self.start.clone();
         }
-        match self.method.as_mut().map(|method| method.interpolate(fraction * self.h)) {
-            Some(Ok(state)) => state,
-            _ => self.end.clone(),
+        // c0 + s (c1 + (1 - s) (c2 + s (c3 + (1 - s) (..)))).
+        let mut state = self.dense[(ORDER - 1) * n..].to_vec();
+        for (place, coefficients) in self.dense.chunks_exact(n).enumerate().rev().skip(1) {
+            let factor = if place % 2 == 0 { fraction } else { 1.0 - fraction };
+            for (state, coefficient) in state.iter_mut().zip(coefficients) {
+                *state = *state * factor + coefficient;
+            }
         }
+        state
     }
 
     /// Takes another end, which differs from the integrated one by the correction of drift.
     pub fn corrected(&mut self, end: &[f64]) {
-        self.end = end.to_vec();
+        self.end.copy_from_slice(end);
     }
 }
 
 impl std::fmt::Debug for Step {
     fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(out, "Step from {} over {}", self.t, self.h)
-    }
-}
-
-/// The rates y' = f(t, y) of a system.
-struct System<'a, F> {
-    rates: &'a F,
-    t: f64,
-}
-
-impl<F: Fn(f64, &[f64], &mut [f64])> ODE<f64, Vec<f64>> for System<'_, F> {
-    fn diff(&self, t: f64, y: &Vec<f64>, dydt: &mut Vec<f64>) {
-        (self.rates)(self.t + t, y, dydt);
     }
 }
 
@@ -83,76 +97,235 @@ pub(crate) struct Tolerances {
     pub absolute: f64,
 }
 
-/// A step from (t, y) of at most `h`, whose error is within the tolerances. `None` if there is none: the
-/// rates are not finite, or the step became too small. Rates that are not finite make a step be refused.
+/// A step from (t, y) of at most `h`, whose error is within the tolerances; `first` are the rates there if they are
+/// known. `None` if there is none: the rates are not finite, or the step became too small. Rates that are not
+/// finite make a step be refused.
 pub(crate) fn step(
-    rates: &impl Fn(f64, &[f64], &mut [f64]),
-    t: f64,
-    y: &[f64],
-    h: f64,
+    rates: &mut Rates<'_>,
+    (t, y, first): (f64, &[f64], Option<&[f64]>),
+    mut h: f64,
     tolerances: &Tolerances,
 ) -> Option<Step> {
-    let least = 16.0 * f64::EPSILON * t.abs().max(1e-9);
-    let system = System { rates, t };
-    let start = y.to_vec();
-    let mut method = Method::dop853();
-    method.h0 = h;
-    method.max_steps = REFUSALS + 2;
-    method.rtol = tolerances.relative.into();
-    method.atol = tolerances.absolute.into();
-    method.init(&system, 0.0, f64::INFINITY, &start).ok()?;
+    let (asked, least) = (h, 16.0 * f64::EPSILON * t.abs().max(1e-9));
+    let mut stages = Stages::new(rates, t, y, first);
+    let mut refused = false;
     for _ in 0..REFUSALS {
-        let tried = method.h();
-        if tried < least && tried < h {
+        if h < least && h < asked {
             return None;
         }
-        match method.step(&system) {
-            Ok(_) if matches!(method.status(), Status::RejectedStep) => {}
-            Ok(_) => {
-                if method.y().iter().all(|value| value.is_finite()) {
-                    let (next, h) = (method.h(), method.t());
-                    let mut end = method.y().clone();
-                    unrounded(&system, h, &start, &mut end);
-                    return Some(Step { t, h, next, end, start, method: Some(method) });
-                }
-                return None;
+        stages.compute(rates, h);
+        let error = stages.error(h, tolerances);
+        let mut factor = (SAFETY * error.powf(-1.0 / ORDER as f64)).clamp_from(LEAST_FACTOR, GREATEST_FACTOR);
+        if error <= 1.0 {
+            if refused {
+                factor = factor.min(1.0);
             }
-            Err(Error::Stiffness { .. }) => {}
-            Err(_) => return None,
+            return stages.finish(rates, h, h * factor);
         }
+        refused = true;
+        h *= factor;
     }
     None
 }
 
-/// Takes the trapezoidal rule where it agrees with the step but for rounding (constant acceleration), for it
-/// has fewer roundings and no bias: over 1e4 bounces that of the method's twelve weights would be seen in the
-/// energy.
-fn unrounded<F: Fn(f64, &[f64], &mut [f64])>(system: &System<'_, F>, h: f64, start: &[f64], end: &mut [f64]) {
-    let (mut first, mut last) = (vec![0.0; start.len()], vec![0.0; start.len()]);
-    (system.rates)(system.t, start, &mut first);
-    // Speeds first, then the coordinates that follow from them.
-    for _ in 0..2 {
-        (system.rates)(system.t + h, end, &mut last);
-        let mut changed = false;
-        for (i, end) in end.iter_mut().enumerate() {
-            let rule = start[i] + 0.5 * h * (first[i] + last[i]);
-            let size = start[i].abs() + h * (first[i].abs() + last[i].abs());
-            if rule != *end && (rule - *end).abs() <= 32.0 * f64::EPSILON * size {
-                *end = rule;
-                changed = true;
+/// A step from (t, y) over exactly `h`, whatever its error: part of a step that was accepted.
+pub(crate) fn part(
+    rates: &mut Rates<'_>,
+    (t, y, first): (f64, &[f64], Option<&[f64]>),
+    h: f64,
+) -> Option<Step> {
+    if h <= 0.0 {
+        return Some(Step::still(t, 0.0, y));
+    }
+    let mut stages = Stages::new(rates, t, y, first);
+    stages.compute(rates, h);
+    stages.finish(rates, h, h * GREATEST_FACTOR)
+}
+
+trait ClampFrom {
+    fn clamp_from(self, least: f64, greatest: f64) -> f64;
+}
+
+impl ClampFrom for f64 {
+    /// Into these bounds; what is not a number becomes the least.
+    fn clamp_from(self, least: f64, greatest: f64) -> f64 {
+        self.max(least).min(greatest)
+    }
+}
+
+/// The stages of a step: rates k_1 .. k_16, one after the other, and states.
+struct Stages<'y> {
+    t: f64,
+    start: &'y [f64],
+    k: Vec<f64>,
+    state: Vec<f64>,
+    end: Vec<f64>,
+}
+
+impl<'y> Stages<'y> {
+    fn new(rates: &mut Rates<'_>, t: f64, start: &'y [f64], first: Option<&[f64]>) -> Self {
+        let n = start.len();
+        let mut k = vec![0.0; ALL_STAGES * n];
+        match first {
+            Some(first) => k[..n].copy_from_slice(first),
+            None => rates(t, start, &mut k[..n]),
+        }
+        Self { t, start, k, state: vec![0.0; n], end: vec![0.0; n] }
+    }
+
+    fn k(&self, i: usize) -> &[f64] {
+        &self.k[i * self.start.len()..][..self.start.len()]
+    }
+
+    /// The rates of stage i from those before it.
+    fn stage(&mut self, rates: &mut Rates<'_>, i: usize, h: f64) {
+        let n = self.start.len();
+        let (before, rest) = self.k.split_at_mut(i * n);
+        self.state.copy_from_slice(self.start);
+        add(&mut self.state, before, &METHOD.a[i], h);
+        rates(self.t + METHOD.c[i] * h, &self.state, &mut rest[..n]);
+    }
+
+    /// All stages of a step, and its end.
+    fn compute(&mut self, rates: &mut Rates<'_>, h: f64) {
+        for i in 1..STAGES {
+            self.stage(rates, i, h);
+        }
+        let n = self.start.len();
+        self.state.fill(0.0);
+        add(&mut self.state, &self.k[..STAGES * n], &METHOD.b, 1.0);
+        for ((end, start), sum) in self.end.iter_mut().zip(self.start).zip(&self.state) {
+            *end = start + h * sum;
+        }
+    }
+
+    /// The error of the step beside the tolerances. `state` is the mean rate.
+    fn error(&self, h: f64, tolerances: &Tolerances) -> f64 {
+        let (Some(er), Some(bh)) = (&METHOD.er, &METHOD.bh) else { return 0.0 };
+        let n = self.start.len();
+        let (mut fifth, mut third) = (0.0, 0.0);
+        for i in 0..n {
+            let (mut e5, mut e3) = (0.0, self.state[i]);
+            for j in 0..STAGES {
+                let k = self.k[j * n + i];
+                e5 += er[j] * k;
+                e3 -= bh[j] * k;
+            }
+            let allowed =
+                tolerances.absolute + tolerances.relative * self.start[i].abs().max(self.end[i].abs());
+            fifth += (e5 / allowed) * (e5 / allowed);
+            third += (e3 / allowed) * (e3 / allowed);
+        }
+        let both = fifth + 0.01 * third;
+        let both = if both <= 0.0 { 1.0 } else { both };
+        h * fifth * (1.0 / (both * n as f64)).sqrt()
+    }
+
+    /// The step with its dense output; `None` where its end is not finite.
+    fn finish(mut self, rates: &mut Rates<'_>, h: f64, next: f64) -> Option<Step> {
+        if !self.end.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        let n = self.start.len();
+        rates(self.t + h, &self.end, &mut self.k[STAGES * n..][..n]);
+        let Some(by) = &METHOD.bi else { return None };
+        for i in STAGES + 1..ALL_STAGES {
+            self.stage(rates, i, h);
+        }
+        let mut dense = vec![0.0; ORDER * n];
+        for i in 0..n {
+            let (start, change) = (self.start[i], self.end[i] - self.start[i]);
+            let bend = h * self.k(0)[i] - change;
+            for (place, value) in
+                [start, change, bend, change - h * self.k(STAGES)[i] - bend].into_iter().enumerate()
+            {
+                dense[place * n + i] = value;
             }
         }
-        if !changed {
-            break;
+        for (place, dense) in dense.chunks_exact_mut(n).enumerate().skip(4) {
+            add(dense, &self.k, &by[place], h);
+        }
+        self.unrounded(rates, h);
+        let first = self.k(0).to_vec();
+        Some(Step { t: self.t, h, next, end: self.end, start: self.start.to_vec(), first, dense })
+    }
+
+    /// Takes the trapezoidal rule where it agrees with the step but for rounding (constant acceleration), for it
+    /// has fewer roundings and no bias: over 1e4 bounces that of the method's twelve weights would be seen in the
+    /// energy.
+    fn unrounded(&mut self, rates: &mut Rates<'_>, h: f64) {
+        let n = self.start.len();
+        // Speeds first, then the coordinates that follow from them.
+        for again in [true, false] {
+            let mut changed = false;
+            for i in 0..n {
+                let (first, last) = (self.k[i], self.k[STAGES * n + i]);
+                let rule = self.start[i] + 0.5 * h * (first + last);
+                let size = self.start[i].abs() + h * (first.abs() + last.abs());
+                if rule != self.end[i] && (rule - self.end[i]).abs() <= 32.0 * f64::EPSILON * size {
+                    self.end[i] = rule;
+                    changed = true;
+                }
+            }
+            if !(changed && again) {
+                break;
+            }
+            rates(self.t + h, &self.end, &mut self.k[STAGES * n..][..n]);
         }
     }
 }
 
-/// A step from (t, y) over exactly `h`, whatever its error: part of a step that was accepted.
-pub(crate) fn part(rates: &impl Fn(f64, &[f64], &mut [f64]), t: f64, y: &[f64], h: f64) -> Option<Step> {
-    if h <= 0.0 {
-        return Some(Step::still(t, 0.0, y));
+/// Adds the sum of vectors, which stand one after the other, with these weights times a factor.
+fn add(sum: &mut [f64], vectors: &[f64], weights: &[f64], factor: f64) {
+    for (vector, &weight) in vectors.chunks_exact(sum.len()).zip(weights) {
+        if weight != 0.0 {
+            let weight = weight * factor;
+            for (sum, value) in sum.iter_mut().zip(vector) {
+                *sum += weight * value;
+            }
+        }
     }
-    let loose = Tolerances { relative: 1e200, absolute: 1e200 };
-    step(rates, t, y, h, &loose).filter(|made| (made.h - h).abs() <= 1e-12 * h)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn oscillator(_: f64, y: &[f64], rates: &mut [f64]) {
+        (rates[0], rates[1]) = (y[1], -y[0]);
+    }
+
+    /// Halving a step divides the error of its end by 2^9 and that of the dense output by 2^8.
+    #[test]
+    fn steps_and_dense_output_have_their_orders() {
+        let errors = |h: f64| {
+            let step = part(&mut oscillator, (0.0, &[1.0, 0.0], None), h).unwrap();
+            let off = |t: f64, y: &[f64]| (y[0] - t.cos()).abs().max((y[1] + t.sin()).abs());
+            let within = (1..50).map(|i| off(f64::from(i) / 50.0 * h, &step.at(f64::from(i) / 50.0)));
+            (off(h, &step.end), within.fold(0.0, f64::max))
+        };
+        let (coarse, fine) = (errors(1.6), errors(0.8));
+        let orders = ((coarse.0 / fine.0).log2(), (coarse.1 / fine.1).log2());
+        assert!(orders.0 > 8.0 && orders.1 > 7.5, "{orders:?}");
+        assert!(errors(0.2).1 < 1e-11, "{:e}", errors(0.2).1);
+    }
+
+    #[test]
+    fn steps_keep_to_their_tolerance() {
+        let tolerances = Tolerances { relative: 1e-10, absolute: 1e-10 };
+        let step = step(&mut oscillator, (3.0, &[1.0, 0.0], None), 10.0, &tolerances).unwrap();
+        assert!(step.h > 0.1 && step.h < 2.0 && (step.end[0] - step.h.cos()).abs() < 1e-10);
+        // Rates that are not finite anywhere ahead leave nothing.
+        let mut broken =
+            |t: f64, _: &[f64], rates: &mut [f64]| rates.fill(if t > 3.0 { f64::NAN } else { 1.0 });
+        assert!(super::step(&mut broken, (3.0, &[1.0], None), 1.0, &tolerances).is_none());
+    }
+
+    /// Constant acceleration leaves no error of the method's weights.
+    #[test]
+    fn constant_accelerations_are_integrated_to_the_last_digit() {
+        let mut fall = |_: f64, y: &[f64], rates: &mut [f64]| (rates[0], rates[1]) = (y[1], -9.81);
+        let step = part(&mut fall, (0.0, &[2.0, 1.0], Some(&[1.0, -9.81])), 0.3).unwrap();
+        assert_eq!(step.end, [2.0 + 0.15 * (1.0 + (1.0 - 0.3 * 9.81)), 1.0 - 0.3 * 9.81]);
+    }
 }

@@ -119,16 +119,18 @@ impl Transition<'_> {
             let failed = RefCell::new(None);
             let made = {
                 let motion = self.motion(closed);
-                let rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
+                let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
                     Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
                     Err(failure) => {
                         failed.borrow_mut().get_or_insert(failure);
                         rates.fill(f64::NAN);
                     }
                 };
-                stepper::step(&rates, self.front.t, &self.front.y, most, &tolerances)
+                // Directions that follow from the state change the rates.
+                let first = closed.iter().all(|contact| contact.omega.is_none()).then_some(&here.rates[..]);
+                stepper::step(&mut rates, (self.front.t, &self.front.y, first), most, &tolerances)
             };
-            let Some(mut step) = made else {
+            let Some(step) = made else {
                 return self.stuck_integration(failed.into_inner()).map(|()| None);
             };
             if !self.keeps_direction(closed, here, &step)? {
@@ -141,17 +143,16 @@ impl Transition<'_> {
                 continue;
             };
             let h = step.h;
-            let made = RefCell::new(&mut step);
             let found = first_crossing(
                 &mut Functions {
                     count: watched.len(),
                     noise: &noise,
                     values: &mut |fraction| {
-                        let at = &mut |after: f64| made.borrow_mut().at(after / h);
+                        let at = &mut |after: f64| step.at(after / h);
                         self.values(closed, &watched, h * fraction, at).ok()
                     },
                     slopes: &mut |fraction| {
-                        let y = made.borrow_mut().at(fraction);
+                        let y = step.at(fraction);
                         self.slopes(&watched, h * fraction, &y)
                             .into_iter()
                             .map(|slope| slope.map(|slope| slope * h))
