@@ -158,14 +158,14 @@ fn piece<T: Real>(
     }
     // Whether to find the end of compression first.
     let mut compresses = false;
-    if restitution.stop().is_some() {
-    } else if from.1.state.velocity < zero {
+    let by_law = restitution.stop().is_none();
+    if by_law && from.1.state.velocity < zero {
         // Newton's target does not depend on where compression ends.
         compresses = law != Law::Newton || restitution.target <= zero || restitution.thorough();
         if !compresses {
             restitution.compressed_somewhere();
         }
-    } else if to.1.velocity < zero {
+    } else if by_law && to.1.velocity < zero {
         let (xi, point) = fall(course, &from, to.0);
         to = (xi, point.state, point.since);
         restitution.falls(&to.1);
@@ -186,7 +186,7 @@ fn piece<T: Real>(
         };
         let mut found = find(course, &event, T::one(), &from, to.0);
         if !compresses {
-            if law == Law::Newton && restitution.stop().is_none() {
+            if by_law && law == Law::Newton {
                 // The law states v_n itself: rounding of the place may exceed a small target.
                 found.1.state.velocity = restitution.target;
             }

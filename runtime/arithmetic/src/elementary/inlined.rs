@@ -31,8 +31,9 @@ macro_rules! functions {
         #[inline(always)]
         pub fn exp(x: $real) -> Option<$real> {
             let size = x.abs();
-            // Also where x is not a number.
-            if !(size < exponential::FAR) {
+            // Not where x is not a number.
+            let near = size < exponential::FAR;
+            if !near {
                 return None;
             }
             let k = turns(x, size, exponential::TWO);
@@ -49,7 +50,8 @@ macro_rules! functions {
         #[inline(always)]
         pub fn exp_m1(x: $real) -> Option<$real> {
             let size = x.abs();
-            if !(size < less_one::FAR) {
+            let near = size < less_one::FAR;
+            if !near {
                 return if x < 0.0 { Some(-1.0) } else { None };
             }
             let k = turns(x, size, less_one::TWO);
@@ -97,7 +99,8 @@ macro_rules! functions {
         /// ln x, for normal numbers.
         #[inline(always)]
         pub fn ln(x: $real) -> Option<$real> {
-            if !(x >= <$real>::MIN_POSITIVE && x < <$real>::INFINITY) {
+            let finite = x < <$real>::INFINITY;
+            if !finite || x < <$real>::MIN_POSITIVE {
                 return None;
             }
             let (k, one_f) = parts(x);
@@ -107,7 +110,8 @@ macro_rules! functions {
         /// ln(1 + x), unless x is -1 or less, or so large that it is ln x.
         #[inline(always)]
         pub fn ln_1p(x: $real) -> Option<$real> {
-            if !(x > -1.0 && x < one_more::FAR) {
+            let near = x < one_more::FAR;
+            if !near || x <= -1.0 {
                 return None;
             }
             let (k, f, c) = if x < one_more::NEAR[1] && x > one_more::NEAR[0] {
@@ -131,7 +135,7 @@ pub mod double {
     const ROOT_HALF: u64 = 0x3fe6_a09e_0000_0000;
     /// A little more than ln 2 / 2.
     const HALF_LN2: f64 = f64::from_bits(0x3fd6_2e43_0000_0000);
-    const INVERSE_LN2: f64 = 1.442695040888963;
+    const INVERSE_LN2: f64 = core::f64::consts::LOG2_E;
     /// ln 2 in two parts.
     const LN2: [f64; 2] = [0.6931471803691238, 1.9082149292705877e-10];
 
@@ -193,7 +197,7 @@ pub mod single {
     const ROOT_HALF: u32 = 0x3f35_04f3;
     /// A little more than ln 2 / 2.
     const HALF_LN2: f32 = f32::from_bits(0x3eb1_7219);
-    const INVERSE_LN2: f32 = 1.442695;
+    const INVERSE_LN2: f32 = core::f32::consts::LOG2_E;
     /// ln 2 in two parts.
     const LN2: [f32; 2] = [0.6931381, 9.058001e-6];
 
@@ -251,9 +255,12 @@ mod tests {
     use super::{double, single};
     use std::vec::Vec;
 
+    /// A function here, and that of `libm`.
+    type Pair<T> = (fn(T) -> Option<T>, fn(T) -> T);
+
     /// The bits of the functions of `libm`, wherever there is an answer; how often there is.
     fn doubles(x: f64) -> u32 {
-        let functions: [(fn(f64) -> Option<f64>, fn(f64) -> f64); 4] = [
+        let functions: [Pair<f64>; 4] = [
             (double::exp, all_doubles::exp),
             (double::exp_m1, all_doubles::exp_m1),
             (double::ln, all_doubles::ln),
@@ -269,7 +276,7 @@ mod tests {
     }
 
     fn singles(x: f32) -> u32 {
-        let functions: [(fn(f32) -> Option<f32>, fn(f32) -> f32); 4] = [
+        let functions: [Pair<f32>; 4] = [
             (single::exp, all_singles::exp),
             (single::exp_m1, all_singles::exp_m1),
             (single::ln, all_singles::ln),
