@@ -11,23 +11,14 @@ use hodograph::Law;
 
 const PAGE: &str = include_str!("../../docs/paper.md");
 
-/// Poisson's hypothesis: no proof that it never gains energy, and no collision that does.
+/// Poisson's hypothesis: no proof that it never gains energy, and no collision that does. The whole search of
+/// the page is in simulation/tests/energy_under_poisson.rs.
 #[test]
 fn no_gain_is_found_under_poissons_hypothesis() {
-    let found = energy::search(600);
-    assert!(found.solved > 30_000);
+    let found = energy::search(200);
+    assert!(found.solved > 10_000);
     assert!(found.work <= 64.0 * f64::EPSILON, "{found:?}");
     assert!(found.quotient > 0.9 && found.quotient <= 1.0, "{found:?}");
-}
-
-/// The numbers of the page, by the search of the page.
-#[test]
-#[ignore = "two and a half million collisions; `cargo test --release -p hodograph --test energy -- --ignored`"]
-fn the_whole_search_is_that_of_the_page() {
-    let found = energy::search(40_000);
-    for shown in [format!("{:.1e}", found.work), format!("{:.5}", found.quotient)] {
-        assert!(PAGE.contains(&shown), "{found:?}");
-    }
 }
 
 #[test]

@@ -63,5 +63,8 @@ collisions! {
     four_bar FourBar "../models/four_bar.mech" coupler_wall collide_coupler_wall ();
     planar_double_pendulum PlanarDoublePendulum "../models/planar_double_pendulum.mech" tip_wall collide_tip_wall ();
     driven_rotary_pendulum DrivenRotaryPendulum "../models/driven_rotary_pendulum.mech" tip_wall collide_tip_wall (0.3);
+    crossing_rails CrossingRails "models/crossing_rails.mech" upper_lower collide_upper_lower ();
+    gantry Gantry "models/gantry.mech" tool_table collide_tool_table ();
+    askew_gantry AskewGantry "models/askew_gantry.mech" tool_table collide_tool_table ();
     arm_7dof Arm7dof "../models/arm_7dof.mech" tool_plane collide_tool_plane ();
 }

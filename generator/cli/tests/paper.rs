@@ -77,7 +77,8 @@ fn missing(command: &str) -> Option<String> {
             (!found).then(|| name.to_owned())
         }
         ("test", _, Some(file)) => {
-            let path = root().join(format!("runtime/tests/{file}.rs"));
+            let folder = if after("-p") == Some("hodograph") { "runtime/tests" } else { "tests/tests" };
+            let path = root().join(format!("{folder}/{file}.rs"));
             let text = std::fs::read_to_string(path).unwrap_or_default();
             let name = words[words.len() - 1];
             (!text.contains(&format!("fn {name}("))).then(|| name.to_owned())

@@ -1,6 +1,8 @@
 //! Elementary functions by `libm`, not by the system: the same bits on every machine, with the standard
 //! library and without.
 
+pub mod inlined;
+
 /// Functions of doubles, to about a unit in the last place.
 pub mod double {
     pub use libm::{acos, asin, atan, atan2, exp, expm1 as exp_m1, log as ln, log1p as ln_1p, tan};

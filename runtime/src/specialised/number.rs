@@ -1,11 +1,14 @@
 //! The numbers of a specialised collision: those of the caller, of another type.
 
 use core::{
+    any::TypeId,
     cmp::Ordering,
     marker::PhantomData,
     ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign},
 };
 
+use hodograph_arithmetic::elementary::inlined::{double, single};
+use nalgebra::{convert, convert_unchecked};
 use num_traits::{One, Zero};
 
 use super::known_law::KnownLaw;
@@ -24,6 +27,33 @@ impl<T, L> Inlined<T, L> {
     pub const fn of(value: T) -> Self {
         Self { value, law: PhantomData }
     }
+}
+
+/// A function of doubles or singles as a part of the caller, where it has an answer, else that of the number;
+/// which of the two number types it is, is known while compiling. No function that takes functions: these
+/// need not become parts of it.
+macro_rules! inlined {
+    ($function:ident of $a:expr) => {{
+        let (a, this) = ($a, TypeId::of::<T>());
+        if this == TypeId::of::<f64>()
+            && let Some(value) = double::$function(convert_unchecked::<T, f64>(a))
+        {
+            Self::of(convert(value))
+        } else if this == TypeId::of::<f32>()
+            && let Some(value) = single::$function(convert_unchecked::<T, f32>(a))
+        {
+            Self::of(convert(value))
+        } else {
+            Self::of(rarely(a, Real::$function))
+        }
+    }};
+}
+
+/// A function of an argument for which there is no shorter one.
+#[cold]
+#[inline(never)]
+fn rarely<T: Scalar>(a: T, function: impl FnOnce(T) -> T) -> T {
+    function(a)
 }
 
 impl<T: Scalar, L: KnownLaw> Real for Inlined<T, L> {
@@ -60,19 +90,19 @@ impl<T: Scalar, L: KnownLaw> Real for Inlined<T, L> {
     }
     #[inline(always)]
     fn exp(self) -> Self {
-        Self::of(Real::exp(self.value))
+        inlined!(exp of self.value)
     }
     #[inline(always)]
     fn exp_m1(self) -> Self {
-        Self::of(Real::exp_m1(self.value))
+        inlined!(exp_m1 of self.value)
     }
     #[inline(always)]
     fn ln(self) -> Self {
-        Self::of(Real::ln(self.value))
+        inlined!(ln of self.value)
     }
     #[inline(always)]
     fn ln_1p(self) -> Self {
-        Self::of(Real::ln_1p(self.value))
+        inlined!(ln_1p of self.value)
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

@@ -33,7 +33,7 @@ impl Shape for Balanced {
         (m.nt, m.ns) = (T::zero(), T::zero());
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide<T: Real>(
         c: &Contact<T>,
         from: Vector2<T>,
@@ -49,6 +49,7 @@ impl Shape for Balanced {
 }
 
 /// Unit vector along the axis of the greater eigenvalue of T, and both eigenvalues, the greater first.
+#[inline(always)]
 fn principal<T: Real>(c: &Contact<T>) -> (Vector2<T>, [T; 2]) {
     let (one, zero) = (T::one(), T::zero());
     let half = constant::<T>(0.5);
@@ -69,7 +70,7 @@ fn principal<T: Real>(c: &Contact<T>) -> (Vector2<T>, [T; 2]) {
 }
 
 /// Follows the sliding arc of a contact whose T has these eigenvalues, the first with the eigenvector `axis`.
-#[inline]
+#[inline(always)]
 pub(super) fn decay<T: Real>(
     c: &Contact<T>,
     from: Vector2<T>,
@@ -106,12 +107,14 @@ struct Decay<T: Real> {
 }
 
 impl<T: Real> Decay<T> {
+    #[inline(always)]
     fn plane(&self, first: T, second: T) -> Vector2<T> {
         self.axis * first + Vector2::new(-self.axis.y, self.axis.x) * second
     }
 
     /// The state at the normal impulse `normal`, where the integrals of v_1 and v_2 over sigma are `first`
     /// and `second` times their values at the start, and the normal work since the start.
+    #[inline(always)]
     fn state(&self, normal: T, first: T, second: T) -> (State<T>, T) {
         let [v1, v2] = self.start;
         let State { normal: before, tangential, velocity, work } = self.begin;
@@ -126,28 +129,31 @@ impl<T: Real> Decay<T> {
     }
 
     /// I_n from the start to `sigma`; to the end of slip if it is `None`.
+    #[inline(always)]
     fn impulse(&self, sigma: Option<T>) -> T {
-        let [first, second] = self.start;
+        let [mut first, mut second] = self.start;
         let [fast, slow] = self.rates;
         let ratio = second / first;
         let square = ratio * ratio;
         let near = constant::<T>(NEAR);
-        if square >= near {
-            return self.far(first, second, sigma);
-        }
-        // sigma at which one series replaces the other; the result does not depend on it.
-        let change = ((near / square).ln() / (self.difference + self.difference)).primal();
-        match sigma {
-            Some(sigma) if sigma <= change => self.near(sigma),
-            _ => {
-                let (first, second) = (first * (-fast * change).exp(), second * (-slow * change).exp());
-                self.near(change) + self.far(first, second, sigma.map(|sigma| sigma - change))
+        let (mut before, mut sigma) = (T::zero(), sigma);
+        if square < near {
+            // sigma at which one series replaces the other; the result does not depend on it.
+            let change = ((near / square).ln() / (self.difference + self.difference)).primal();
+            let ends = sigma.filter(|sigma| *sigma <= change);
+            before = self.near(ends.unwrap_or(change));
+            if ends.is_some() {
+                return before;
             }
+            (first, second) = (first * (-fast * change).exp(), second * (-slow * change).exp());
+            sigma = sigma.map(|sigma| sigma - change);
         }
+        before + self.far(first, second, sigma)
     }
 
     /// I_n from the start to `sigma`, where |v_2| < |v_1|: the integral of |v_1| (1 + z)^(1/2), z = (v_2 /
     /// v_1)^2, by the binomial series.
+    #[inline(always)]
     fn near(&self, sigma: T) -> T {
         let [first, second] = self.start;
         let [fast, _] = self.rates;
@@ -158,8 +164,10 @@ impl<T: Real> Decay<T> {
         let left = (-fast * sigma).exp();
         let (mut now, mut then, mut binomial) = (T::one(), left, T::one());
         let mut sum = T::zero();
-        for k in 0..TERMS {
-            let rate = fast - double * constant(f64::from(k));
+        // The number of the term, in the number type: on some processors doubles are software.
+        let mut k = T::zero();
+        for _ in 0..TERMS {
+            let rate = fast - double * k;
             let x = rate * sigma;
             // Where z^k |v_1| hardly changes the quotient would be nearly 0 / 0.
             let lasting =
@@ -169,7 +177,9 @@ impl<T: Real> Decay<T> {
             if term.abs() <= last::<T>() * sum.abs() {
                 break;
             }
-            binomial *= constant((1.0 - 2.0 * f64::from(k)) / (2.0 * f64::from(k) + 2.0));
+            let twice = k + k;
+            binomial *= (T::one() - twice) / (twice + constant(2.0));
+            k += T::one();
             now *= z;
             then *= grown;
         }
@@ -178,6 +188,7 @@ impl<T: Real> Decay<T> {
 
     /// I_n from any point where |v_2| is not small: the integral of |v_2| plus that of s - |v_2|, which is s
     /// R(u) with a power series R in u = (v_1 / s)^2.
+    #[inline(always)]
     fn far(&self, first: T, second: T, sigma: Option<T>) -> T {
         let (one, zero) = (T::one(), T::zero());
         let [fast, slow] = self.rates;
@@ -210,10 +221,11 @@ impl<T: Real> Decay<T> {
         let half = constant::<T>(0.5);
         let (mut left, mut coefficient, mut power, mut sum) = (half, zero, u, zero);
         let (mut kept, mut gone) = (kept, gone);
-        for k in 1..TERMS {
-            let n = f64::from(k);
-            let of_last = self.difference * constant(2.0 * n - 3.0) * coefficient;
-            coefficient = (of_last + left) / (slow + double * constant(n));
+        let mut n = one;
+        for _ in 1..TERMS {
+            let twice = n + n;
+            let of_last = self.difference * (twice - constant(3.0)) * coefficient;
+            coefficient = (of_last + left) / (slow + double * n);
             // s u^k at the start less that after sigma.
             gone += kept * lost;
             kept *= stays;
@@ -222,20 +234,29 @@ impl<T: Real> Decay<T> {
             if term <= last::<T>() * sum {
                 break;
             }
-            left *= constant((2.0 * n - 1.0) / (2.0 * n + 2.0));
+            left *= (twice - one) / (twice + constant(2.0));
             power *= u;
+            n += one;
         }
         second.abs() * steady + slip * sum
     }
 }
 
 /// The size of a term relative to the sum at which a series ends; smaller where numbers carry derivatives.
-#[inline]
+#[inline(always)]
 fn last<T: Real>() -> T {
     T::default_epsilon() * if T::refined() { constant(1.0 / 4096.0) } else { constant(0.125) }
 }
 
 impl<T: Real> Course<T> for Decay<T> {
+    #[inline(always)]
+    fn start(&self) -> Point<T> {
+        let [first, second] = self.start;
+        let slip = self.plane(first, second);
+        Point { state: self.begin, slip, rate: length(&slip), slope: T::one(), since: T::zero() }
+    }
+
+    #[inline(always)]
     fn at(&self, xi: T) -> Point<T> {
         let [fast, slow] = self.rates;
         let [first, second] = self.start;
@@ -247,21 +268,25 @@ impl<T: Real> Course<T> for Decay<T> {
         Point { state, slip, rate: length(&slip) / left, slope: T::one(), since }
     }
 
+    #[inline(always)]
     fn from(&self, point: &Point<T>) -> Self {
         let (axis, slip) = (self.axis, &point.slip);
         let start = [axis.dot(slip), axis.x * slip.y - axis.y * slip.x];
         Self { begin: point.state, start, ..*self }
     }
 
+    #[inline(always)]
     fn stop(&self) -> Option<(T, State<T>, T)> {
         let one = T::one();
         let [fast, slow] = self.rates;
-        (slow > T::zero()).then(|| {
-            let (state, since) = self.state(self.impulse(None), one / fast, one / slow);
-            (one / slow, state, since)
-        })
+        if slow <= T::zero() {
+            return None;
+        }
+        let (state, since) = self.state(self.impulse(None), one / fast, one / slow);
+        Some((one / slow, state, since))
     }
 
+    #[inline(always)]
     fn turn(&self) -> Option<T> {
         None
     }

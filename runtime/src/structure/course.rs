@@ -33,6 +33,8 @@ pub(super) struct Point<T: Real> {
 
 /// A sliding arc in closed form, over a parameter xi that is zero at its beginning and grows with I_n.
 pub(super) trait Course<T: Real>: Sized {
+    /// The point at xi = 0.
+    fn start(&self) -> Point<T>;
     /// The point at xi.
     fn at(&self, xi: T) -> Point<T>;
     /// The same arc from one of its points on.
@@ -55,7 +57,19 @@ enum Piece<T: Real> {
 }
 
 /// Follows an arc until the law ends the collision or slip stops.
-pub(super) fn follow<T: Real>(mut course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
+#[inline(always)]
+pub(super) fn follow<T: Real>(course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
+    if T::INLINED { follow_here(course, restitution) } else { follow_apart(course, restitution) }
+}
+
+/// [`follow`] as a function of its own.
+#[inline(never)]
+fn follow_apart<T: Real>(course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
+    follow_here(course, restitution)
+}
+
+#[inline(always)]
+fn follow_here<T: Real>(mut course: impl Course<T>, restitution: &mut Restitution<T>) -> Slide<T> {
     let mut state = restitution.start();
     // f changes sign once at most, so that compression ends at most twice.
     for _ in 0..3 {
@@ -77,51 +91,52 @@ enum Followed<T: Real> {
     Compressed(Point<T>),
 }
 
+/// Follows an arc piece by piece: to where f changes sign, and from there to where slip stops or, if it never
+/// does, on in steps of twice the length until the law ends the collision.
+///
+/// Each routine is called in one place, so that all of them together are one routine of bounded length where
+/// they become a part of the caller.
+#[inline(always)]
 fn along<T: Real>(course: &impl Course<T>, restitution: &mut Restitution<T>) -> Followed<T> {
-    let mut from = (T::zero(), course.at(T::zero()));
+    let mut from = (T::zero(), course.start());
     let stop = course.stop();
-    let turn = course.turn().filter(|xi| *xi > T::zero() && stop.is_none_or(|(end, ..)| *xi < end));
-    let ended = |end: Point<T>| Followed::Over(Slide::Ended(end.state, end.slip));
-    if let Some(xi) = turn {
-        let to = (xi, course.at(xi));
-        match piece(course, restitution, from, (to.0, to.1.state, to.1.since)) {
-            Piece::Ended(end) => return ended(end),
-            Piece::Compressed(point) => return Followed::Compressed(point),
-            Piece::Passed => {}
-        }
-        restitution.grazing.moved(to.1.state.velocity);
-        from = to;
-    }
-    if let Some((xi, state, since)) = stop {
-        return match piece(course, restitution, from, (xi, state, since)) {
-            Piece::Ended(end) => ended(end),
-            Piece::Compressed(point) => Followed::Compressed(point),
-            Piece::Passed => {
-                restitution.since(&state, since);
-                Followed::Over(Slide::Stopped(state))
+    let mut turn = course.turn().filter(|xi| *xi > T::zero() && stop.is_none_or(|(end, ..)| *xi < end));
+    let mut step = T::one() / from.1.rate;
+    for _ in 0..if turn.is_some() { DOUBLINGS + 1 } else { DOUBLINGS } {
+        let (to, next) = match (turn, stop) {
+            (None, Some(stop)) => (stop, None),
+            _ => {
+                let xi = turn.unwrap_or(from.0 + step);
+                let point = course.at(xi);
+                if turn.is_none() && !point.state.normal.is_finite() {
+                    break;
+                }
+                ((xi, point.state, point.since), Some((xi, point)))
             }
         };
-    }
-    // Slip never stops: go on until the law ends the collision.
-    let mut step = T::one() / from.1.rate;
-    for _ in 0..DOUBLINGS {
-        let xi = from.0 + step;
-        let to = (xi, course.at(xi));
-        if !to.1.state.normal.is_finite() {
-            break;
-        }
-        match piece(course, restitution, from, (xi, to.1.state, to.1.since)) {
-            Piece::Ended(end) => return ended(end),
+        match piece(course, restitution, from, to) {
+            Piece::Ended(end) => return Followed::Over(Slide::Ended(end.state, end.slip)),
             Piece::Compressed(point) => return Followed::Compressed(point),
             Piece::Passed => {}
         }
-        from = to;
-        step += step;
+        let Some(next) = next else {
+            let (_, state, since) = to;
+            restitution.since(&state, since);
+            return Followed::Over(Slide::Stopped(state));
+        };
+        from = next;
+        if turn.take().is_some() {
+            restitution.grazing.moved(from.1.state.velocity);
+            step = T::one() / from.1.rate;
+        } else {
+            step += step;
+        }
     }
     Followed::Over(Slide::Endless(from.1.state))
 }
 
 /// What happens between two points between which v_n is monotone.
+#[inline(always)]
 fn piece<T: Real>(
     course: &impl Course<T>,
     restitution: &mut Restitution<T>,
@@ -141,44 +156,92 @@ fn piece<T: Real>(
     if passes {
         return Piece::Passed;
     }
-    if let Some(stop) = restitution.stop() {
-        return Piece::Ended(find(course, &Event::Impulse(stop), T::one(), &from, to.0).1);
-    }
-    if from.1.state.velocity < zero {
-        if law == Law::Newton && restitution.target > zero && !restitution.thorough() {
-            // Newton's target does not depend on where compression ends.
+    // Whether to find the end of compression first.
+    let mut compresses = false;
+    let by_law = restitution.stop().is_none();
+    if by_law && from.1.state.velocity < zero {
+        // Newton's target does not depend on where compression ends.
+        compresses = law != Law::Newton || restitution.target <= zero || restitution.thorough();
+        if !compresses {
             restitution.compressed_somewhere();
-        } else {
-            from = find(course, &Event::Velocity(zero), T::one(), &from, to.0);
-            if restitution.compressed(&from.1.state) {
-                return Piece::Ended(from.1);
-            }
-            from.1.state.velocity = zero;
-            if law == Law::Stronge && length(&from.1.slip) > zero {
-                return Piece::Compressed(from.1);
-            }
         }
-    } else if to.1.velocity < zero {
-        let (xi, point) = find(course, &Event::Velocity(zero), -T::one(), &from, to.0);
+    } else if by_law && to.1.velocity < zero {
+        let (xi, point) = fall(course, &from, to.0);
         to = (xi, point.state, point.since);
         restitution.falls(&to.1);
     }
-    let target = restitution.target;
-    let reached = if works { to.2 >= restitution.wanted } else { restitution.watched(&to.1) >= target };
-    if !reached || (law == Law::Newton && restitution.watched(&from.1.state) >= target) {
-        return Piece::Passed;
+    loop {
+        let event = match restitution.stop() {
+            Some(stop) => Event::Impulse(stop),
+            None if compresses => Event::Velocity(zero),
+            None => {
+                let target = restitution.target;
+                let reached =
+                    if works { to.2 >= restitution.wanted } else { restitution.watched(&to.1) >= target };
+                if !reached || (law == Law::Newton && restitution.watched(&from.1.state) >= target) {
+                    return Piece::Passed;
+                }
+                Event::end(restitution)
+            }
+        };
+        let mut found = find(course, &event, T::one(), &from, to.0);
+        if !compresses {
+            if by_law && law == Law::Newton {
+                // The law states v_n itself: rounding of the place may exceed a small target.
+                found.1.state.velocity = restitution.target;
+            }
+            return Piece::Ended(found.1);
+        }
+        compresses = false;
+        from = found;
+        if restitution.compressed(&from.1.state) {
+            return Piece::Ended(from.1);
+        }
+        from.1.state.velocity = zero;
+        if law == Law::Stronge && length(&from.1.slip) > zero {
+            return Piece::Compressed(from.1);
+        }
     }
-    let mut end = find(course, &Event::end(restitution), T::one(), &from, to.0).1;
-    if law == Law::Newton {
-        // The law states v_n itself: rounding of the place may exceed a small target.
-        end.state.velocity = target;
-    }
-    Piece::Ended(end)
+}
+
+/// Where v_n falls through zero, between `from` and `hi`.
+#[cold]
+#[inline(never)]
+fn fall<T: Real>(course: &impl Course<T>, from: &(T, Point<T>), hi: T) -> (T, Point<T>) {
+    find_here(course, &Event::Velocity(T::zero()), -T::one(), from, hi)
 }
 
 /// The event between `from` and `hi`, where its residual rises (`sign` = 1) or falls (-1) through zero:
 /// Newton's method inside a bracket.
+#[inline(always)]
 fn find<T: Real>(
+    course: &impl Course<T>,
+    event: &Event<T>,
+    sign: T,
+    from: &(T, Point<T>),
+    hi: T,
+) -> (T, Point<T>) {
+    if T::INLINED {
+        find_here(course, event, sign, from, hi)
+    } else {
+        find_apart(course, event, sign, from, hi)
+    }
+}
+
+/// [`find`] as a function of its own.
+#[inline(never)]
+fn find_apart<T: Real>(
+    course: &impl Course<T>,
+    event: &Event<T>,
+    sign: T,
+    from: &(T, Point<T>),
+    hi: T,
+) -> (T, Point<T>) {
+    find_here(course, event, sign, from, hi)
+}
+
+#[inline(always)]
+fn find_here<T: Real>(
     course: &impl Course<T>,
     event: &Event<T>,
     sign: T,
@@ -202,33 +265,38 @@ fn find<T: Real>(
     };
     let mut xi = if guess > lo && guess < hi { guess } else { (lo + hi) * half };
     let small = constant::<T>(4.0) * T::default_epsilon();
-    for _ in 0..STEPS {
+    // The trials that are left; then the point is the answer. Derivatives converge one step of Newton's
+    // method later than values.
+    let (mut trials, mut refined) = (STEPS, !T::refined());
+    loop {
         let point = course.at(xi);
-        let y = residual(&point);
-        if y * sign < T::zero() {
-            lo = xi;
+        if trials > 0 {
+            let y = residual(&point);
+            if y * sign < T::zero() {
+                lo = xi;
+            } else {
+                hi = xi;
+            }
+            let step = -y / slope(&point);
+            let next = xi + step;
+            let done = step.abs() <= small * xi;
+            xi = if next >= lo && next <= hi { next } else { (lo + hi) * half };
+            let settled = done || hi - lo <= small * hi;
+            trials = if settled { 0 } else { trials - 1 };
+            if trials == 0 && !refined {
+                xi = xi.primal();
+            }
+        } else if !refined {
+            xi -= residual(&point) / slope(&point);
+            refined = true;
         } else {
-            hi = xi;
-        }
-        let step = -y / slope(&point);
-        let next = xi + step;
-        let done = step.abs() <= small * xi;
-        xi = if next >= lo && next <= hi { next } else { (lo + hi) * half };
-        if done || hi - lo <= small * hi {
-            break;
+            return (xi, point);
         }
     }
-    if T::refined() {
-        // Derivatives converge one step of Newton's method later than values.
-        let plain = xi.primal();
-        let point = course.at(plain);
-        xi = plain - residual(&point) / slope(&point);
-    }
-    (xi, course.at(xi))
 }
 
 /// (1 - e^(-k sigma)) / k, which is sigma for k = 0.
-#[inline]
+#[inline(always)]
 pub(super) fn decayed<T: Real>(k: T, sigma: T) -> T {
     let x = k * sigma;
     if x.abs() <= constant(1e-5) {
@@ -239,7 +307,7 @@ pub(super) fn decayed<T: Real>(k: T, sigma: T) -> T {
 }
 
 /// sigma from xi = (1 - e^(-k sigma)) / k.
-#[inline]
+#[inline(always)]
 pub(super) fn elapsed<T: Real>(k: T, xi: T) -> T {
     let x = k * xi;
     if x.abs() <= constant(1e-5) {
@@ -250,7 +318,7 @@ pub(super) fn elapsed<T: Real>(k: T, xi: T) -> T {
 
 /// Whether slip with components `along` and `across` an axis of symmetry keeps its direction: whether one of
 /// them is zero.
-#[inline]
+#[inline(always)]
 pub(super) fn stays<T: Real>(along: T, across: T) -> bool {
     let v = Vector2::new(along, across);
     let none = constant::<T>(0.25) * T::default_epsilon() * length(&v);

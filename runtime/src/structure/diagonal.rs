@@ -18,7 +18,7 @@ impl Shape for Diagonal {
         (m.nt, m.ns, m.ts) = (T::zero(), T::zero(), T::zero());
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide<T: Real>(
         c: &Contact<T>,
         from: Vector2<T>,
@@ -29,10 +29,8 @@ impl Shape for Diagonal {
             return slide_rarely(c, from, speed, restitution);
         }
         let (one, zero) = (T::one(), T::zero());
-        if c.tt >= c.ss {
-            decay(c, from, speed, Vector2::new(one, zero), [c.tt, c.ss], restitution)
-        } else {
-            decay(c, from, speed, Vector2::new(zero, one), [c.ss, c.tt], restitution)
-        }
+        let along = c.tt >= c.ss;
+        let (axis, values) = if along { ([one, zero], [c.tt, c.ss]) } else { ([zero, one], [c.ss, c.tt]) };
+        decay(c, from, speed, Vector2::from(axis), values, restitution)
     }
 }

@@ -26,7 +26,7 @@ impl Shape for Isotropic {
         (m.ts, m.ss) = (T::zero(), m.tt);
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide<T: Real>(
         c: &Contact<T>,
         from: Vector2<T>,
@@ -61,6 +61,7 @@ impl Shape for Isotropic {
 }
 
 /// v_2, and P and M.
+#[inline(always)]
 fn split<T: Real>(axis: &Vector2<T>, slip: &Vector2<T>, speed: T) -> (T, [T; 2]) {
     let (along, across) = (axis.dot(slip), axis.x * slip.y - axis.y * slip.x);
     // The lesser of P and M from P M = v_2^2 / 4.
@@ -90,6 +91,7 @@ impl<T: Real> Arc<T> {
     /// The state where the integrals of P, M and v_2 over sigma are `p`, `m` and `across` times their values
     /// at the start, and the normal work since the start. `mixed` is likewise the double integral of
     /// P(sigma) M(sigma') over sigma' < sigma.
+    #[inline(always)]
     fn state(&self, [p, m, across]: [T; 3], mixed: T) -> (State<T>, T) {
         let half = constant::<T>(0.5);
         let [a, b] = self.gains;
@@ -111,6 +113,21 @@ impl<T: Real> Arc<T> {
 }
 
 impl<T: Real> Course<T> for Arc<T> {
+    #[inline(always)]
+    fn start(&self) -> Point<T> {
+        let [p, m] = self.sizes;
+        let [a, b] = self.gains;
+        let rate = p + m;
+        Point {
+            state: self.begin,
+            slip: self.axis * (p - m) + Vector2::new(-self.axis.y, self.axis.x) * self.across,
+            rate,
+            slope: (a * p + b * m) / rate,
+            since: T::zero(),
+        }
+    }
+
+    #[inline(always)]
     fn at(&self, xi: T) -> Point<T> {
         let [p, m] = self.rates;
         let sigma = elapsed(p, xi);
@@ -133,32 +150,38 @@ impl<T: Real> Course<T> for Arc<T> {
         }
     }
 
+    #[inline(always)]
     fn from(&self, point: &Point<T>) -> Self {
         let (across, sizes) = split(&self.axis, &point.slip, length(&point.slip));
         Self { begin: point.state, across, sizes, ..*self }
     }
 
+    #[inline(always)]
     fn stop(&self) -> Option<(T, State<T>, T)> {
         let [p, m] = self.rates;
         let one = T::one();
-        (p > T::zero()).then(|| {
-            let mixed = one / (p * (p + m));
-            let (state, since) = self.state([one / p, one / m, one / self.kappa], mixed);
-            (one / p, state, since)
-        })
+        if p <= T::zero() {
+            return None;
+        }
+        let mixed = one / (p * (p + m));
+        let (state, since) = self.state([one / p, one / m, one / self.kappa], mixed);
+        Some((one / p, state, since))
     }
 
     /// a P + b M = 0 with M / P = e^(-2 beta sigma) M_0 / P_0.
+    #[inline(always)]
     fn turn(&self) -> Option<T> {
         let [a, b] = self.gains;
         let [p, m] = self.rates;
         let [size_p, size_m] = self.sizes;
         let ratio = -b * size_m / (a * size_p);
-        (a < T::zero() && ratio > T::one()).then(|| decayed(p, ratio.primal().ln() / (m - p)))
+        let turns = a < T::zero() && ratio > T::one();
+        if turns { Some(decayed(p, ratio.primal().ln() / (m - p))) } else { None }
     }
 }
 
 /// The integral of e^(-p t) (1 - e^(-m t)) / m from 0 to sigma.
+#[inline(always)]
 fn mixed<T: Real>(p: T, m: T, sigma: T) -> T {
     let (x, y) = (-p * sigma, -(p + m) * sigma);
     if y.abs() > T::one() || x.abs() > T::one() {

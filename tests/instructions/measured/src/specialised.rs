@@ -1,5 +1,5 @@
 //! What a collision that is one routine brings beside the usual one, over random states: the two sleds, the
-//! planar double pendulum and the arm, under one law, with friction and restitution given at run time or fixed.
+//! planar double pendulum, the arm, and a mechanism for each other structure, under one law, with friction and restitution given at run time or fixed.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -136,6 +136,12 @@ models! {
         two_sleds_shared two_sleds_known_law two_sleds_known_surface;
     planar_double_pendulum PlanarDoublePendulum "../../../models/planar_double_pendulum.mech" tip_wall collide_tip_wall:
         planar_double_pendulum_shared planar_double_pendulum_known_law planar_double_pendulum_known_surface;
+    crossing_rails CrossingRails "../../models/crossing_rails.mech" upper_lower collide_upper_lower:
+        crossing_rails_shared crossing_rails_known_law crossing_rails_known_surface;
+    askew_gantry AskewGantry "../../models/askew_gantry.mech" tool_table collide_tool_table:
+        askew_gantry_shared askew_gantry_known_law askew_gantry_known_surface;
+    gantry Gantry "../../models/gantry.mech" tool_table collide_tool_table:
+        gantry_shared gantry_known_law gantry_known_surface;
     arm_7dof Arm7dof "../../../models/arm_7dof.mech" tool_plane collide_tool_plane:
         arm_7dof_shared arm_7dof_known_law arm_7dof_known_surface;
 }
