@@ -261,6 +261,6 @@ fn models_are_laid_out() {
     let refused = run(&["fmt", &text(&path)]);
     assert_eq!((refused.code, refused.stderr.contains("rod.mech:2:")), (1, true), "{}", refused.stderr);
     assert_eq!(fs::read_to_string(&path).unwrap(), "mechanism A;\nframes { A = ; }\n");
-    assert_eq!(run(&["fmt", "no/such.mech"]).code, 1);
+    assert_eq!(run(&["fmt", "no/such.mech"]).code, 2);
     assert_eq!(run(&["fmt", "-", &text(&path)]).code, 2);
 }
