@@ -5,6 +5,10 @@
 //! is left has few branches. With k = x / ln 2, rounded, the exponential is 2^k e^r, where e^r - 1 is a
 //! rational function of a polynomial in r^2; the logarithm of 2^k (1 + f) is k ln 2 + ln(1 + f), likewise of s
 //! = f / (2 + f).
+//!
+//! Methods and constants: Copyright (C) 1993 by Sun Microsystems, Inc. All rights reserved. Developed at
+//! SunPro, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and distribute this software is
+//! freely granted, provided that this notice is preserved.
 
 /// The functions of a number type, from its constants and polynomials in the module that this stands in.
 macro_rules! functions {
