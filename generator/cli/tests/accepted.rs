@@ -127,10 +127,11 @@ fn coupled_constraints_are_derived_or_refused() {
     let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
     let mut pick = |most: u64| next(&mut bits) % most;
     let (mut derived, mut too_large) = (0, 0);
-    for count in [1_u64, 2, 5, 9, 9, 10, 12] {
+    let rings = [(9, true), (10, true)];
+    let triangles = [(1_u64, false), (2, false), (5, false), (9, false), (12, false)];
+    for (count, ring) in triangles.into_iter().chain(rings) {
         // each constraint has its own speed, the independent one and some others
         let others = if count > 8 { 1 } else { count / 2 };
-        let ring = count > 8 && pick(2) == 0;
         let constraints: Vec<String> = (0..count)
             .map(|row| {
                 let mut terms = vec![format!("{}*u{} - u0", 2 + pick(5), row + 1)];
@@ -162,5 +163,5 @@ fn coupled_constraints_are_derived_or_refused() {
             }
         }
     }
-    assert!(derived >= 4 && derived + too_large == 7 && too_large >= 1, "{derived} {too_large}");
+    assert_eq!((derived, too_large), (5, 2));
 }
