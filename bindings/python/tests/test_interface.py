@@ -199,9 +199,26 @@ def test_what_is_no_number_is_refused():
     assert np.isfinite(rows[0]).all() and np.isnan(rows[1]).all()
 
 
+def test_surfaces_that_the_model_states(tmp_path):
+    name, surface = "spherical_pendulum", dict(mu=0.3, e=0.7, law="stronge")
+    text = (ROOT / f"models/{name}.mech").read_text()
+    stated = text.replace("+ 0.9*L }", "+ 0.9*L, surface: { mu: 0.3, e: 0.7, law: stronge } }")
+    assert stated != text
+    (tmp_path / f"{name}.mech").write_text(stated)
+    # equations do not depend on surfaces: the derivation is the same
+    (tmp_path / f"{name}.derivation").write_text((ROOT / f"models/{name}.derivation").read_text())
+    m, plain = hodograph.load(tmp_path / f"{name}.mech"), model(name)
+    assert m.surface("tip") == surface and plain.surface("tip") is None
+    np.testing.assert_array_equal(m.collide("tip").speeds, plain.collide("tip", **surface).speeds)
+    np.testing.assert_array_equal(m.collide("tip", e=0.1).speeds, plain.collide("tip", **{**surface, "e": 0.1}).speeds)
+    np.testing.assert_array_equal(m.simulate(0.5, 0.1).q, plain.simulate(0.5, 0.1, **surface).q)
+    with pytest.raises(hodograph.ArgumentError, match="mu"):
+        plain.collide("tip")
+
+
 def test_figures_keep_names_beside_lines():
     m = model("planar_double_pendulum")
-    text = m.simulate(0.2, 0.01)._repr_html_()
+    text = m.simulate(0.2, 0.01, mu=0.0, e=1.0, law="newton")._repr_html_()
     assert ">-0<" not in text and ">q1<" in text
     assert "1 contact>" in repr(m) and "2 speeds" in repr(m)
 
@@ -211,7 +228,7 @@ def test_simulate_under_control():
     q0 = np.array([q.value for q in m.coordinates])
     # torques that make deviations die out
     hold = lambda time, q, u: m.inverse_dynamics(-100.0 * (q - q0) - 20.0 * u, q, u, np.zeros(6))
-    rest = dict(q=q0, u=np.zeros(6))
+    rest = dict(q=q0, u=np.zeros(6), mu=0.0, e=0.0, law="poisson")
     for period in (None, 0.002):
         motion = m.simulate(0.1, 0.02, **rest, control=hold, period=period, tolerance=1e-6)
         assert abs(motion.q - q0).max() < 1e-2, period

@@ -119,3 +119,49 @@ fn words(text: &str) -> Vec<(usize, usize)> {
     }
     words
 }
+
+/// Constraints that couple dependent speeds at random, up to more at once than the derivation solves: what is
+/// accepted is derived, and what is refused for its size is refused by `check`.
+#[test]
+fn coupled_constraints_are_derived_or_refused() {
+    let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut pick = |most: u64| next(&mut bits) % most;
+    let (mut derived, mut too_large) = (0, 0);
+    let rings = [(9, true), (10, true)];
+    let triangles = [(1_u64, false), (2, false), (5, false), (9, false), (12, false)];
+    for (count, ring) in triangles.into_iter().chain(rings) {
+        // each constraint has its own speed, the independent one and some others
+        let others = if count > 8 { 1 } else { count / 2 };
+        let constraints: Vec<String> = (0..count)
+            .map(|row| {
+                let mut terms = vec![format!("{}*u{} - u0", 2 + pick(5), row + 1)];
+                terms.extend((0..others).filter_map(|_| {
+                    let other = if ring { (row + 1) % count } else { pick(count) };
+                    (ring || other < row).then(|| format!("{}*u{}", 1 + pick(3), other + 1))
+                }));
+                format!("{} = 0;", terms.join(" + "))
+            })
+            .collect();
+        let list = |what: &dyn Fn(u64) -> String| (1..=count).map(what).collect::<Vec<_>>().join(", ");
+        let text = format!(
+            "mechanism Coupled; parameters {{ m: kg = 1 }} coordinates {{ q0: m, {} }} speeds {{ u0: m/s }} dependent {{ {} }} \
+             points {{ P = O + q0*N.x; {} }} particles {{ A {{ point: P, mass: m }} }} constraints {{ {} }}",
+            list(&|i| format!("q{i}: m")),
+            list(&|i| format!("u{i}: m/s")),
+            (1..=count).map(|i| format!("P{i} = P + q{i}*N.y;")).collect::<String>(),
+            constraints.concat(),
+        );
+        match outcome(&text) {
+            Some(result) => {
+                result.unwrap_or_else(|error| panic!("{error}\n{text}"));
+                derived += 1;
+            }
+            None => {
+                let told = check(&Source::file("accepted.mech", text.as_str())).diagnostics;
+                assert!(ring && told.iter().any(|d| d.code.0 == "E002"), "{told:?}\n{text}");
+                too_large += 1;
+            }
+        }
+    }
+    assert_eq!((derived, too_large), (5, 2));
+}

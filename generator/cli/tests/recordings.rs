@@ -190,8 +190,9 @@ fn arrow(message: &Message) -> Value {
 fn the_world_stands_upright_and_bytes_are_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let paths = ["a.mcap", "b.mcap"].map(|name| folder.path().join(name));
+    let call = ["--until", "0.1", "--step", "0.02", "--mu", "0", "--e", "1", "--law", "newton"];
     for path in &paths {
-        let run = simulate("models/planar_double_pendulum.mech", &["--until", "0.1", "--step", "0.02"], path);
+        let run = simulate("models/planar_double_pendulum.mech", &call, path);
         assert_eq!(run.code, 0, "{}", run.stderr);
     }
     assert_eq!(fs::read(&paths[0]).unwrap(), fs::read(&paths[1]).unwrap());

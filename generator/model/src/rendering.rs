@@ -137,9 +137,14 @@ impl Diagnostic {
         text
     }
 
+    /// Whether it is said of a text that is too large to be read, which has no place.
+    fn is_of_the_whole(&self) -> bool {
+        self.code == codes::TOO_LARGE && self.primary.span == Span::default()
+    }
+
     /// The file, and the line and column if there are any.
     fn place(&self, source: &Source) -> String {
-        match source.location(self.primary.span).filter(|_| self.code != codes::TOO_LARGE) {
+        match source.location(self.primary.span).filter(|_| !self.is_of_the_whole()) {
             Some(at) if source.text().is_some_and(|text| !text.is_empty()) => {
                 format!("{}:{}:{}", source.name(), at.line, at.column)
             }
@@ -149,8 +154,7 @@ impl Diagnostic {
 
     /// Whether the line of a place can be shown.
     fn has_line(&self, source: &Source, place: &Range<usize>) -> bool {
-        let Some(text) = source.text().filter(|text| !text.is_empty() && self.code != codes::TOO_LARGE)
-        else {
+        let Some(text) = source.text().filter(|text| !text.is_empty() && !self.is_of_the_whole()) else {
             return false;
         };
         line_of(text, place).len() <= MAX_LINE

@@ -131,8 +131,7 @@ fn prototype(module: &Module, scalar: &str, routine: &Routine, within: bool) -> 
         }
         form => names::declared(module, scalar, form, "*answer"),
     });
-    let end = if within { "_within" } else { "" };
-    format!("int32_t {}_{}{end}({})", module.name, routine.name, arguments.join(", "))
+    format!("int32_t {}_{}({})", module.name, names::routine(routine, within), arguments.join(", "))
 }
 
 /// Lines of a comment.

@@ -218,12 +218,11 @@ fn function(module: &Module, scalar: &str, routine: &Routine, within: bool) -> S
     nulls.push("answer.is_null()".to_owned());
     let of = &module.name;
     format!(
-        "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {of}_{}{}(\n    {},\n) -> i32 {{\n    if {} {{\n        return NULL;\n    }}\n    \
+        "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {of}_{}(\n    {},\n) -> i32 {{\n    if {} {{\n        return NULL;\n    }}\n    \
          // SAFETY: the pointers are not null, and point to what the header says; values are copied before anything is written.\n    \
          let mechanism = unsafe {{ &*mechanism.cast::<Mechanism>() }};\n{read}    match mechanism.{}({}) {{\n        Ok(value) => {{\n            \
          // SAFETY: as above.\n            unsafe {{ answer.write({}) }};\n            OK\n        }}\n        Err(error) => error.status(),\n    }}\n}}\n\n",
-        routine.name,
-        if within { "_within" } else { "" },
+        names::routine(routine, within),
         declared.join(",\n    "),
         nulls.join(" || "),
         routine.name,

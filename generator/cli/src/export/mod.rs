@@ -81,6 +81,7 @@ pub type File = (String, String);
 pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<File>> {
     let mut module = module::read(&syn::parse_file(expanded).ok()?)?;
     module.name = names::of_library(&module.path);
+    names::tell_apart(&mut module);
     let (c, rust) = match scalar {
         Scalar::Double => ("double", "f64"),
         Scalar::Single => ("float", "f32"),
@@ -118,4 +119,74 @@ fn readme(module: &module::Module) -> String {
         module.docs,
         name.to_uppercase(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashSet;
+
+    use super::*;
+
+    fn routine(name: &str, budgeted: bool) -> module::Routine {
+        module::Routine {
+            name: name.to_owned(),
+            symbol: name.to_owned(),
+            docs: String::new(),
+            arguments: Vec::new(),
+            answer: module::Form::Number,
+            budgeted,
+        }
+    }
+
+    /// Every name that the header declares is there once, whatever contacts and points are called.
+    #[test]
+    fn names_are_told_apart() {
+        let contacts =
+            ["tip", "tip_within", "tip_within_", "Tip", "TIP_WITHIN", "tip_", "tip__within", "within"];
+        let collisions = contacts.iter().map(|contact| routine(&format!("collide_{contact}"), true));
+        let others = [
+            "new",
+            "surface",
+            "path",
+            "status",
+            "speeds",
+            "coordinates",
+            "H",
+            "Newton",
+            "gap_tip",
+            "gap_Tip",
+        ];
+        let mut module = module::Module {
+            path: "arm".to_owned(),
+            name: "arm".to_owned(),
+            mechanism: "Arm".to_owned(),
+            docs: String::new(),
+            numbers: 1,
+            records: Vec::new(),
+            routines: collisions.chain(others.iter().map(|name| routine(name, false))).collect(),
+        };
+        names::tell_apart(&mut module);
+        let all = names::declared_names(&module);
+        let told: HashSet<String> = all.iter().map(|name| name.to_lowercase()).collect();
+        assert_eq!(told.len(), all.len(), "{all:?}");
+        // the names that are declared are those of the header, and the routines of Rust are called as before
+        let header = header::header(&module, "double");
+        for name in &all {
+            let there = header.split(|c: char| !c.is_alphanumeric() && c != '_').any(|word| word == name);
+            assert!(there, "{name}");
+        }
+        assert!(
+            module
+                .routines
+                .iter()
+                .all(|routine| routine.symbol.trim_end_matches('_') == routine.name.trim_end_matches('_'))
+        );
+        // the plain name stays with the contact that has it
+        let symbol = |name: &str| {
+            module.routines.iter().find(|routine| routine.name == name).map(|routine| routine.symbol.clone())
+        };
+        assert_eq!(symbol("collide_tip_within").as_deref(), Some("collide_tip_within"));
+        assert_eq!(symbol("collide_tip").as_deref(), Some("collide_tip__"));
+        assert!(library::library(&module, "f64").contains("mechanism.collide_tip("));
+    }
 }

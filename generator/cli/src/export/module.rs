@@ -58,8 +58,10 @@ pub struct Field {
 /// A routine.
 #[derive(Clone, Debug)]
 pub struct Routine {
-    /// its name
+    /// its name in Rust
     pub name: String,
+    /// its name in C after that of the module, at first the same
+    pub symbol: String,
     /// its documentation
     pub docs: String,
     /// what it takes after the mechanism: names and forms
@@ -207,8 +209,10 @@ fn routine(method: &syn::ImplItemFn, records: &[Record]) -> Option<Routine> {
         Form::Record(name) => records.iter().any(|record| record.name == *name && !record.fields.is_empty()),
         _ => true,
     };
+    let name = method.sig.ident.to_string();
     known.then_some(Routine {
-        name: method.sig.ident.to_string(),
+        symbol: name.strip_prefix("r#").unwrap_or(&name).to_owned(),
+        name,
         docs: docs(&method.attrs),
         arguments,
         answer,

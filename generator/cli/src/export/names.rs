@@ -1,6 +1,7 @@
 //! Names in C, and the texts of the values that cross the border.
 
-use super::module::{Form, Module, Record};
+use super::module::{Form, Module, Record, Routine};
+use super::{LAWS, MODES, PATHS, STATUSES};
 
 /// Keywords of C99, C11 and C++20, and words with a meaning of their own in some places of C++.
 const KEYWORDS: &str = "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case catch char char8_t char16_t char32_t \
@@ -52,6 +53,59 @@ pub fn fields(record: &Record) -> Vec<String> {
         names.push(name);
     }
     names
+}
+
+/// What a routine is called after the name of the module, and with a budget.
+pub fn routine(routine: &Routine, within: bool) -> String {
+    format!("{}{}", routine.symbol, if within { "_within" } else { "" })
+}
+
+/// All names that the header declares, in order: constants, types and functions.
+pub fn declared_names(module: &Module) -> Vec<String> {
+    let (name, upper) = (&module.name, module.name.to_uppercase());
+    let mut all: Vec<String> =
+        ["status", "law", "path", "mode"].map(|what| format!("{name}_{what}")).to_vec();
+    let constants = STATUSES.iter().map(|row| row.0).chain(LAWS.iter().map(|row| row.0));
+    let constants = constants.chain(PATHS.iter().map(|row| row.0)).chain(MODES.iter().map(|row| row.0));
+    all.extend(constants.map(|constant| format!("{upper}_{constant}")));
+    all.extend([format!("{upper}_H"), format!("{name}_surface"), name.clone(), format!("{name}_new")]);
+    for record in module.records.iter().filter(|record| !record.fields.is_empty()) {
+        let of = self::record(module, &record.name);
+        if record.stated {
+            all.push(format!("{name}_default_{}", &of[name.len() + 1..]));
+        }
+        all.push(of);
+    }
+    for routine in &module.routines {
+        all.push(format!("{name}_{}", self::routine(routine, false)));
+        all.extend(routine.budgeted.then(|| format!("{name}_{}", self::routine(routine, true))));
+    }
+    all
+}
+
+/// Gives routines names that nothing else in the header has, also where only the case of letters is looked at:
+/// a contact `tip_within` beside a contact `tip`, whose collision within a budget is `collide_tip_within`.
+pub fn tell_apart(module: &mut Module) {
+    let bare = Module { routines: Vec::new(), ..module.clone() };
+    let mut taken: Vec<String> = declared_names(&bare).iter().map(|name| name.to_lowercase()).collect();
+    // what the model names keeps its name; a name with an end that is added here gives way
+    let plain: Vec<String> = module.routines.iter().map(|routine| routine.symbol.to_lowercase()).collect();
+    for place in 0..module.routines.len() {
+        let mut routine = module.routines[place].clone();
+        let full = |name: &str| format!("{}_{name}", module.name).to_lowercase();
+        loop {
+            let within = routine.budgeted.then(|| self::routine(&routine, true));
+            let is_of_another = within.as_ref().is_some_and(|within| plain.contains(&within.to_lowercase()));
+            let own: Vec<String> =
+                std::iter::once(&routine.symbol).chain(&within).map(|name| full(name)).collect();
+            if !is_of_another && own.iter().all(|name| !taken.contains(name)) {
+                taken.extend(own);
+                break;
+            }
+            routine.symbol.push('_');
+        }
+        module.routines[place] = routine;
+    }
 }
 
 /// The name of a record's type.

@@ -9,9 +9,7 @@ use std::collections::BTreeMap;
 use super::equations::vanishes;
 use super::linear_forms::LinearScalar;
 use crate::algebra::{Expr, Intermediates, Sample};
-
-/// Largest block that is solved in closed form.
-pub const LARGEST_BLOCK: usize = 8;
+use crate::check::coupled::{LARGEST_BLOCK, blocks, matching};
 
 /// A block of equations that is solved at once.
 #[derive(Clone, Debug)]
@@ -55,13 +53,8 @@ impl Solver {
             .iter()
             .map(|equation| equation.terms.keys().filter_map(|slot| position.get(slot).copied()).collect())
             .collect();
-        let mut matched = vec![usize::MAX; unknowns.len()]; // unknown -> equation
-        for equation in 0..equations.len() {
-            augment(equation, &columns, &mut matched, &mut vec![false; unknowns.len()]);
-        }
-        if let Some(free) = matched.iter().position(|&equation| equation == usize::MAX) {
-            return Err(SolveError::Undetermined(unknowns[free]));
-        }
+        let matched =
+            matching(&columns, unknowns.len()).map_err(|free| SolveError::Undetermined(unknowns[free]))?;
         let mut solver = Solver { blocks: Vec::new(), determinants: Vec::new() };
         for block in blocks(&matched, &columns) {
             let slots: Vec<usize> = block.iter().map(|&i| unknowns[i]).collect();
@@ -116,81 +109,6 @@ impl Solver {
         }
         solved
     }
-}
-
-fn augment(equation: usize, columns: &[Vec<usize>], matched: &mut [usize], seen: &mut [bool]) -> bool {
-    for &unknown in &columns[equation] {
-        if std::mem::replace(&mut seen[unknown], true) {
-            continue;
-        }
-        if matched[unknown] == usize::MAX || augment(matched[unknown], columns, matched, seen) {
-            matched[unknown] = equation;
-            return true;
-        }
-    }
-    false
-}
-
-/// Strongly connected sets of unknowns, each after those it needs.
-fn blocks(matched: &[usize], columns: &[Vec<usize>]) -> Vec<Vec<usize>> {
-    struct Search<'a> {
-        matched: &'a [usize],
-        columns: &'a [Vec<usize>],
-        index: Vec<Option<usize>>,
-        low: Vec<usize>,
-        stack: Vec<usize>,
-        on_stack: Vec<bool>,
-        count: usize,
-        found: Vec<Vec<usize>>,
-    }
-    impl Search<'_> {
-        fn visit(&mut self, v: usize) {
-            self.index[v] = Some(self.count);
-            self.low[v] = self.count;
-            self.count += 1;
-            self.stack.push(v);
-            self.on_stack[v] = true;
-            for &w in &self.columns[self.matched[v]] {
-                match self.index[w] {
-                    None => {
-                        self.visit(w);
-                        self.low[v] = self.low[v].min(self.low[w]);
-                    }
-                    Some(index) if self.on_stack[w] => self.low[v] = self.low[v].min(index),
-                    _ => {}
-                }
-            }
-            if Some(self.low[v]) == self.index[v] {
-                let mut block = Vec::new();
-                while let Some(w) = self.stack.pop() {
-                    self.on_stack[w] = false;
-                    block.push(w);
-                    if w == v {
-                        break;
-                    }
-                }
-                block.sort_unstable();
-                self.found.push(block);
-            }
-        }
-    }
-    let n = matched.len();
-    let mut search = Search {
-        matched,
-        columns,
-        index: vec![None; n],
-        low: vec![0; n],
-        stack: Vec::new(),
-        on_stack: vec![false; n],
-        count: 0,
-        found: Vec::new(),
-    };
-    for v in 0..n {
-        if search.index[v].is_none() {
-            search.visit(v);
-        }
-    }
-    search.found
 }
 
 /// Inverse and determinant, by cofactors with shared minors.

@@ -1,7 +1,8 @@
 //! Checks that the motion keeps the configuration equations: the rate of each must follow from the velocity
 //! constraints and the kinematical equations, at every state at which the loops are closed. Loops are stated
 //! twice, by velocities and by positions; where the two disagree, one of them is wrong, and the motion leaves
-//! the configuration. Exact arithmetic decides where it can ([`super::exact`]), numbers at closed states else.
+//! the configuration. Exact arithmetic decides where it can ([`super::exact`]), numbers at closed states
+//! else.
 
 use super::exact::{self, Parameters};
 use super::independent_constraints::with_parameters_moved;

@@ -6,6 +6,7 @@ mod body_points;
 mod configuration;
 mod contacts;
 mod counts;
+pub mod coupled;
 mod exact;
 mod gaps;
 mod independent_constraints;

@@ -3,13 +3,15 @@
 
 use super::states::Seen;
 use super::{
-    bodies, body_points, configuration, contacts, gaps, independent_constraints, loads, loops, motion,
-    states, unit_vectors, vector_constraints,
+    bodies, body_points, configuration, contacts, coupled, gaps, independent_constraints, loads, loops,
+    motion, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
-use crate::model::mechanism::{Equation, Mechanism};
-use crate::numeric::{self, Failure, State, Views};
+use crate::model::mechanism::{
+    Definition, DefinitionId, DefinitionValue, Equation, Mechanism, Point, PointId, Scalar, Vector,
+};
+use crate::numeric::{self, Failure, Level, State, Views};
 use crate::span::Span;
 
 /// Mechanisms of more parts than this are not looked at: it would take too long.
@@ -177,6 +179,7 @@ fn of_the_motion(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     let mut out = vector_constraints::inseparable(m, seen);
     if out.is_empty() {
         out.extend(vector_constraints::repeated(m, seen));
+        out.extend(coupled::too_many_at_once(m, seen));
         out.extend(configuration::not_kept(m, seen));
     }
     out
@@ -221,10 +224,45 @@ fn without_unread_contacts(m: &Mechanism, readable: &Readable) -> Option<Mechani
 fn nowhere(m: &Mechanism, failures: &[Failed]) -> Option<Diagnostic> {
     // the first state is the most general one
     if let Some((_, state, failure)) = failures.iter().find(|(_, _, f)| !matches!(f, Failure::NotClosed(_))) {
-        return motion::nowhere(m, state, failure);
+        return motion::nowhere(m, state, failure).or_else(|| not_finite(m, failures));
     }
     let message = "the configuration equations have no solution near the values of the model";
     let span = m.configuration.first().map_or(Span::default(), |equation| equation.span);
     let help = "check the lengths, and the guesses of the dependent coordinates; until they fit, what shows in numbers is not looked at";
     Some(Diagnostic::new(codes::NOT_CLOSED, span, message).help(help))
+}
+
+/// The first definition, else the first point, that is not finite at any state.
+fn not_finite(m: &Mechanism, failures: &[Failed]) -> Option<Diagnostic> {
+    let views: Vec<Views<'_>> =
+        failures.iter().filter_map(|(_, state, _)| Views::at(m, state).ok()).collect();
+    if views.is_empty() {
+        return None;
+    }
+    let nowhere = |is_finite: &dyn Fn(&Views<'_>) -> Option<bool>| {
+        views.iter().all(|views| is_finite(views) == Some(false))
+    };
+    let definition = |(i, definition): (usize, &Definition)| {
+        let id = DefinitionId(i);
+        let found = nowhere(&|views| match definition.value {
+            DefinitionValue::Scalar(_) => {
+                Some(views.now.scalar(&Scalar::Definition(id), Level::Motion).ok()?.re.is_finite())
+            }
+            DefinitionValue::Vector(_) => {
+                let value = views.now.vector(&Vector::Definition(id), Level::Motion).ok()?;
+                Some(value.iter().all(|c| c.re.is_finite()))
+            }
+        });
+        found.then(|| (format!("definition `{}`", definition.name), definition.span))
+    };
+    let point = |(i, point): (usize, &Point)| {
+        let found =
+            nowhere(&|views| Some(views.now.velocity(PointId(i)).ok()?.iter().all(|c| c.re.is_finite())));
+        found.then(|| (format!("velocity of point `{}`", point.name), point.span))
+    };
+    let found = m.definitions.iter().enumerate().find_map(definition);
+    let (what, span) = found.or_else(|| m.points.iter().enumerate().find_map(point))?;
+    let message = format!("the {what} is not finite at any state that was tried");
+    let help = "check the values of the parameters, the arguments of sqrt, log, asin and acos, and powers of powers: numbers end at 1.8e308";
+    Some(Diagnostic::new(codes::NUMBER_RANGE, span, message).help(help))
 }

@@ -15,7 +15,10 @@ pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: TOO_LARGE,
         text: "Models have at most 4 MiB; ten thousand parameters take a tenth of that. Check that the file \
-            is a model.",
+            is a model. Mechanisms have a limited number of coordinates and speeds, and at most eight \
+            dependent speeds (or rates of coordinates) can hang together, each known only with the others: \
+            their constraints are solved in closed form. A loop of more bodies is stated in parts, each with \
+            speeds of its own.",
         wrong: None,
         right: None,
     },

@@ -22,6 +22,6 @@ pub use dynamics::{central_inertia, evaluate, evaluate_views, own_inertia};
 pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};
 pub use loops::held_together;
-pub use motion::{constraint_coefficients, constraint_rank};
+pub use motion::{constraint_coefficients, constraint_rank, determining_coefficients};
 pub use state::{ContactEvaluation, Evaluation, Failure, State};
 pub use views::Views;

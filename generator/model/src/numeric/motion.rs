@@ -23,6 +23,13 @@ pub fn constraint_coefficients(m: &Mechanism, state: &State) -> Result<Vec<Vec<f
     Instant { m, state, time, coordinates }.constraint_coefficients()
 }
 
+/// The constraints that determine the dependent speeds, in the same form.
+pub fn determining_coefficients(m: &Mechanism, state: &State) -> Result<Vec<Vec<f64>>, Failure> {
+    let Some(constraints) = &m.determining_constraints else { return constraint_coefficients(m, state) };
+    let determining = Mechanism { constraints: constraints.clone(), ..m.clone() };
+    constraint_coefficients(&determining, state)
+}
+
 /// Declared motions may contradict the positions by this much, relative to their terms.
 const CONSISTENT: f64 = 1e-7;
 

@@ -8,6 +8,7 @@ use hodograph_simulation::{Event, Simulation};
 use super::figure::figure;
 use super::recording::Recording;
 use crate::animation::Setup;
+use crate::answers::is_read;
 use crate::json::state::State;
 use crate::plot::file::Format;
 use crate::stop::{Outcome, Stop};
@@ -129,7 +130,11 @@ impl<'m> Pictures<'m> {
                 .map_err(|error| Stop::Fault(format!("cannot make {}: {error}", path.display())));
             outcomes.push(bytes.and_then(|bytes| output::file(path, &bytes)));
         }
-        let mut failed = outcomes.into_iter().filter_map(Result::err);
+        let mut failed = outcomes.into_iter().filter_map(Result::err).peekable();
+        if failed.peek().is_none() && is_read() {
+            let written = [&files.plot, &files.html, &files.mcap].into_iter().flatten();
+            written.for_each(|path| output::say(format_args!("wrote {}", path.display())));
+        }
         let first = failed.next();
         failed.for_each(|other| output::say(format_args!("error: {other}")));
         first.map_or(Ok(()), Err)

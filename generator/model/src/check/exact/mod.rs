@@ -1,8 +1,8 @@
 //! Decides by exact arithmetic whether the rate of each configuration equation follows from the velocity
 //! constraints and the kinematical equations.
 //!
-//! The configuration equations are closed symbolically: each is solved for a quantity in which it is linear, a
-//! coordinate or, where parameters are free, a parameter (the lengths of a linkage). What is left are
+//! The configuration equations are closed symbolically: each is solved for a quantity in which it is linear,
+//! a coordinate or, where parameters are free, a parameter (the lengths of a linkage). What is left are
 //! functions of arbitrary arguments, which are evaluated modulo primes ([`crate::graph::modular`]).
 //! There a rate follows if its row of coefficients lies in the span of the rows of the motion. Sizes do not
 //! matter: a factor that is wrong by one part in 10^30 is as visible as a wrong sign.
@@ -25,8 +25,8 @@ use nodes::Nodes;
 use num_rational::BigRational;
 use values::{substituted, value};
 
-/// A coefficient by which a quantity is solved for may not be less than this part of what it is at open loops:
-/// it vanishes then where loops are closed.
+/// A coefficient by which a quantity is solved for may not be less than this part of what it is at open
+/// loops: it vanishes then where loops are closed.
 const PIVOT: f64 = 1e-6;
 /// Equations of more components are not solved.
 const MOST: usize = 60;
@@ -257,8 +257,8 @@ fn decimal(value: f64) -> Option<Number> {
     Some(Number(if exponent < 0 { whole / power } else { whole * power }))
 }
 
-/// Whether nodes have parts that count as unknowns modulo primes although they obey identities: functions with
-/// branches, and functions of multiples of pi.
+/// Whether nodes have parts that count as unknowns modulo primes although they obey identities: functions
+/// with branches, and functions of multiples of pi.
 fn hides_identities(graph: &Graph, nodes: &[Node]) -> bool {
     use Function::*;
     let needed = graph.reachable(nodes.iter().copied());
@@ -280,8 +280,8 @@ fn hides_identities(graph: &Graph, nodes: &[Node]) -> bool {
     })
 }
 
-/// A row for each of the first `determined` columns, with 1 there and 0 in the others of these columns. `None`
-/// where the rows determine more or less than these.
+/// A row for each of the first `determined` columns, with 1 there and 0 in the others of these columns.
+/// `None` where the rows determine more or less than these.
 fn reduced(mut rows: Vec<Vec<Residues>>, determined: usize) -> Option<Vec<Vec<Residues>>> {
     let mut done: Vec<Vec<Residues>> = Vec::new();
     for column in 0..determined {

@@ -1,8 +1,9 @@
-//! Nodes of a graph from the expressions of a mechanism: positions, velocities and the residuals of equations.
+//! Nodes of a graph from the expressions of a mechanism: positions, velocities and the residuals of
+//! equations.
 //!
-//! Rates of coordinates are the inputs [`Input::Tangent`], all speeds are inputs [`Input::Speed`] in the order
-//! of the mechanism, dependent ones last. Products and sums are left as they stand, so that the graph is no
-//! larger than the model.
+//! Rates of coordinates are the inputs [`Input::Tangent`], all speeds are inputs [`Input::Speed`] in the
+//! order of the mechanism, dependent ones last. Products and sums are left as they stand, so that the graph
+//! is no larger than the model.
 
 use std::collections::HashMap;
 
