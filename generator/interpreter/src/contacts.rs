@@ -8,7 +8,8 @@ use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
     Budgeted, ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome,
-    ContactState, ContactSurface, Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, Surface,
+    ContactState, ContactSurface, Contacts, ImpactError, Kind, ReducedMatrix, State, StateError, StatedLaw,
+    Surface,
 };
 use hodograph_generator::program::operation::Operation;
 use hodograph_generator::program::{ContactQuantity, Quantity, Structure};
@@ -241,6 +242,17 @@ impl Contacts for InterpretedMechanism {
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::Gap));
         let [gap] = self.array::<1>(request, state, &[])?;
         Ok(self.has(request).then_some(gap))
+    }
+
+    fn stated_law(&self, contact: usize) -> StatedLaw<'_> {
+        let Some(contact) = self.model().contacts.get(contact) else { return StatedLaw::default() };
+        let law = &contact.law;
+        StatedLaw {
+            mu_static: law.mu_static,
+            mu_impact: law.mu_impact,
+            sliding: law.sliding.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+            restitution: law.restitution.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+        }
     }
 
     fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {

@@ -87,6 +87,7 @@ fn mechanism() -> Mechanism {
             gap: None,
             gap_span: span,
             surface: None,
+            law: ContactLaw::default(),
             span,
         }],
     }
