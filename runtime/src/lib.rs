@@ -103,7 +103,7 @@ pub use crate::{
     scalar::Scalar,
     sensitivity::Sensitivity,
     solve::{impact_without_collision, solve},
-    surface::{Budgeted, ContactSurface, Surface},
+    surface::{Budgeted, ContactSurface, StatedLaw, Surface},
 };
 
 pub use nalgebra;

@@ -18,6 +18,21 @@ pub struct Surface<T> {
     pub law: Law,
 }
 
+/// What a model states of a contact beyond mu, e and law of its [`Surface`]: names and numbers, in SI units, of which
+/// simulations make laws (`hodograph_simulation::ContactLaw`). Collisions of a generated module take a [`Surface`] and
+/// nothing of this.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StatedLaw<'a> {
+    /// static coefficient of friction
+    pub mu_static: Option<f64>,
+    /// coefficient of friction in impacts
+    pub mu_impact: Option<f64>,
+    /// sliding friction as a function of the speed of slip: name and numbers
+    pub sliding: Option<(&'a str, &'a [f64])>,
+    /// restitution as a function of the speed of approach: name and numbers
+    pub restitution: Option<(&'a str, &'a [f64])>,
+}
+
 impl<T> Surface<T> {
     /// The same surface with a budget: the solver stops with [`crate::ImpactError::BudgetExceeded`] before it
     /// makes more than this many quadratures.

@@ -3,7 +3,7 @@
 use hodograph::{Contacts, Kind, State, Surface};
 
 use crate::pair::Pair;
-use crate::{Drive, Options, Reason, SimulationError};
+use crate::{ContactLaw, Drive, Options, Reason, SimulationError};
 
 /// Below this the roundings of a step exceed what is asked for, and no step is short enough.
 const LEAST_TOLERANCE: f64 = 1e-16;
@@ -106,8 +106,12 @@ pub(crate) fn check(
             ));
         };
         let own = options.laws.iter().rev().find(|(index, _)| *index == contact);
-        let law = own.map_or(&options.law, |(_, law)| law);
-        let pair = Pair { surface, law: law.clone() };
+        let law = match own.map(|(_, law)| law).or(options.law.as_ref()) {
+            Some(law) => law.clone(),
+            None => ContactLaw::stated(&mechanism.stated_law(contact))
+                .map_err(|message| error(Some(contact), Reason::Option(message)))?,
+        };
+        let pair = Pair { surface, law };
         pair.check().map_err(|message| error(Some(contact), Reason::Option(message)))?;
         *slot = Some(pair);
     }

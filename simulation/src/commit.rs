@@ -52,9 +52,11 @@ impl Transition<'_> {
         let mut u = y[n..n + p].to_vec();
         let moved = (|| {
             drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
-            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-            drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)
+            let left = drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)?;
+            // Velocities come last, in the place that was corrected: what is left of them counts as an approach.
+            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
+            Ok(left)
         })();
         if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
             return Err(self.error(Some(left.contact), Reason::Drift(left.gap)));

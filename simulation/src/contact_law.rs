@@ -10,6 +10,8 @@ use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;
 
+use hodograph::StatedLaw;
+
 /// A function of a speed, m/s.
 pub type SpeedFunction = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 
@@ -27,7 +29,7 @@ pub type SpeedFunction = Arc<dyn Fn(f64) -> f64 + Send + Sync>;
 ///     ..ContactLaw::default()
 /// };
 /// let surface = Surface { mu: 0.3, e: 0.6, law: Law::Poisson };
-/// let options = Options { surface: Some(surface), law, ..Options::default() };
+/// let options = Options { surface: Some(surface), law: Some(law), ..Options::default() };
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactLaw {
@@ -40,6 +42,31 @@ pub struct ContactLaw {
     pub sliding: Sliding,
     /// The coefficient of restitution as a function of the speed of approach.
     pub restitution: Restitution,
+}
+
+impl ContactLaw {
+    /// The law that a model states.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, where there is no law of a name with so many numbers.
+    pub fn stated(law: &StatedLaw<'_>) -> Result<Self, String> {
+        let none = |what: &str, name: &str, forms: &str| {
+            format!("there is no law of {what} `{name}` with such numbers: give {forms}")
+        };
+        let sliding = match law.sliding {
+            None => Sliding::Constant,
+            Some((name, numbers)) => {
+                Sliding::named(name, numbers).ok_or_else(|| none("sliding friction", name, Sliding::FORMS))?
+            }
+        };
+        let restitution = match law.restitution {
+            None => Restitution::Constant,
+            Some((name, numbers)) => Restitution::named(name, numbers)
+                .ok_or_else(|| none("restitution", name, Restitution::FORMS))?,
+        };
+        Ok(Self { mu_static: law.mu_static, mu_impact: law.mu_impact, sliding, restitution })
+    }
 }
 
 /// Sliding friction as a function of the speed of slip s, m/s.

@@ -73,6 +73,17 @@ impl EventKind {
             Self::Zero(_) => "zero",
         }
     }
+
+    /// Whether other modes were possible, of events that choose modes.
+    pub fn selection(&self) -> Option<Selection> {
+        match self {
+            Self::Contact { selection, .. }
+            | Self::LiftOff { selection }
+            | Self::Slip { selection, .. }
+            | Self::Stick { selection } => Some(*selection),
+            _ => None,
+        }
+    }
 }
 
 /// A solved collision.

@@ -45,11 +45,13 @@ mod event_location;
 mod event_time;
 mod forces;
 mod front;
+mod given_law;
 mod impact_at_once;
 mod impact_without_collision;
 mod impacts;
 mod look_ahead;
 mod lzb;
+mod many;
 mod mode_changes;
 mod mode_selection;
 mod motion;
@@ -75,6 +77,8 @@ pub use crate::{
     energy::EnergyAccount,
     error::{Reason, SimulationError},
     event::{Event, EventKind, Share, Struck, StruckTogether},
+    given_law::GivenLaw,
+    many::{Batch, Case, Outcome, Watch, digest, simulate_many},
     options::{EventFunction, Options, Together},
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},

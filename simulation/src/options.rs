@@ -48,8 +48,9 @@ pub struct Options {
     pub surface: Option<Surface<f64>>,
     /// what contacts that have a law of their own do beyond mu, e and law of their surfaces, by number
     pub laws: Vec<(usize, ContactLaw)>,
-    /// what all other contacts do beyond that
-    pub law: ContactLaw,
+    /// what all other contacts do beyond that; without it they have the laws that the model states
+    /// ([`Contacts::stated_law`](hodograph::Contacts::stated_law))
+    pub law: Option<ContactLaw>,
     /// where inputs come from
     pub drive: Drive,
     /// what happens where several contacts are struck together
@@ -74,7 +75,7 @@ impl Default for Options {
             surfaces: Vec::new(),
             surface: None,
             laws: Vec::new(),
-            law: ContactLaw::default(),
+            law: None,
             drive: Drive::Held,
             together: Together::default(),
             stiffness: Vec::new(),

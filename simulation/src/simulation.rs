@@ -264,6 +264,16 @@ impl<'m> Simulation<'m> {
         &self.front.held
     }
 
+    /// Whether nothing moves any more, since the last event: everything that touches sticks and every rate is zero.
+    pub fn is_at_rest(&self) -> bool {
+        self.front.resting
+    }
+
+    /// Looks at the end of the last step, which is as far as the motion was followed.
+    pub(crate) fn look_at_front(&mut self) {
+        self.look(self.front.t);
+    }
+
     /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`],
     /// by less than a step of the integration.
     pub fn phase(&self, contact: usize) -> Option<ContactPhase> {

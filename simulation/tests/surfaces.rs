@@ -29,7 +29,7 @@ fn on_incline(mut body: Body, slope: f64) -> Body {
 
 fn with_static(mu: f64, mu_static: f64, e: f64) -> Options {
     let law = ContactLaw { mu_static: Some(mu_static), ..ContactLaw::default() };
-    Options { law, ..surface(mu, e, Law::Poisson) }
+    Options { law: Some(law), ..surface(mu, e, Law::Poisson) }
 }
 
 /// The energy account: what kinetic and potential energy lose is the works.
@@ -148,7 +148,7 @@ fn impacts_have_a_friction_of_their_own() {
     let (mu, mu_impact, e, down, along) = (0.5, 0.1, 0.4, 2.0, 3.0);
     let law = ContactLaw { mu_impact: Some(mu_impact), ..ContactLaw::default() };
     for together in [Together::Approaching, Together::Simultaneous, Together::Sequential] {
-        let options = Options { law: law.clone(), together, ..surface(mu, e, Law::Stronge) };
+        let options = Options { law: Some(law.clone()), together, ..surface(mu, e, Law::Stronge) };
         let body = particle();
         let mut simulation = start(&body, &[0.0; 3], &[along, -down, 0.0], options);
         let events = run(&mut simulation, 1e-6);
@@ -157,7 +157,7 @@ fn impacts_have_a_friction_of_their_own() {
         assert!((after[0] - expected).abs() < 1e-12, "{} {expected} {:?}", after[0], names(&events));
     }
     // A box that falls flat on both feet while it slides.
-    let options = Options { law, ..surface(mu, 0.0, Law::Stronge) };
+    let options = Options { law: Some(law), ..surface(mu, 0.0, Law::Stronge) };
     let body = crate_on_feet();
     let mut simulation = start(&body, &[0.0, 0.05, 0.0], &[along, -down, 0.0], options);
     run(&mut simulation, 1e-9);
@@ -178,7 +178,7 @@ fn bounces_follow_the_ladder_of_their_law() {
         let same = Restitution::Function(Arc::new(move |v| value.at(e, v)));
         for restitution in [restitution.clone(), same] {
             let law = ContactLaw { restitution: restitution.clone(), ..ContactLaw::default() };
-            let options = Options { law, ..surface(0.0, e, Law::Newton) };
+            let options = Options { law: Some(law), ..surface(0.0, e, Law::Newton) };
             let body = particle();
             let mut simulation = start(&body, &[0.0, height, 0.0], &[0.0; 3], options);
             let before = simulation.energy().unwrap().total().unwrap();
@@ -208,7 +208,7 @@ fn viscoelastic_bounces_end_when_their_ladder_does() {
     let (e, height) = (0.3, 0.1_f64);
     let law = ContactLaw { restitution: restitution.clone(), ..ContactLaw::default() };
     let options = Options {
-        law,
+        law: Some(law),
         relative_tolerance: 1e-10,
         absolute_tolerance: 1e-10,
         ..surface(0.0, e, Law::Stronge)
@@ -244,7 +244,7 @@ fn friction_that_falls_with_slip_stops_a_block_in_the_time_of_its_integral() {
     for (law, body, z) in
         [(falls.clone(), particle(), 0.0), (function, particle(), 0.0), (falls, crate_on_feet(), 0.05)]
     {
-        let options = Options { law, ..surface(mu, 0.0, Law::Poisson) };
+        let options = Options { law: Some(law), ..surface(mu, 0.0, Law::Poisson) };
         let mut simulation = start(&body, &[0.0, z, 0.0], &[v, 0.0, 0.0], options);
         let before = simulation.energy().unwrap().total().unwrap();
         let events = run(&mut simulation, end + 1.0);
@@ -277,7 +277,7 @@ fn impossible_laws_are_refused() {
     let tried = |law: ContactLaw| {
         let state =
             State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.3, 0.0, 0.0], inputs: &[0.0] };
-        let options = Options { law, ..surface(0.3, 0.5, Law::Newton) };
+        let options = Options { law: Some(law), ..surface(0.3, 0.5, Law::Newton) };
         let mut simulation = match Simulation::new(&body, &state, options) {
             Ok(simulation) => simulation,
             Err(error) => return format!("start: {error}"),

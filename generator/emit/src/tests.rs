@@ -90,6 +90,7 @@ fn mechanism() -> Mechanism {
             without_gap: false,
             gap_span: span,
             surface: None,
+            law: ContactLaw::default(),
             span,
         }],
     }

@@ -9,7 +9,7 @@ use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
     Budgeted, ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome,
     ContactState, ContactSurface, Contacts, ImpactError, Kind, Law, ReducedMatrix, State, StateError,
-    Surface,
+    StatedLaw, Surface,
 };
 use hodograph_model::model::mechanism::Law as Stated;
 use hodograph_program::program::operation::Operation;
@@ -253,6 +253,17 @@ impl Contacts for InterpretedMechanism {
             Stated::Stronge => Law::Stronge,
         };
         Some(Surface { mu: stated.mu, e: stated.e, law })
+    }
+
+    fn stated_law(&self, contact: usize) -> StatedLaw<'_> {
+        let Some(contact) = self.model().contacts.get(contact) else { return StatedLaw::default() };
+        let law = &contact.law;
+        StatedLaw {
+            mu_static: law.mu_static,
+            mu_impact: law.mu_impact,
+            sliding: law.sliding.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+            restitution: law.restitution.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+        }
     }
 
     fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {

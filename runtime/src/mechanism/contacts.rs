@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     Budgeted, ClosedContactError, CollisionError, ContactMode, Impact, ReducedMatrix, Scalar, StateError,
-    Surface,
+    StatedLaw, Surface,
 };
 
 /// Gap, contact basis, velocity and reduced matrix of a contact in a state. The contact basis is `normal`,
@@ -76,6 +76,12 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     fn surface(&self, contact: usize) -> Option<Surface<T>> {
         let _ = contact;
         None
+    }
+    /// What the model states of a contact beyond mu, e and law of its surface. A simulation takes it where its
+    /// options say nothing else.
+    fn stated_law(&self, contact: usize) -> StatedLaw<'_> {
+        let _ = contact;
+        StatedLaw::default()
     }
     /// Velocity of the striking point relative to what it strikes, along the contact basis, m/s.
     fn contact_velocity(&self, contact: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;

@@ -22,6 +22,7 @@ pub struct Batch {
     numbers: Vec<Option<Float64Array>>,
     law: Option<StringArray>,
     contact: Option<StringArray>,
+    texts: Vec<(Place, StringArray)>,
     /// whether no argument of the row is NULL
     pub valid: Vec<bool>,
 }
@@ -35,8 +36,15 @@ impl Batch {
     pub fn new(argument: &ArrayRef, places: Vec<Place>) -> Result<Self> {
         let Some(columns) = argument.as_struct_opt() else { return plan_err!("the argument is no struct") };
         let rows = argument.len();
-        let mut batch =
-            Batch { rows, numbers: Vec::new(), law: None, contact: None, valid: vec![true; rows], places };
+        let mut batch = Batch {
+            rows,
+            numbers: Vec::new(),
+            law: None,
+            contact: None,
+            texts: Vec::new(),
+            valid: vec![true; rows],
+            places,
+        };
         let mut see = |array: &dyn Array| {
             if array.null_count() > 0 {
                 batch.valid.iter_mut().enumerate().for_each(|(row, valid)| *valid &= !array.is_null(row));
@@ -52,6 +60,12 @@ impl Batch {
                     *(if *place == Place::Law { &mut batch.law } else { &mut batch.contact }) = Some(text);
                     batch.numbers.push(None);
                 }
+                place if place.is_text() => {
+                    let text = cast(column, &DataType::Utf8)?;
+                    see(&text);
+                    batch.texts.push((*place, text.as_string::<i32>().clone()));
+                    batch.numbers.push(None);
+                }
                 _ => {
                     let numbers = cast(column, &DataType::Float64)?;
                     see(&numbers);
@@ -60,6 +74,19 @@ impl Batch {
             }
         }
         Ok(batch)
+    }
+
+    /// The number of a row, where the field is given.
+    pub fn number(&self, place: Place, row: usize) -> Option<f64> {
+        self.given(place).map(|column| column.get(row))
+    }
+
+    /// The text of a row, where the field is given.
+    pub fn text(&self, place: Place, row: usize) -> Option<&str> {
+        match place {
+            Place::Law => self.law.as_ref().map(|texts| texts.value(row)),
+            _ => self.texts.iter().find(|(given, _)| *given == place).map(|(_, texts)| texts.value(row)),
+        }
     }
 
     fn given(&self, place: Place) -> Option<Column<'_>> {

@@ -9,6 +9,7 @@ mod histogram;
 mod model;
 mod places;
 mod samplers;
+mod simulate;
 mod solve;
 
 use std::collections::HashMap;
@@ -52,7 +53,7 @@ fn of_length(array: &ArrayRef, rows: usize) -> Result<ArrayRef> {
     Ok(take(array, &all_first, None)?)
 }
 
-/// The scalar functions: `solve`, `energy_gained`, samplers, hashes, and three for each model.
+/// The scalar functions: `solve`, `energy_gained`, samplers, hashes, and four for each model.
 pub fn scalar_functions(models: &[Arc<Model>]) -> Vec<Arc<ScalarUDF>> {
     let mut all = vec![
         ScalarUDF::from(solve::Solve::default()),

@@ -1,5 +1,5 @@
-//! `<model>_collide`, `<model>_accelerations` and `<model>_energy`: the routines of a mechanism on columns of
-//! states.
+//! `<model>_collide`, `<model>_accelerations`, `<model>_energy` and `<model>_simulate`: the routines of a mechanism
+//! on columns of states.
 
 use std::hash::{Hash, Hasher};
 use std::sync::{Arc, OnceLock};
@@ -18,6 +18,7 @@ use hodograph_interpreter::columns::{Collisions, Columns};
 use super::answers::{Answers, NULL, fields};
 use super::batch::{Batch, Row};
 use super::places::{self, Place};
+use super::simulate;
 use crate::models::Model;
 
 /// What is asked of a mechanism.
@@ -29,11 +30,13 @@ pub enum Routine {
     Accelerations,
     /// kinetic and potential energy
     Energy,
+    /// what becomes of a motion
+    Simulate,
 }
 
 impl Routine {
     /// Every routine.
-    pub const ALL: [Self; 3] = [Self::Collide, Self::Accelerations, Self::Energy];
+    pub const ALL: [Self; 4] = [Self::Collide, Self::Accelerations, Self::Energy, Self::Simulate];
 
     /// The end of the function's name.
     pub fn name(self) -> &'static str {
@@ -41,6 +44,7 @@ impl Routine {
             Self::Collide => "collide",
             Self::Accelerations => "accelerations",
             Self::Energy => "energy",
+            Self::Simulate => "simulate",
         }
     }
 }
@@ -126,6 +130,9 @@ impl ModelFunction {
     /// What is wrong with the model.
     pub fn answer(&self) -> Result<Fields> {
         let mechanism = self.mechanism()?;
+        if self.routine == Routine::Simulate {
+            return Ok(simulate::fields(mechanism));
+        }
         let speeds = (0..Mechanism::count(mechanism, Kind::Speed))
             .filter_map(|index| Mechanism::component(mechanism, Kind::Speed, index))
             .map(|speed| speed.name.to_owned());
@@ -137,6 +144,7 @@ impl ModelFunction {
                 .collect(),
             Routine::Accelerations => speeds.map(|name| format!("rate_{name}")).collect(),
             Routine::Energy => vec!["kinetic".to_owned(), "potential".to_owned()],
+            Routine::Simulate => Vec::new(),
         };
         Ok(fields(self.collides(), &numbers))
     }
@@ -159,6 +167,9 @@ impl ModelFunction {
                 self.prepared()?.known.iter().map(|(name, _)| name.as_str()).next().unwrap_or("time")
             );
         };
+        if self.routine == Routine::Simulate {
+            return places::resolve_motion(&self.name, &self.prepared()?.known, given);
+        }
         let places = places::resolve(&self.name, self.mechanism()?, &self.prepared()?.known, self.collides(), given)?;
         if self.collides() && self.prepared()?.contacts.is_empty() {
             return plan_err!("{}: the model has no contacts", self.name);
@@ -179,7 +190,10 @@ impl Prepared {
         let contacts = (0..count(Kind::Contact))
             .filter_map(|index| Mechanism::component(mechanism, Kind::Contact, index));
         Prepared {
-            known: places::known(mechanism, routine == Routine::Collide),
+            known: match routine {
+                Routine::Simulate => places::known_of_motions(mechanism),
+                _ => places::known(mechanism, routine == Routine::Collide),
+            },
             defaults: [q, u, inputs, parameters],
             contacts: contacts.map(|contact| contact.name.to_owned()).collect(),
             collisions: (0..count(Kind::Contact)).map(|contact| mechanism.collisions(contact).ok()).collect(),
@@ -190,7 +204,7 @@ impl Prepared {
 
 fn quantities(routine: Routine) -> Vec<Quantity> {
     match routine {
-        Routine::Collide => Vec::new(),
+        Routine::Collide | Routine::Simulate => Vec::new(),
         Routine::Accelerations => vec![Quantity::Accelerations],
         Routine::Energy => vec![Quantity::KineticEnergy, Quantity::PotentialEnergy],
     }
@@ -353,6 +367,10 @@ impl ScalarUDFImpl for ModelFunction {
         let fields = self.answer()?;
         let own = places.iter().any(|place| matches!(place, Place::Parameter(_)));
         let batch = Batch::new(&argument, places)?;
+        if self.routine == Routine::Simulate {
+            let answer = simulate::simulate(self.mechanism()?, &batch, &prepared.defaults, fields);
+            return Ok(ColumnarValue::Array(answer));
+        }
         let texts = if self.collides() { 3 } else { 1 };
         let mut answers = Answers::new(self.collides(), fields.len() - texts, batch.rows);
         match self.routine {

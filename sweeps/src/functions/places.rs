@@ -29,6 +29,38 @@ pub enum Place {
     Law,
     /// name of the contact
     Contact,
+    /// when a motion ends, s
+    Until,
+    /// tolerance of the integration
+    Tolerance,
+    /// static coefficient of friction
+    MuStatic,
+    /// coefficient of friction in impacts
+    MuImpact,
+    /// law of sliding friction, as `stribeck(0.01)`
+    Sliding,
+    /// law of restitution, as `power(1, 0.25)`
+    Restitution,
+}
+
+/// The fields that belong to a motion, not to a model.
+const MOTION: [(&str, Place); 9] = [
+    ("until", Place::Until),
+    ("mu", Place::Mu),
+    ("e", Place::E),
+    ("law", Place::Law),
+    ("mu_static", Place::MuStatic),
+    ("mu_impact", Place::MuImpact),
+    ("sliding", Place::Sliding),
+    ("restitution", Place::Restitution),
+    ("tolerance", Place::Tolerance),
+];
+
+impl Place {
+    /// Whether the field holds text.
+    pub fn is_text(self) -> bool {
+        matches!(self, Self::Law | Self::Contact | Self::Sliding | Self::Restitution)
+    }
 }
 
 /// The fields that belong to a collision, not to a model.
@@ -38,7 +70,15 @@ const SURFACE: [(&str, Place); 4] =
 /// All fields that a function of this mechanism knows. A component of the model that is called as a field of
 /// the collision, or `time`, has `model_` before its name.
 pub fn known(mechanism: &InterpretedMechanism, collision: bool) -> Vec<(String, Place)> {
-    let surface = if collision { SURFACE.as_slice() } else { &[] };
+    known_with(mechanism, if collision { SURFACE.as_slice() } else { &[] })
+}
+
+/// All fields that the motions of this mechanism know.
+pub fn known_of_motions(mechanism: &InterpretedMechanism) -> Vec<(String, Place)> {
+    known_with(mechanism, &MOTION)
+}
+
+fn known_with(mechanism: &InterpretedMechanism, surface: &[(&str, Place)]) -> Vec<(String, Place)> {
     let mut all: Vec<(String, Place)> =
         surface.iter().map(|&(name, place)| (name.to_owned(), place)).collect();
     all.push(("time".to_owned(), Place::Time));
@@ -72,18 +112,7 @@ pub fn resolve(
     collision: bool,
     given: &Fields,
 ) -> Result<Vec<Place>> {
-    let mut places = Vec::with_capacity(given.len());
-    for field in given {
-        let Some(&(_, place)) = known.iter().find(|(name, _)| name == field.name()) else {
-            let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
-            return plan_err!("{function} has no field `{}`; it has {}", field.name(), names.join(", "));
-        };
-        if places.contains(&place) {
-            return plan_err!("{function}: the field `{}` is given twice", field.name());
-        }
-        check(function, field, place)?;
-        places.push(place);
-    }
+    let places = places_of(function, known, given)?;
     // what is not given is that of the model, where it states the surface of every contact
     let mut contacts = 0..Mechanism::count(mechanism, Kind::Contact);
     let needed = collision && !contacts.all(|contact| mechanism.surface(contact).is_some());
@@ -98,9 +127,38 @@ pub fn resolve(
     Ok(places)
 }
 
+/// The place of each field of the argument of a motion.
+///
+/// # Errors
+///
+/// As [`resolve`].
+pub fn resolve_motion(function: &str, known: &[(String, Place)], given: &Fields) -> Result<Vec<Place>> {
+    let places = places_of(function, known, given)?;
+    if !places.contains(&Place::Until) {
+        return plan_err!("{function} needs the field `until`: when the motion ends, s");
+    }
+    Ok(places)
+}
+
+fn places_of(function: &str, known: &[(String, Place)], given: &Fields) -> Result<Vec<Place>> {
+    let mut places = Vec::with_capacity(given.len());
+    for field in given {
+        let Some(&(_, place)) = known.iter().find(|(name, _)| name == field.name()) else {
+            let names: Vec<&str> = known.iter().map(|(name, _)| name.as_str()).collect();
+            return plan_err!("{function} has no field `{}`; it has {}", field.name(), names.join(", "));
+        };
+        if places.contains(&place) {
+            return plan_err!("{function}: the field `{}` is given twice", field.name());
+        }
+        check(function, field, place)?;
+        places.push(place);
+    }
+    Ok(places)
+}
+
 fn check(function: &str, field: &Field, place: Place) -> Result<()> {
     let given: &DataType = field.data_type();
-    let text = matches!(place, Place::Law | Place::Contact);
+    let text = place.is_text();
     if if text { is_text(given) } else { is_number(given) } {
         return Ok(());
     }

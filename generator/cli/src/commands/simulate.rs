@@ -138,7 +138,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
     }
     let mechanism = machine.interpreted(&state)?;
     arguments.pictures.check_times(state.time, until)?;
-    let surfaces = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
+    let surfaces::Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
     if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
         return Err(Stop::Call(
@@ -160,6 +160,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
         absolute_tolerance: tolerance,
         max_step: arguments.max_step.unwrap_or(greatest),
         surfaces,
+        laws,
         drive,
         breaks,
         together: match arguments.together {

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use super::equations::vanishes;
 use super::linear_forms::LinearScalar;
 use crate::algebra::{Expr, Intermediates, Sample};
-use crate::check::coupled::{LARGEST_BLOCK, blocks, matching};
+use hodograph_model::check::coupled::{LARGEST_BLOCK, blocks, matching};
 
 /// A block of equations that is solved at once.
 #[derive(Clone, Debug)]

@@ -6,6 +6,7 @@ use quote::{format_ident, quote};
 use super::super::Emitter;
 use super::Written;
 use crate::identifiers::ident;
+use hodograph_model::model::mechanism::{ContactLaw, Named};
 use hodograph_program::program::{ContactQuantity, Quantity};
 
 impl Emitter<'_> {
@@ -59,6 +60,7 @@ impl Emitter<'_> {
         let without = self.collisions("impact_without_collision", "impact without collision of this contact");
         let mode = self.closed_contacts("contact_mode", "mode of this contact", &quote!());
         let force = self.closed_contacts("contact_force", "force of this contact", &quote!(mode,));
+        let laws = self.stated_laws();
         let outcome =
             quote!(::core::result::Result<#krate::ContactOutcome<T>, #krate::ClosedContactError<T>>);
         quote! {
@@ -155,8 +157,48 @@ impl Emitter<'_> {
                 ) -> #outcome {
                     #force
                 }
+                #laws
             }
         }
+    }
+
+    /// What the model states of surfaces beyond mu, e and law, if it states any.
+    fn stated_laws(&self) -> Option<TokenStream> {
+        let krate = self.krate;
+        let laws: Vec<_> = self.mechanism.contacts.iter().map(|contact| &contact.law).collect();
+        if laws.iter().all(|law| **law == ContactLaw::default()) {
+            return None;
+        }
+        let option = |value: Option<TokenStream>| match value {
+            Some(value) => quote!(::core::option::Option::Some(#value)),
+            None => quote!(::core::option::Option::None),
+        };
+        let number = |value: f64| Literal::f64_suffixed(value);
+        let named = |law: &Option<Named>| {
+            option(law.as_ref().map(|Named { name, numbers }| {
+                let numbers = numbers.iter().map(|value| number(*value));
+                quote!((#name, &[#(#numbers),*]))
+            }))
+        };
+        let arms = laws.iter().enumerate().filter(|(_, law)| ***law != ContactLaw::default()).map(|(index, law)| {
+            let index = Literal::usize_unsuffixed(index);
+            let [mu_static, mu_impact] =
+                [law.mu_static, law.mu_impact].map(|mu| option(mu.map(|mu| quote::ToTokens::to_token_stream(&number(mu)))));
+            let [sliding, restitution] = [&law.sliding, &law.restitution].map(named);
+            quote! {
+                #index => #krate::StatedLaw {
+                    mu_static: #mu_static, mu_impact: #mu_impact, sliding: #sliding, restitution: #restitution,
+                },
+            }
+        });
+        Some(quote! {
+            fn stated_law(&self, contact: usize) -> #krate::StatedLaw<'_> {
+                match contact {
+                    #(#arms)*
+                    _ => ::core::default::Default::default(),
+                }
+            }
+        })
     }
 
     /// An arm for every contact.

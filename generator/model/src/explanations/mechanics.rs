@@ -289,8 +289,10 @@ pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: SURFACE,
         text: "The surface of a contact holds its friction and restitution: `mu`, not negative, `e`, from 0 \
-            to 1, and `law`, one of newton, poisson and stronge, each a constant. What is left out is mu = 0, \
-            e = 0, law = poisson. The tool takes these where the command line does not say otherwise, and \
+            to 1, and `law`, one of newton, poisson and stronge, each a constant. Motions also read `mu_static`, \
+            not less than mu, `mu_impact`, `sliding: stribeck(SPEED)`, which needs `mu_static`, and \
+            `restitution`, one of threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT) and \
+            table(SPEED, E, SPEED, E, ..). What is left out is mu = 0, e = 0, law = poisson. The tool takes these where the command line does not say otherwise, and \
             says so; equations do not depend on them.",
         wrong: Some(
             "contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x), surface: { mu: -0.3, \

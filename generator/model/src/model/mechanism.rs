@@ -439,6 +439,8 @@ pub struct Contact {
     pub gap_span: Span,
     /// friction and restitution, where the model states them
     pub surface: Option<Surface>,
+    /// what the surface does beyond these
+    pub law: ContactLaw,
     /// where it is declared
     pub span: Span,
 }
@@ -458,6 +460,35 @@ pub struct Surface {
 impl Surface {
     /// What is left out of a surface is this: without friction, without rebound.
     pub const PLAIN: Surface = Surface { mu: 0.0, e: 0.0, law: Law::Poisson };
+}
+
+/// What a surface does beyond one coefficient of friction and one of restitution. Simulations read it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactLaw {
+    /// static coefficient of friction, not less than mu
+    pub mu_static: Option<f64>,
+    /// coefficient of friction in impacts, not negative
+    pub mu_impact: Option<f64>,
+    /// sliding friction as a function of the speed of slip
+    pub sliding: Option<Named>,
+    /// restitution as a function of the speed of approach
+    pub restitution: Option<Named>,
+}
+
+/// A law by its name, and its numbers in SI units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    /// in lower case, as in models
+    pub name: String,
+    /// speeds, exponents, coefficients
+    pub numbers: Vec<f64>,
+}
+
+impl Named {
+    /// The laws of sliding friction.
+    pub const SLIDING: &'static str = "constant or stribeck(SPEED)";
+    /// The laws of restitution.
+    pub const RESTITUTION: &'static str = "constant, threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT) or table(SPEED, E, SPEED, E, ..)";
 }
 
 /// Hypotheses of restitution.

@@ -2,6 +2,7 @@
 
 use hodograph::{Contacts, Kind as Of, State, Surface};
 use hodograph_interpreter::motion::{GivenSurface, surfaces};
+use hodograph_simulation::{ContactLaw, GivenLaw};
 
 use crate::json::{Failure, Kind};
 use crate::output;
@@ -21,9 +22,30 @@ pub struct MotionSurfaces {
     /// hypothesis of restitution: newton, poisson or stronge [default: that of the model]
     #[arg(long, value_name = "LAW")]
     law: Option<String>,
-    /// the surface of one contact, as `tip=0.5,0.8,stronge`; may be given several times
+    /// static coefficient of friction, not less than mu: slip begins where friction exceeds it [default: mu]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    mu_static: Option<f64>,
+    /// coefficient of friction in impacts [default: mu]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    mu_impact: Option<f64>,
+    /// sliding friction by the speed of slip: constant, or stribeck(SPEED), which falls from the static
+    /// coefficient to mu [default: constant]
+    #[arg(long, value_name = "LAW")]
+    sliding: Option<String>,
+    /// e by the speed of approach: constant, threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT)
+    /// or table(SPEED, E, SPEED, E, ..) [default: constant]
+    #[arg(long, value_name = "LAW")]
+    restitution: Option<String>,
+    /// the surface of one contact, as `tip=0.5,0.8,stronge`, with parts such as `mu_static=0.6` after
+    /// these; may be given several times
     #[arg(long, value_name = "CONTACT=MU,E,LAW")]
     surface: Vec<String>,
+}
+
+/// Surfaces of contacts and what they do beyond mu, e and law, by number.
+pub struct Found {
+    pub surfaces: Vec<(usize, Surface<f64>)>,
+    pub laws: Vec<(usize, ContactLaw)>,
 }
 
 impl MotionSurfaces {
@@ -32,18 +54,16 @@ impl MotionSurfaces {
     /// # Errors
     ///
     /// Numbers or names that are impossible, and [`Stop::Call`] where a contact is left without a surface.
-    pub fn of(
-        &self,
-        mechanism: &dyn Contacts<f64>,
-        state: &State<'_>,
-    ) -> Outcome<Vec<(usize, Surface<f64>)>> {
+    pub fn of(&self, mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Outcome<Found> {
         let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
         let law = self.law.as_deref().map(law).transpose()?;
         // What is given is checked even where it is not enough.
         let all = GivenSurface { mu: self.mu, e: self.e, law }.check().map_err(Failure::from)?;
+        let all_laws = self.laws_of_all()?;
+        let mut laws: Vec<(usize, GivenLaw)> = Vec::new();
         let mut own: Vec<(usize, GivenSurface)> = Vec::new();
         for text in &self.surface {
-            let (contact, surface) = one(text)?;
+            let (contact, surface, law) = one(text)?;
             let place = place_of(contact, mechanism)?;
             if own.iter().any(|(other, _)| *other == place) {
                 return Err(Stop::Call(format!(
@@ -51,12 +71,19 @@ impl MotionSurfaces {
                 )));
             }
             own.push((place, surface));
+            laws.push((place, law.or(all_laws.clone())));
         }
         // What the options leave open stands in the model, if at all.
         for contact in 0..mechanism.count(Of::Contact) {
             let has_gap = !matches!(mechanism.gap(contact, state), Ok(None));
             if has_gap && own.iter().all(|(other, _)| *other != contact) {
                 own.push((contact, stated_in(mechanism, contact, all)));
+            }
+        }
+        for contact in 0..mechanism.count(Of::Contact) {
+            let replaced = laws.iter().any(|(other, _)| *other == contact);
+            if !replaced {
+                laws.push((contact, stated_law(mechanism, contact, name(contact), all_laws.clone())?));
             }
         }
         let found = surfaces(mechanism, state, all, &own).map_err(|error| {
@@ -71,8 +98,43 @@ impl MotionSurfaces {
                 name(contact)
             ));
         }
-        Ok(found.of_contacts)
+        let laws = laws.into_iter().map(|(contact, law)| (contact, law.law())).collect();
+        Ok(Found { surfaces: found.of_contacts, laws })
     }
+
+    /// What the options say of all contacts beyond mu, e and law.
+    fn laws_of_all(&self) -> Outcome<GivenLaw> {
+        let call = |option: &str, message: String| Stop::Call(format!("{option}: {message}"));
+        let sliding = self.sliding.as_ref().map(|text| text.parse()).transpose();
+        let restitution = self.restitution.as_ref().map(|text| text.parse()).transpose();
+        Ok(GivenLaw {
+            mu_static: self.mu_static,
+            mu_impact: self.mu_impact,
+            sliding: sliding.map_err(|message| call("--sliding", message))?,
+            restitution: restitution.map_err(|message| call("--restitution", message))?,
+        })
+    }
+}
+
+/// What is given of the law of a contact, and for what that leaves open what the model states, which is told on
+/// standard error.
+fn stated_law(
+    mechanism: &dyn Contacts<f64>,
+    contact: usize,
+    name: &str,
+    given: GivenLaw,
+) -> Outcome<GivenLaw> {
+    let stated = ContactLaw::stated(&mechanism.stated_law(contact)).map_err(Stop::Call)?;
+    let stated = GivenLaw::from(stated);
+    let whole = given.clone().or(stated.clone());
+    let of_model = |(part, _): &&(&str, String)| !given.parts().iter().any(|(other, _)| other == part);
+    let parts = stated.parts();
+    let says: Vec<String> =
+        parts.iter().filter(of_model).map(|(part, text)| format!("{part} = {text}")).collect();
+    if !says.is_empty() {
+        output::say(format_args!("note: contact {name}: {} of the model", says.join(", ")));
+    }
+    Ok(whole)
 }
 
 /// The number of a contact.
@@ -116,12 +178,39 @@ pub fn stiffnesses(texts: &[String], mechanism: &dyn Contacts<f64>) -> Outcome<V
 }
 
 /// A surface of one contact.
-fn one(text: &str) -> Outcome<(&str, GivenSurface)> {
+fn one(text: &str) -> Outcome<(&str, GivenSurface, GivenLaw)> {
     let wrong = || Stop::Call(format!("--surface {text}: give CONTACT=MU,E,LAW, as in tip=0.5,0.8,stronge"));
     let (contact, rest) = text.split_once('=').ok_or_else(wrong)?;
-    let parts: Vec<&str> = rest.split(',').map(str::trim).collect();
-    let [mu, e, named] = parts[..] else { return Err(wrong()) };
+    let parts = apart(rest);
+    let [mu, e, named, more @ ..] = &parts[..] else { return Err(wrong()) };
+    let mut given = GivenLaw::default();
+    for part in more {
+        let (part, value) = part.split_once('=').ok_or_else(|| {
+            Stop::Call(format!("--surface {text}: after MU,E,LAW stand parts such as mu_static=0.6"))
+        })?;
+        given
+            .set(part.trim(), value.trim())
+            .map_err(|message| Stop::Call(format!("--surface {text}: {message}")))?;
+    }
     let number = |text: &str| text.parse::<f64>().map_err(|_| wrong());
     let surface = GivenSurface::from(Surface { mu: number(mu)?, e: number(e)?, law: law(named)? });
-    Ok((contact.trim(), surface.check().map_err(Failure::from)?))
+    Ok((contact.trim(), surface.check().map_err(Failure::from)?, given))
+}
+
+/// What stands between commas, but for those in parentheses.
+fn apart(text: &str) -> Vec<&str> {
+    let (mut parts, mut depth, mut begin) = (Vec::new(), 0_i32, 0);
+    for (place, letter) in text.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            ',' if depth <= 0 => {
+                parts.push(text[begin..place].trim());
+                begin = place + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(text[begin..].trim());
+    parts
 }

@@ -1,11 +1,10 @@
 //! Lowers contacts, and warns of names that are never used.
 
-use super::super::mechanism::{Against, BodyId, Contact, FrameId, Law, PointId, Surface, Vector};
+use super::super::mechanism::{Against, BodyId, Contact, FrameId, PointId, Vector};
 use super::super::names::Symbol;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
-use crate::suggest;
 use crate::syntax::tree::{ExprKind, Field, Name, Record};
 
 impl Lowering<'_> {
@@ -60,7 +59,7 @@ impl Lowering<'_> {
             self.need_free_of_speeds(&typed, "a gap");
             Some(Some(scalar))
         });
-        let surface = surface.map(|field| self.surface(field));
+        let (surface, law) = surface.map(|field| self.surface(field)).unzip();
         if let (Some(p), Some(Against::Point(q, _))) = (point, &against)
             && p == *q
         {
@@ -87,72 +86,10 @@ impl Lowering<'_> {
             without_gap,
             gap_span,
             surface,
+            law: law.unwrap_or_default(),
             span: record.name.span,
         });
         read.then_some(())
-    }
-
-    /// Friction and restitution.
-    fn surface(&mut self, field: &Field) -> Surface {
-        let mut surface = Surface::PLAIN;
-        let Some(fields) = &field.fields else {
-            let form = "surface: { mu: 0.3, e: 0.5, law: stronge }";
-            let message = "a surface is friction and restitution in braces";
-            let error = Diagnostic::new(codes::SURFACE, field.value.span, message);
-            self.report(error.help(format!("write `{form}`; what is struck stands under `against`")));
-            return surface;
-        };
-        let owner = &field.name;
-        let [mu, e, law] = self.record("a surface", owner, fields, ["mu", "e", "law"], &[]);
-        if let Some(value) = mu.and_then(|mu| self.coefficient(mu, "a coefficient of friction")) {
-            surface.mu = value;
-        }
-        if let Some((value, field)) =
-            e.and_then(|e| Some((self.coefficient(e, "a coefficient of restitution")?, e)))
-        {
-            if value > 1.0 {
-                let message = "a coefficient of restitution is at most 1";
-                let error = Diagnostic::new(codes::SURFACE, field.value.span, message);
-                self.report(error.help("1 gives back all, 0 nothing"));
-            }
-            surface.e = value;
-        }
-        if let Some(law) = law {
-            surface.law = self.law(law).unwrap_or(surface.law);
-        }
-        surface
-    }
-
-    /// A number that is not negative.
-    fn coefficient(&mut self, field: &Field, what: &str) -> Option<f64> {
-        self.notes(field, &[]);
-        let typed = self.constant(&field.value);
-        let value = typed.constant?;
-        if value < 0.0 {
-            let message = format!("{what} is not negative");
-            self.report(Diagnostic::new(codes::SURFACE, field.value.span, message));
-        }
-        Some(value)
-    }
-
-    fn law(&mut self, field: &Field) -> Option<Law> {
-        self.notes(field, &[]);
-        let name = match &field.value.kind {
-            ExprKind::Name(name) => name.to_lowercase(),
-            ExprKind::Error => return None,
-            _ => String::new(),
-        };
-        let law = Law::ALL.into_iter().find(|law| law.name() == name);
-        if law.is_none() {
-            let error =
-                Diagnostic::new(codes::SURFACE, field.value.span, "there is no such law of restitution");
-            let near = suggest::nearest(&name, Law::ALL.into_iter().map(Law::name));
-            self.report(match near {
-                Some(near) => error.help(format!("did you mean `{near}`?")),
-                None => error.help("the laws are newton, poisson and stronge"),
-            });
-        }
-        law
     }
 
     /// Warns of contacts that no simulation sees, where a gap could be stated and it is not said that there is

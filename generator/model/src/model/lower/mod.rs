@@ -21,6 +21,7 @@ mod rates;
 mod requirements;
 mod resolve;
 mod sums;
+mod surfaces;
 
 use std::collections::HashSet;
 

@@ -1,0 +1,104 @@
+//! What is given of a [`ContactLaw`] by options, part by part: what one leaves open another may say.
+
+use crate::contact_law::{ContactLaw, Restitution, Sliding};
+
+/// Parts of a [`ContactLaw`]; what is not given is none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct GivenLaw {
+    /// static coefficient of friction
+    pub mu_static: Option<f64>,
+    /// coefficient of friction in impacts
+    pub mu_impact: Option<f64>,
+    /// sliding friction as a function of the speed of slip
+    pub sliding: Option<Sliding>,
+    /// restitution as a function of the speed of approach
+    pub restitution: Option<Restitution>,
+}
+
+impl GivenLaw {
+    /// The names of the parts.
+    pub const PARTS: [&'static str; 4] = ["mu_static", "mu_impact", "sliding", "restitution"];
+
+    /// What is not given here is taken from another.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self {
+            mu_static: self.mu_static.or(other.mu_static),
+            mu_impact: self.mu_impact.or(other.mu_impact),
+            sliding: self.sliding.or(other.sliding),
+            restitution: self.restitution.or(other.restitution),
+        }
+    }
+
+    /// Sets a part by its name, from its text: `mu_static` from `0.4`, `restitution` from `power(1, 0.25)`.
+    ///
+    /// # Errors
+    ///
+    /// A sentence: there is no such part, or the text is none.
+    pub fn set(&mut self, part: &str, text: &str) -> Result<(), String> {
+        let number = || text.trim().parse::<f64>().map_err(|_| format!("{part} is `{text}`: give a number"));
+        match part {
+            "mu_static" => self.mu_static = Some(number()?),
+            "mu_impact" => self.mu_impact = Some(number()?),
+            "sliding" => self.sliding = Some(text.parse()?),
+            "restitution" => self.restitution = Some(text.parse()?),
+            _ => return Err(format!("a surface has no `{part}`: its parts are {}", Self::PARTS.join(", "))),
+        }
+        Ok(())
+    }
+
+    /// The parts that are given, by name and text.
+    pub fn parts(&self) -> Vec<(&'static str, String)> {
+        let texts = [
+            self.mu_static.map(|mu| mu.to_string()),
+            self.mu_impact.map(|mu| mu.to_string()),
+            self.sliding.as_ref().map(Sliding::to_string),
+            self.restitution.as_ref().map(Restitution::to_string),
+        ];
+        Self::PARTS.into_iter().zip(texts).filter_map(|(part, text)| Some((part, text?))).collect()
+    }
+
+    /// The law: what is not given is as the surface says.
+    pub fn law(self) -> ContactLaw {
+        ContactLaw {
+            mu_static: self.mu_static,
+            mu_impact: self.mu_impact,
+            sliding: self.sliding.unwrap_or_default(),
+            restitution: self.restitution.unwrap_or_default(),
+        }
+    }
+}
+
+/// A law, of which constant parts count as not given.
+impl From<ContactLaw> for GivenLaw {
+    fn from(law: ContactLaw) -> Self {
+        let ContactLaw { mu_static, mu_impact, sliding, restitution } = law;
+        Self {
+            mu_static,
+            mu_impact,
+            sliding: Some(sliding).filter(|sliding| *sliding != Sliding::Constant),
+            restitution: Some(restitution).filter(|restitution| *restitution != Restitution::Constant),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_set_by_name_and_one_completes_the_other() {
+        let mut given = GivenLaw::default();
+        given.set("mu_static", "0.4").unwrap();
+        given.set("restitution", "power(1, 0.25)").unwrap();
+        assert!(given.set("mu_static", "much").unwrap_err().contains("give a number"));
+        assert!(given.set("rolling", "0.01").unwrap_err().contains("mu_static, mu_impact"));
+        let mut other = GivenLaw::default();
+        other.set("mu_static", "0.9").unwrap();
+        other.set("sliding", "stribeck(0.1)").unwrap();
+        let both = given.clone().or(other);
+        let texts: Vec<String> = both.parts().iter().map(|(part, text)| format!("{part}={text}")).collect();
+        assert_eq!(texts, ["mu_static=0.4", "sliding=stribeck(0.1)", "restitution=power(1, 0.25)"]);
+        assert_eq!(GivenLaw::from(both.clone().law()), both);
+    }
+}

@@ -1,0 +1,186 @@
+//! `<model>_simulate`: what becomes of motions, one for each row.
+
+use std::sync::Arc;
+
+use datafusion::arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array, StringArray, StructArray};
+use datafusion::arrow::datatypes::{DataType, Field, Fields};
+use hodograph::{Contacts as _, Kind, Law, Mechanism, State};
+use hodograph_generator::model::mechanism::Law as Stated;
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::motion::{GivenSurface, check_tolerance, greatest_step, surfaces};
+use hodograph_simulation::{
+    Batch as Many, Case, ContactLaw, GivenLaw, Options, Outcome, Reason, SimulationError, simulate_many,
+};
+
+use super::UNKNOWN_LAW;
+use super::answers::NULL;
+use super::batch::{Batch, Row};
+use super::places::Place;
+
+/// The numbers of an answer; a time without rest is NULL.
+const NUMBERS: [&str; 8] =
+    ["time", "rest", "energy", "kinetic", "potential", "friction_work", "impact_work", "input_work"];
+
+fn names(mechanism: &InterpretedMechanism, kind: Kind) -> Vec<&str> {
+    let component = |index| Mechanism::component(mechanism, kind, index).map(|component| component.name);
+    (0..Mechanism::count(mechanism, kind)).filter_map(component).collect()
+}
+
+/// The fields of the answer: `kind` is `rest`, `moving`, or says why the motion ended early; `closed` are the names of
+/// the contacts that are closed at the end, joined by `+`.
+pub fn fields(mechanism: &InterpretedMechanism) -> Fields {
+    let mut all = vec![Field::new("kind", DataType::Utf8, false), Field::new("closed", DataType::Utf8, true)];
+    all.extend(NUMBERS.map(|name| Field::new(name, DataType::Float64, true)));
+    all.extend(["collisions", "events"].map(|name| Field::new(name, DataType::Int64, true)));
+    all.push(Field::new("several_modes", DataType::Boolean, true));
+    for kind in [Kind::Coordinate, Kind::Speed] {
+        let end = |name: &str| Field::new(format!("end_{name}"), DataType::Float64, true);
+        all.extend(names(mechanism, kind).into_iter().map(end));
+    }
+    all.into()
+}
+
+/// An answer, or why there is none.
+type Answer = Result<Outcome, &'static str>;
+
+/// The motions of a batch, one after the other: the engine has a batch for each core.
+pub fn simulate(
+    mechanism: &InterpretedMechanism,
+    batch: &Batch,
+    defaults: &[Vec<f64>; 4],
+    fields: Fields,
+) -> ArrayRef {
+    let table = batch.table(defaults);
+    let mut machine = mechanism.clone();
+    let mut state = Row::new(defaults);
+    let mut answers: Vec<Answer> = Vec::with_capacity(batch.rows);
+    for (range, parameters) in batch.stretches(&defaults[3]) {
+        let refused = machine.set_parameter_values(&parameters).err().map(|error| error.kind());
+        for row in range {
+            answers.push(match refused {
+                _ if !batch.valid[row] => Err(NULL),
+                Some(kind) => Err(kind),
+                None => {
+                    state.read(&table, row);
+                    let case = |_| case(&machine, batch, row, &state.state());
+                    let one = simulate_many(1, case, &Many::default()).into_iter().flatten().next();
+                    one.ok_or("cancelled")
+                }
+            });
+        }
+    }
+    columns(mechanism, &answers, fields)
+}
+
+/// The motion of a row.
+fn case<'m>(
+    machine: &'m InterpretedMechanism,
+    batch: &Batch,
+    row: usize,
+    state: &State<'_>,
+) -> Result<Case<&'m InterpretedMechanism>, SimulationError> {
+    let wrong = |message: String| SimulationError {
+        time: state.time,
+        contact: None,
+        reason: Reason::Option(message),
+    };
+    let tolerance = batch.number(Place::Tolerance, row).unwrap_or(Options::default().relative_tolerance);
+    check_tolerance(tolerance).map_err(wrong)?;
+    let law = batch.text(Place::Law, row);
+    let law = law.map(|name| Law::named(name).ok_or_else(|| wrong(UNKNOWN_LAW.to_owned()))).transpose()?;
+    let all = GivenSurface { mu: batch.number(Place::Mu, row), e: batch.number(Place::E, row), law };
+    let all = all.check().map_err(|error| wrong(error.to_string()))?;
+    let mut given = GivenLaw {
+        mu_static: batch.number(Place::MuStatic, row),
+        mu_impact: batch.number(Place::MuImpact, row),
+        ..GivenLaw::default()
+    };
+    for (place, part) in [(Place::Sliding, "sliding"), (Place::Restitution, "restitution")] {
+        if let Some(text) = batch.text(place, row) {
+            given.set(part, text).map_err(wrong)?;
+        }
+    }
+    // What the columns leave open stands in the model, if at all.
+    let (mut own, mut laws) = (Vec::new(), Vec::new());
+    for (contact, model) in machine.model().contacts.iter().enumerate() {
+        if let Some(stated) = model.surface {
+            let law = match stated.law {
+                Stated::Newton => Law::Newton,
+                Stated::Poisson => Law::Poisson,
+                Stated::Stronge => Law::Stronge,
+            };
+            let stated = GivenSurface { mu: Some(stated.mu), e: Some(stated.e), law: Some(law) };
+            own.push((contact, all.or(stated)));
+        }
+        let stated = ContactLaw::stated(&machine.stated_law(contact)).map_err(wrong)?;
+        laws.push((contact, given.clone().or(stated.into()).law()));
+    }
+    let surfaces = surfaces(machine, state, all, &own)
+        .map_err(|error| wrong(format!("{error}: give 'mu', 'e' and 'law'")))?
+        .of_contacts;
+    let options = Options {
+        relative_tolerance: tolerance,
+        absolute_tolerance: tolerance,
+        max_step: greatest_step(machine.program(), false),
+        surfaces,
+        laws,
+        ..Options::default()
+    };
+    Ok(Case {
+        mechanism: machine,
+        time: state.time,
+        coordinates: state.coordinates.to_vec(),
+        speeds: state.speeds.to_vec(),
+        inputs: state.inputs.to_vec(),
+        options,
+        until: batch.number(Place::Until, row).unwrap_or(f64::NAN),
+    })
+}
+
+/// The column of structs.
+fn columns(mechanism: &InterpretedMechanism, answers: &[Answer], fields: Fields) -> ArrayRef {
+    // A motion that did not begin has no state, and no numbers.
+    let begun =
+        |answer: &Answer| answer.as_ref().ok().filter(|outcome| !outcome.coordinates.is_empty()).cloned();
+    let begun: Vec<Option<Outcome>> = answers.iter().map(begun).collect();
+    let kind = |answer: &Answer| match answer {
+        Ok(outcome) => outcome.kind(),
+        Err(kind) => kind,
+    };
+    let contacts = names(mechanism, Kind::Contact);
+    let closed = |outcome: &Outcome| -> String {
+        let names: Vec<&str> =
+            outcome.closed.iter().filter_map(|&contact| contacts.get(contact).copied()).collect();
+        names.join("+")
+    };
+    let number = |of: &dyn Fn(&Outcome) -> Option<f64>| -> ArrayRef {
+        Arc::new(Float64Array::from_iter(begun.iter().map(|outcome| outcome.as_ref().and_then(of))))
+    };
+    let count = |of: fn(&Outcome) -> usize| -> ArrayRef {
+        Arc::new(Int64Array::from_iter(begun.iter().map(|outcome| outcome.as_ref().map(|o| of(o) as i64))))
+    };
+    let mut columns: Vec<ArrayRef> = vec![
+        Arc::new(StringArray::from_iter_values(answers.iter().map(kind))),
+        Arc::new(StringArray::from_iter(begun.iter().map(|outcome| outcome.as_ref().map(closed)))),
+        number(&|outcome| Some(outcome.time)),
+        number(&|outcome| outcome.rest),
+        number(&|outcome| outcome.energy.total()),
+        number(&|outcome| Some(outcome.energy.kinetic)),
+        number(&|outcome| outcome.energy.potential),
+        number(&|outcome| Some(outcome.energy.friction)),
+        number(&|outcome| Some(outcome.energy.impacts)),
+        number(&|outcome| Some(outcome.energy.inputs)),
+        count(|outcome| outcome.collisions),
+        count(|outcome| outcome.events),
+        Arc::new(BooleanArray::from_iter(
+            begun.iter().map(|outcome| outcome.as_ref().map(|outcome| outcome.several_modes)),
+        )),
+    ];
+    for index in 0..Mechanism::count(mechanism, Kind::Coordinate) {
+        columns.push(number(&|outcome| outcome.coordinates.get(index).copied()));
+    }
+    for index in 0..Mechanism::count(mechanism, Kind::Speed) {
+        columns.push(number(&|outcome| outcome.speeds.get(index).copied()));
+    }
+    Arc::new(StructArray::new(fields, columns, None))
+}
