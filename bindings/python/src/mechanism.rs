@@ -19,7 +19,7 @@ use crate::arguments::{Rows, array, column, common, raises, rows};
 use crate::machines::{Machines, Refused, parameter_error};
 use crate::motion::Choices;
 use crate::states::States;
-use crate::{collisions, errors, model, motion};
+use crate::{collisions, errors, many, model, motion};
 
 /// A quantity, ready for one state and for many.
 struct Routine {
@@ -385,5 +385,23 @@ impl Mechanism {
         let [q, u, inputs, time] = &states;
         let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
         motion::simulate(py, &self.inner, &states, (until, step), choices)
+    }
+
+    /// Many motions at once, by rows of states, parameters and surfaces.
+    #[allow(clippy::too_many_arguments)]
+    fn _simulate_many<'py>(
+        &self,
+        py: Python<'py>,
+        states: [Option<Bound<'py, PyAny>>; 4],
+        until: f64,
+        columns: many::Columns<'py>,
+        choices: Choices,
+        threads: Option<usize>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let [q, u, inputs, time] = &states;
+        let states = self.states(py, [q.as_ref(), u.as_ref(), inputs.as_ref(), time.as_ref(), None, None])?;
+        let of = (&self.inner, self.machines.as_ref());
+        many::simulate(py, of, &states, until, &columns, &choices, threads, progress)
     }
 }

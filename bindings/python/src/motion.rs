@@ -1,12 +1,12 @@
 //! Motion with impacts and contact that lasts.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 
 use hodograph::{Kind, Mechanism as _, State};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
-    Drive, Event, EventKind, InputFunction, Options, Progress, Simulation, SimulationError,
+    ContactLaw, Drive, Event, EventKind, InputFunction, Options, Progress, Simulation, SimulationError,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -14,6 +14,7 @@ use pyo3::types::{PyDict, PyList};
 
 use crate::arguments::{array, law_named};
 use crate::errors;
+use crate::laws::{self, GivenParts, Raised, keep};
 use crate::states::States;
 
 /// A motion has at most this many states.
@@ -27,14 +28,19 @@ type Given = (Option<f64>, Option<f64>, Option<String>);
 pub struct Choices {
     /// the surface of all contacts, for what they leave open
     #[pyo3(item)]
-    surface: Given,
+    pub surface: Given,
     /// the surfaces of contacts, by number
     #[pyo3(item)]
     surfaces: Vec<(usize, Given)>,
+    /// what surfaces do beyond these: of all contacts, and of contacts by number
     #[pyo3(item)]
-    tolerance: Option<f64>,
+    pub law: GivenParts,
     #[pyo3(item)]
-    max_step: Option<f64>,
+    laws: Vec<(usize, GivenParts)>,
+    #[pyo3(item)]
+    pub tolerance: Option<f64>,
+    #[pyo3(item)]
+    pub max_step: Option<f64>,
     /// inputs as a function of time, coordinates and speeds
     #[pyo3(item)]
     control: Option<Py<PyAny>>,
@@ -49,9 +55,6 @@ struct Found {
     speeds: Vec<f64>,
     events: Vec<Event>,
 }
-
-/// The exception that a function of Python raised, kept until the motion ends for it.
-type Raised = Arc<Mutex<Option<PyErr>>>;
 
 /// A function of Python as a function that writes inputs; where it raises, they are not numbers, which ends
 /// the motion.
@@ -75,16 +78,37 @@ fn controlled(control: Py<PyAny>, raised: &Raised) -> InputFunction {
         });
         if let Err(error) = found {
             inputs.fill(f64::NAN);
-            raised.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            keep(&raised, error);
         }
     })
 }
 
 /// What is given of a surface, with its law by name.
-fn given(py: Python<'_>, (mu, e, law): &Given) -> PyResult<GivenSurface> {
+pub fn given(py: Python<'_>, (mu, e, law): &Given) -> PyResult<GivenSurface> {
     let law = law.as_deref().map(|law| law_named(py, law)).transpose()?;
     let given = GivenSurface { mu: *mu, e: *e, law };
     given.check().map_err(|error| errors::argument(py, "surface", error.kind(), &error.to_string()))
+}
+
+type Own = (Vec<(usize, GivenSurface)>, Vec<(usize, ContactLaw)>);
+
+/// The surfaces of contacts that have one of their own, and the laws of all contacts.
+pub fn own(
+    py: Python<'_>,
+    mechanism: &InterpretedMechanism,
+    choices: &Choices,
+    raised: &Raised,
+) -> PyResult<Own> {
+    let (mut surfaces, mut own) = (Vec::new(), Vec::new());
+    for (contact, surface) in &choices.surfaces {
+        surfaces.push((*contact, given(py, surface)?));
+    }
+    for (contact, parts) in &choices.laws {
+        own.push((*contact, laws::given(py, parts, raised)?));
+    }
+    let all = laws::given(py, &choices.law, raised)?;
+    let laws = laws::of_contacts(py, mechanism, &all, &own, mechanism.count(Kind::Contact))?;
+    Ok((surfaces, laws))
 }
 
 fn follow(
@@ -135,10 +159,8 @@ pub fn simulate<'py>(
         speeds: states.u.slice(),
         inputs: states.inputs.slice(),
     };
-    let mut own = Vec::new();
-    for (contact, surface) in &choices.surfaces {
-        own.push((*contact, given(py, surface)?));
-    }
+    let raised = Raised::default();
+    let (own, laws) = own(py, mechanism, &choices, &raised)?;
     let surfaces = match defaults::surfaces(mechanism, &state, given(py, &choices.surface)?, &own) {
         Ok(surfaces) => surfaces.of_contacts,
         Err(error) => return wrong("mu", &format!("{error}: give mu, e and law, or `surfaces`")),
@@ -153,9 +175,9 @@ pub fn simulate<'py>(
         absolute_tolerance: tolerance,
         max_step: choices.max_step.unwrap_or(defaults::greatest_step(mechanism.program(), driven)),
         surfaces,
+        laws,
         ..Options::default()
     };
-    let raised = Raised::default();
     if let Some(control) = choices.control {
         let function = controlled(control, &raised);
         options.drive = match choices.period {

@@ -445,3 +445,63 @@ def test_stubs_name_what_there_is():
                 found = [p.name for p in inspect.signature(method).parameters.values() if p.kind != p.VAR_KEYWORD]
                 assert stubbed.get(name) == found, name
                 assert method.__doc__, name
+
+
+def test_laws_of_contact():
+    m = model("free_box_corner")
+    whole = dict(mu=0.3, e=0.5, law="stronge")
+    plain = m.simulate(0.3, **whole)
+    speed = -m.contact(m.contacts[0]).velocity[0]
+    # the same numbers by a table, a function and a text
+    for same in ([(0.0, 0.5)], lambda v: 0.5, "constant", "threshold(1e-9)"):
+        motion = m.simulate(0.3, **whole, restitution=same, mu_impact=0.3, mu_static=0.3)
+        np.testing.assert_array_equal(motion.u, plain.u)
+    other = m.simulate(0.0, mu=0.3, e=0.9, law="stronge", restitution=[(0.0, 0.9), (2 * speed, 0.1)])
+    by_hand = m.simulate(0.0, mu=0.3, e=0.5, law="stronge")
+    np.testing.assert_allclose(other.events[0].u, by_hand.events[0].u, rtol=1e-12, atol=1e-12)
+    one = m.simulate(0.0, surfaces={m.contacts[0]: dict(whole, mu_impact=0.1)})
+    np.testing.assert_allclose(one.events[0].u, m.collide(m.contacts[0], mu=0.1, e=0.5, law="stronge").speeds, rtol=1e-12, atol=1e-12)
+    for wrong in (dict(mu_static=0.1), dict(restitution="power(1)"), dict(restitution=3), dict(sliding="stribeck(0.1)")):
+        with pytest.raises(hodograph.HodographError):
+            m.simulate(0.3, **whole, **wrong)
+    class Wrong(Exception):
+        pass
+    def fails(speed):
+        if speed != 1.0:
+            raise Wrong("no e")
+        return 0.5
+    with pytest.raises(Wrong, match="no e"):
+        m.simulate(0.3, **whole, restitution=fails)
+
+
+def test_simulate_many():
+    m = model("free_box_corner")
+    rows = 24
+    mu = np.linspace(0.0, 0.9, rows)
+    u = np.tile([speed.value or 0.0 for speed in m.speeds], (rows, 1))
+    u[:, 0] += np.linspace(-1, 1, rows)
+    all = m.simulate_many(0.4, u=u, mu=mu, e=0.4, law="poisson", threads=2)
+    assert len(all) == rows and all.q.shape == (rows, len(m.coordinates)) and set(all.kind) <= {"rest", "moving"}
+    back = m.simulate_many(0.4, u=u[::-1].copy(), mu=mu[::-1].copy(), e=0.4, law="poisson", threads=1)
+    np.testing.assert_array_equal(all.q, back.q[::-1])
+    assert all.digest == m.simulate_many(0.4, u=u, mu=mu, e=0.4, law="poisson").digest != back.digest
+    one = m.simulate(0.4, 0.4, u=u[7], mu=mu[7], e=0.4, law="poisson")
+    np.testing.assert_allclose(all.u[7], one.u[-1], rtol=1e-7, atol=1e-7)
+    # a row that is wrong is wrong alone
+    mu[3] = -1.0
+    part = m.simulate_many(0.4, u=u, mu=mu, e=0.4, law="poisson")
+    assert part.kind[3] == "bad_option" and part.message[3] and np.isnan(part.q[3]).all()
+    np.testing.assert_array_equal(np.delete(part.q, 3, axis=0), np.delete(all.q, 3, axis=0))
+    assert list(part.columns())[0] == "kind" and "bad_option" in repr(part)
+    # parameters by rows
+    name = m.parameters[0].name
+    heavy = m.with_parameters(**{name: np.array([1.0, 2.0, 4.0]) * m.parameters[0].value})
+    assert len(heavy.simulate_many(0.2, mu=0.3, e=0.2, law="newton")) == 3
+    with pytest.raises(hodograph.ArgumentError, match="rows"):
+        m.simulate_many(0.2, u=u, mu=mu[:4].copy(), e=0.2, law="newton")
+    with pytest.raises(hodograph.ArgumentError, match="threads"):
+        m.simulate_many(0.2, mu=0.3, e=0.2, law="newton", threads=0)
+    def stop(done, rows):
+        raise KeyboardInterrupt
+    with pytest.raises(KeyboardInterrupt):
+        m.simulate_many(60.0, u=np.tile(u, (40, 1)), mu=0.4, e=0.4, law="poisson", progress=stop)

@@ -63,7 +63,7 @@ fn restitution_depends_on_the_speed_of_approach() {
     // A block that strikes at an angle loses mu_impact (1 + e) v of its slip.
     let slant = ["--until", "0.4", "--step", "1", "--state", "z=0.5", "--state", "u1=5"];
     let run = simulate(&[&slant[..], &["--restitution", "constant", "--mu-impact", "0.1"]].concat());
-    let after = number(&first(&run, "collision")["u"]["u1"]);
+    let after = number(&first(&run, "collision")["u_after"]["u1"]);
     assert!((after - (5.0 - 0.1 * 1.6 * v)).abs() < 1e-10, "{after}");
 }
 

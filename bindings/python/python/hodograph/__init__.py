@@ -24,12 +24,12 @@ from .errors import (
     StateError,
 )
 from .mechanism import Contact, Derivatives, Linearisation, Mechanism, NumericMechanism, Quantity
-from .results import Characteristics, Collision, Event, Hodograph, Impact, ImpactDerivative, Simulation
+from .results import Characteristics, Collision, Event, Hodograph, Impact, ImpactDerivative, Simulation, Simulations
 
 __all__ = [
     "ArgumentError", "Characteristics", "Collision", "Contact", "DerivationError", "Derivatives", "Diagnostic", "Event", "Hodograph", "HodographError",
     "Impact", "ImpactDerivative", "ImpactError", "Linearisation", "Mechanism", "ModelError", "NumericMechanism", "ParameterError",
-    "Quantity", "Simulation", "SimulationError", "StateError", "characteristics", "check", "derivative", "hodograph", "load", "solve",
+    "Quantity", "Simulation", "SimulationError", "Simulations", "StateError", "characteristics", "check", "derivative", "hodograph", "load", "solve",
 ]  # fmt: skip
 
 

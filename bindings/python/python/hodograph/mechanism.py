@@ -10,7 +10,7 @@ import numpy as np
 
 from . import hodograph_native as _native
 from .errors import ArgumentError, HodographError
-from .results import Characteristics, Collision, Simulation
+from .results import Characteristics, Collision, Simulation, Simulations
 
 
 class Quantity(NamedTuple):
@@ -263,32 +263,68 @@ class Mechanism(_native.Mechanism):
 
     def simulate(
         self, until, step=None, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, tolerance=None,
-        surfaces=None, control=None, period=None, max_step=None,
+        surfaces=None, control=None, period=None, max_step=None, mu_static=None, mu_impact=None, sliding=None, restitution=None,
     ):
         """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
 
         ``mu``, ``e``, ``law``: the surface of all contacts; ``surfaces``: {contact: {"mu": .., "e": .., "law": ..}} for contacts with another one. A contact
         that can close (it has a gap) needs all three: what is not given is that of the model, if it states a ``surface``. The other defaults are those of the command line tool: ``step`` 0.01 s,
         ``tolerance`` 1e-12, ``max_step`` 0.05 s where something depends on time by itself, else unbounded.
+        ``mu_static``: up to which a contact sticks (not less than ``mu``); ``mu_impact``: friction in impacts; ``sliding``: 'stribeck(SPEED)', or a function of
+        the speed of slip; ``restitution``: e by the speed of approach, as 'threshold(SPEED)', 'power(SPEED, EXPONENT)', 'loss(SPEED, EXPONENT)', pairs
+        (speed, e), or a function; also in ``surfaces``. What is left out is that of the model.
         ``control``: a function of time, q (n,) and u (p,) that gives the inputs (w,): with ``period`` (s) at these times and held in between, otherwise
         continuously (it must be smooth then). What it raises ends the motion. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
         """
         number = lambda value, name: None if value is None else float(_number(value, name))
-        of = lambda given: (number(given.get("mu"), "mu"), number(given.get("e"), "e"), given.get("law"))
-        for contact, given in (surfaces or {}).items():
-            for name in given:
-                if name not in ("mu", "e", "law"):
-                    raise _unknown(f"property of the surface of {contact}", str(name), ("mu", "e", "law"))
         if period is not None and control is None:
             raise ArgumentError("`period` is that of `control`, which is missing", kind="bad_option", place="period")
         choices = {
-            "surface": of({"mu": mu, "e": e, "law": law}), "tolerance": number(tolerance, "tolerance"),
-            "max_step": number(max_step, "max_step"), "control": control, "period": number(period, "period"),
-            "surfaces": [(_index("contact", contact, self.contacts), of(given)) for contact, given in (surfaces or {}).items()],
+            **self._surfaces(surfaces, mu=mu, e=e, law=law, mu_static=mu_static, mu_impact=mu_impact, sliding=sliding, restitution=restitution),
+            "tolerance": number(tolerance, "tolerance"), "max_step": number(max_step, "max_step"), "control": control, "period": number(period, "period"),
         }  # fmt: skip
         found = self._simulate((q, u, inputs, time), float(_number(until, "until")), number(step, "step"), choices)
         names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
         return Simulation(found, *names)
+
+    def _surfaces(self, own, **all):
+        """What is given of the surfaces of all contacts, and of those that have one of their own."""
+        number = lambda given, name: None if given.get(name) is None else float(_number(given[name], name))
+        of = lambda given: (number(given, "mu"), number(given, "e"), given.get("law"))
+        law = lambda given: (number(given, "mu_static"), number(given, "mu_impact"), given.get("sliding"), given.get("restitution"))
+        known = ("mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution")
+        for contact, given in (own or {}).items():
+            for name in given:
+                if name not in known:
+                    raise _unknown(f"property of the surface of {contact}", str(name), known)
+        own = [(_index("contact", contact, self.contacts), given) for contact, given in (own or {}).items()]
+        return {
+            "surface": of(all), "law": law(all), "surfaces": [(contact, of(given)) for contact, given in own],
+            "laws": [(contact, law(given)) for contact, given in own],
+        }  # fmt: skip
+
+    def simulate_many(
+        self, until, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, mu_static=None, mu_impact=None, sliding=None,
+        restitution=None, tolerance=None, surfaces=None, max_step=None, threads=None, progress=None,
+    ):
+        """Many motions to the time ``until``, one for each row of ``q`` (k, n), ``u``, ``inputs``, ``time`` (k,), of the parameters of a mechanism of
+        :meth:`with_parameters`, and of ``mu``, ``e``, ``mu_static`` and ``mu_impact`` (numbers or (k,)), as :class:`Simulations`.
+
+        Rows share the cores (``threads``: so many); outcomes have the same bits in any order and on any number of threads. What is wrong with a row is
+        the outcome of that row. ``progress``: a function of the rows that are done and of all rows, called now and then; what it raises ends the batch, as
+        Ctrl-C does. All else is as for :meth:`simulate`.
+        """
+        number = lambda value, name: None if value is None else float(_number(value, name))
+        choices = {
+            **self._surfaces(surfaces, law=law, sliding=sliding, restitution=restitution),
+            "tolerance": number(tolerance, "tolerance"), "max_step": number(max_step, "max_step"), "control": None, "period": None,
+        }  # fmt: skip
+        if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
+            raise ArgumentError(f"`threads` is {threads!r}: expected a whole number, at least 1", kind="bad_option", place="threads")
+        columns = (mu, e, mu_static, mu_impact)
+        found = self._simulate_many((q, u, inputs, time), float(_number(until, "until")), columns, choices, threads, progress)
+        names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
+        return Simulations(found, *names)
 
     def equations(self, format="text"):
         """The equations to read: 'text', 'latex' or 'html' (a page)."""

@@ -3,7 +3,7 @@ from typing import Any, Callable, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from .results import Characteristics, Collision, Simulation
+from .results import Characteristics, Collision, Simulation, Simulations
 
 Floats = NDArray[np.float64]
 Rows = Union[Floats, Sequence[float], None]
@@ -125,7 +125,32 @@ class Mechanism:
         control: Optional[Callable[[float, Floats, Floats], Union[float, Sequence[float], Floats]]] = ...,
         period: Optional[float] = ...,
         max_step: Optional[float] = ...,
+        mu_static: Optional[float] = ...,
+        mu_impact: Optional[float] = ...,
+        sliding: Union[None, str, Callable[[float], float]] = ...,
+        restitution: Union[None, str, Sequence[tuple[float, float]], Callable[[float], float]] = ...,
     ) -> Simulation: ...
+    def simulate_many(
+        self,
+        until: float,
+        q: Rows = ...,
+        u: Rows = ...,
+        inputs: Rows = ...,
+        time: Union[None, float, Floats] = ...,
+        *,
+        mu: Union[None, float, Floats] = ...,
+        e: Union[None, float, Floats] = ...,
+        law: Optional[str] = ...,
+        mu_static: Union[None, float, Floats] = ...,
+        mu_impact: Union[None, float, Floats] = ...,
+        sliding: Union[None, str, Callable[[float], float]] = ...,
+        restitution: Union[None, str, Sequence[tuple[float, float]], Callable[[float], float]] = ...,
+        tolerance: Optional[float] = ...,
+        surfaces: Optional[Mapping[str, Mapping[str, Any]]] = ...,
+        max_step: Optional[float] = ...,
+        threads: Optional[int] = ...,
+        progress: Optional[Callable[[int, int], object]] = ...,
+    ) -> Simulations: ...
     def equations(self, format: str = ...) -> str: ...
 
 class NumericMechanism:

@@ -128,6 +128,33 @@ class Simulation:
         )
 
 
+class Simulations:
+    """The outcomes of many motions, by rows: ``kind``: 'rest', 'moving', or why a motion ended early, which ``message`` tells; ``time``: when it ended;
+    ``rest``: since when nothing moves (NaN where something does); ``q`` (k, n) and ``u`` (k, p) then; ``closed``: the names of the contacts that are closed
+    then; ``kinetic``, ``potential`` energy and the works ``friction``, ``impacts``, ``input_work``, J; numbers of ``collisions`` and ``events``;
+    ``several_modes``: whether an event said that other modes fit; ``digest``: a number made of all bits."""
+
+    def __init__(self, found, coordinates, speeds):
+        for name, value in found.items():
+            setattr(self, name, value)
+        self.closed = [tuple(names) for names in self.closed]
+        self.coordinates, self.speeds = coordinates, speeds
+
+    def __len__(self):
+        return len(self.kind)
+
+    def columns(self):
+        """All by name, each (k,): ``pandas.DataFrame(motions.columns())``."""
+        names = ("kind", "time", "rest", "kinetic", "potential", "friction", "impacts", "input_work", "collisions", "events", "several_modes", "message")
+        columns = {name: getattr(self, name) for name in names}
+        columns["closed"] = ["+".join(names) for names in self.closed]
+        return {**columns, **dict(zip(self.coordinates, self.q.T)), **dict(zip(self.speeds, self.u.T))}
+
+    def __repr__(self):
+        counts = {kind: self.kind.count(kind) for kind in dict.fromkeys(self.kind)}
+        return f"<hodograph.Simulations: {', '.join(f'{count} {kind}' for kind, count in counts.items())}>"
+
+
 _COLOURS = ("#1f5fa8", "#c2451e", "#2f7d3b", "#7a4b9e", "#a07a12", "#3f8f8f")
 
 

@@ -72,6 +72,28 @@ class Event(NamedTuple):
     impulse_on_point: Optional[Floats]
     energy_change: Optional[float]
 
+class Simulations:
+    kind: list[str]
+    message: list[Optional[str]]
+    time: Floats
+    rest: Floats
+    q: Floats
+    u: Floats
+    closed: list[tuple[str, ...]]
+    kinetic: Floats
+    potential: Floats
+    friction: Floats
+    impacts: Floats
+    input_work: Floats
+    collisions: Any
+    events: Any
+    several_modes: Any
+    digest: int
+    coordinates: list[str]
+    speeds: list[str]
+    def __len__(self) -> int: ...
+    def columns(self) -> dict[str, Any]: ...
+
 class Simulation:
     time: Floats
     q: Floats
