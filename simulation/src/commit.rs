@@ -52,9 +52,9 @@ impl Transition<'_> {
         let mut u = y[n..n + p].to_vec();
         let moved = (|| {
             drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
-            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
+            let known = drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-            drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)
+            drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, (&contacts, known))
         })();
         if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
             return Err(self.error(Some(left.contact), Reason::Drift(left.gap)));
@@ -96,8 +96,8 @@ impl Transition<'_> {
 
 /// The motion from a state on, over exactly so long.
 fn part_of(motion: &Motion<'_>, from: (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
-    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
-        Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
+    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.rates(t, y) {
+        Ok(known) => rates.copy_from_slice(&known),
         Err(_) => rates.fill(f64::NAN),
     };
     stepper::part(&mut rates, from, h)

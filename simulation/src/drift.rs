@@ -49,14 +49,14 @@ pub(crate) struct Left {
 const CLOSED: f64 = 1e-10;
 
 /// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the
-/// mass matrix; the first gap that it does not close, if there is one.
+/// mass matrix, with what is `known` of the contacts close by; the first gap that it does not close, if there is one.
 pub(crate) fn close_gaps(
     mechanism: &dyn Contacts<f64>,
     time: f64,
     coordinates: &mut [f64],
     speeds: &[f64],
     inputs: &[f64],
-    contacts: &[usize],
+    (contacts, mut known): (&[usize], Option<ClosedContacts>),
 ) -> Result<Option<Left>, StateError> {
     let n = coordinates.len();
     let size = coordinates.iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
@@ -81,7 +81,10 @@ pub(crate) fn close_gaps(
             return Ok(Some(Left { contact: open[worst], gap: gaps[worst] }));
         }
         before = largest;
-        let support = ClosedContacts::new(mechanism, &state, &open, false)?;
+        let support = match known.take().filter(|known| known.contacts == open) {
+            Some(known) => known,
+            None => ClosedContacts::new(mechanism, &state, &open, false)?,
+        };
         let rows: Vec<usize> = (0..open.len()).map(|i| 3 * i).collect();
         let mut wanted = DVector::zeros(3 * open.len());
         for (i, gap) in gaps.iter().enumerate() {
@@ -105,7 +108,7 @@ pub(crate) fn close_gaps(
 }
 
 /// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least
-/// change of kinetic energy.
+/// change of kinetic energy. What it knows of the contacts.
 pub(crate) fn hold_velocities(
     mechanism: &dyn Contacts<f64>,
     time: f64,
@@ -113,9 +116,9 @@ pub(crate) fn hold_velocities(
     speeds: &mut [f64],
     inputs: &[f64],
     closed: &[(usize, bool)],
-) -> Result<(), StateError> {
+) -> Result<Option<ClosedContacts>, StateError> {
     if closed.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
     let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
     let rows: Vec<usize> = closed
@@ -123,11 +126,14 @@ pub(crate) fn hold_velocities(
         .enumerate()
         .flat_map(|(i, (_, sticks))| (0..if *sticks { 3 } else { 1 }).map(move |axis| 3 * i + axis))
         .collect();
+    let state = State { time, coordinates, speeds: &*speeds, inputs };
+    let support = ClosedContacts::new(mechanism, &state, &contacts, false)?;
+    // Velocities are affine in the speeds: the second time corrects rounding.
+    let mut velocity = support.velocity.clone();
     for _ in 0..2 {
-        let state = State { time, coordinates, speeds: &*speeds, inputs };
-        let support = ClosedContacts::new(mechanism, &state, &contacts, false)?;
-        let change = support.without(&rows, &support.velocity);
+        let change = support.without(&rows, &velocity);
         speeds.iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
+        velocity += support.partials.tr_mul(&change);
     }
-    Ok(())
+    Ok(Some(support))
 }
