@@ -12,7 +12,7 @@ mod error;
 pub(crate) mod slices;
 
 pub use closed::ContactOutcome;
-pub use contacts::{CollisionOutcome, ContactState, Contacts};
+pub use contacts::{ClosedContacts, CollisionOutcome, ContactState, Contacts};
 pub use description::{Component, Kind};
 pub use error::{ClosedContactError, CollisionError, ParameterError, StateError};
 

@@ -32,22 +32,75 @@ impl ClosedContacts {
         contacts: &[usize],
         accelerate: bool,
     ) -> Result<Self, StateError> {
+        Self::evaluated(mechanism, state, contacts, accelerate, None)
+    }
+
+    /// Evaluates the contacts with their free accelerations, and the rates of the mechanism without contact forces:
+    /// coordinates, then speeds.
+    pub fn with_rates(
+        mechanism: &dyn Contacts<f64>,
+        state: &State<'_>,
+        contacts: &[usize],
+        rates: &mut [f64],
+    ) -> Result<Self, StateError> {
+        if contacts.is_empty() {
+            let (q, u) = rates.split_at_mut(state.coordinates.len());
+            mechanism.coordinate_rates(state, q)?;
+            mechanism.accelerations(state, &mut u[..state.speeds.len()])?;
+            return Self::evaluated(mechanism, state, contacts, false, None);
+        }
+        Self::evaluated(mechanism, state, contacts, true, Some(rates))
+    }
+
+    fn evaluated(
+        mechanism: &dyn Contacts<f64>,
+        state: &State<'_>,
+        contacts: &[usize],
+        accelerate: bool,
+        rates: Option<&mut [f64]>,
+    ) -> Result<Self, StateError> {
         let (k, p) = (contacts.len(), mechanism.count(Kind::Speed));
         let mut partials = DMatrix::zeros(p, 3 * k);
         let mut response = DMatrix::zeros(p, 3 * k);
         let mut velocity = DVector::zeros(3 * k);
         let mut beta = DVector::zeros(3 * k);
-        let mut numbers = vec![0.0; 3 * p];
+        let mut numbers = vec![0.0; 3 * p * k];
+        let mut known = false;
+        if let Some(rates) = rates {
+            let (q, u) = rates.split_at_mut(state.coordinates.len());
+            let mut values = hodograph::ClosedContacts {
+                coordinate_rates: &mut *q,
+                accelerations: &mut u[..p],
+                // By rows V is V^T by columns.
+                partial_velocities: partials.as_mut_slice(),
+                responses: &mut numbers,
+                velocities: velocity.as_mut_slice(),
+                free_accelerations: beta.as_mut_slice(),
+            };
+            match mechanism.closed_contacts(contacts, state, &mut values) {
+                Ok(()) => known = true,
+                // Of one that does not tell all of it.
+                Err(StateError::Undefined { .. }) => {
+                    mechanism.coordinate_rates(state, q)?;
+                    mechanism.accelerations(state, &mut u[..p])?;
+                }
+                Err(error) => return Err(error),
+            }
+        }
         for (i, &contact) in contacts.iter().enumerate() {
-            // By rows V is V^T by columns.
-            mechanism.partial_velocities(
-                contact,
-                state,
-                &mut partials.as_mut_slice()[3 * p * i..][..3 * p],
-            )?;
-            mechanism.response(contact, state, &mut numbers)?;
-            for (place, number) in numbers.iter().enumerate() {
-                response[(place / 3, 3 * i + place % 3)] = *number;
+            let numbers = &mut numbers[3 * p * i..][..3 * p];
+            if !known {
+                let partials = &mut partials.as_mut_slice()[3 * p * i..][..3 * p];
+                mechanism.partial_velocities(contact, state, partials)?;
+                mechanism.response(contact, state, numbers)?;
+            }
+            for (speed, row) in numbers.chunks_exact(3).enumerate() {
+                for (axis, number) in row.iter().enumerate() {
+                    response[(speed, 3 * i + axis)] = *number;
+                }
+            }
+            if known {
+                continue;
             }
             velocity.rows_mut(3 * i, 3).copy_from(&mechanism.contact_velocity(contact, state)?);
             if accelerate {

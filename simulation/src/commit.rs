@@ -53,9 +53,9 @@ impl Transition<'_> {
         let moved = (|| {
             drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-            let left = drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)?;
+            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)?;
             // Velocities come last, in the place that was corrected: what is left of them counts as an approach.
-            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, &closed)?;
+            drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, (&closed, known))?;
             Ok(left)
         })();
         if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
@@ -99,8 +99,8 @@ impl Transition<'_> {
 
 /// The motion from a state on, over exactly so long.
 fn part_of(motion: &Motion<'_>, from: (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
-    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
-        Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
+    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.rates(t, y) {
+        Ok(known) => rates.copy_from_slice(&known),
         Err(_) => rates.fill(f64::NAN),
     };
     stepper::part(&mut rates, from, h)

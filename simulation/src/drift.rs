@@ -49,7 +49,7 @@ pub(crate) struct Left {
 const CLOSED: f64 = 1e-10;
 
 /// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the
-/// mass matrix; the first gap that it does not close, if there is one.
+/// mass matrix; the first gap that it does not close, if there is one, and what it knows of the contacts.
 pub(crate) fn close_gaps(
     mechanism: &dyn Contacts<f64>,
     time: f64,
@@ -57,10 +57,11 @@ pub(crate) fn close_gaps(
     speeds: &[f64],
     inputs: &[f64],
     contacts: &[usize],
-) -> Result<Option<Left>, StateError> {
+) -> Result<(Option<Left>, Option<ClosedContacts>), StateError> {
     let n = coordinates.len();
     let size = coordinates.iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
     let mut before = f64::INFINITY;
+    let mut known = None;
     for _ in 0..STEPS {
         let state = State { time, coordinates: &*coordinates, speeds, inputs };
         let mut open = Vec::new();
@@ -73,15 +74,19 @@ pub(crate) fn close_gaps(
         }
         let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
         if largest <= 1e-16 {
-            return Ok(None);
+            return Ok((None, known));
         }
         if largest > CLOSED * size && largest > 0.5 * before {
             // Newton's method closes a gap whose rate is the normal velocity quadratically.
             let worst = gaps.iter().position(|gap| gap.abs() == largest).unwrap_or(0);
-            return Ok(Some(Left { contact: open[worst], gap: gaps[worst] }));
+            return Ok((Some(Left { contact: open[worst], gap: gaps[worst] }), known));
         }
         before = largest;
-        let support = ClosedContacts::new(mechanism, &state, &open, false)?;
+        // the change is small: directions of the first step serve the others
+        let support: &ClosedContacts = match &mut known {
+            Some(known) => known,
+            none => none.insert(ClosedContacts::new(mechanism, &state, &open, false)?),
+        };
         let rows: Vec<usize> = (0..open.len()).map(|i| 3 * i).collect();
         let mut wanted = DVector::zeros(3 * open.len());
         for (i, gap) in gaps.iter().enumerate() {
@@ -101,18 +106,18 @@ pub(crate) fn close_gaps(
             break;
         }
     }
-    Ok(None)
+    Ok((None, known))
 }
 
 /// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least
-/// change of kinetic energy.
+/// change of kinetic energy, with what is `known` of the contacts close by.
 pub(crate) fn hold_velocities(
     mechanism: &dyn Contacts<f64>,
     time: f64,
     coordinates: &[f64],
     speeds: &mut [f64],
     inputs: &[f64],
-    closed: &[(usize, bool)],
+    (closed, known): (&[(usize, bool)], Option<ClosedContacts>),
 ) -> Result<(), StateError> {
     if closed.is_empty() {
         return Ok(());
@@ -123,11 +128,27 @@ pub(crate) fn hold_velocities(
         .enumerate()
         .flat_map(|(i, (_, sticks))| (0..if *sticks { 3 } else { 1 }).map(move |axis| 3 * i + axis))
         .collect();
+    let state = State { time, coordinates, speeds: &*speeds, inputs };
+    // The velocities are those of this place; the directions of a place close by correct them as well.
+    let (support, mut velocity) = match known.filter(|known| known.contacts == contacts) {
+        Some(known) => {
+            let mut velocity = DVector::zeros(3 * contacts.len());
+            for (i, &contact) in contacts.iter().enumerate() {
+                velocity.rows_mut(3 * i, 3).copy_from(&mechanism.contact_velocity(contact, &state)?);
+            }
+            (known, velocity)
+        }
+        None => {
+            let support = ClosedContacts::new(mechanism, &state, &contacts, false)?;
+            let velocity = support.velocity.clone();
+            (support, velocity)
+        }
+    };
+    // Velocities are affine in the speeds: the second time corrects rounding.
     for _ in 0..2 {
-        let state = State { time, coordinates, speeds: &*speeds, inputs };
-        let support = ClosedContacts::new(mechanism, &state, &contacts, false)?;
-        let change = support.without(&rows, &support.velocity);
+        let change = support.without(&rows, &velocity);
         speeds.iter_mut().zip(change.iter()).for_each(|(speed, change)| *speed += change);
+        velocity += support.partials.tr_mul(&change);
     }
     Ok(())
 }

@@ -124,12 +124,13 @@ impl Transition<'_> {
             .map_or(0.0, |support| support.velocity_size(0, speeds).max(support.velocity.amax()))
     }
 
-    /// The values of what is watched, a time after the front; `at` gives the states in between.
+    /// The values of what is watched, a time after the front, where all is known; `at` gives the states in between.
     pub(crate) fn values(
         &self,
         closed: &[Closed],
         watched: &[Watched],
         after: f64,
+        here: Option<&Evaluation>,
         at: &mut dyn FnMut(f64) -> Vec<f64>,
     ) -> Result<Vec<f64>, Failure> {
         let y = at(after);
@@ -141,8 +142,13 @@ impl Transition<'_> {
         let mut conditions = Vec::new();
         let mut f = 1.0;
         if !closed.is_empty() {
-            let evaluation = motion.evaluate(t, &y)?;
-            if let Some(forces) = &evaluation.forces {
+            // Directions that follow from the state change the forces.
+            let known = here.filter(|_| after == 0.0 && closed.iter().all(|contact| contact.omega.is_none()));
+            let guess = here.and_then(|here| here.forces.as_ref());
+            let evaluated = if known.is_none() { Some(motion.evaluate_near(t, &y, guess)?) } else { None };
+            if let Some(evaluation) = known.or(evaluated.as_ref())
+                && let Some(forces) = &evaluation.forces
+            {
                 conditions = margins(forces, &evaluation.holds, &mus(closed));
                 f = forces.f;
             }
@@ -187,9 +193,9 @@ impl Transition<'_> {
         watched.iter().map(rate).collect()
     }
 
-    /// In how many pieces a step is looked at: in each of them angles turn by [`TURN`] at most, so that nine
-    /// points show every turn. `None` for a step of too many pieces.
-    pub(crate) fn pieces(&self, closed: &[Closed], step: &Step) -> Option<usize> {
+    /// By how much angles turn in a step at most, beside what nine points show. `None` for a step that would be
+    /// looked at in too many pieces.
+    pub(crate) fn turns(&self, closed: &[Closed], step: &Step) -> Option<f64> {
         let (n, motion) = (self.mechanism.count(Kind::Coordinate), self.motion(closed));
         let angular: Vec<f64> = (0..n)
             .map(|index| match self.mechanism.component(Kind::Coordinate, index).map(|c| c.unit) {
@@ -200,7 +206,7 @@ impl Transition<'_> {
             })
             .collect();
         if angular.iter().all(|weight| *weight == 0.0) {
-            return Some(1);
+            return Some(0.0);
         }
         let mut fastest = 0.0_f64;
         for (time, y) in [(step.t, step.start()), (step.t + step.h, &step.end[..])] {
@@ -212,8 +218,8 @@ impl Transition<'_> {
             fastest =
                 fastest.max(rates.iter().zip(&angular).map(|(rate, weight)| (rate * weight).abs()).sum());
         }
-        let pieces = (fastest * step.h / TURN).ceil();
-        (pieces <= MOST_PIECES).then_some((pieces as usize).max(1))
+        let turns = fastest * step.h / TURN;
+        (turns <= MOST_PIECES).then_some(turns)
     }
 
     /// The mean rate of a gap since the front, where it was zero: it has the sign of the gap, but none of the

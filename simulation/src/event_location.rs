@@ -10,8 +10,11 @@
 //! pieces, in each of which angles turn by a few radians at most, and the slope of the polynomial is compared
 //! with that of the function, which is known of gaps (docs/theory.md, section 17.12).
 
-/// Degrees tried, each twice the one before: points are used again.
-const DEGREES: [usize; 3] = [8, 16, 32];
+/// Degrees tried, each twice the one before: points are used again. The first is left out where more turns than
+/// its points show.
+const DEGREES: [usize; 4] = [4, 8, 16, 32];
+/// The part of the turns that nine points show which five points show.
+const FEW_TURNS: f64 = 0.5;
 /// Most halvings of a step where a function is not smooth.
 const DEPTH: usize = 24;
 
@@ -152,24 +155,26 @@ impl Chebyshev {
     }
 }
 
-/// The first crossing of functions over the fractions [0, 1] of a step, which is looked at in so many pieces at
-/// least.
+/// The first crossing of functions over the fractions [0, 1] of a step. `turns` is how far angles turn in it beside
+/// what nine points show: it is looked at in so many pieces at least.
 ///
 /// # Errors
 ///
 /// [`Unresolved`] where functions have no values, or too many evaluations were needed.
 pub(crate) fn first_crossing(
     functions: &mut Functions<'_>,
-    pieces: usize,
+    turns: f64,
 ) -> Result<Option<Crossing>, Unresolved> {
     if functions.count == 0 {
         return Ok(None);
     }
     let active: Vec<usize> = (0..functions.count).collect();
     let mut left = MOST;
-    for piece in 0..pieces.max(1) {
-        let end = |piece: usize| piece as f64 / pieces.max(1) as f64;
-        let found = within(&active, functions, &mut left, end(piece), end(piece + 1), DEPTH)?;
+    let pieces = (turns.ceil() as usize).max(1);
+    let degrees = if turns / pieces as f64 <= FEW_TURNS { &DEGREES[..] } else { &DEGREES[1..] };
+    for piece in 0..pieces {
+        let end = |piece: usize| piece as f64 / pieces as f64;
+        let found = within(&active, functions, (&mut left, degrees), end(piece), end(piece + 1), DEPTH)?;
         if found.is_some() {
             return Ok(found);
         }
@@ -180,7 +185,7 @@ pub(crate) fn first_crossing(
 fn within(
     active: &[usize],
     functions: &mut Functions<'_>,
-    budget: &mut usize,
+    (budget, degrees): (&mut usize, &[usize]),
     low: f64,
     high: f64,
     depth: usize,
@@ -195,7 +200,7 @@ fn within(
     let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
     let slopes: Vec<Vec<Option<f64>>> =
         SLOPES_AT.iter().map(|x| (functions.slopes)(middle + half * x)).collect();
-    for degree in DEGREES {
+    for &degree in degrees {
         // Every second point is known.
         let mut next = vec![None; degree + 1];
         for (k, slot) in next.iter_mut().enumerate() {
@@ -225,7 +230,7 @@ fn within(
             let (size, error) = (polynomial.size(), polynomial.error);
             let rest = size - 2.0 * polynomial.coefficients[0].abs();
             let fine = (1e-13 * size).max(4.0 * noise);
-            let rounding = degree == DEGREES[2] && depth + HALVED <= DEPTH && error <= 1e-9 * size;
+            let rounding = degree == DEGREES[3] && depth + HALVED <= DEPTH && error <= 1e-9 * size;
             let known = slopes.iter().map(|slopes| slopes.get(function).copied().flatten());
             let alike = SLOPES_AT
                 .iter()
@@ -269,7 +274,7 @@ fn within(
         return Ok(found);
     }
     let rest = unresolved;
-    let first = within(&rest, functions, budget, low, middle, depth - 1)?;
+    let first = within(&rest, functions, (budget, degrees), low, middle, depth - 1)?;
     let earliest = |a: Option<Crossing>, b: Option<Crossing>| match (a, b) {
         (Some(a), Some(b)) => Some(if b.place < a.place { b } else { a }),
         (a, b) => a.or(b),
@@ -280,7 +285,7 @@ fn within(
     if found.is_some_and(|crossing| crossing.place <= middle) {
         return Ok(found);
     }
-    Ok(earliest(found, within(&rest, functions, budget, middle, high, depth - 1)?))
+    Ok(earliest(found, within(&rest, functions, (budget, degrees), middle, high, depth - 1)?))
 }
 
 #[cfg(test)]
@@ -294,7 +299,7 @@ mod tests {
             values: &mut |x| values(x).map(|value| vec![value]),
             slopes: &mut |_| vec![None],
         };
-        Ok(first_crossing(&mut functions, 1)?.map(|crossing| crossing.place))
+        Ok(first_crossing(&mut functions, 1.0)?.map(|crossing| crossing.place))
     }
 
     fn first(f: impl Fn(f64) -> f64) -> Option<f64> {
@@ -315,7 +320,7 @@ mod tests {
                 values: &mut |x| Some(vec![gap(x)]),
                 slopes: &mut |x| vec![Some(rate(x))],
             };
-            let found = first_crossing(&mut functions, 1).unwrap();
+            let found = first_crossing(&mut functions, 1.0).unwrap();
             let mut x = 0.0;
             while gap(x) > 0.0 {
                 x += 1e-3 / omega;

@@ -46,7 +46,7 @@ impl Transition<'_> {
                 Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
                     let h = step.h;
                     let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
-                    let value = self.values(closed, &[Watched::Gap(contact)], h, &mut at);
+                    let value = self.values(closed, &[Watched::Gap(contact)], h, None, &mut at);
                     value.map_err(|failure| self.failure(failure))?[0]
                 }
                 // It has hardly left: its time is that of the interpolation.
@@ -70,7 +70,7 @@ impl Transition<'_> {
             let step = self.part_again(closed, whole, after)?;
             let h = step.h;
             let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });
-            let value = self.values(closed, &[watched], h, &mut at).ok()?[0];
+            let value = self.values(closed, &[watched], h, None, &mut at).ok()?[0];
             Some((step, value))
         };
         let (mut positive, mut negative) = (None, None);

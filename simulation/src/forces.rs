@@ -4,7 +4,7 @@ use hodograph::{ContactError, ContactMode, contact_force};
 use nalgebra::{DVector, Vector2, Vector3};
 
 use crate::closed_contacts::ClosedContacts;
-use crate::contact_problem::{self, Mode};
+use crate::contact_problem::{self, Mode, Wanted};
 
 /// A sliding contact with f / m_nn below this jams: its force grows without bound as f falls to zero.
 pub(crate) const JAM: f64 = 1e-6;
@@ -66,12 +66,13 @@ pub(crate) enum Lacking {
 
 /// Forces under which sticking contacts do not accelerate and sliding ones do not part. Where many forces give
 /// the same motion, they are the analytic centre of those that the laws allow ([`contact_problem`]); `guess`
-/// only saves work.
+/// only saves work. With [`Wanted::Motion`] they are any of these where nothing slips.
 pub(crate) fn forces(
     support: &ClosedContacts,
     holds: &[Hold],
     mu: &[f64],
     guess: Option<&DVector<f64>>,
+    wanted: Wanted,
 ) -> Result<Forces, Lacking> {
     if let [hold] = holds {
         return single(support, *hold, mu[0]);
@@ -79,7 +80,7 @@ pub(crate) fn forces(
     let slips: Vec<Option<Vector2<f64>>> = holds.iter().map(Hold::direction).collect();
     let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
     let problem = support.problem(mu, &slips);
-    let found = contact_problem::with_modes_near(&problem, &modes, guess).map_err(|_| Lacking::Together)?;
+    let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Together)?;
     if !found.force.iter().all(|value| value.is_finite()) {
         return Err(Lacking::Together);
     }
@@ -176,7 +177,7 @@ mod tests {
                 velocity: DVector::zeros(6),
             };
             let holds = [Hold::Stick, Hold::Stick];
-            let found = forces(&support, &holds, &[0.63; 2], None).unwrap();
+            let found = forces(&support, &holds, &[0.63; 2], None, Wanted::Centre).unwrap();
             assert!(
                 !found.unique
                     && (found.lambda[0] - heel).abs() < 1e-9

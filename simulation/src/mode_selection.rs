@@ -149,11 +149,21 @@ fn selection(problem: &Problem<'_>, modes: &[Mode]) -> Selection {
     if modes.len() > MOST_ENUMERATED {
         return Selection::Unknown;
     }
+    if only_rest(problem, modes) {
+        return Selection::Unique;
+    }
     let differs = |other: &contact_problem::Solution| {
         other.modes.iter().zip(modes).any(|(other, mode)| !other.is_like(mode))
     };
     let several = contact_problem::enumerate(problem).iter().any(differs);
     if several { Selection::SeveralModes } else { Selection::Unique }
+}
+
+/// Whether contacts rest and could do so without friction: then no other motion obeys the laws (docs/theory.md,
+/// section 17.10).
+fn only_rest(problem: &Problem<'_>, modes: &[Mode]) -> bool {
+    let rests = modes.iter().all(|mode| *mode == Mode::Stick) && problem.slip.iter().all(Option::is_none);
+    rests && contact_problem::rest(&Problem { mu: &vec![0.0; modes.len()], ..*problem }).is_some()
 }
 
 fn one(
@@ -241,41 +251,52 @@ pub(crate) fn begin_along(
         directions
     };
     let mut residual = across(directions)?;
+    let mut jacobian: Option<DMatrix<f64>> = None;
     for _ in 0..TURNS {
-        let mut jacobian = DMatrix::zeros(m, m);
-        for column in 0..m {
-            let mut by = DVector::zeros(m);
-            by[column] = TURN;
-            let there = across(&turned(directions, &by))?;
-            by[column] = -TURN;
-            let here = across(&turned(directions, &by))?;
-            jacobian.set_column(column, &((there - here) / (2.0 * TURN)));
-        }
-        let step = -least_squares(&jacobian, &residual);
+        let matrix = match jacobian.take() {
+            Some(known) => known,
+            None => {
+                let mut matrix = DMatrix::zeros(m, m);
+                for column in 0..m {
+                    let mut by = DVector::zeros(m);
+                    by[column] = TURN;
+                    let there = across(&turned(directions, &by))?;
+                    matrix.set_column(column, &((there - &residual) / TURN));
+                }
+                matrix
+            }
+        };
+        let step = -least_squares(&matrix, &residual);
+        let longest = step.amax();
         // Shorter where it does not help.
-        let mut share = 1.0;
+        let mut share = 1.0 / longest.max(1.0);
         let next = loop {
-            let by = &step * (share * (1.0 / step.amax().max(1.0)));
-            let next = turned(directions, &by);
+            let next = turned(directions, &(&step * share));
             match across(&next) {
-                Some(left) if left.amax() < residual.amax() => break Some((next, left, by.amax())),
-                _ if share < 1e-3 => break None,
+                Some(left) if left.amax() < residual.amax() => break Some((next, left)),
+                _ if share < 1e-3 || longest < ROUNDED => break None,
                 _ => share *= 0.5,
             }
         };
-        let Some((next, left, size)) = next else { break };
+        let Some((next, left)) = next else { break };
         directions.copy_from_slice(&next);
+        // Derivatives that serve well serve again.
+        if left.amax() < 1e-2 * residual.amax() {
+            jacobian = Some(matrix);
+        }
         residual = left;
-        if size <= 1e-15 {
+        if longest <= 1e-14 {
             break;
         }
     }
     Some(())
 }
 
-/// Steps of Newton's method at most, and the difference by which its derivatives are formed, rad.
+/// Steps of Newton's method at most, the difference by which its derivatives are formed, and angles of which rounding
+/// alone may keep it from falling, rad.
 const TURNS: usize = 30;
 const TURN: f64 = 1e-6;
+const ROUNDED: f64 = 1e-10;
 
 #[cfg(test)]
 mod tests {
@@ -294,19 +315,19 @@ mod tests {
 
     /// One body with contacts at random places, pressed down.
     fn support(k: usize, random: &mut impl FnMut() -> f64) -> ClosedContacts {
-        let mut partials = DMatrix::zeros(3 * k, 6);
+        let mut partials = DMatrix::zeros(6, 3 * k);
         for i in 0..k {
             let arm = Vector3::new(random(), random(), -0.3 + 0.1 * random());
             for (row, axis) in [Vector3::z(), Vector3::x(), Vector3::y()].into_iter().enumerate() {
                 let turn = arm.cross(&axis);
                 for c in 0..3 {
-                    partials[(3 * i + row, c)] = axis[c];
-                    partials[(3 * i + row, 3 + c)] = turn[c];
+                    partials[(c, 3 * i + row)] = axis[c];
+                    partials[(3 + c, 3 * i + row)] = turn[c];
                 }
             }
         }
         let inverse = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 1.0, 1.0, 9.0, 7.0, 5.0]));
-        let response = &inverse * partials.transpose();
+        let response = &inverse * &partials;
         let load = DVector::from_vec(vec![
             4.0 * random(),
             4.0 * random(),
@@ -317,8 +338,8 @@ mod tests {
         ]);
         ClosedContacts {
             contacts: (0..k).collect(),
-            coupled: &partials * &response,
-            beta: &partials * load,
+            coupled: partials.tr_mul(&response),
+            beta: partials.tr_mul(&load),
             partials,
             response,
             velocity: DVector::zeros(3 * k),

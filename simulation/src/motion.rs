@@ -2,10 +2,11 @@
 //! same.
 
 use hodograph::{ContactError, Contacts, Kind, State, StateError};
-use nalgebra::Vector2;
+use nalgebra::{DVector, Vector2};
 
 use crate::Drive;
 use crate::closed_contacts::ClosedContacts;
+use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::pair::Pair;
 use crate::phase::Closed;
@@ -109,17 +110,35 @@ impl Motion<'_> {
         self.closed.iter().zip(holds).enumerate().map(mu).collect()
     }
 
-    /// Rates, and the forces of the closed contacts.
+    /// Rates, and the forces of the closed contacts: where many forces give one motion, those in the middle.
     pub fn evaluate(&self, t: f64, y: &[f64]) -> Result<Evaluation, Failure> {
+        self.evaluated(t, y, None, Wanted::Centre)
+    }
+
+    /// The same from forces that are nearly the answer, which save work.
+    pub fn evaluate_near(&self, t: f64, y: &[f64], guess: Option<&Forces>) -> Result<Evaluation, Failure> {
+        self.evaluated(t, y, guess.map(|forces| &forces.lambda), Wanted::Centre)
+    }
+
+    /// Rates alone.
+    pub fn rates(&self, t: f64, y: &[f64]) -> Result<Vec<f64>, Failure> {
+        self.evaluated(t, y, None, Wanted::Motion).map(|evaluation| evaluation.rates)
+    }
+
+    fn evaluated(
+        &self,
+        t: f64,
+        y: &[f64],
+        guess: Option<&DVector<f64>>,
+        wanted: Wanted,
+    ) -> Result<Evaluation, Failure> {
         let (q, u) = self.split(y);
         let (n, p) = (q.len(), u.len());
         let inputs = self.inputs(t, y)?;
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
         let mut rates = vec![0.0; n + p + WORKS];
-        self.mechanism.coordinate_rates(&state, &mut rates[..n])?;
-        self.mechanism.accelerations(&state, &mut rates[n..n + p])?;
         let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
-        let support = ClosedContacts::new(self.mechanism, &state, &contacts, true)?;
+        let support = ClosedContacts::with_rates(self.mechanism, &state, &contacts, &mut rates)?;
         let mut holds = self.holds(&support, u);
         let mut found = None;
         if !contacts.is_empty() {
@@ -128,9 +147,9 @@ impl Motion<'_> {
                 Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
                 Lacking::Together => Failure::Together,
             };
-            let solve = |holds: &[Hold]| forces(&support, holds, &mu, None);
+            let solve = |holds: &[Hold]| forces(&support, holds, &mu, None, Wanted::Motion);
             settle_directions(&support, self.closed, &mut holds, &solve);
-            let answer = solve(&holds).map_err(lacking)?;
+            let answer = forces(&support, &holds, &mu, guess, wanted).map_err(lacking)?;
             let greatest = answer.lambda.amax();
             for (i, rate) in rates[n..n + p].iter_mut().enumerate() {
                 let mut size = rate.abs();

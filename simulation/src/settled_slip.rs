@@ -5,6 +5,7 @@ use hodograph::State;
 use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
+use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::motion::{Evaluation, Motion};
 use crate::slip_direction::settle_directions;
@@ -26,7 +27,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
         return omegas;
     }
     let mu: Vec<f64> = closed.iter().map(|closed| closed.mu).collect();
-    let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, None);
+    let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, None, Wanted::Motion);
     let candidates: Vec<usize> = (0..closed.len())
         .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES))
         .collect();

@@ -8,6 +8,7 @@
 use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
+use crate::contact_problem::Wanted;
 use crate::forces::{Hold, forces};
 use crate::motion::{DIRECTION, Evaluation};
 
@@ -40,7 +41,7 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
     let mut rates = |phi: f64| -> Option<(f64, f64)> {
         let d = Vector2::new(phi.cos(), phi.sin());
         holds[place] = Hold::Slide(d);
-        let a = forces(support, &holds, mu, None).ok()?.acceleration;
+        let a = forces(support, &holds, mu, None, Wanted::Motion).ok()?.acceleration;
         let a = Vector2::new(a[3 * place + 1], a[3 * place + 2]);
         Some((a.dot(&d), d.x * a.y - d.y * a.x))
     };

@@ -119,8 +119,8 @@ impl Transition<'_> {
             let failed = RefCell::new(None);
             let made = {
                 let motion = self.motion(closed);
-                let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.evaluate(t, y) {
-                    Ok(evaluation) => rates.copy_from_slice(&evaluation.rates),
+                let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.rates(t, y) {
+                    Ok(known) => rates.copy_from_slice(&known),
                     Err(failure) => {
                         failed.borrow_mut().get_or_insert(failure);
                         rates.fill(f64::NAN);
@@ -138,7 +138,7 @@ impl Transition<'_> {
                 continue;
             }
             let (watched, noise) = self.watched(closed, step.h);
-            let Some(pieces) = self.pieces(closed, &step) else {
+            let Some(turns) = self.turns(closed, &step) else {
                 most = 0.5 * step.h;
                 continue;
             };
@@ -149,7 +149,7 @@ impl Transition<'_> {
                     noise: &noise,
                     values: &mut |fraction| {
                         let at = &mut |after: f64| step.at(after / h);
-                        self.values(closed, &watched, h * fraction, at).ok()
+                        self.values(closed, &watched, h * fraction, Some(here), at).ok()
                     },
                     slopes: &mut |fraction| {
                         let y = step.at(fraction);
@@ -159,7 +159,7 @@ impl Transition<'_> {
                             .collect()
                     },
                 },
-                pieces,
+                turns,
             );
             let Ok(found) = found else {
                 most = 0.5 * step.h;

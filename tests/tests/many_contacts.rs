@@ -1,6 +1,6 @@
 //! Mechanisms that touch the world at several points: what statics, symmetry and closed forms say of them.
 
-use hodograph::{Kind, Law, Mechanism, Selection, State, Surface};
+use hodograph::{ClosedContacts, Contacts, Kind, Law, Mechanism, Selection, State, StateError, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{
     Drive, Event, EventKind, Options, Progress, Simulation, SimulationError, Together,
@@ -272,4 +272,63 @@ fn fast_spins_miss_no_collision() {
         longest = longest.max((first.time - high).abs());
     }
     assert!(longest < 1e-7, "{longest:e}");
+}
+
+/// What forces of closed contacts follow from has the same bits in one pass and by the single methods.
+#[test]
+fn one_pass_has_the_bits_of_the_single_methods() {
+    for name in ["chain5", "domino3", "groove_drop", "ladder", "stack10"] {
+        let machine = model(name);
+        let mut start = Start::of(&machine);
+        start.speeds.iter_mut().enumerate().for_each(|(i, u)| *u += 0.3 * (1.0 + i as f64).sin());
+        let state = State {
+            time: 0.4,
+            coordinates: &start.coordinates,
+            speeds: &start.speeds,
+            inputs: &start.inputs,
+        };
+        let (n, p) = (start.coordinates.len(), start.speeds.len());
+        let all: Vec<usize> = (0..machine.count(Kind::Contact)).rev().collect();
+        for contacts in [&all[..], &all[..1], &all[1..], &[]] {
+            let k = contacts.len();
+            let room = || [n, p, 3 * p * k, 3 * p * k, 3 * k, 3 * k].map(|count| vec![0.0_f64; count]);
+            let [mut q, mut u, mut partial, mut response, mut velocity, mut free] = room();
+            let mut values = ClosedContacts {
+                coordinate_rates: &mut q,
+                accelerations: &mut u,
+                partial_velocities: &mut partial,
+                responses: &mut response,
+                velocities: &mut velocity,
+                free_accelerations: &mut free,
+            };
+            machine.closed_contacts(contacts, &state, &mut values).unwrap();
+            let [mut q1, mut u1, mut partial1, mut response1, mut velocity1, mut free1] = room();
+            machine.coordinate_rates(&state, &mut q1).unwrap();
+            machine.accelerations(&state, &mut u1).unwrap();
+            for (place, &contact) in contacts.iter().enumerate() {
+                let (rows, three) = (3 * p * place..3 * p * (place + 1), 3 * place..3 * place + 3);
+                machine.partial_velocities(contact, &state, &mut partial1[rows.clone()]).unwrap();
+                machine.response(contact, &state, &mut response1[rows]).unwrap();
+                let v = machine.contact_velocity(contact, &state).unwrap();
+                velocity1[three.clone()].copy_from_slice(v.as_slice());
+                free1[three].copy_from_slice(machine.free_acceleration(contact, &state).unwrap().as_slice());
+            }
+            assert_eq!(
+                [q, u, partial, response, velocity, free],
+                [q1, u1, partial1, response1, velocity1, free1]
+            );
+        }
+        let mut none: [Vec<f64>; 4] = [vec![0.0; n], vec![0.0; p], vec![0.0; 3 * p], vec![0.0; 3 * p]];
+        let [q, u, partial, response] = &mut none;
+        let mut values = ClosedContacts {
+            coordinate_rates: q,
+            accelerations: u,
+            partial_velocities: partial,
+            responses: response,
+            velocities: &mut [0.0; 3],
+            free_accelerations: &mut [0.0; 3],
+        };
+        let missing = machine.closed_contacts(&[all.len()], &state, &mut values);
+        assert!(matches!(missing, Err(StateError::Missing { .. })), "{name}: {missing:?}");
+    }
 }

@@ -7,16 +7,16 @@ use hodograph::generated::{
 use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
-    Budgeted, ClosedContactError, CollisionError, CollisionOutcome, ContactMode, ContactOutcome,
-    ContactState, ContactSurface, Contacts, ImpactError, Kind, Law, ReducedMatrix, State, StateError,
-    StatedLaw, Surface,
+    Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ContactMode,
+    ContactOutcome, ContactState, ContactSurface, Contacts, ImpactError, Kind, Law, ReducedMatrix, State,
+    StateError, StatedLaw, Surface,
 };
 use hodograph_model::model::mechanism::Law as Stated;
 use hodograph_program::program::operation::Operation;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
 use crate::InterpretedMechanism;
-use crate::routines::{CLOSED, COLLISION, OfContact, Request};
+use crate::routines::{CLOSED, COLLISION, OF_EACH, OfContact, Request};
 
 /// Without these a contact has no collision.
 pub const COLLISION_NEEDS: &[ContactQuantity] = COLLISION.split_at(6).0;
@@ -290,6 +290,41 @@ impl Contacts for InterpretedMechanism {
         self.exists(Kind::Contact, contact)?;
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::Response));
         self.write(request, state, &[], response, "the response")
+    }
+
+    fn closed_contacts(
+        &self,
+        contacts: &[usize],
+        state: &State<'_>,
+        values: &mut ClosedContacts<'_, f64>,
+    ) -> Result<(), StateError> {
+        let (k, n, p) = (contacts.len(), state.coordinates.len(), state.speeds.len());
+        values.check(k, n, p)?;
+        self.check(state)?;
+        for &contact in contacts {
+            self.exists(Kind::Contact, contact)?;
+            if OF_EACH.into_iter().any(|quantity| self.size(contact, quantity) == 0) {
+                return Err(StateError::Undefined { what: "closed contact" });
+            }
+        }
+        // The numbers come in the order of the quantities.
+        let of_each = 6 * p + 6;
+        self.compute_together(contacts, n + p + k * of_each, state, |index, number| {
+            let slot = if index < n {
+                &mut values.coordinate_rates[index]
+            } else if index < n + p {
+                &mut values.accelerations[index - n]
+            } else {
+                let (place, index) = ((index - n - p) / of_each, (index - n - p) % of_each);
+                match index {
+                    _ if index < 3 * p => &mut values.partial_velocities[3 * p * place + index],
+                    _ if index < 6 * p => &mut values.responses[3 * p * place + index - 3 * p],
+                    _ if index < 6 * p + 3 => &mut values.velocities[3 * place + index - 6 * p],
+                    _ => &mut values.free_accelerations[3 * place + index - 6 * p - 3],
+                }
+            };
+            *slot = number;
+        })
     }
 
     fn collide(

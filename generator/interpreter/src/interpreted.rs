@@ -154,16 +154,24 @@ impl InterpretedMechanism {
         accelerations: &[f64],
         with: impl FnMut(usize, f64),
     ) -> Result<(), StateError> {
-        let arguments = Arguments {
-            time: state.time,
-            coordinates: state.coordinates,
-            speeds: state.speeds,
-            inputs: state.inputs,
-            accelerations,
-            tangent: &[],
-        };
+        let arguments = arguments(state, accelerations);
         let prepared = self.routines.get(request, &self.program, &self.constants);
         prepared.evaluate(&arguments, with).map_err(|failed| self.state_error(failed))
+    }
+
+    /// Computes what forces of closed contacts follow from, number by number.
+    pub(crate) fn compute_together(
+        &self,
+        contacts: &[usize],
+        expected: usize,
+        state: &State<'_>,
+        with: impl FnMut(usize, f64),
+    ) -> Result<(), StateError> {
+        let prepared = self.routines.together(contacts, &self.program, &self.constants);
+        if prepared.len() != expected {
+            return Err(StateError::Undefined { what: "closed contact" });
+        }
+        prepared.evaluate(&arguments(state, &[]), with).map_err(|failed| self.state_error(failed))
     }
 
     /// Whether the program has what is requested.
@@ -206,6 +214,12 @@ impl InterpretedMechanism {
         })?;
         Ok(numbers)
     }
+}
+
+/// What a routine is given.
+fn arguments<'a>(state: &State<'a>, accelerations: &'a [f64]) -> Arguments<'a> {
+    let State { time, coordinates, speeds, inputs } = *state;
+    Arguments { time, coordinates, speeds, inputs, accelerations, tangent: &[] }
 }
 
 /// All parameters from those that are not `fixed`.

@@ -1,6 +1,7 @@
 //! The prepared routines of a mechanism: each is prepared at its first call.
 
-use std::sync::OnceLock;
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_program::interpret::{Constants, Prepared};
@@ -125,12 +126,36 @@ impl Request {
     }
 }
 
+/// What forces of closed contacts follow from: of the mechanism, then of each contact, in these orders.
+pub const TOGETHER: [Quantity; 2] = [Quantity::CoordinateRates, Quantity::Accelerations];
+/// See [`TOGETHER`].
+pub const OF_EACH: [ContactQuantity; 4] = [
+    ContactQuantity::PartialVelocities,
+    ContactQuantity::Response,
+    ContactQuantity::Velocity,
+    ContactQuantity::FreeAcceleration,
+];
+
+/// The routines of sets of closed contacts.
+#[derive(Debug, Default)]
+struct Sets(RwLock<BTreeMap<Vec<usize>, Arc<Prepared>>>);
+
+/// So many sets are kept: more are rarely closed in one motion.
+const MOST_SETS: usize = 64;
+
+impl Clone for Sets {
+    fn clone(&self) -> Self {
+        Sets(RwLock::new(self.0.read().unwrap_or_else(PoisonError::into_inner).clone()))
+    }
+}
+
 /// A cell for each request that a mechanism permits.
 #[derive(Clone, Debug)]
 pub struct Routines {
     points: usize,
     frames: usize,
     cells: Vec<OnceLock<Prepared>>,
+    sets: Sets,
 }
 
 impl Routines {
@@ -138,7 +163,8 @@ impl Routines {
     pub fn new(model: &Mechanism) -> Self {
         let (points, frames) = (model.points.len(), model.frames.len());
         let count = WHOLE.len() + POINT.len() * points + frames + CONTACT.len() * model.contacts.len();
-        Routines { points, frames, cells: (0..count).map(|_| OnceLock::new()).collect() }
+        let cells = (0..count).map(|_| OnceLock::new()).collect();
+        Routines { points, frames, cells, sets: Sets::default() }
     }
 
     /// The routine of a request.
@@ -147,8 +173,26 @@ impl Routines {
             .get_or_init(|| Prepared::new(program, constants, &request.quantities()))
     }
 
+    /// The routine of a set of closed contacts.
+    pub fn together(&self, contacts: &[usize], program: &Program, constants: &Constants) -> Arc<Prepared> {
+        let known = self.sets.0.read().unwrap_or_else(PoisonError::into_inner).get(contacts).cloned();
+        known.unwrap_or_else(|| {
+            let each = |&contact: &usize| OF_EACH.map(|of| Quantity::Contact(contact as u32, of));
+            let quantities: Vec<Quantity> =
+                TOGETHER.into_iter().chain(contacts.iter().flat_map(each)).collect();
+            let prepared = Arc::new(Prepared::new(program, constants, &quantities));
+            let mut sets = self.sets.0.write().unwrap_or_else(PoisonError::into_inner);
+            if sets.len() >= MOST_SETS {
+                sets.clear();
+            }
+            sets.insert(contacts.to_vec(), Arc::clone(&prepared));
+            prepared
+        })
+    }
+
     /// Goes over to other parameters.
     pub fn refresh(&mut self, constants: &Constants) {
+        self.sets = Sets::default();
         self.cells.iter_mut().filter_map(OnceLock::get_mut).for_each(|prepared| prepared.refresh(constants));
     }
 
@@ -177,7 +221,7 @@ mod tests {
     /// Every request that is made has a cell of its own: `place` must not fall back on the first.
     #[test]
     fn requests_have_cells_of_their_own() {
-        let routines = Routines { points: 3, frames: 2, cells: Vec::new() };
+        let routines = Routines { points: 3, frames: 2, cells: Vec::new(), sets: Sets::default() };
         let mut requests: Vec<Request> = WHOLE.map(Request::Whole).to_vec();
         requests.extend((0..3).flat_map(|point| POINT.map(|quantity| Request::Point(point, quantity))));
         requests.extend((0..2).map(Request::Frame));

@@ -57,6 +57,41 @@ pub struct CollisionOutcome<T: nalgebra::Scalar = f64> {
     pub impact: Impact<T>,
 }
 
+/// Room for what forces of closed contacts follow from: what [`Contacts::closed_contacts`] gives of k contacts of a
+/// mechanism with `n` coordinates and `p` independent speeds.
+#[derive(Debug)]
+pub struct ClosedContacts<'a, T = f64> {
+    /// rates q' of the coordinates (`n`)
+    pub coordinate_rates: &'a mut [T],
+    /// rates u' of the independent speeds without contact forces (`p`)
+    pub accelerations: &'a mut [T],
+    /// V of each contact (k x 3 x `p`), as [`Contacts::partial_velocities`]
+    pub partial_velocities: &'a mut [T],
+    /// M^-1 V^T of each contact (k x `p` x 3), as [`Contacts::response`]
+    pub responses: &'a mut [T],
+    /// velocity of each contact (k x 3), m/s
+    pub velocities: &'a mut [T],
+    /// beta of each contact (k x 3), m/s^2
+    pub free_accelerations: &'a mut [T],
+}
+
+impl<T> ClosedContacts<'_, T> {
+    /// Whether the slices have their lengths.
+    ///
+    /// # Errors
+    ///
+    /// [`StateError::Length`].
+    pub fn check(&self, contacts: usize, coordinates: usize, speeds: usize) -> Result<(), StateError> {
+        let rows = 3 * contacts;
+        check_length(self.coordinate_rates, coordinates, "the rates of the coordinates")?;
+        check_length(self.accelerations, speeds, "the accelerations")?;
+        check_length(self.partial_velocities, rows * speeds, "the partial velocities")?;
+        check_length(self.responses, rows * speeds, "the responses")?;
+        check_length(self.velocities, rows, "the velocities")?;
+        check_length(self.free_accelerations, rows, "the free accelerations")
+    }
+}
+
 /// The contacts of a mechanism, by number; [`Mechanism::index`] with [`Kind::Contact`](crate::Kind::Contact)
 /// gives the number of a name. A mechanism without contacts has the trait too, and its count is 0.
 ///
@@ -183,6 +218,41 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     ) -> Result<CollisionOutcome<T>, CollisionError<T>> {
         let _ = (contact, state, surface, speeds);
         Err(StateError::Undefined { what: "impact without collision of this contact" }.into())
+    }
+
+    /// Everything that the forces of closed contacts follow from, in one pass: what several of the single methods
+    /// need (kinematics, the factorisation of the mass matrix) is computed once.
+    ///
+    /// # Errors
+    ///
+    /// [`StateError::Undefined`] where the mechanism does not tell all of it.
+    fn closed_contacts(
+        &self,
+        contacts: &[usize],
+        state: &State<'_, T>,
+        values: &mut ClosedContacts<'_, T>,
+    ) -> Result<(), StateError> {
+        let p = self.count(super::Kind::Speed);
+        values.check(contacts.len(), self.count(super::Kind::Coordinate), p)?;
+        self.coordinate_rates(state, values.coordinate_rates)?;
+        self.accelerations(state, values.accelerations)?;
+        let vectors =
+            values.velocities.chunks_exact_mut(3).zip(values.free_accelerations.chunks_exact_mut(3));
+        for (&contact, (velocity, free)) in contacts.iter().zip(vectors) {
+            velocity.copy_from_slice(self.contact_velocity(contact, state)?.as_slice());
+            free.copy_from_slice(self.free_acceleration(contact, state)?.as_slice());
+        }
+        if p == 0 {
+            return Ok(());
+        }
+        let partial = values.partial_velocities.chunks_exact_mut(3 * p);
+        for (&contact, (partial, response)) in
+            contacts.iter().zip(partial.zip(values.responses.chunks_exact_mut(3 * p)))
+        {
+            self.partial_velocities(contact, state, partial)?;
+            self.response(contact, state, response)?;
+        }
+        Ok(())
     }
 
     /// W (3k x 3k) of the k `contacts`, symmetric: forces along their contact bases accelerate the contact

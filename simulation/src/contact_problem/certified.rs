@@ -10,7 +10,7 @@ use nalgebra::{DVector, Vector2};
 
 use super::{
     Mode, Problem, Solution, Solutions, Unsolved,
-    prescribed::{FITS, prescribed},
+    prescribed::{FITS, Wanted, prescribed},
     problem::three,
     sparse::Sparse,
 };
@@ -111,7 +111,7 @@ const ZERO: f64 = 1e-12;
 
 /// The forces of modes, if they obey the laws.
 pub(super) fn with_certificate(problem: &Problem<'_>, wanted: &[Mode]) -> Option<Solution> {
-    let found = prescribed(problem, wanted, None, true).ok()?;
+    let found = prescribed(problem, wanted, None, Wanted::Decision).ok()?;
     if found.margin < -FITS {
         return None;
     }

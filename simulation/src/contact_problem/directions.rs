@@ -8,7 +8,11 @@
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-use super::{Mode, Problem, linear::Elimination, prescribed::SINGULAR};
+use super::{
+    MOST_ENUMERATED, Mode, Problem,
+    linear::{Elimination, Square, Vector, vector},
+    prescribed::SINGULAR,
+};
 
 /// A mode whose direction may be open.
 #[derive(Clone, Copy, PartialEq)]
@@ -35,10 +39,15 @@ fn direction(angle: f64) -> Vector2<f64> {
 
 /// The problem of the contacts that begin to slip.
 struct Reduced {
-    w: DMatrix<f64>,
-    beta: DVector<f64>,
-    mu: Vec<f64>,
+    w: [[f64; 3 * MOST]; 3 * MOST],
+    beta: [f64; 3 * MOST],
+    mu: [f64; MOST],
+    /// how many they are
+    count: usize,
 }
+
+/// The most contacts that begin to slip.
+const MOST: usize = MOST_ENUMERATED;
 
 impl Reduced {
     fn new(problem: &Problem<'_>, chosen: &[Choice], open: &[usize]) -> Self {
@@ -68,21 +77,31 @@ impl Reduced {
             (0..3).map(|axis| along[b][axis] * problem.w[(row, first + axis)]).sum()
         };
         let m = rows.len();
-        let inner = DMatrix::from_fn(m, m, |a, b| scale[a] * scale[b] * column(rows[a], b));
-        let elimination = Elimination::new(inner, SINGULAR);
-        let solve = |right: DVector<f64>| elimination.solve(&right);
+        let mut inner = Square::zeros(m * m);
+        for (b, entries) in inner.chunks_exact_mut(m.max(1)).enumerate() {
+            entries.iter_mut().enumerate().for_each(|(a, w)| *w = scale[a] * scale[b] * column(rows[a], b));
+        }
+        let elimination = Elimination::new(inner, m, SINGULAR);
+        let solve = |right: Vector| DVector::from_column_slice(&elimination.solve(&right));
         let mut w = DMatrix::from_fn(own.len(), own.len(), |a, b| problem.w[(own[a], own[b])]);
         let mut beta = DVector::from_fn(own.len(), |a, _| problem.beta[own[a]]);
         let from = DMatrix::from_fn(own.len(), m, |a, b| scale[b] * column(own[a], b));
         if m > 0 {
             for (b, &from_own) in own.iter().enumerate() {
-                let x = solve(DVector::from_fn(m, |a, _| scale[a] * problem.w[(rows[a], from_own)]));
+                let x = solve(vector(m, |a| scale[a] * problem.w[(rows[a], from_own)]));
                 let mut column = w.column_mut(b);
                 column -= &from * x;
             }
-            beta -= &from * solve(DVector::from_fn(m, |a, _| scale[a] * problem.beta[rows[a]]));
+            beta -= &from * solve(vector(m, |a| scale[a] * problem.beta[rows[a]]));
         }
-        Self { w, beta, mu: open.iter().map(|&i| problem.mu[i]).collect() }
+        let mut reduced =
+            Self { w: Default::default(), beta: [0.0; 3 * MOST], mu: [0.0; MOST], count: open.len() };
+        for (row, entries) in reduced.w.iter_mut().enumerate().take(own.len()) {
+            reduced.beta[row] = beta[row];
+            entries.iter_mut().zip(w.row(row).iter()).for_each(|(entry, w)| *entry = *w);
+        }
+        reduced.mu.iter_mut().zip(open).for_each(|(mu, &i)| *mu = problem.mu[i]);
+        reduced
     }
 
     /// Of one contact: f times the component across d is a trigonometric polynomial of degree two.
@@ -90,8 +109,8 @@ impl Reduced {
         let (w, beta, mu) = (&self.w, &self.beta, self.mu[0]);
         let across = |angle: f64| {
             let d = direction(angle);
-            let f = w[(0, 0)] - mu * (w[(0, 1)] * d.x + w[(0, 2)] * d.y);
-            let push = |row: usize| w[(row, 0)] - mu * (w[(row, 1)] * d.x + w[(row, 2)] * d.y);
+            let f = w[0][0] - mu * (w[0][1] * d.x + w[0][2] * d.y);
+            let push = |row: usize| w[row][0] - mu * (w[row][1] * d.x + w[row][2] * d.y);
             let (t, s) = (f * beta[1] - beta[0] * push(1), f * beta[2] - beta[0] * push(2));
             d.x * s - d.y * t
         };
@@ -117,25 +136,54 @@ impl Reduced {
         roots
     }
 
-    /// Of several: Newton's method from a grid of directions.
+    /// Of several: Newton's method from the places of a grid of directions at which all components across them
+    /// change their signs, or are least.
     fn by_grid(&self) -> Vec<Vec<f64>> {
-        let u = self.mu.len();
-        let count: usize = [1, 32, 12, 8, 6][u.min(4)];
+        let u = self.count;
+        let count: usize = [1, 32, 12, 8, 6][u.min(MOST)];
         let step = std::f64::consts::TAU / count as f64;
-        let mut found: Vec<Vec<f64>> = Vec::new();
-        for number in 0..count.pow(u as u32) {
-            let mut left = number;
-            let mut angles = Vec::with_capacity(u);
-            for j in 0..u {
-                angles.push((left % count) as f64 * step + 0.31 * (j + 1) as f64);
-                left /= count;
+        let size = count.pow(u as u32);
+        let place = |number: usize, j: usize| number / count.pow(j as u32) % count;
+        let angles = |number: usize| {
+            let mut angles = [0.0; MOST];
+            for (j, angle) in angles.iter_mut().enumerate().take(u) {
+                *angle = place(number, j) as f64 * step + 0.31 * (j + 1) as f64;
             }
-            let Some(angles) = self.newton(angles) else { continue };
+            angles
+        };
+        let values: Vec<[f64; MOST]> = (0..size).map(|number| self.smooth(&angles(number))).collect();
+        // The next place along an axis, or the one before.
+        let beside = |number: usize, j: usize, by: usize| {
+            let stride = count.pow(j as u32);
+            let here = place(number, j);
+            number - here * stride + (here + by) % count * stride
+        };
+        let norm = |values: &[f64; MOST]| values.iter().map(|value| value * value).sum::<f64>();
+        let starts = |&number: &usize| {
+            let here = norm(&values[number]);
+            let least = (0..u).all(|j| {
+                here <= norm(&values[beside(number, j, 1)])
+                    && here <= norm(&values[beside(number, j, count - 1)])
+            });
+            // The corners of the cell that begins here.
+            let corner = |corner: usize| {
+                (0..u).fold(number, |at, j| if corner >> j & 1 == 1 { beside(at, j, 1) } else { at })
+            };
+            let changes = |j: usize| {
+                let signs = (0..1 << u).map(|i| values[corner(i)][j] > 0.0);
+                signs.fold((false, false), |(up, down), sign| (up | sign, down | !sign)) == (true, true)
+            };
+            least || (0..u).all(changes)
+        };
+        let mut found: Vec<Vec<f64>> = Vec::new();
+        for number in (0..size).filter(starts) {
+            let Some(angles) = self.newton(angles(number)) else { continue };
+            let angles = &angles[..u];
             let near = |other: &Vec<f64>| {
-                other.iter().zip(&angles).all(|(a, b)| (direction(*a) - direction(*b)).norm() < 1e-6)
+                other.iter().zip(angles).all(|(a, b)| (direction(*a) - direction(*b)).norm() < 1e-6)
             };
             if !found.iter().any(near) {
-                found.push(angles);
+                found.push(angles.to_vec());
             }
         }
         found
@@ -143,12 +191,14 @@ impl Reduced {
 
     /// Newton's method on the components of a_tan across the directions; `None` where it does not come to directions with
     /// gamma >= 0 and lambda_n >= 0.
-    fn newton(&self, mut angles: Vec<f64>) -> Option<Vec<f64>> {
-        let size = self.beta.amax();
+    fn newton(&self, mut angles: [f64; MOST]) -> Option<[f64; MOST]> {
+        let u = self.count;
+        let greatest = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let size = greatest(&self.beta);
         let mut last = f64::INFINITY;
         for round in 0..ROUNDS {
             let Across { value, rates, fits } = self.across(&angles)?;
-            let norm = value.amax();
+            let norm = greatest(&value);
             if norm <= 1e-13 * size {
                 return fits.then_some(angles);
             }
@@ -156,54 +206,154 @@ impl Reduced {
                 return (norm <= 1e-9 * size && fits).then_some(angles);
             }
             last = norm;
-            let step = rates.lu().solve(&value)?;
-            let longest = step.amax();
+            let step = Small::new(rates, u)?.solve(value);
+            let longest = greatest(&step);
             let part = if longest > 0.5 { 0.5 / longest } else { 1.0 };
-            for (angle, step) in angles.iter_mut().zip(step.iter()) {
+            for (angle, step) in angles.iter_mut().zip(step) {
                 *angle -= part * step;
             }
         }
         None
     }
 
+    /// What a normal force with its friction along d does to a row.
+    fn push(&self, row: usize, j: usize, d: &Vector2<f64>) -> f64 {
+        let w = &self.w[row];
+        w[3 * j] - self.mu[j] * (w[3 * j + 1] * d.x + w[3 * j + 2] * d.y)
+    }
+
+    /// Directions, accelerations along t and s, normal forces, and the equations of these.
+    fn moving(&self, angles: &[f64; MOST]) -> Option<Moving> {
+        let u = self.count;
+        let mut d = [Vector2::zeros(); MOST];
+        for (d, angle) in d.iter_mut().zip(angles).take(u) {
+            *d = Vector2::new(angle.cos(), angle.sin());
+        }
+        let mut normal = [[0.0; MOST]; MOST];
+        let mut right = [0.0; MOST];
+        for i in 0..u {
+            right[i] = -self.beta[3 * i];
+            for j in 0..u {
+                normal[i][j] = self.push(3 * i, j, &d[j]);
+            }
+        }
+        let normal = Small::new(normal, u)?;
+        let lambda = normal.solve(right);
+        let mut tangential = [Vector2::zeros(); MOST];
+        for (i, tangential) in tangential.iter_mut().enumerate().take(u) {
+            let a = |row: usize| {
+                self.beta[row] + (0..u).map(|j| self.push(row, j, &d[j]) * lambda[j]).sum::<f64>()
+            };
+            *tangential = Vector2::new(a(3 * i + 1), a(3 * i + 2));
+        }
+        Some(Moving { d, tangential, lambda, normal })
+    }
+
+    /// The components of a_tan across the directions times the determinant of the equations of the normal forces: a
+    /// function without poles.
+    fn smooth(&self, angles: &[f64; MOST]) -> [f64; MOST] {
+        let mut values = [f64::MAX.sqrt(); MOST];
+        if let Some(Moving { d, tangential, normal, .. }) = self.moving(angles) {
+            for (value, (d, a)) in values.iter_mut().zip(d.iter().zip(&tangential)) {
+                *value = normal.determinant * (d.x * a.y - d.y * a.x);
+            }
+        }
+        values
+    }
+
     /// The components of a_tan across the directions, and their derivatives by the angles.
-    fn across(&self, angles: &[f64]) -> Option<Across> {
-        let (w, u) = (&self.w, angles.len());
-        let d: Vec<Vector2<f64>> = angles.iter().map(|&angle| direction(angle)).collect();
-        let turned: Vec<Vector2<f64>> = d.iter().map(|d| Vector2::new(-d.y, d.x)).collect();
-        // What a normal force with its friction does to a row, and how that changes with the angle.
-        let push = |row: usize, j: usize| {
-            w[(row, 3 * j)] - self.mu[j] * (w[(row, 3 * j + 1)] * d[j].x + w[(row, 3 * j + 2)] * d[j].y)
-        };
+    fn across(&self, angles: &[f64; MOST]) -> Option<Across> {
+        let u = self.count;
+        let Moving { d, tangential, lambda, normal } = self.moving(angles)?;
+        let turned = d.map(|d| Vector2::new(-d.y, d.x));
+        // How the push of a normal force changes with its angle.
         let turn = |row: usize, j: usize| {
-            -self.mu[j] * (w[(row, 3 * j + 1)] * turned[j].x + w[(row, 3 * j + 2)] * turned[j].y)
+            let w = &self.w[row];
+            -self.mu[j] * (w[3 * j + 1] * turned[j].x + w[3 * j + 2] * turned[j].y)
         };
-        let normal = DMatrix::from_fn(u, u, |i, j| push(3 * i, j)).lu();
-        let lambda = normal.solve(&DVector::from_fn(u, |i, _| -self.beta[3 * i]))?;
-        let a = |row: usize| self.beta[row] + (0..u).map(|j| push(row, j) * lambda[j]).sum::<f64>();
-        let tangential: Vec<Vector2<f64>> =
-            (0..u).map(|i| Vector2::new(a(3 * i + 1), a(3 * i + 2))).collect();
-        let value = DVector::from_fn(u, |i, _| turned[i].dot(&tangential[i]));
-        let mut rates = DMatrix::zeros(u, u);
+        let mut value = [0.0; MOST];
+        for (value, (turned, a)) in value.iter_mut().zip(turned.iter().zip(&tangential)) {
+            *value = turned.dot(a);
+        }
+        let mut rates = [[0.0; MOST]; MOST];
         for j in 0..u {
-            let change = normal.solve(&DVector::from_fn(u, |i, _| -turn(3 * i, j) * lambda[j]))?;
+            let mut right = [0.0; MOST];
+            for (i, right) in right.iter_mut().enumerate().take(u) {
+                *right = -turn(3 * i, j) * lambda[j];
+            }
+            let change = normal.solve(right);
             for i in 0..u {
                 let rate = |row: usize| {
-                    turn(row, j) * lambda[j] + (0..u).map(|l| push(row, l) * change[l]).sum::<f64>()
+                    turn(row, j) * lambda[j]
+                        + (0..u).map(|l| self.push(row, l, &d[l]) * change[l]).sum::<f64>()
                 };
-                rates[(i, j)] = turned[i].x * rate(3 * i + 1) + turned[i].y * rate(3 * i + 2);
+                rates[i][j] = turned[i].x * rate(3 * i + 1) + turned[i].y * rate(3 * i + 2);
             }
-            rates[(j, j)] -= d[j].dot(&tangential[j]);
+            rates[j][j] -= d[j].dot(&tangential[j]);
         }
         let fits = (0..u).all(|i| lambda[i] >= 0.0 && d[i].dot(&tangential[i]) >= 0.0);
         value.iter().all(|value| value.is_finite()).then_some(Across { value, rates, fits })
     }
 }
 
+struct Moving {
+    d: [Vector2<f64>; MOST],
+    tangential: [Vector2<f64>; MOST],
+    lambda: [f64; MOST],
+    normal: Small,
+}
+
 struct Across {
-    value: DVector<f64>,
-    rates: DMatrix<f64>,
+    value: [f64; MOST],
+    rates: [[f64; MOST]; MOST],
     fits: bool,
+}
+
+/// A few linear equations, eliminated with pivots from the columns.
+struct Small {
+    lu: [[f64; MOST]; MOST],
+    rows: [usize; MOST],
+    count: usize,
+    determinant: f64,
+}
+
+impl Small {
+    /// `None` of a singular matrix.
+    fn new(mut lu: [[f64; MOST]; MOST], count: usize) -> Option<Self> {
+        let (mut rows, mut determinant) = ([0, 1, 2, 3], 1.0);
+        for j in 0..count {
+            let pivot = (j..count).max_by(|&a, &b| lu[a][j].abs().total_cmp(&lu[b][j].abs()))?;
+            if pivot != j {
+                lu.swap(pivot, j);
+                rows.swap(pivot, j);
+                determinant = -determinant;
+            }
+            determinant *= lu[j][j];
+            if lu[j][j] == 0.0 || !lu[j][j].is_finite() {
+                return None;
+            }
+            for i in j + 1..count {
+                let factor = lu[i][j] / lu[j][j];
+                lu[i][j] = factor;
+                for column in j + 1..count {
+                    lu[i][column] -= factor * lu[j][column];
+                }
+            }
+        }
+        Some(Self { lu, rows, count, determinant })
+    }
+
+    fn solve(&self, right: [f64; MOST]) -> [f64; MOST] {
+        let mut x = [0.0; MOST];
+        for i in 0..self.count {
+            x[i] = right[self.rows[i]] - (0..i).map(|j| self.lu[i][j] * x[j]).sum::<f64>();
+        }
+        for i in (0..self.count).rev() {
+            let known: f64 = (i + 1..self.count).map(|j| self.lu[i][j] * x[j]).sum();
+            x[i] = (x[i] - known) / self.lu[i][i];
+        }
+        x
+    }
 }
 
 /// Samples around the circle, and rounds of Newton's method.

@@ -2,30 +2,90 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
-use nalgebra::{DMatrix, DVector};
+use std::ops::{Deref, DerefMut};
+
+use nalgebra::DMatrix;
+
+/// So many unknowns are eliminated in memory on the stack: four contacts that stick.
+const FEW: usize = 12;
+
+/// Numbers on the stack, or on the heap where they are many.
+#[derive(Clone)]
+pub(super) enum Numbers<const MOST: usize> {
+    Few([f64; MOST], usize),
+    Many(Vec<f64>),
+}
+
+/// A vector, and a square matrix by columns.
+pub(super) type Vector = Numbers<FEW>;
+pub(super) type Square = Numbers<{ FEW * FEW }>;
+
+impl<const MOST: usize> Numbers<MOST> {
+    pub fn zeros(count: usize) -> Self {
+        if count <= MOST { Self::Few([0.0; MOST], count) } else { Self::Many(vec![0.0; count]) }
+    }
+}
+
+impl<const MOST: usize> Deref for Numbers<MOST> {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        match self {
+            Self::Few(numbers, count) => &numbers[..*count],
+            Self::Many(numbers) => numbers,
+        }
+    }
+}
+
+impl<const MOST: usize> DerefMut for Numbers<MOST> {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        match self {
+            Self::Few(numbers, count) => &mut numbers[..*count],
+            Self::Many(numbers) => numbers,
+        }
+    }
+}
+
+/// The vector of these components.
+pub(super) fn vector(count: usize, component: impl Fn(usize) -> f64) -> Vector {
+    let mut vector = Vector::zeros(count);
+    vector.iter_mut().enumerate().for_each(|(i, value)| *value = component(i));
+    vector
+}
+
+/// right - A x.
+pub(super) fn residual(matrix: &Square, x: &Vector, right: &Vector) -> Vector {
+    let mut left = right.clone();
+    for (column, x) in matrix.chunks_exact(right.len().max(1)).zip(x.iter()) {
+        for (left, entry) in left.iter_mut().zip(column) {
+            *left -= entry * x;
+        }
+    }
+    left
+}
 
 /// P A Q = L U up to the rank.
 pub(super) struct Elimination {
-    lu: DMatrix<f64>,
-    rows: Vec<usize>,
-    columns: Vec<usize>,
+    lu: Square,
+    /// the rows and columns that stand in each place, as numbers
+    rows: Vector,
+    columns: Vector,
+    n: usize,
     pub rank: usize,
 }
 
 impl Elimination {
-    /// Pivots up to `singular` times the first one count as zero.
-    pub fn new(mut lu: DMatrix<f64>, singular: f64) -> Self {
-        let n = lu.nrows();
-        let (mut rows, mut columns): (Vec<usize>, Vec<usize>) = ((0..n).collect(), (0..n).collect());
+    /// Of a matrix by columns; pivots up to `singular` times the first one count as zero.
+    pub fn new(mut lu: Square, n: usize, singular: f64) -> Self {
+        let (mut rows, mut columns) = (vector(n, |i| i as f64), vector(n, |i| i as f64));
         let mut rank = 0;
         let mut first = 0.0;
         while rank < n {
             let (mut greatest, mut place) = (0.0, (rank, rank));
             for column in rank..n {
-                for row in rank..n {
-                    let size = lu[(row, column)].abs();
-                    if size > greatest {
-                        (greatest, place) = (size, (row, column));
+                for (row, entry) in lu[column * n..][..n].iter().enumerate().skip(rank) {
+                    if entry.abs() > greatest {
+                        (greatest, place) = (entry.abs(), (row, column));
                     }
                 }
             }
@@ -35,41 +95,53 @@ impl Elimination {
             if greatest <= singular * first {
                 break;
             }
-            lu.swap_rows(rank, place.0);
-            rows.swap(rank, place.0);
-            lu.swap_columns(rank, place.1);
-            columns.swap(rank, place.1);
-            let inverse = 1.0 / lu[(rank, rank)];
-            for row in rank + 1..n {
-                lu[(row, rank)] *= inverse;
+            if place.0 != rank {
+                for column in 0..n {
+                    lu.swap(column * n + rank, column * n + place.0);
+                }
+                rows.swap(rank, place.0);
             }
-            let (left, mut right) = lu.columns_range_pair_mut(rank, rank + 1..);
-            for mut column in right.column_iter_mut() {
+            if place.1 != rank {
+                for row in 0..n {
+                    lu.swap(rank * n + row, place.1 * n + row);
+                }
+                columns.swap(rank, place.1);
+            }
+            let (left, right) = lu.split_at_mut((rank + 1) * n);
+            let left = &mut left[rank * n..];
+            let inverse = 1.0 / left[rank];
+            left[rank + 1..].iter_mut().for_each(|entry| *entry *= inverse);
+            for column in right.chunks_exact_mut(n) {
                 let factor = column[rank];
                 if factor != 0.0 {
-                    for row in rank + 1..n {
-                        column[row] -= left[row] * factor;
+                    for (entry, left) in column[rank + 1..].iter_mut().zip(&left[rank + 1..]) {
+                        *entry -= left * factor;
                     }
                 }
             }
             rank += 1;
         }
-        Self { lu, rows, columns, rank }
+        Self { lu, rows, columns, n, rank }
+    }
+
+    fn entry(&self, row: usize, column: usize) -> f64 {
+        self.lu[column * self.n + row]
     }
 
     /// The x with as many zeros as the rank leaves that solves the first equations, as many as the rank.
-    pub fn solve(&self, right: &DVector<f64>) -> DVector<f64> {
+    pub fn solve(&self, right: &[f64]) -> Vector {
         let r = self.rank;
-        let mut y: Vec<f64> = (0..r).map(|i| right[self.rows[i]]).collect();
+        let mut y = vector(r, |i| right[self.rows[i] as usize]);
         for j in 0..r {
+            let known = y[j];
             for i in j + 1..r {
-                y[i] -= self.lu[(i, j)] * y[j];
+                y[i] -= self.entry(i, j) * known;
             }
         }
         self.back(&mut y);
-        let mut x = DVector::zeros(right.len());
-        for (y, &column) in y.iter().zip(&self.columns) {
-            x[column] = *y;
+        let mut x = Vector::zeros(right.len());
+        for (y, &column) in y.iter().zip(self.columns.iter()) {
+            x[column as usize] = *y;
         }
         x
     }
@@ -77,24 +149,25 @@ impl Elimination {
     /// U^-1 on the first entries, as many as the rank.
     fn back(&self, y: &mut [f64]) {
         for j in (0..self.rank).rev() {
-            y[j] /= self.lu[(j, j)];
-            for i in 0..j {
-                y[i] -= self.lu[(i, j)] * y[j];
+            y[j] /= self.entry(j, j);
+            let known = y[j];
+            for (i, y) in y.iter_mut().enumerate().take(j) {
+                *y -= self.entry(i, j) * known;
             }
         }
     }
 
     /// An orthonormal basis of the x with A x = 0, in columns.
     pub fn null_space(&self) -> DMatrix<f64> {
-        let (n, r) = (self.lu.nrows(), self.rank);
+        let (n, r) = (self.n, self.rank);
         let mut basis = DMatrix::zeros(n, n - r);
         for free in r..n {
-            let mut y: Vec<f64> = (0..r).map(|i| -self.lu[(i, free)]).collect();
+            let mut y = vector(r, |i| -self.entry(i, free));
             self.back(&mut y);
-            for (y, &column) in y.iter().zip(&self.columns) {
-                basis[(column, free - r)] = *y;
+            for (y, &column) in y.iter().zip(self.columns.iter()) {
+                basis[(column as usize, free - r)] = *y;
             }
-            basis[(self.columns[free], free - r)] = 1.0;
+            basis[(self.columns[free] as usize, free - r)] = 1.0;
         }
         orthonormal(&mut basis);
         basis

@@ -26,6 +26,7 @@ mod problem;
 mod solve;
 mod sparse;
 
+pub(crate) use self::prescribed::{Wanted, found};
 pub use self::{
     certified::certificate,
     enumerate::{MOST_ENUMERATED, enumerate},

@@ -2,12 +2,12 @@
 //!
 //! Theory: docs/theory.md, section 17.10.
 
-use nalgebra::{DMatrix, DVector, Vector3};
+use nalgebra::{DVector, Vector3};
 
 use super::{
     Mode, Problem, Unsolved,
     centre::{Cone, centre, least_reserve},
-    linear::Elimination,
+    linear::{Elimination, Square, Vector, residual, vector},
     problem::three,
 };
 
@@ -72,33 +72,62 @@ pub fn with_modes_near(
     modes: &[Mode],
     guess: Option<&DVector<f64>>,
 ) -> Result<Admissible, Impossible> {
-    prescribed(problem, modes, guess, false)
+    prescribed(problem, modes, guess, Wanted::Centre)
 }
 
-/// As [`with_modes_near`]; with `decide` the forces of modes that do not fit are any.
+/// Which of many forces for one motion are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    /// Those in the middle.
+    Centre,
+    /// Those in the middle if these modes fit, else any.
+    Decision,
+    /// Any, where all of them move the contacts and the mechanism alike: where nothing slips.
+    Motion,
+}
+
+/// As [`with_modes_near`], for the forces that are wanted.
 pub(super) fn prescribed(
     problem: &Problem<'_>,
     modes: &[Mode],
     guess: Option<&DVector<f64>>,
-    decide: bool,
+    wanted: Wanted,
 ) -> Result<Admissible, Impossible> {
     let k = problem.contacts();
     if modes.len() != k || guess.is_some_and(|guess| guess.len() != 3 * k) {
         return Err(Impossible::Problem(Unsolved::Lengths));
     }
     problem.check().map_err(Impossible::Problem)?;
+    found(problem, modes, guess, wanted)
+}
+
+/// The same of a problem that is known to be one.
+pub(crate) fn found(
+    problem: &Problem<'_>,
+    modes: &[Mode],
+    guess: Option<&DVector<f64>>,
+    wanted: Wanted,
+) -> Result<Admissible, Impossible> {
     let unknowns = Unknowns::new(problem, modes);
     let m = unknowns.list.len();
     let matrix = unknowns.matrix(problem);
-    let right = DVector::from_fn(m, |a, _| -problem.beta[unknowns.row(a)] / unknowns.rate(a));
-    let elimination = Elimination::new(matrix.clone(), SINGULAR);
+    let right = vector(m, |a| -problem.beta[unknowns.row(a)] / unknowns.rate(a));
+    let elimination = Elimination::new(matrix.clone(), m, SINGULAR);
     let mut x = elimination.solve(&right);
     // One refinement.
-    x += elimination.solve(&(&right - &matrix * &x));
-    let left = &right - &matrix * &x;
+    let more = elimination.solve(&residual(&matrix, &x, &right));
+    x.iter_mut().zip(more.iter()).for_each(|(x, more)| *x += more);
+    let left = residual(&matrix, &x, &right);
     unknowns.consistent(problem, &matrix, &x, &left)?;
-    let cones = unknowns.cones(problem);
     let unique = elimination.rank == m;
+    let slides = modes.iter().any(|mode| matches!(mode, Mode::Slide(_)));
+    if wanted == Wanted::Motion && (unique || !slides) {
+        let (force, acceleration) = unknowns.motion(problem, &x);
+        let (f, jams) = unknowns.jam(problem, &elimination);
+        return Ok(Admissible { force, acceleration, margin: 0.0, least: None, unique, f, jams });
+    }
+    let mut x = DVector::from_column_slice(&x);
+    let cones = unknowns.cones(problem);
     let mut load = x.norm();
     let mut margin;
     if !unique {
@@ -107,7 +136,7 @@ pub(super) fn prescribed(
         load = least.norm();
         if load > 0.0 {
             let start = guess.map(|guess| unknowns.of(guess));
-            x = centre(&cones, &least, &basis, load, start.as_ref(), decide).0;
+            x = centre(&cones, &least, &basis, load, start.as_ref(), wanted == Wanted::Decision).0;
         } else {
             x = least;
         }
@@ -117,8 +146,7 @@ pub(super) fn prescribed(
         margin = 1.0;
     }
     let least = (0..cones.len()).min_by(|&a, &b| cones[a].reserve(&x).total_cmp(&cones[b].reserve(&x)));
-    let force = unknowns.force(problem, &x);
-    let acceleration = problem.w * &force + problem.beta;
+    let (force, acceleration) = unknowns.motion(problem, x.as_slice());
     let (f, jams) = unknowns.jam(problem, &elimination);
     let least = least.map(|cone| unknowns.list[cones[cone].normal].contact);
     Ok(Admissible { force, acceleration, margin, least, unique, f, jams })
@@ -128,7 +156,7 @@ pub(super) fn prescribed(
 /// with which they do.
 pub fn rest(problem: &Problem<'_>) -> Option<Admissible> {
     let modes: Vec<Mode> = problem.slip.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
-    let found = prescribed(problem, &modes, None, true).ok()?;
+    let found = prescribed(problem, &modes, None, Wanted::Decision).ok()?;
     (found.margin >= -FITS && found.f > 0.0 && held(problem, &modes, &found.acceleration)).then_some(found)
 }
 
@@ -195,9 +223,9 @@ impl Unknowns {
         1.0 / self.list[a].scale
     }
 
-    fn matrix(&self, problem: &Problem<'_>) -> DMatrix<f64> {
+    fn matrix(&self, problem: &Problem<'_>) -> Square {
         let m = self.list.len();
-        DMatrix::from_fn(m, m, |a, b| {
+        let entry = |a: usize, b: usize| {
             let (row, from) = (self.row(a), &self.list[b]);
             let factor = self.list[a].scale * from.scale;
             let w = |axis: usize| problem.w[(row, 3 * from.contact + axis)];
@@ -212,7 +240,12 @@ impl Unknowns {
                 sum += from.along.z * w(2);
             }
             factor * sum
-        })
+        };
+        let mut matrix = Square::zeros(m * m);
+        for (b, column) in matrix.chunks_exact_mut(m.max(1)).enumerate() {
+            column.iter_mut().enumerate().for_each(|(a, value)| *value = entry(a, b));
+        }
+        matrix
     }
 
     /// The unknowns of given forces.
@@ -220,7 +253,8 @@ impl Unknowns {
         DVector::from_fn(self.list.len(), |a, _| force[self.row(a)] / self.list[a].scale)
     }
 
-    fn force(&self, problem: &Problem<'_>, x: &DVector<f64>) -> DVector<f64> {
+    /// The forces, and the accelerations that they cause.
+    fn motion(&self, problem: &Problem<'_>, x: &[f64]) -> (DVector<f64>, DVector<f64>) {
         let mut force = DVector::zeros(3 * problem.contacts());
         for (unknown, x) in self.list.iter().zip(x.iter()) {
             let part = unknown.along * (unknown.scale * x);
@@ -228,7 +262,11 @@ impl Unknowns {
                 force[3 * unknown.contact + axis] += part[axis];
             }
         }
-        force
+        let mut acceleration = problem.beta.clone();
+        for (column, force) in problem.w.as_slice().chunks_exact(force.len().max(1)).zip(force.iter()) {
+            acceleration.iter_mut().zip(column).for_each(|(a, w)| *a += w * force);
+        }
+        (force, acceleration)
     }
 
     fn cones(&self, problem: &Problem<'_>) -> Vec<Cone> {
@@ -247,15 +285,17 @@ impl Unknowns {
     fn consistent(
         &self,
         problem: &Problem<'_>,
-        matrix: &DMatrix<f64>,
-        x: &DVector<f64>,
-        left: &DVector<f64>,
+        matrix: &Square,
+        x: &Vector,
+        left: &Vector,
     ) -> Result<(), Impossible> {
-        let size = x.amax()
+        let m = left.len();
+        let size = x.iter().fold(0.0_f64, |size, x| size.max(x.abs()))
             + (0..left.len()).map(|a| problem.beta[self.row(a)].abs() / self.rate(a)).fold(0.0, f64::max);
         let mut worst: Option<(f64, usize)> = None;
         for a in 0..left.len() {
-            let terms: f64 = size.max(matrix.row(a).iter().zip(x.iter()).map(|(w, x)| (w * x).abs()).sum());
+            let terms: f64 =
+                size.max(matrix.iter().skip(a).step_by(m).zip(x.iter()).map(|(w, x)| (w * x).abs()).sum());
             let noise = problem.noise(self.row(a)) / self.rate(a);
             let lack = (left[a].abs() - noise) / terms;
             if lack > INCONSISTENT && worst.is_none_or(|(most, _)| lack > most) {
@@ -281,7 +321,7 @@ impl Unknowns {
             let row = 3 * unknown.contact;
             let own = problem.w[(row, row)];
             let f = if elimination.rank == m {
-                let mut unit = DVector::zeros(m);
+                let mut unit = Vector::zeros(m);
                 unit[a] = 1.0;
                 unknown.scale.powi(-2) / elimination.solve(&unit)[a] / own
             } else {

@@ -1,5 +1,5 @@
-//! Motion with contact beside MuJoCo: seconds of motion per second of computing, on a box that tumbles and a
-//! hopper, in turns in one run; and how far a particle creeps that friction holds.
+//! Motion with contact beside MuJoCo: seconds of motion per second of computing, on machines that tumble, hop, walk,
+//! stand and trot, in turns in one run; and how far a particle creeps that friction holds.
 //!
 //! The ratio counts: both are measured under the same load, as time of the processor, and the best of several
 //! turns is taken. Both run in one thread.
@@ -7,7 +7,7 @@
 mod peer;
 
 use cpu_time::ThreadTime;
-use hodograph::{Contacts, Kind, Law, Surface};
+use hodograph::{Contacts, Kind, Law, Mechanism, Surface};
 use hodograph_simulation::{Options, Progress, Simulation};
 use peer::{Answer, Job};
 
@@ -17,6 +17,10 @@ mod generated {
     hodograph::mechanism!("../../simulation/models/tumbling_box.mech");
     hodograph::mechanism!("../../simulation/models/hopper.mech");
     hodograph::mechanism!("../../simulation/tests/models/puck_on_incline.mech");
+    hodograph::mechanism!("models/rimless_wheel.mech");
+    hodograph::mechanism!("models/two_cubes.mech");
+    hodograph::mechanism!("models/three_cubes.mech");
+    hodograph::mechanism!("models/quadruped.mech");
 }
 
 /// What can go wrong: no Python, no network.
@@ -29,8 +33,13 @@ const STEPS: [f64; 3] = [2e-3, 5e-4, 1e-4];
 const OURS: [f64; 3] = [1e-12, 1e-9, 1e-6];
 /// Durations of the motions, s.
 const HOPPER: f64 = 5.0;
+const WHEEL: f64 = 5.0;
 const BOX: f64 = 2.0;
+const CUBES: f64 = 1.0;
+const QUADRUPED: f64 = 1.0;
 const PUCK: f64 = 10.0;
+/// By how much the legs of a quadruped that trots bend, rad.
+const LIFT: f64 = 0.3;
 
 /// A motion of ours.
 struct Motion<'m> {
@@ -97,8 +106,24 @@ fn main() -> Result<(), Failure> {
     let body = generated::tumbling_box::TumblingBox::<f64>::default();
     let hopper = generated::hopper::Hopper::<f64>::default();
     compare(&python, ("hopper", HOPPER), &hopper, 0.9)?;
+    let wheel = generated::rimless_wheel::RimlessWheel::<f64>::default();
+    compare(&python, ("wheel", WHEEL), &wheel, 0.6)?;
     compare(&python, ("box", BOX), &body, 0.4)?;
+    compare(&python, ("two cubes", CUBES), &generated::two_cubes::TwoCubes::<f64>::default(), 0.5)?;
+    compare(&python, ("three cubes", CUBES), &generated::three_cubes::ThreeCubes::<f64>::default(), 0.5)?;
+    let mut quadruped = generated::quadruped::Quadruped::<f64>::default();
+    compare(&python, ("quadruped stands", QUADRUPED), &quadruped, 0.7)?;
+    change(&mut quadruped, "lift", LIFT)?;
+    compare(&python, ("quadruped trots", QUADRUPED), &quadruped, 0.7)?;
     creep(&python)
+}
+
+/// Gives a parameter another value.
+fn change(mechanism: &mut dyn Mechanism<f64>, name: &str, value: f64) -> Result<(), Failure> {
+    let mut parameters = vec![0.0; mechanism.count(Kind::Parameter)];
+    mechanism.parameter_values(&mut parameters)?;
+    parameters[mechanism.index(Kind::Parameter, name).ok_or("no such parameter")?] = value;
+    Ok(mechanism.set_parameter_values(&parameters)?)
 }
 
 /// Both programs in turns.
@@ -158,6 +183,7 @@ fn compare(
 fn place_of_height(scene: &str) -> (usize, usize, f64) {
     match scene {
         "hopper" => (1, 1, 1.0),
+        "wheel" => (1, 1, 0.923_879_532_511_286_7),
         _ => (2, 2, 0.0),
     }
 }
@@ -166,9 +192,9 @@ fn place_of_height(scene: &str) -> (usize, usize, f64) {
 fn creep(python: &std::path::PathBuf) -> Result<(), Failure> {
     let mut puck = generated::puck_on_incline::PuckOnIncline::<f64>::default();
     let mut parameters = [0.0; 3];
-    hodograph::Mechanism::parameters(&puck, &mut parameters)?;
+    puck.parameter_values(&mut parameters)?;
     parameters[2] = 0.05;
-    hodograph::Mechanism::set_parameter_values(&mut puck, &parameters)?;
+    puck.set_parameter_values(&parameters)?;
     let came = Motion { mechanism: &puck, mu: 1.0, tolerance: 1e-12 }.run(PUCK)?;
     println!("\na particle on an incline of 0.05 rad, mu = 1: how fast it creeps, um/s");
     let jobs: Vec<Job> = ["puck", "puck, impratio 100"]
