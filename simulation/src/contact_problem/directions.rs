@@ -9,7 +9,7 @@
 use nalgebra::{DMatrix, DVector, Vector2};
 
 use super::{
-    MOST_ENUMERATED, Mode, Problem,
+    Mode, Problem,
     linear::{Elimination, Square, Vector, vector},
     prescribed::SINGULAR,
 };
@@ -46,6 +46,8 @@ struct Reduced {
     count: usize,
 }
 
+/// The greatest number of contacts of which all modes are tried.
+pub const MOST_ENUMERATED: usize = 4;
 /// The most contacts that begin to slip.
 const MOST: usize = MOST_ENUMERATED;
 

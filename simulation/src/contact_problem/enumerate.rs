@@ -10,12 +10,9 @@ use nalgebra::Vector2;
 use super::{
     Mode, Problem, Solution, Solutions,
     certified::{attempt, with_certificate},
-    directions::{Choice, directions},
+    directions::{Choice, MOST_ENUMERATED, directions},
     motion::centred,
 };
-
-/// The greatest number of contacts of which all modes are tried.
-pub const MOST_ENUMERATED: usize = 4;
 
 /// Every motion that the laws allow at most [`MOST_ENUMERATED`] contacts, each with forces, the most resting first; of
 /// more contacts, or of a problem that is not one, none.

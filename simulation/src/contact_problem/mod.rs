@@ -29,7 +29,8 @@ mod sparse;
 pub(crate) use self::prescribed::{Wanted, found};
 pub use self::{
     certified::certificate,
-    enumerate::{MOST_ENUMERATED, enumerate},
+    directions::MOST_ENUMERATED,
+    enumerate::enumerate,
     natural_map::natural_residual,
     prescribed::{Admissible, Impossible, rest, with_modes, with_modes_near},
     problem::{Mode, Problem, Solution, Solutions, Unsolved},
