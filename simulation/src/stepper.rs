@@ -92,7 +92,7 @@ pub(crate) fn step(
     h: f64,
     tolerances: &Tolerances,
 ) -> Option<Step> {
-    let least = 16.0 * f64::EPSILON * t.abs().max(1e-9);
+    let least = 16.0 * f64::EPSILON * t.abs().max(1e-9 * h);
     let system = System { rates, t };
     let start = y.to_vec();
     let mut method = Method::dop853();
