@@ -3,11 +3,15 @@
 use hodograph::Kind;
 
 use crate::drift;
+use crate::event_functions::SIZE;
 use crate::motion::{Failure, Motion};
 use crate::phase::{Closed, Modes};
 use crate::stepper::{self, Step};
 use crate::transition::Transition;
 use crate::{Reason, SimulationError};
+
+/// Speeds below this part of the greatest so far are zero.
+const NOTHING: f64 = 1e-100;
 
 impl Transition<'_> {
     /// Takes the end of a step as the new front.
@@ -34,6 +38,13 @@ impl Transition<'_> {
         let mut y = std::mem::take(&mut self.front.y);
         let modes = self.modes();
         let done = self.project_onto_constraints(&modes, self.front.t, &mut y);
+        let n = self.mechanism.count(Kind::Coordinate);
+        for (speed, scale) in y[n..].iter_mut().zip(&self.front.scale) {
+            // What corrections leave of nothing, again and again, has squares that are no numbers.
+            if speed.abs() < NOTHING * scale {
+                *speed = 0.0;
+            }
+        }
         self.front.y = y;
         done
     }
@@ -53,7 +64,8 @@ impl Transition<'_> {
         let moved = (|| {
             drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
-            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts)?;
+            let least = SIZE * self.front.scales.length;
+            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts, least)?;
             // Velocities come last, in the place that was corrected: what is left of them counts as an approach.
             drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, (&closed, known))?;
             Ok(left)

@@ -32,7 +32,9 @@ pub(crate) fn close_loops(
         for (&place, change) in places.iter().zip(change.iter()) {
             coordinates[place] += change;
         }
-        if change.amax() <= 1e-14 {
+        if change.amax()
+            <= 64.0 * f64::EPSILON * coordinates.iter().fold(0.0_f64, |size, q| size.max(q.abs()))
+        {
             break;
         }
     }
@@ -49,7 +51,8 @@ pub(crate) struct Left {
 const CLOSED: f64 = 1e-10;
 
 /// The coordinates moved so that the gaps of these contacts vanish, by the least motion in the sense of the
-/// mass matrix; the first gap that it does not close, if there is one, and what it knows of the contacts.
+/// mass matrix; the first gap that it does not close, if there is one, and what it knows of the contacts. `least`
+/// is a length that is small in the problem: 1e-13 of it is rounding.
 pub(crate) fn close_gaps(
     mechanism: &dyn Contacts<f64>,
     time: f64,
@@ -57,9 +60,10 @@ pub(crate) fn close_gaps(
     speeds: &[f64],
     inputs: &[f64],
     contacts: &[usize],
+    least: f64,
 ) -> Result<(Option<Left>, Option<ClosedContacts>), StateError> {
     let n = coordinates.len();
-    let size = coordinates.iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
+    let size = coordinates.iter().fold(least, |size, q| size.max(q.abs()));
     let mut before = f64::INFINITY;
     let mut known = None;
     for _ in 0..STEPS {
@@ -73,7 +77,7 @@ pub(crate) fn close_gaps(
             }
         }
         let largest = gaps.iter().fold(0.0_f64, |largest, gap| largest.max(gap.abs()));
-        if largest <= 1e-16 {
+        if largest <= 1e-13 * least {
             return Ok((None, known));
         }
         if largest > CLOSED * size && largest > 0.5 * before {
@@ -102,7 +106,7 @@ pub(crate) fn close_gaps(
             *coordinate += there - here;
         }
         close_loops(mechanism, time, coordinates, speeds, inputs)?;
-        if largest <= 1e-15 {
+        if largest <= 1e-12 * least {
             break;
         }
     }

@@ -62,6 +62,8 @@ pub enum Reason {
         /// the closed contacts, and whether they stick or slide
         modes: String,
     },
+    /// The motion ended before the time asked for, with the event [`crate::EventKind::Singular`].
+    Singular,
     /// The gap of a closed contact is not zero, m: its rate is not the normal velocity of the contact.
     Drift(f64),
     /// Several contacts were struck together and the option says to stop.
@@ -86,6 +88,7 @@ impl Reason {
             Self::Stalled => "stalled",
             Self::EventsWithoutEnd { .. } => "events_without_end",
             Self::NoProgress { .. } => "no_progress",
+            Self::Singular => "singular",
             Self::Drift(_) => "drift",
             Self::Together(_) => "struck_together",
             Self::Lzb(_) => "lzb_not_covered",
@@ -122,6 +125,10 @@ impl fmt::Display for SimulationError {
             Reason::NoProgress { steps, time, modes } => write!(
                 out,
                 "{steps} steps of the integration advanced the motion by no more than {time:e} s; closed: {modes}; the model may be singular there"
+            ),
+            Reason::Singular => write!(
+                out,
+                "the motion ended: the coordinates no longer determine the point at which the bodies touch, such as the lowest point of a disc that lies flat; give the points of the face contacts of their own if it is to go on"
             ),
             Reason::Drift(gap) => write!(
                 out,

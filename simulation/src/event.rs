@@ -54,6 +54,9 @@ pub enum EventKind {
     },
     /// Nothing moves any more.
     Rest,
+    /// The motion ends: the coordinates no longer determine the point at which the bodies touch (a disc that
+    /// lies flat). What would follow is the impact of a whole face.
+    Singular,
     /// The user's function of this number is zero.
     Zero(usize),
 }
@@ -70,6 +73,7 @@ impl EventKind {
             Self::Slip { .. } => "slip",
             Self::Stick { .. } => "stick",
             Self::Rest => "rest",
+            Self::Singular => "singular",
             Self::Zero(_) => "zero",
         }
     }

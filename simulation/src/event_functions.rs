@@ -11,15 +11,17 @@ use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::stepper::Step;
 use crate::transition::Transition;
 
-/// A contact that lifts off is apart where its gap is above this, m.
-const LIFTED: f64 = 1e-11;
+/// A contact that lifts off is apart where its gap is above this part of the length of the problem.
+const LIFTED: f64 = 5e-11;
+/// Coordinates count as no smaller than this part of the length of the problem where rounding is weighed.
+pub(crate) const SIZE: f64 = 5e-3;
 /// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other
 /// body: it is zero but for rounding.
 const STILL: f64 = 2e-11;
 
-/// Beyond this place the rounding of a gap is found from what the gap depends on, m or rad; by this relative
-/// change of each coordinate.
-const FAR: f64 = 1e4;
+/// Beyond this place the rounding of a gap is found from what the gap depends on, in lengths of the problem; by
+/// this relative change of each coordinate.
+const FAR: f64 = 5e4;
 const SHARE: f64 = 1e-6;
 
 /// Angles turn by no more than this, in all, in a piece of a step that is looked at by nine points, rad.
@@ -56,7 +58,8 @@ impl Transition<'_> {
     pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(Kind::Coordinate);
-        let size = self.front.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
+        let size =
+            self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
         for (contact, phase) in self.front.phases.iter().enumerate() {
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
@@ -96,7 +99,7 @@ impl Transition<'_> {
     /// the changes of the gap that relative changes of the coordinates make. A particle that is far away along a
     /// floor has a gap that is not rounded for that.
     fn gap_size(&self, contact: usize, size: f64) -> f64 {
-        if size <= FAR {
+        if size <= FAR * self.front.scales.length {
             return size;
         }
         let here = self.here();
@@ -104,7 +107,7 @@ impl Transition<'_> {
             |coordinates: &[f64]| self.mechanism.gap(contact, &State { coordinates, ..here }).ok().flatten();
         let Some(value) = gap(here.coordinates) else { return size };
         let mut moved = here.coordinates.to_vec();
-        let mut sum = value.abs().max(1e-3);
+        let mut sum = value.abs().max(SIZE * self.front.scales.length);
         for (index, &coordinate) in here.coordinates.iter().enumerate() {
             moved[index] = coordinate * (1.0 + SHARE);
             let Some(there) = gap(&moved) else { return size };
@@ -274,8 +277,11 @@ impl Transition<'_> {
                 _ => continue,
             };
             let (gap, _) = self.gap_at(step, contact)?;
-            self.front.phases[contact] =
-                Phase::Open(if gap > LIFTED { Leaving::Apart } else { self.risen(contact, before, step)? });
+            self.front.phases[contact] = Phase::Open(if gap > LIFTED * self.front.scales.length {
+                Leaving::Apart
+            } else {
+                self.risen(contact, before, step)?
+            });
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use nalgebra::{DVector, Vector2};
 use crate::event_functions::Watched;
 use crate::event_location::Crossing;
 use crate::forces::Hold;
-use crate::mode_changes::Ending;
+use crate::mode_changes::{Ending, FIRST};
 use crate::mode_selection::{Decision, choose};
 use crate::motion::{Evaluation, Failure};
 use crate::pair::Friction;
@@ -28,7 +28,7 @@ impl Transition<'_> {
         crossing: Crossing,
     ) -> Result<(), SimulationError> {
         let mut step = self.at_event(closed, &whole, watched, &crossing)?;
-        self.front.next = whole.next.min((10.0 * step.h).max(1e-7));
+        self.front.next = whole.next.min((10.0 * step.h).max(FIRST * self.front.scales.time));
         let start = self.front.t;
         self.commit(&mut step)?;
         self.reached = Some(self.front.clone());
@@ -51,7 +51,7 @@ impl Transition<'_> {
             Watched::User(index, _) => {
                 self.push(None, EventKind::Zero(index));
                 // Past the zero, so that it is not found again.
-                let small = 1e-12 * self.front.t.abs().max(1e-3);
+                let small = 1e-12 * self.front.t.abs().max(5e-3 * self.front.scales.time);
                 if let Some(mut past) = self.part(closed, small) {
                     self.commit(&mut past)?;
                 }
@@ -85,9 +85,10 @@ impl Transition<'_> {
     /// supposed to have stopped, and the forces tell which of them stick. Slip that small ends where sticking
     /// is possible (docs/theory.md, section 17.11).
     pub(crate) fn stops(&self, closed: &[Closed], here: &Evaluation, speeds: &[f64]) -> Vec<usize> {
+        let ending = ENDING * self.front.scales.time;
         let ends = |place: usize| {
-            time_of_slip(here, place, &self.front.scale).is_some_and(|left| left < 3.0 * ENDING)
-                || may_end(here, place, speeds, &self.front.scale, 3.0 * ENDING)
+            time_of_slip(here, place, &self.front.scale).is_some_and(|left| left < 3.0 * ending)
+                || may_end(here, place, speeds, &self.front.scale, 3.0 * ending)
         };
         let stopped: Vec<usize> =
             (0..closed.len()).filter(|&place| closed[place].slides.is_some() && ends(place)).collect();
@@ -145,7 +146,7 @@ impl Transition<'_> {
 
     /// Counts events that follow each other without progress.
     pub(crate) fn crowded(&mut self, before: f64) -> Result<(), SimulationError> {
-        let close = 1e-12 * self.front.t.abs().max(1.0);
+        let close = 1e-12 * self.front.t.abs().max(5.0 * self.front.scales.time);
         if self.front.t - before > close {
             self.front.crowd = 0;
         }

@@ -9,6 +9,10 @@ use nalgebra::Vector3;
 use crate::EnergyAccount;
 use crate::motion::WORKS;
 use crate::phase::{Leaving, Phase};
+use crate::scales::Scales;
+
+/// The first step, beside the time of the problem.
+const BEGIN: f64 = 5e-3;
 
 /// The state at the end of the last step, after its events.
 #[derive(Clone, Debug)]
@@ -37,19 +41,23 @@ pub(crate) struct Front {
     pub samples: u64,
     /// greatest size of each speed so far
     pub scale: Vec<f64>,
+    /// units of length and time
+    pub scales: Scales,
     /// greatest kinetic energy so far, J
     pub greatest: f64,
     /// the works of impacts so far, J
     pub energy: EnergyAccount,
     /// events without progress in time
     pub crowd: usize,
+    /// the contact whose point became undefined: the motion has ended
+    pub ended: Option<usize>,
     /// steps since the last event, the time of that event, and the greatest step so far, s
     pub steps: (usize, f64, f64),
 }
 
 impl Front {
     /// The start of a motion. No contact is closed yet.
-    pub fn new(state: &State<'_>, contacts: usize, sampled: bool) -> Self {
+    pub fn new(state: &State<'_>, contacts: usize, sampled: bool, scales: Scales) -> Self {
         let mut y = state.coordinates.to_vec();
         y.extend_from_slice(state.speeds);
         y.resize(y.len() + WORKS, 0.0);
@@ -62,13 +70,15 @@ impl Front {
             omegas: vec![None; contacts],
             resting: false,
             chatter: Vec::new(),
-            next: 1e-3,
+            next: BEGIN * scales.time,
             next_sample: sampled.then_some(state.time),
             samples: 0,
             scale: state.speeds.iter().map(|speed| speed.abs()).collect(),
+            scales,
             greatest: 0.0,
             energy: EnergyAccount::default(),
             crowd: 0,
+            ended: None,
             steps: (0, state.time, 0.0),
         }
     }

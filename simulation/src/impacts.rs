@@ -7,6 +7,7 @@ use hodograph::{Kind, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::ClosedContacts;
+use crate::event_functions::SIZE;
 use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
@@ -26,8 +27,8 @@ pub(crate) const MOST: usize = 3000;
 /// After so many impacts per touching contact, one plastic impact of all contacts ends the sequence: impacts
 /// one after the other approach it linearly. The second number is for contacts without restitution.
 const PATIENCE: [usize; 2] = [24, 2];
-/// A gap closes now if it does within this time, s.
-const NOW: f64 = 1e-11;
+/// A gap closes now if it does within this part of the time of the problem.
+const NOW: f64 = 5e-11;
 /// All orders are compared of at most so many contacts.
 const COMPARED: usize = 4;
 
@@ -140,7 +141,8 @@ impl Transition<'_> {
             inputs: &self.front.held,
         };
         let fault = |error| self.failure(Failure::State(error));
-        let size = self.front.y[..n].iter().fold(1e-3_f64, |size, q| size.max(q.abs()));
+        let size =
+            self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
         let mut touching = Vec::new();
         for contact in 0..self.front.phases.len() {
             if self.surfaces[contact].is_none() {
@@ -152,7 +154,7 @@ impl Transition<'_> {
             }
             let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
             let rate = self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x;
-            if gap <= 1e-14 * size || (rate < 0.0 && gap < -rate * NOW) {
+            if gap <= 1e-14 * size || (rate < 0.0 && gap < -rate * NOW * self.front.scales.time) {
                 touching.push(contact);
             }
         }

@@ -10,7 +10,7 @@ use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, margins};
-use crate::mode_changes::NO_SLIP;
+use crate::mode_changes::{FIRST as AFTER, NO_SLIP};
 use crate::mode_selection::{Choice, Decision, choose};
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Phase, mus};
@@ -21,6 +21,9 @@ use crate::{EventKind, SimulationError};
 /// The first time ahead, beside the last step, and how much longer each next one is.
 const FIRST: f64 = 1e-7;
 const LONGER: f64 = 8.0;
+/// The last step counts as no shorter and no longer than this, beside the time of the problem.
+const LEAST: f64 = 5e-6;
+const MOST: f64 = 5e-2;
 /// Times ahead that are tried.
 const TRIALS: usize = 8;
 /// A condition that has changed by so much, relative to the forces, has changed by more than rounding.
@@ -58,7 +61,7 @@ impl Transition<'_> {
                 Ok(choice) => {
                     self.begin_from_rest(contacts, &choice)?;
                     self.apply(contacts, &was, &choice);
-                    self.front.next = self.front.next.min(FIRST);
+                    self.front.next = self.front.next.min(AFTER * self.front.scales.time);
                     self.confirm(contacts, &was)
                 }
                 Err(lacking) => self.without_forces(contacts, lacking),
@@ -123,7 +126,7 @@ impl Transition<'_> {
 
     /// A time ahead: longer the more events there were without progress.
     fn ahead(&self, trial: usize) -> f64 {
-        let scale = self.front.next.clamp(1e-6, 1e-2);
+        let scale = self.front.next.clamp(LEAST * self.front.scales.time, MOST * self.front.scales.time);
         let crowd = (self.front.crowd / 8).min(4);
         FIRST * scale * LONGER.powi((trial + crowd) as i32) + 64.0 * f64::EPSILON * self.front.t.abs()
     }

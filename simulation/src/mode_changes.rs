@@ -14,8 +14,8 @@ use crate::{EventKind, Reason, SimulationError};
 
 /// Slip below this, relative to the speeds that make it up, is none.
 pub(crate) const NO_SLIP: f64 = 1e-11;
-/// The first step of a slip that begins, s.
-const FIRST: f64 = 1e-7;
+/// The first step of a slip that begins, beside the time of the problem.
+pub(crate) const FIRST: f64 = 5e-7;
 
 /// Which condition of a mode is used up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +98,7 @@ impl Transition<'_> {
         let size = friction.norm();
         if size > 0.0 {
             self.front.phases[contact] = Phase::Slide(-friction / size);
-            self.front.next = FIRST;
+            self.front.next = FIRST * self.front.scales.time;
             self.slips(contact, Selection::Unique);
         }
     }
@@ -273,7 +273,7 @@ impl Transition<'_> {
                 Decision::Slide(direction, begins) => {
                     self.front.phases[contact] = Phase::Slide(direction);
                     if begins {
-                        self.front.next = self.front.next.min(FIRST);
+                        self.front.next = self.front.next.min(FIRST * self.front.scales.time);
                     }
                     match was[contact] {
                         Phase::Open(_) => self.begin_contact(contact, selection),

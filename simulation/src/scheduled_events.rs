@@ -37,7 +37,8 @@ impl Transition<'_> {
         }
         self.front.held = inputs;
         self.front.resting = false;
-        self.front.next = self.front.next.min(1e-3 * self.options.max_step.min(1.0)).max(1e-6);
+        let time = self.front.scales.time;
+        self.front.next = self.front.next.min(5e-3 * self.options.max_step.min(time)).max(5e-6 * time);
         self.keep_or_decide()
     }
 }

@@ -8,19 +8,27 @@ use crate::closed_contacts::ClosedContacts;
 use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::motion::{Evaluation, Motion};
+use crate::scales::Scales;
 use crate::slip_direction::settle_directions;
 
-/// The direction counts as known from the state where it settles within this time, s.
-const SETTLES: f64 = 5e-6;
-/// By so much, in m/s, the slip may differ from the settled one.
+/// The direction counts as known from the state where it settles within this part of the time of the problem.
+const SETTLES: f64 = 2.5e-5;
+/// By so much of the speed of the problem, its length over its time, the slip may differ from the settled one.
 const SETTLED: f64 = 1e-12;
-/// Difference by which the rate of the settled direction is formed, s.
-const AHEAD: f64 = 1e-5;
+/// Difference by which the rate of the settled direction is formed, beside the time of the problem.
+const AHEAD: f64 = 5e-5;
 /// Difference of angles, rad.
 const TURN: f64 = 1e-5;
 
 /// The contacts whose direction of slip has settled, with the rate at which it turns, rad/s.
-pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation) -> Vec<Option<f64>> {
+pub(crate) fn settled(
+    motion: &Motion<'_>,
+    t: f64,
+    y: &[f64],
+    here: &Evaluation,
+    scales: &Scales,
+) -> Vec<Option<f64>> {
+    let ahead_by = AHEAD * scales.time;
     let closed = motion.closed;
     let mut omegas = vec![None; closed.len()];
     if closed.iter().all(|contact| contact.slides.is_none()) {
@@ -29,7 +37,7 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
     let mu: Vec<f64> = closed.iter().map(|closed| closed.mu).collect();
     let solve = |support: &ClosedContacts, holds: &[Hold]| forces(support, holds, &mu, None, Wanted::Motion);
     let candidates: Vec<usize> = (0..closed.len())
-        .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES))
+        .filter(|&i| relaxation(here, i, &solve).is_some_and(|time| time < SETTLES * scales.time))
         .collect();
     if candidates.is_empty() {
         return omegas;
@@ -45,10 +53,10 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
         Some(holds)
     };
     let Some(first) = at(&here.support, &here.holds, None) else { return omegas };
-    let ahead: Vec<f64> = y.iter().zip(&here.rates).map(|(value, rate)| value + AHEAD * rate).collect();
+    let ahead: Vec<f64> = y.iter().zip(&here.rates).map(|(value, rate)| value + ahead_by * rate).collect();
     let (q, u) = motion.split(&ahead);
-    let Ok(inputs) = motion.inputs(t + AHEAD, &ahead) else { return omegas };
-    let state = State { time: t + AHEAD, coordinates: q, speeds: u, inputs: &inputs };
+    let Ok(inputs) = motion.inputs(t + ahead_by, &ahead) else { return omegas };
+    let state = State { time: t + ahead_by, coordinates: q, speeds: u, inputs: &inputs };
     let contacts: Vec<usize> = closed.iter().map(|closed| closed.contact).collect();
     let Ok(support) = ClosedContacts::new(motion.mechanism, &state, &contacts, true) else { return omegas };
     let Some(second) = at(&support, &first, None) else { return omegas };
@@ -56,11 +64,11 @@ pub(crate) fn settled(motion: &Motion<'_>, t: f64, y: &[f64], here: &Evaluation)
         (Hold::Slide(a), Hold::Slide(b)) => (a.x * b.y - a.y * b.x).atan2(a.dot(b)),
         _ => 0.0,
     };
-    let rates: Vec<f64> = candidates.iter().map(|&i| turn(&first[i], &second[i]) / AHEAD).collect();
+    let rates: Vec<f64> = candidates.iter().map(|&i| turn(&first[i], &second[i]) / ahead_by).collect();
     let Some(exact) = at(&here.support, &here.holds, Some(&rates)) else { return omegas };
     for (&i, &rate) in candidates.iter().zip(&rates) {
         let off = turn(&exact[i], &here.holds[i]).abs() * here.support.slip(i).norm();
-        if off < SETTLED {
+        if off < SETTLED * scales.length / scales.time {
             omegas[i] = Some(rate);
         }
     }

@@ -10,9 +10,10 @@ use crate::front::Front;
 use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::phase::{ContactPhase, Modes, Phase};
+use crate::scales::Scales;
 use crate::stepper::Step;
 use crate::transition::Transition;
-use crate::{Drive, EnergyAccount, Event, Options, Reason, SimulationError};
+use crate::{Drive, EnergyAccount, Event, EventKind, Options, Reason, SimulationError};
 
 /// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same
 /// results.
@@ -74,7 +75,7 @@ impl<'m> Simulation<'m> {
     ) -> Result<Self, SimulationError> {
         let surfaces = check(mechanism, state, &options)?;
         let sampled = matches!(options.drive, Drive::Sampled { .. });
-        let mut front = Front::new(state, surfaces.len(), sampled);
+        let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, state));
         front.greatest = mechanism.kinetic_energy(state).unwrap_or(0.0);
         let view = (front.t, front.y.clone());
         let mut simulation = Self {
@@ -139,6 +140,9 @@ impl<'m> Simulation<'m> {
 
     /// Makes one step, with the inputs of the controller if its sampling time has come.
     fn proceed(&mut self) -> Result<(), SimulationError> {
+        if let Some(contact) = self.front.ended {
+            return Err(self.transition().error(Some(contact), Reason::Singular));
+        }
         if let Some(inputs) = self.sampled_inputs()? {
             self.take(|transition| transition.change_inputs(inputs))?;
         }
@@ -170,7 +174,8 @@ impl<'m> Simulation<'m> {
     /// # Errors
     ///
     /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and
-    /// events remain available: advance to an earlier time. A time that is not finite is refused, and
+    /// events remain available: advance to an earlier time. A motion that ends by itself does so with the
+    /// event [`crate::EventKind::Singular`], and has no later state: [`Reason::Singular`]. A time that is not finite is refused, and
     /// nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
         if until.is_nan() || until == f64::INFINITY {
@@ -201,7 +206,8 @@ impl<'m> Simulation<'m> {
         }
     }
 
-    /// Advances to a time (s) and returns the events until then.
+    /// Advances to a time (s) and returns the events until then. A motion that ends before
+    /// ([`crate::EventKind::Singular`], the last event then) is followed to its end.
     ///
     /// # Errors
     ///
@@ -211,7 +217,13 @@ impl<'m> Simulation<'m> {
         let mut events = Vec::new();
         loop {
             match self.advance(time)? {
-                Progress::Event(event) => events.push(event),
+                Progress::Event(event) => {
+                    let ends = matches!(event.kind, EventKind::Singular);
+                    events.push(event);
+                    if ends {
+                        return Ok(events);
+                    }
+                }
                 Progress::Reached => return Ok(events),
             }
         }

@@ -21,15 +21,15 @@ pub(crate) enum Fate {
     PassesBy,
 }
 
-/// Slip that ends within this time is followed to its end by itself, s.
-pub(crate) const ENDING: f64 = 1e-9;
+/// Slip that ends within this part of the time of the problem is followed to its end by itself.
+pub(crate) const ENDING: f64 = 5e-9;
 const STEPS: usize = 4000;
 /// Difference of angles by which the slope of h is formed, rad.
 const TURN: f64 = 1e-5;
 /// So often a tenth of it is tried.
 const LESS: usize = 5;
-/// So near its limit the direction counts as settled, rad: what is left of the time of slip is less than 1
-/// ns, and its error of first order in this.
+/// So near its limit the direction counts as settled, rad: what is left of the time of slip is less than
+/// [`ENDING`], and its error of first order in this.
 const SETTLED: f64 = 1e-6;
 
 /// Follows slip of the contact with this place to its end, all else unchanged.

@@ -6,14 +6,18 @@ use crate::phase::{Leaving, Phase};
 use crate::transition::Transition;
 use crate::{Reason, SimulationError};
 
-/// Bodies overlap where a gap is below minus this at the start, m; contacts below it touch.
-const OVERLAP: f64 = 1e-9;
+/// Bodies overlap where a gap is below minus this part of the length of the problem at the start;
+/// contacts below it touch.
+const OVERLAP: f64 = 5e-9;
+/// A gap below this part of the length is closed at the start.
+const CLOSED: f64 = 5e-15;
 
 impl Transition<'_> {
     /// Contacts at the start.
     pub(crate) fn begin(&mut self) -> Result<(), SimulationError> {
         let front = self.front.clone();
         let state = self.here_of(&front);
+        let overlap = OVERLAP * self.front.scales.length;
         let mut strikes = None;
         let mut stay = Vec::new();
         let was = self.front.phases.clone();
@@ -23,10 +27,10 @@ impl Transition<'_> {
             }
             let fault = |error| self.failure(Failure::State(error));
             let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
-            if gap < -OVERLAP {
+            if gap < -overlap {
                 return Err(self.error(Some(contact), Reason::Overlap(gap)));
             }
-            if gap > OVERLAP {
+            if gap > overlap {
                 continue;
             }
             let support = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
@@ -34,7 +38,7 @@ impl Transition<'_> {
             let rounding = 1e-9 * support.velocity_size(0, state.speeds);
             if rate < -rounding {
                 // One that is a little open yet closes by itself.
-                if gap <= 1e-15 {
+                if gap <= CLOSED * self.front.scales.length {
                     strikes.get_or_insert(contact);
                 }
             } else if rate > rounding {

@@ -106,7 +106,7 @@ pub(crate) fn step(
     mut h: f64,
     tolerances: &Tolerances,
 ) -> Option<Step> {
-    let (asked, least) = (h, 16.0 * f64::EPSILON * t.abs().max(1e-9));
+    let (asked, least) = (h, 16.0 * f64::EPSILON * t.abs().max(1e-9 * h));
     let mut stages = Stages::new(rates, t, y, first);
     let mut refused = false;
     for _ in 0..REFUSALS {

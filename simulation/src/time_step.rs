@@ -19,9 +19,10 @@ use crate::{Reason, SimulationError};
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.5;
 
-/// So many steps without an event must advance the motion by this part of the longest step so far, or of a
-/// tenth of a second.
+/// So many steps without an event must advance the motion by this part of the longest step so far, or of
+/// half the time of the problem.
 const STEPS: usize = 3000;
+const LONG: f64 = 0.5;
 const ADVANCE: f64 = 1e-2;
 
 impl Transition<'_> {
@@ -46,32 +47,36 @@ impl Transition<'_> {
         }
         let n = self.mechanism.count(Kind::Coordinate);
         let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
+        let ending = ENDING * self.front.scales.time;
         for (i, contact) in closed.iter().enumerate() {
             if contact.slides.is_none() {
                 continue;
             }
             let left = time_of_slip(&here, i, &self.front.scale);
-            if left.is_some_and(|left| left < ENDING) || may_end(&here, i, speeds, &self.front.scale, ENDING)
+            if left.is_some_and(|left| left < ending) || may_end(&here, i, speeds, &self.front.scale, ending)
             {
                 if closed.len() > 1 {
                     let stopped = self.stops(&closed, &here, speeds);
                     if !stopped.is_empty() {
-                        return self.end_slip(&closed, &here, &stopped, left.unwrap_or(0.0).min(ENDING));
+                        return self.end_slip(&closed, &here, &stopped, left.unwrap_or(0.0).min(ending));
                     }
                 } else if let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i) {
                     return self.end_slip(&closed, &here, &[i], time);
                 }
             }
             if let Some(left) = left {
-                most = most.min(SHARE * left.max(ENDING));
+                most = most.min(SHARE * left.max(ending));
             }
         }
-        let omegas = settled(&self.motion(&closed), self.front.t, &self.front.y, &here);
+        let omegas = settled(&self.motion(&closed), self.front.t, &self.front.y, &here, &self.front.scales);
         for (contact, omega) in closed.iter_mut().zip(omegas) {
             contact.omega = omega;
             self.front.omegas[contact.contact] = omega;
         }
         let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
+        if let Some(contact) = self.singular(&closed, &step) {
+            return self.end_with(contact, &step);
+        }
         match crossing {
             None => {
                 self.front.next = step.next;
@@ -89,12 +94,15 @@ impl Transition<'_> {
     /// Counts steps without an event, and refuses to go on where they hardly advance the motion.
     fn progress(&mut self, h: f64) -> Result<(), SimulationError> {
         let (steps, since, longest) = self.front.steps;
-        let longest = longest.max(h.min(0.1));
+        let longest = longest.max(h.min(LONG * self.front.scales.time));
         let steps = steps + 1;
         self.front.steps = (steps, since, longest);
         if steps % STEPS == 0 {
             let time = self.front.t - since;
             if time < ADVANCE * longest {
+                if let Some(contact) = self.singular_here(&self.closed()) {
+                    return self.end_at(contact);
+                }
                 let modes = self.modes_in_words();
                 return Err(self.error(None, Reason::NoProgress { steps, time, modes }));
             }
@@ -179,7 +187,10 @@ impl Transition<'_> {
                 ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. },
             )) => self.impact_without_collision(contact),
             Some(failure) => Err(self.failure(failure)),
-            None => Err(self.error(None, Reason::Stalled)),
+            None => match self.singular_here(&self.closed()) {
+                Some(contact) => self.end_at(contact),
+                None => Err(self.error(None, Reason::Stalled)),
+            },
         }
     }
 
@@ -207,7 +218,7 @@ impl Transition<'_> {
                 if slip.norm() <= DIRECTION * here.support.velocity_size(place, u) {
                     continue;
                 }
-                if slip.dot(d) < 0.5 * slip.norm() && step.h > 2.0 * ENDING {
+                if slip.dot(d) < 0.5 * slip.norm() && step.h > 2.0 * ENDING * self.front.scales.time {
                     return Ok(false);
                 }
             }

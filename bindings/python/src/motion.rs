@@ -122,12 +122,18 @@ fn follow(
     let count = ((until - state.time) / step).ceil() as usize;
     for index in 0..=count {
         let time = (state.time + step * index as f64).min(until);
-        while let Progress::Event(event) = simulation.advance(time)? {
+        let mut ended = false;
+        while !ended && let Progress::Event(event) = simulation.advance(time)? {
+            // The motion may have an end of its own.
+            ended = matches!(event.kind, EventKind::Singular);
             found.events.push(event);
         }
-        found.times.push(time);
+        found.times.push(simulation.time());
         found.coordinates.extend_from_slice(simulation.coordinates());
         found.speeds.extend_from_slice(simulation.speeds());
+        if ended {
+            break;
+        }
     }
     Ok(found)
 }

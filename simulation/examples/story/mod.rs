@@ -82,9 +82,9 @@ pub fn follow(
     'motion: for count in 1_u32.. {
         let time = (f64::from(count) * every).min(until);
         while let Progress::Event(event) = simulation.advance(time)? {
-            let rests = matches!(event.kind, EventKind::Rest);
+            let ends = matches!(event.kind, EventKind::Rest | EventKind::Singular);
             story.events.push(event);
-            if rests {
+            if ends {
                 look(&simulation, &mut story);
                 break 'motion;
             }

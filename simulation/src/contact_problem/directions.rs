@@ -334,11 +334,12 @@ impl Small {
             if lu[j][j] == 0.0 || !lu[j][j].is_finite() {
                 return None;
             }
-            for i in j + 1..count {
-                let factor = lu[i][j] / lu[j][j];
-                lu[i][j] = factor;
-                for column in j + 1..count {
-                    lu[i][column] -= factor * lu[j][column];
+            let pivot_row = lu[j];
+            for row in &mut lu[j + 1..count] {
+                let factor = row[j] / pivot_row[j];
+                row[j] = factor;
+                for (entry, above) in row[j + 1..count].iter_mut().zip(&pivot_row[j + 1..count]) {
+                    *entry -= factor * above;
                 }
             }
         }

@@ -17,6 +17,7 @@
 mod centre;
 mod certified;
 mod directions;
+mod edge;
 mod enumerate;
 mod linear;
 mod motion;

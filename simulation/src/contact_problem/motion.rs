@@ -34,8 +34,16 @@ fn settled(problem: &Problem<'_>, found: &Solution, open: &[usize]) -> Option<Ve
     if first.unique {
         return None;
     }
-    let mut force = first.force;
-    let mut modes = found.modes.clone();
+    settle(problem, found.modes.clone(), open, first.force)
+}
+
+/// Modes whose directions are turned until each contact slips along its own acceleration.
+pub(super) fn settle(
+    problem: &Problem<'_>,
+    mut modes: Vec<Mode>,
+    open: &[usize],
+    mut force: DVector<f64>,
+) -> Option<Vec<Mode>> {
     let mut last = f64::INFINITY;
     for _ in 0..ROUNDS {
         let (turns, centre) = turns(problem, &modes, open, &force)?;

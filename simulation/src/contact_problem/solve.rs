@@ -7,6 +7,7 @@ use nalgebra::DVector;
 use super::{
     Mode, Problem, Solution, Unsolved,
     certified::{attempt, with_certificate},
+    edge::beyond,
     enumerate::enumerate,
     motion::centred,
 };
@@ -25,7 +26,7 @@ pub fn solve(problem: &Problem<'_>, guess: Option<&DVector<f64>>) -> Result<Solu
         return Ok(found);
     }
     match attempt(problem, guess) {
-        Ok(found) if few => Ok(centred(problem, found)),
+        Ok(found) if few => Ok(beyond(problem, &found).unwrap_or_else(|| centred(problem, found))),
         Ok(found) => Ok(found),
         Err(Unsolved::NotFound { violation }) => {
             if let Some(first) = enumerate(problem).into_iter().next() {

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use hodograph::State as Borrowed;
 use hodograph_generator::artifact::place;
 use hodograph_interpreter::{InterpretedMechanism, motion};
-use hodograph_simulation::{Options, Progress, Simulation, SimulationError, Together};
+use hodograph_simulation::{EventKind, Options, Progress, Simulation, SimulationError, Together};
 
 use self::lines::{Format, Lines};
 use self::pictures::{PictureFiles, Pictures};
@@ -37,7 +37,7 @@ use crate::stop::{Outcome, Stop};
 ///
 /// At a terminal the answer is a set of tables and a summary, else JSON lines: {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
 /// and so on at each event: collision, impact_without_collision, contact, lift_off, slip, stick,
-/// rest. Times of events do not depend on --step.
+/// rest; singular where the motion ends since the point of a contact is undefined there. Times of events do not depend on --step.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -221,12 +221,18 @@ fn follow(
         progress.set_message(format!("t = {t:.3} s"));
     };
     let mut still = 0;
-    for count in 1_u64.. {
+    'motion: for count in 1_u64.. {
         let end = (state.time + count as f64 * step).min(until);
         while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
             lines.event(&event)?;
             pictures.event(&event, &simulation);
             shown(event.time);
+            if matches!(event.kind, EventKind::Singular) {
+                // The motion has an end of its own.
+                lines.sample(event.time, simulation.coordinates(), simulation.speeds())?;
+                pictures.add(&simulation);
+                break 'motion;
+            }
         }
         if end > state.time {
             lines.sample(end, simulation.coordinates(), simulation.speeds())?;

@@ -115,7 +115,7 @@ impl Summary {
     /// How many events there were, and whether it came to rest.
     fn outcome(&self) -> String {
         let mut counts: Vec<(&str, usize)> = Vec::new();
-        for line in self.events.iter().filter(|line| line.name != "rest") {
+        for line in self.events.iter().filter(|line| !["rest", "singular"].contains(&line.name)) {
             match counts.iter_mut().find(|(name, _)| *name == line.name) {
                 Some((_, count)) => *count += 1,
                 None => counts.push((line.name, 1)),
@@ -126,6 +126,13 @@ impl Summary {
         let end = self.states.last().map_or(0.0, |(t, _)| *t);
         let rest = match self.events.last() {
             Some(line) if line.name == "rest" => format!("at rest from t = {} s", number(line.time)),
+            Some(line) if line.name == "singular" => {
+                let contact = &line.contact;
+                format!(
+                    "the motion ends at t = {} s: the point of {contact} is undefined there",
+                    number(line.time)
+                )
+            }
             _ => format!("still in motion at t = {} s", number(end)),
         };
         format!("\n{counted}; {rest}.\n")

@@ -1,0 +1,74 @@
+//! A length and a time of the problem, in which tolerances are told.
+//!
+//! What is short, near or slow has no meaning without units. The length is the greatest of the gaps and lever
+//! arms of contacts, the time that in which their free accelerations or their velocities cover it
+//! (docs/theory.md, section 18.15).
+
+use hodograph::{Contacts, Kind, State};
+
+use crate::closed_contacts::ClosedContacts;
+
+/// Units of a problem.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Scales {
+    /// m
+    pub length: f64,
+    /// s
+    pub time: f64,
+}
+
+/// A gap below this part of the greatest coordinate is closed: its size tells nothing.
+const TOUCHES: f64 = 1e-9;
+
+impl Scales {
+    /// Those of a start state; 1 where nothing tells.
+    pub fn of(mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Self {
+        let angular = |speed: usize| {
+            let unit = mechanism.component(Kind::Speed, speed).map_or("", |component| component.unit);
+            unit.contains("rad") || unit.contains("deg")
+        };
+        let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
+        let mut length = 0.0_f64;
+        let (mut acceleration, mut speed) = (0.0_f64, 0.0_f64);
+        for contact in 0..mechanism.count(Kind::Contact) {
+            let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
+            let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
+            if gap.abs() > TOUCHES * place {
+                length = length.max(gap.abs());
+            }
+            for (index, column) in alone.partials.column_iter().enumerate() {
+                // What an angular speed gives to the point is an arm.
+                if angular(index) {
+                    length = length.max(column.norm());
+                }
+            }
+            acceleration = acceleration.max(alone.beta.norm());
+            speed = speed.max(alone.velocity.norm());
+        }
+        let known = |value: f64| value.is_finite() && value > 0.0;
+        if !known(length) {
+            let fall = speed * speed / acceleration;
+            length = if known(fall) { fall } else { 1.0 };
+        }
+        // The faster of falling and going.
+        let time = (length / acceleration).sqrt().min(length / speed);
+        Self { length, time: if known(time) { time } else { 1.0 } }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use hodograph_models::slender_rod_5dof::{Coordinates, SlenderRod5dof, Speeds};
+
+    use super::*;
+
+    #[test]
+    fn a_rod_that_falls_has_the_scales_of_its_fall() {
+        let rod = SlenderRod5dof::<f64>::default();
+        let q: [f64; 5] = Coordinates { z: 2.0, ..Coordinates::default() }.into();
+        let u: [f64; 5] = Speeds::default().into();
+        let scales = Scales::of(&rod, &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] });
+        assert!(scales.length >= 1.0 && scales.length < 4.0, "{scales:?}");
+        assert!((0.2..0.8).contains(&scales.time), "{scales:?}");
+    }
+}

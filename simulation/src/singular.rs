@@ -1,0 +1,124 @@
+//! Ends a motion where the point of a closed contact is no longer determined by the coordinates.
+//!
+//! The lowest point of a disc is undefined where the disc lies flat; the point at which it touches runs around
+//! its rim ever faster before, or changes sides at once. A motion of a single contact ends there: what would
+//! follow is the impact of a whole face (docs/theory.md, section 17.15).
+
+use hodograph::{Kind, State, StateError};
+
+use crate::motion::{Failure, Motion};
+use crate::phase::Closed;
+use crate::stepper::Step;
+use crate::transition::Transition;
+use crate::{EventKind, SimulationError};
+
+/// Steps this much shorter than the longest one so far are looked at.
+const SHORT: f64 = 1e-2;
+/// The point of a contact is undefined where the tolerances of the coordinates change its partial velocities
+/// by this part of them.
+const CHANGED: f64 = 1e-2;
+/// Halvings of a step that tell a jump from a turn.
+const HALVINGS: usize = 30;
+
+impl Transition<'_> {
+    /// The contact at which the motion ends with a step that was made.
+    pub(crate) fn singular(&self, closed: &[Closed], step: &Step) -> Option<usize> {
+        let longest = self.front.steps.2;
+        if step.h > SHORT * longest {
+            return None;
+        }
+        self.undefined(closed, step.t + step.h, &step.end, Some(step.start()))
+    }
+
+    /// The closed contact whose point is undefined at the front.
+    pub(crate) fn singular_here(&self, closed: &[Closed]) -> Option<usize> {
+        self.undefined(closed, self.front.t, &self.front.y, None)
+    }
+
+    /// The closed contact whose point the coordinates do not determine in a state, or whose point jumps on the
+    /// way from the state before.
+    fn undefined(&self, closed: &[Closed], t: f64, y: &[f64], before: Option<&[f64]>) -> Option<usize> {
+        let motion = self.motion(&[]);
+        closed.iter().map(|closed| closed.contact).find(|&contact| {
+            self.changes(&motion, contact, t, y, before).is_ok_and(|changes| changes > CHANGED)
+        })
+    }
+
+    /// By which part of them the partial velocities of a contact change within the tolerances of the
+    /// coordinates, or jump on the way from the state before.
+    fn changes(
+        &self,
+        motion: &Motion<'_>,
+        contact: usize,
+        t: f64,
+        y: &[f64],
+        before: Option<&[f64]>,
+    ) -> Result<f64, StateError> {
+        let (q, u) = motion.split(y);
+        let p = self.mechanism.count(Kind::Speed);
+        let partials = |q: &[f64]| {
+            let mut numbers = vec![0.0; 3 * p];
+            let state = State { time: t, coordinates: q, speeds: u, inputs: &self.front.held };
+            self.mechanism.partial_velocities(contact, &state, &mut numbers).map(|()| numbers)
+        };
+        let here = partials(q)?;
+        let size = here.iter().fold(0.0_f64, |size, number| size.max(number.abs()));
+        let part = |one: &[f64], other: &[f64]| {
+            let apart = one.iter().zip(other).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max) / size
+        };
+        let mut most = 0.0_f64;
+        if let Some(before) = before {
+            let (mut from, mut to) = (motion.split(before).0.to_vec(), q.to_vec());
+            let (mut first, mut last) = (partials(&from)?, here.clone());
+            // A change that is left after all halvings is a jump.
+            for _ in 0..HALVINGS {
+                if part(&first, &last) <= CHANGED {
+                    break;
+                }
+                let middle: Vec<f64> = from.iter().zip(&to).map(|(a, b)| 0.5 * (a + b)).collect();
+                let between = partials(&middle)?;
+                if part(&first, &between) > part(&between, &last) {
+                    (to, last) = (middle, between);
+                } else {
+                    (from, first) = (middle, between);
+                }
+            }
+            most = part(&first, &last);
+        }
+        // Two directions: a point may be determined along one of them.
+        for sign in [1.0, -1.0] {
+            let moved: Vec<f64> = q
+                .iter()
+                .enumerate()
+                .map(|(index, q)| {
+                    let way = if index % 2 == 0 { 1.0 } else { sign };
+                    q + way * (self.options.absolute_tolerance + self.options.relative_tolerance * q.abs())
+                })
+                .collect();
+            most = most.max(part(&partials(&moved)?, &here));
+        }
+        Ok(most)
+    }
+
+    /// Ends the motion at a contact, here.
+    pub(crate) fn end_at(&mut self, contact: usize) -> Result<(), SimulationError> {
+        self.front.ended = Some(contact);
+        self.push(Some(contact), EventKind::Singular);
+        Ok(())
+    }
+
+    /// Ends the motion with a step at whose end the point of a contact is undefined. Nothing is projected onto
+    /// the velocity of a point that is not determined.
+    pub(crate) fn end_with(&mut self, contact: usize, step: &Step) -> Result<(), SimulationError> {
+        let modes = self.modes();
+        self.front.t = step.t + step.h;
+        self.front.y.copy_from_slice(&step.end);
+        self.step = Some((step.clone(), modes));
+        let n = self.mechanism.count(Kind::Coordinate);
+        let mut q = self.front.y[..n].to_vec();
+        self.mechanism.normalize(&mut q).map_err(|error| self.failure(Failure::State(error)))?;
+        self.front.y[..n].copy_from_slice(&q);
+        self.end_at(contact)
+    }
+}

@@ -1,0 +1,60 @@
+//! Motions that did not settle once: two boxes with a hinge thrown on a table, and balls in a groove.
+
+mod many;
+
+use hodograph::Law;
+use many::{Start, follow, model, surface, with_parameters};
+
+/// The numbers of an object in a state file: `"name": number`.
+fn numbers(text: &str, object: &str) -> Vec<(String, f64)> {
+    let from = text.find(&format!("\"{object}\"")).unwrap_or_else(|| panic!("no {object}"));
+    let inner = text[from..].split(['{', '}']).nth(1).unwrap();
+    let pair = |entry: &str| {
+        let (name, value) = entry.split_once(':')?;
+        Some((name.trim().trim_matches('"').to_owned(), value.trim().parse().ok()?))
+    };
+    inner.split(',').filter_map(pair).collect()
+}
+
+/// The ten states from which a hinged pair of boxes ended in an error or did not end.
+#[test]
+fn hinged_boxes_settle() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/data/many_contacts/elbow_states");
+    let mut files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    assert_eq!(files.len(), 10);
+    let elbow = model("elbow");
+    for path in files {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let parameters = numbers(&text, "parameters");
+        let parameters: Vec<(&str, f64)> = parameters.iter().map(|(name, x)| (name.as_str(), *x)).collect();
+        let mechanism = with_parameters(&elbow, &parameters);
+        let mut start = Start::of(&mechanism);
+        let given: Vec<(String, f64)> = ["q", "u"].iter().flat_map(|object| numbers(&text, object)).collect();
+        assert_eq!(given.len(), start.coordinates.len() + start.speeds.len());
+        for (name, value) in given {
+            start.set(&mechanism, &name, value);
+        }
+        let thick = path.ends_with("h4_442.json");
+        let (mu, e) = if thick { (0.1434, 0.33) } else { (0.1834, 0.3189) };
+        let end = follow(&mechanism, &start, surface(mu, e, Law::Stronge), 0.8);
+        assert!(end.error.is_none(), "{path:?}: {:?}", end.error);
+        assert!(end.gain().is_none_or(|(_, gain)| gain < 1e-12 * end.before.abs()), "{path:?}");
+    }
+}
+
+/// Balls that are dropped without speed into a groove come to rest, 30 of 30.
+#[test]
+fn balls_rest_in_a_groove() {
+    let groove = model("groove_drop");
+    for k in 0..30 {
+        let mut start = Start::of(&groove);
+        start.speeds.fill(0.0);
+        start.set(&groove, "y", 0.002 * f64::from(k - 15));
+        let (mu, e) = ([0.2, 0.3, 0.6][k as usize % 3], [0.0, 0.3][k as usize % 2]);
+        let end = follow(&groove, &start, surface(mu, e, Law::Poisson), 8.0);
+        assert!(end.error.is_none(), "{k}: {:?}", end.error);
+        assert!(end.speeds.iter().all(|speed| *speed == 0.0), "{k}: {:?} {:?}", end.speeds, end.names());
+        assert!(end.account.abs() < 1e-10, "{k}: {:e}", end.account);
+    }
+}

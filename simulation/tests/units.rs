@@ -1,0 +1,83 @@
+//! The same motion in millimetres, grams and milliseconds has the same events.
+
+mod many;
+
+use hodograph::{Kind, Law, Mechanism};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::Options;
+use many::{Ended, Start, follow, model, surface, with_parameters};
+
+/// How many of the small units one of these is: lengths, masses and times are a thousand times the number.
+fn factor(unit: &str) -> f64 {
+    match unit {
+        "kg" | "m" | "N*m" => 1e3,
+        "1" | "" | "rad" | "m/s" | "N" => 1.0,
+        "rad/s" | "m/s^2" => 1e-3,
+        other => panic!("no factor for {other}"),
+    }
+}
+
+fn factors(mechanism: &InterpretedMechanism, kind: Kind) -> Vec<f64> {
+    (0..mechanism.count(kind)).map(|i| factor(mechanism.component(kind, i).unwrap().unit)).collect()
+}
+
+/// The motion in SI units and in small ones.
+fn both(name: &str, change: &[(&str, f64)], mu: f64, until: f64) -> [Ended; 2] {
+    let mechanism = model(name);
+    let mut start = Start::of(&mechanism);
+    for (name, value) in change {
+        start.set(&mechanism, name, *value);
+    }
+    let parameters: Vec<(String, f64)> = (0..mechanism.count(Kind::Parameter))
+        .map(|i| {
+            let component = mechanism.component(Kind::Parameter, i).unwrap();
+            (component.name.to_owned(), mechanism.all_parameters()[i] * factor(component.unit))
+        })
+        .collect();
+    let parameters: Vec<(&str, f64)> =
+        parameters.iter().map(|(name, value)| (name.as_str(), *value)).collect();
+    let small = with_parameters(&mechanism, &parameters);
+    let scaled = |values: &[f64], kind| -> Vec<f64> {
+        values.iter().zip(factors(&mechanism, kind)).map(|(value, factor)| value * factor).collect()
+    };
+    let there = Start {
+        coordinates: scaled(&start.coordinates, Kind::Coordinate),
+        speeds: scaled(&start.speeds, Kind::Speed),
+        inputs: scaled(&start.inputs, Kind::Input),
+    };
+    let options = |absolute| Options { absolute_tolerance: absolute, ..surface(mu, 0.0, Law::Poisson) };
+    [
+        follow(&mechanism, &start, options(1e-12), until),
+        // The tolerance is one of lengths too.
+        follow(&small, &there, options(1e-9), 1e3 * until),
+    ]
+}
+
+#[test]
+fn events_do_not_depend_on_units() {
+    let cases: [(&str, &[(&str, f64)], f64, f64); 5] = [
+        ("crate", &[("u1", 1.0)], 0.3, 1.0),
+        ("groove_drop", &[("wx", 3.0)], 0.4, 0.6),
+        ("domino3", &[], 0.3, 0.2),
+        ("box_on_incline", &[("z", 0.2), ("e1", 0.02), ("ux", 0.5)], 0.6, 0.5),
+        ("euler_disc", &[], 0.3, 0.5),
+    ];
+    for (name, change, mu, until) in cases {
+        let [one, other] = both(name, change, mu, until);
+        let list = |end: &Ended| -> Vec<(&'static str, Option<usize>)> {
+            end.events.iter().map(|event| (event.kind.name(), event.contact)).collect()
+        };
+        assert!(one.error.is_none() && other.error.is_none(), "{name}: {:?} {:?}", one.error, other.error);
+        assert!(!one.events.is_empty());
+        assert_eq!(list(&one), list(&other), "{name}: {:?} {:?}", one.names(), other.names());
+        for (a, b) in one.events.iter().zip(&other.events) {
+            assert!(
+                (1e-3 * b.time - a.time).abs() < 1e-6,
+                "{name}: {} at {} {}",
+                a.kind.name(),
+                a.time,
+                b.time
+            );
+        }
+    }
+}
