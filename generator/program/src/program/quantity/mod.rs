@@ -1,5 +1,6 @@
 //! The quantities that a program can compute. What else is to be said of each stands in [`table`].
 
+mod description;
 pub mod table;
 
 use std::fmt;
@@ -7,7 +8,7 @@ use std::fmt;
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_model::rust_names::snake_case;
 
-pub use table::{Axes, Description, Entries, Extent, Offer, Takes};
+pub use description::{Axes, Description, Entries, Extent, Offer, Takes};
 
 /// A quantity that a program computes. Shapes: `p` independent speeds, `d` dependent speeds, `n` coordinates,
 /// `c` configuration equations (as many as dependent coordinates). Matrices are stored by rows.
@@ -176,7 +177,7 @@ impl Quantity {
             whole => table::find(table::WHOLE, whole),
         };
         // The tests find a row for every quantity.
-        row.unwrap_or(&table::PLAIN)
+        row.unwrap_or(&description::PLAIN)
     }
 
     /// The name of the method that computes it in the module of a mechanism, where there is one.
