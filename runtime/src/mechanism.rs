@@ -138,6 +138,38 @@ pub trait Mechanism<T: Scalar = f64> {
         jacobian: &mut [T],
     ) -> Result<(), StateError>;
 
+    /// Rows and columns of a quantity of [`Kind::Quantity`]; `None` past the last.
+    fn quantity_shape(&self, quantity: usize) -> Option<(usize, usize)> {
+        let _ = quantity;
+        None
+    }
+    /// Computes a quantity of [`Kind::Quantity`], by rows; [`Mechanism::component`] has its name and unit. Where
+    /// all positions are known these are `momentum`, `angular_momentum` (about O), `central_angular_momentum`
+    /// (about the mass centre), `mass_centre_position` and `mass_centre_velocity`, along N.x, N.y, N.z. A
+    /// mechanism lacks those that its model does not determine.
+    fn quantity(&self, quantity: usize, state: &State<'_, T>, values: &mut [T]) -> Result<(), StateError> {
+        let _ = (state, values);
+        Err(StateError::Missing { kind: Kind::Quantity, index: quantity })
+    }
+    /// Angular momentum of all bodies about a point of the model, along N.x, N.y, N.z, kg m^2/s: that about O
+    /// less r x P, with the position r of the point and the momentum P. Point 0 is O. The velocity of the point
+    /// does not enter.
+    ///
+    /// # Errors
+    ///
+    /// [`StateError::Undefined`] where the model does not determine the place of the bodies or of the point.
+    fn angular_momentum_about(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError> {
+        let named = |name: &str| {
+            let undefined = StateError::Undefined { what: "angular momentum about this point" };
+            let index = self.index(Kind::Quantity, name).ok_or(undefined)?;
+            let mut values = [T::zero(); 3];
+            self.quantity(index, state, &mut values)?;
+            Ok(Vector3::from(values))
+        };
+        let position = self.position(point, state)?;
+        Ok(named("angular_momentum")? - position.cross(&named("momentum")?))
+    }
+
     /// Position of a point from O along N.x, N.y, N.z, m. [`StateError::Undefined`] for a point of which the
     /// model knows the velocity only.
     fn position(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError>;

@@ -65,7 +65,8 @@ impl Transition<'_> {
             drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
             let least = SIZE * self.front.scales.length;
-            let (left, known) = drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts, least)?;
+            let (left, known) =
+                drift::close_gaps(self.mechanism, t, &mut q, &u, &modes.held, &contacts, least)?;
             // Velocities come last, in the place that was corrected: what is left of them counts as an approach.
             drift::hold_velocities(self.mechanism, t, &q, &mut u, &modes.held, (&closed, known))?;
             Ok(left)

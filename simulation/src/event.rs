@@ -110,7 +110,7 @@ pub struct Struck {
 pub struct StruckTogether {
     /// what each contact that could take part did
     pub shares: Vec<Share>,
-    /// change of kinetic energy, J: the sum of the works
+    /// change of kinetic energy, J: the sum of the works, but where motion is prescribed (24)
     pub energy_change: f64,
     /// independent speeds before
     pub speeds_before: Vec<f64>,

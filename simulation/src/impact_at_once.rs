@@ -100,7 +100,8 @@ impl Transition<'_> {
             outcome = solve(low)?;
         }
         let change = &support.response * &outcome.impulse;
-        let after = speeds.iter().zip(change.iter()).map(|(speed, change)| speed + change).collect();
+        let after: Vec<f64> =
+            speeds.iter().zip(change.iter()).map(|(speed, change)| speed + change).collect();
         let state = State { speeds, ..self.here() };
         let mut shares = Vec::with_capacity(contacts.len());
         for (i, &contact) in contacts.iter().enumerate() {
@@ -120,7 +121,8 @@ impl Transition<'_> {
                 work: 0.5 * p.dot(&(before + velocity)),
             });
         }
-        Ok(Hit { kind: HitKind::Several(shares), before: speeds.to_vec(), after, bounces })
+        let kind = HitKind::Several(shares, self.energy_change(speeds, &after)?);
+        Ok(Hit { kind, before: speeds.to_vec(), after, bounces })
     }
 }
 

@@ -1,7 +1,7 @@
 //! Impacts without collision: a sliding contact that no finite force can hold (Painleve's paradox).
 
-use hodograph::{CollisionOutcome, Kind, ReducedMatrix, State, Surface, impact_without_collision};
-use nalgebra::{Vector2, Vector3};
+use hodograph::{CollisionOutcome, ContactState, Kind, State, Surface};
+use nalgebra::Vector2;
 
 use crate::forces::JAM;
 use crate::impacts::MOST;
@@ -45,45 +45,30 @@ impl Transition<'_> {
         let fault = |error| self.failure(Failure::State(error));
         let here = self.mechanism.contact_state(contact, &state).map_err(fault)?;
         let speed = here.velocity.y.hypot(here.velocity.z);
-        let (cos, sin) = (here.velocity.y / speed, here.velocity.z / speed);
-        let reduced = here.reduced.turned(cos, sin);
         // Friction is that of the slip that jams, not that of impacts.
         let surface =
             Surface { mu: self.friction(contact, speed)?.slips, ..self.surface_in_impact(contact, 0.0)? };
-        let surface = jammed(&reduced, surface);
-        let impact = impact_without_collision(&reduced, &Vector2::new(speed, 0.0), &surface)
-            .map_err(|error| self.error(Some(contact), Reason::Collision(error.into())))?;
-        let (i, j) = (impact.impulse.y, impact.impulse.z);
-        let impulse = [impact.impulse.x, i * cos - j * sin, i * sin + j * cos];
-        let mut response = vec![0.0; 3 * speeds.len()];
-        self.mechanism.response(contact, &state, &mut response).map_err(fault)?;
+        let surface = jammed(&here, surface);
         let mut after = speeds.to_vec();
-        for (speed, row) in after.iter_mut().zip(response.chunks_exact(3)) {
-            *speed += row.iter().zip(&impulse).map(|(response, impulse)| response * impulse).sum::<f64>();
-        }
-        let outcome = CollisionOutcome {
-            normal: here.normal,
-            tangent: here.first * cos + here.second * sin,
-            binormal: here.second * cos - here.first * sin,
-            approach: Vector3::new(0.0, speed, 0.0),
-            reduced,
-            impulse_on_point: here.normal * impulse[0] + here.first * impulse[1] + here.second * impulse[2],
-            energy_change: impact.contact_work,
-            impact,
-        };
+        let outcome = self
+            .mechanism
+            .impact_without_collision(contact, &state, &surface, &mut after)
+            .map_err(|error| self.error(Some(contact), Reason::Collision(error)))?;
         Ok((outcome, after))
     }
 }
 
-/// The surface of an impact without collision, t along the slip: where f = m_nn - mu m_nt is not yet zero,
+/// The surface of an impact without collision: where f = m_nn - mu m_nt, t along the slip, is not yet zero,
 /// but so small that the contact jams, with the friction that makes it as small and negative. It is larger by
 /// less than `2 JAM` times m_nn / m_nt.
-fn jammed(reduced: &ReducedMatrix<f64>, surface: Surface<f64>) -> Surface<f64> {
-    let f = reduced.nn - surface.mu * reduced.nt;
+fn jammed(here: &ContactState<f64>, surface: Surface<f64>) -> Surface<f64> {
+    let (reduced, slip) = (&here.reduced, here.velocity.yz());
+    let along_slip = Vector2::new(reduced.nt, reduced.ns).dot(&slip) / slip.norm();
+    let f = reduced.nn - surface.mu * along_slip;
     let least = JAM * reduced.nn;
     // the event is found where f = least, up to the rounding of its search
     if f >= 0.0 && f <= 1.5 * least {
-        Surface { mu: (reduced.nn + least) / reduced.nt, ..surface }
+        Surface { mu: (reduced.nn + least) / along_slip, ..surface }
     } else {
         surface
     }

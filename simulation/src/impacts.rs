@@ -81,8 +81,7 @@ impl Transition<'_> {
                 let struck = Struck { outcome: *outcome, speeds_before: hit.before, last_bounce, spread };
                 self.push(Some(contact), EventKind::Collision(Box::new(struck)));
             }
-            HitKind::Several(shares) => {
-                let energy_change = shares.iter().map(|share| share.work).sum();
+            HitKind::Several(shares, energy_change) => {
                 let struck = StruckTogether { shares, energy_change, speeds_before: hit.before, spread };
                 self.push(None, EventKind::StruckTogether(Box::new(struck)));
             }

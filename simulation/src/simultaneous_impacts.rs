@@ -78,7 +78,7 @@ impl Transition<'_> {
                 work: outcome.works[a],
             });
         }
-        let energy_change: f64 = outcome.works.iter().sum();
+        let energy_change = self.energy_change(&speeds, &after)?;
         self.front.energy.impacts += energy_change;
         self.front.y[n..n + p].copy_from_slice(&after);
         let struck = StruckTogether { shares, energy_change, speeds_before: speeds, spread: None };

@@ -19,7 +19,8 @@ pub(crate) struct Hit {
 /// What struck.
 pub(crate) enum HitKind {
     One(usize, Box<CollisionOutcome<f64>>),
-    Several(Vec<Share>),
+    /// several at once, and the change of kinetic energy, J
+    Several(Vec<Share>, f64),
 }
 
 impl Hit {
@@ -27,7 +28,7 @@ impl Hit {
     pub fn contacts(&self) -> Vec<usize> {
         match &self.kind {
             HitKind::One(contact, _) => vec![*contact],
-            HitKind::Several(shares) => shares.iter().map(|share| share.contact).collect(),
+            HitKind::Several(shares, _) => shares.iter().map(|share| share.contact).collect(),
         }
     }
 
@@ -35,7 +36,7 @@ impl Hit {
     pub fn energy_change(&self) -> f64 {
         match &self.kind {
             HitKind::One(_, outcome) => outcome.energy_change,
-            HitKind::Several(shares) => shares.iter().map(|share| share.work).sum(),
+            HitKind::Several(_, energy_change) => *energy_change,
         }
     }
 }
@@ -52,6 +53,14 @@ impl Transition<'_> {
             [contact] => self.single(*contact, speeds, faded),
             _ => self.impact_at_once(contacts, speeds, faded),
         }
+    }
+
+    /// The change of kinetic energy from speeds to others, J. Where motion is prescribed it is not the work of
+    /// the contacts: (24).
+    pub(crate) fn energy_change(&self, before: &[f64], after: &[f64]) -> Result<f64, SimulationError> {
+        let kinetic = |speeds| self.mechanism.kinetic_energy(&State { speeds, ..self.here() });
+        let change = kinetic(after).and_then(|after| Ok(after - kinetic(before)?));
+        change.map_err(|error| self.failure(Failure::State(error)))
     }
 
     /// The impact of one contact.

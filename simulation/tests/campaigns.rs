@@ -8,6 +8,7 @@
 
 mod many;
 #[path = "common/random.rs"]
+#[allow(dead_code)]
 mod random;
 
 use std::collections::BTreeMap;

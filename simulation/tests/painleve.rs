@@ -10,7 +10,7 @@
 mod common;
 
 use common::{Body, Line, Part, first, run, start, surface};
-use hodograph::{Contacts, Law, State};
+use hodograph::{Contacts, Law, Mechanism, State};
 use hodograph_simulation::EventKind;
 
 const MU: f64 = 1.6;
@@ -168,4 +168,36 @@ fn the_rod_jumps_as_on_a_stiff_floor() {
     }
     println!("Painleve's rod: rigid and compliant, extrapolated, differ by {worst:.1e} m/s");
     assert!(worst < 1e-7, "{worst:e}");
+}
+
+/// On a belt the contact's work is not the change of kinetic energy: the belt takes a part, (24).
+#[test]
+fn the_energy_of_a_jump_on_a_belt_is_that_of_the_speeds() {
+    let (mut body, q) = rod();
+    let mut seen = 0;
+    for belt in [-3.0, 0.7, 2.0] {
+        body.lines[0].belt = belt;
+        let surface = surface(MU, 0.6, Law::Stronge);
+        for slip in [-1.0, 1.0] {
+            let u = [belt + slip, 0.0, 0.0];
+            let mut simulation = start(&body, &q, &u, surface.clone());
+            let events = run(&mut simulation, 1e-6);
+            let Some(jump) = events.iter().find(|event| event.kind.name() == "impact_without_collision")
+            else {
+                continue;
+            };
+            let EventKind::ImpactWithoutCollision(struck) = &jump.kind else { panic!() };
+            let kinetic = |speeds: &[f64]| {
+                let state = State { time: 0.0, coordinates: &q, speeds, inputs: &[0.0] };
+                body.kinetic_energy(&state).unwrap()
+            };
+            let change = kinetic(&jump.speeds) - kinetic(&struck.speeds_before);
+            let outcome = &struck.outcome;
+            assert!((outcome.energy_change - change).abs() < 1e-12, "{belt}: {change} {outcome:?}");
+            assert!((outcome.impact.contact_work - change).abs() > 0.01, "{belt}: the belt takes nothing");
+            assert!((simulation.energy().unwrap().impacts - change).abs() < 1e-12, "{belt}");
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 3, "one direction of slip jams on each belt");
 }

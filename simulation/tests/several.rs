@@ -3,8 +3,8 @@
 mod common;
 
 use common::{Body, Line, Part, collisions, first, names, run, start, surface};
-use hodograph::Law;
-use hodograph_simulation::{ContactPhase, EventKind, Options, Together};
+use hodograph::{Law, Mechanism, State};
+use hodograph_simulation::{ContactPhase, EventKind, Options, Progress, Together};
 
 const G: f64 = 9.81;
 
@@ -242,4 +242,27 @@ fn striking_together_by_stiffness_is_refused_with_friction() {
         let error = hodograph_simulation::Simulation::new(&body, &state, options).unwrap_err();
         assert!(error.to_string().contains(what), "{error}");
     }
+}
+
+/// On a belt the works of the contacts are not the change of kinetic energy, (24).
+#[test]
+fn the_energy_of_an_impact_of_two_contacts_on_a_belt_is_that_of_the_speeds() {
+    let mut body =
+        Body::new(1.0, 0.4, &[Line::floor(Part::Point(-0.5, -0.2)), Line::floor(Part::Point(0.7, -0.2))]);
+    body.lines.iter_mut().for_each(|line| line.belt = 2.0);
+    let (q, u) = ([0.0, 0.2, 0.0], [0.5, -1.0, 0.0]);
+    let mut simulation = start(&body, &q, &u, surface(0.3, 0.5, Law::Newton));
+    let event = match simulation.advance(1e-6).unwrap() {
+        Progress::Event(event) => event,
+        Progress::Reached => panic!("nothing strikes"),
+    };
+    let EventKind::StruckTogether(struck) = &event.kind else { panic!("{event:?}") };
+    let kinetic = |speeds: &[f64]| {
+        let state = State { time: 0.0, coordinates: &q, speeds, inputs: &[0.0] };
+        body.kinetic_energy(&state).unwrap()
+    };
+    let change = kinetic(&event.speeds) - kinetic(&struck.speeds_before);
+    let works: f64 = struck.shares.iter().map(|share| share.work).sum();
+    assert!((struck.energy_change - change).abs() < 1e-12, "{change} {struck:?}");
+    assert!((works - change).abs() > 0.1, "the belt takes nothing: {works} {change}");
 }

@@ -14,7 +14,7 @@ use hodograph::{
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use hodograph_interpreter::InterpretedMechanism;
 
-const KINDS: [Kind; 9] = [
+const KINDS: [Kind; 10] = [
     Kind::Parameter,
     Kind::Coordinate,
     Kind::DependentCoordinate,
@@ -24,6 +24,7 @@ const KINDS: [Kind; 9] = [
     Kind::Point,
     Kind::Frame,
     Kind::Contact,
+    Kind::Quantity,
 ];
 
 /// A module, and the interpreter at the same parameters.
@@ -71,6 +72,13 @@ fn everything(m: &dyn Contacts, state: &State<'_>) -> Vec<(String, Result<Vec<f6
         put(format!("acceleration {i}"), m.acceleration(i, state, &accelerations).map(three));
         put(format!("jacobian {i}"), slice(3 * p, &|x| m.jacobian(i, state, x)));
     }
+    for i in 0..m.count(Kind::Quantity) {
+        let (rows, columns) = m.quantity_shape(i).expect("a shape");
+        put(format!("quantity {i}"), slice(rows * columns, &|x| m.quantity(i, state, x)));
+    }
+    for i in 0..m.count(Kind::Point) {
+        put(format!("angular momentum about {i}"), m.angular_momentum_about(i, state).map(three));
+    }
     for i in 0..m.count(Kind::Frame) {
         put(
             format!("orientation {i}"),
@@ -110,7 +118,8 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
             // At a regular state only what the model leaves open has no number: positions of points,
             // orientations of frames.
             for (name, numbers) in &a {
-                let open = name.starts_with("position") || name.starts_with("orientation");
+                let open = ["position", "orientation", "angular momentum about"];
+                let open = open.iter().any(|open| name.starts_with(open));
                 assert!(numbers.is_ok() || open, "{} {name}: {numbers:?}", module.name());
             }
             for ((name, a), (_, b)) in a.iter().zip(&b) {

@@ -6,11 +6,14 @@ mod common;
 
 use common::random::{Sample, samples};
 use common::{Model, models};
+use hodograph::{Kind, Mechanism, State};
 use hodograph_generator::interpret::Array;
-use hodograph_generator::model::mechanism::LoadKind;
+use hodograph_generator::model::mechanism::{LoadKind, Place, PointId};
+use hodograph_generator::numeric::{Level, Views, central_inertia, views};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
-use nalgebra::{DMatrix, DVector};
+use hodograph_interpreter::InterpretedMechanism;
+use nalgebra::{DMatrix, DVector, Vector3};
 
 /// Runs a check on every model at random states and reports all that fail.
 fn everywhere(check: impl Fn(&Model, &Sample) -> Result<(), String>) {
@@ -221,6 +224,149 @@ fn power_is_balanced() {
         }
         Ok(())
     });
+}
+
+/// Sums over the bodies by the numeric evaluation: mass, m v, m r and the angular momentum about O; the last
+/// two only where all mass centres have a place.
+struct Sums {
+    mass: f64,
+    momentum: Vector3<f64>,
+    placed: Option<(Vector3<f64>, Vector3<f64>)>,
+}
+
+fn sums(model: &Model, sample: &Sample) -> Sums {
+    let m = &model.mechanism;
+    let views = Views::at(m, &sample.state).unwrap();
+    let now = &views.now;
+    let mut sums =
+        Sums { mass: 0.0, momentum: Vector3::zeros(), placed: Some((Vector3::zeros(), Vector3::zeros())) };
+    for body in &m.bodies {
+        let mass = now.scalar(&body.mass, Level::Motion).unwrap().re;
+        let velocity = Vector3::from(views::values(now.velocity(body.centre).unwrap()));
+        sums.mass += mass;
+        sums.momentum += mass * velocity;
+        let known = now.root(body.centre) == PointId::O
+            && !matches!(m.points[body.centre.0].place, Place::Velocity(_));
+        let Some((moment, spin)) = sums.placed.as_mut().filter(|_| known) else {
+            sums.placed = None;
+            continue;
+        };
+        let position = Vector3::from(views::values(now.position(body.centre).unwrap()));
+        *moment += mass * position;
+        *spin += mass * position.cross(&velocity);
+        if let (Some(frame), Some(inertia)) = (body.frame, central_inertia(now, body).unwrap()) {
+            let turning = views::values(now.angular_velocity(frame).unwrap());
+            *spin += Vector3::from(inertia.map(|row| views::dot3(row, turning)));
+        }
+    }
+    sums
+}
+
+#[test]
+fn momenta_are_sums_over_the_bodies() {
+    let mut placed = 0;
+    everywhere(|model, sample| {
+        let Sums { mass, momentum, .. } = sums(model, sample);
+        let get = |quantity| model.get(&sample.inputs, quantity).values;
+        let hold = |what: &str, quantity, theirs: Vector3<f64>| {
+            close(what, &get(quantity), theirs.as_slice(), 1e-10)
+        };
+        hold("momentum", Q::Momentum, momentum)?;
+        let velocity = momentum / mass;
+        hold("velocity of the mass centre", Q::MassCentreVelocity, velocity)
+    });
+    for model in models() {
+        for sample in samples(&model, 3) {
+            let Sums { mass, momentum, placed: Some((moment, spin)) } = sums(&model, &sample) else {
+                let absent = model.get(&sample.inputs, Q::AngularMomentum).values;
+                assert!(absent.is_empty(), "{}", model.name);
+                continue;
+            };
+            placed += 1;
+            let get = |quantity| model.get(&sample.inputs, quantity).values;
+            let position = moment / mass;
+            let central = spin - position.cross(&momentum);
+            for (quantity, theirs) in [
+                (Q::MassCentrePosition, position),
+                (Q::AngularMomentum, spin),
+                (Q::CentralAngularMomentum, central),
+            ] {
+                close(&quantity.to_string(), &get(quantity), theirs.as_slice(), 1e-10)
+                    .unwrap_or_else(|fault| panic!("{}: {fault}", model.name));
+            }
+            // about every point of the model, by the trait
+            let machine = InterpretedMechanism::with_parameters(
+                model.mechanism.clone(),
+                model.program.clone(),
+                &sample.inputs.parameters,
+            )
+            .unwrap();
+            let Inputs { time, coordinates, speeds, inputs, .. } = &sample.inputs;
+            let state = State { time: *time, coordinates, speeds, inputs };
+            for point in 0..machine.count(Kind::Point) {
+                let Some(at) = sample.numeric.positions[point] else { continue };
+                let Ok(about) = machine.angular_momentum_about(point, &state) else { continue };
+                let theirs = central + (position - Vector3::from(at)).cross(&momentum);
+                close("about a point", about.as_slice(), theirs.as_slice(), 1e-9)
+                    .unwrap_or_else(|fault| panic!("{} {point}: {fault}", model.name));
+            }
+        }
+    }
+    assert!(placed > 20, "{placed}");
+}
+
+#[test]
+fn momentum_changes_by_the_forces() {
+    everywhere(|model, sample| {
+        // The sum of mass times acceleration over the bodies is the sum of the forces on them.
+        let Sums { mass, placed, .. } = sums(model, sample);
+        let views = Views::at(&model.mechanism, &sample.state).map_err(|failure| failure.to_string())?;
+        let given = model.get(&sample.inputs, Q::Accelerations).values;
+        let inputs = Inputs { accelerations: given, ..sample.inputs.clone() };
+        let mut force = Vector3::zeros();
+        for body in &model.mechanism.bodies {
+            let own = views.now.scalar(&body.mass, Level::Motion).map_err(|failure| failure.to_string())?;
+            let acceleration = model.get(&inputs, Q::Point(body.centre.0 as u32, P::Acceleration)).values;
+            if acceleration.is_empty() {
+                return Ok(());
+            }
+            force += own.re * Vector3::from_column_slice(&acceleration);
+        }
+        let changes = rate(model, &sample.inputs, Q::Momentum);
+        let scale = 1.0 + force.norm();
+        if changes.iter().zip(force.iter()).any(|(a, b)| (a - b).abs() > 1e-5 * scale) {
+            return Err(format!("momentum changes by {changes:?}, the forces are {force}"));
+        }
+        if placed.is_none() {
+            return Ok(());
+        }
+        let velocity = model.get(&sample.inputs, Q::MassCentreVelocity).values;
+        let moves = rate(model, &sample.inputs, Q::MassCentrePosition);
+        let material = |body: &hodograph_generator::model::mechanism::Body| {
+            matches!(model.mechanism.points[body.centre.0].place, Place::Material { .. })
+        };
+        let off = moves.iter().zip(&velocity).any(|(a, b)| (a - b).abs() > 1e-5 * (1.0 + b.abs()));
+        if off && !model.mechanism.bodies.iter().any(material) {
+            return Err(format!("the mass centre ({mass} kg) moves by {moves:?}, not {velocity:?}"));
+        }
+        Ok(())
+    });
+}
+
+/// Of a free body gravity changes the momentum, and nothing the angular momentum about the mass centre.
+#[test]
+fn a_free_body_keeps_its_angular_momentum() {
+    for name in ["free_box_corner", "free_box_quaternion"] {
+        let model = Model::load(name);
+        for sample in samples(&model, 6) {
+            let Sums { mass, .. } = sums(&model, &sample);
+            let spin = Vector3::from_vec(model.get(&sample.inputs, Q::CentralAngularMomentum).values);
+            let changes = Vector3::from_vec(rate(&model, &sample.inputs, Q::CentralAngularMomentum));
+            assert!(spin.norm() > 1e-3 && changes.norm() < 1e-6 * (1.0 + spin.norm()), "{name}: {changes}");
+            let fall = Vector3::from_vec(rate(&model, &sample.inputs, Q::Momentum)) / mass;
+            assert!((fall.norm() - 9.81).abs() < 0.2, "{name}: {fall}");
+        }
+    }
 }
 
 #[test]

@@ -6,7 +6,8 @@ use std::sync::{Arc, PoisonError, RwLock};
 use hodograph::{Contacts as _, Kind, Mechanism as _, StateError};
 use hodograph_generator::explain::{self, Format};
 use hodograph_generator::interpret::{Arguments, Prepared};
-use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
+use hodograph_generator::program::Quantity;
+use hodograph_generator::program::quantity::{Description, Entries, Extent};
 use hodograph_generator::artifact::{self, Loaded};
 use hodograph_generator::check;
 use hodograph_interpreter::InterpretedMechanism;
@@ -37,27 +38,6 @@ pub struct Mechanism {
     initial: [Vec<f64>; 3],
     /// parameters of every row, where these are not those of `inner` for all
     machines: Option<Machines>,
-}
-
-fn is_matrix(quantity: Quantity) -> bool {
-    use ContactQuantity::{DependentResponse, PartialVelocities, Response};
-    use Quantity as Q;
-    matches!(
-        quantity,
-        Q::MassMatrix
-            | Q::AccelerationsDerivatives
-            | Q::InverseDynamicsDerivatives
-            | Q::RatesDerivatives
-            | Q::ConfigurationJacobian
-            | Q::Orientation(_)
-            | Q::Contact(_, PartialVelocities | Response | DependentResponse)
-            | Q::Point(_, PointQuantity::Jacobian)
-    )
-}
-
-fn is_scalar(quantity: Quantity) -> bool {
-    use Quantity as Q;
-    matches!(quantity, Q::KineticEnergy | Q::PotentialEnergy | Q::Contact(_, ContactQuantity::Gap))
 }
 
 impl Mechanism {
@@ -117,12 +97,11 @@ impl Mechanism {
                 None,
             ));
         };
-        let shape = if is_matrix(found) {
-            vec![output.rows, output.columns]
-        } else if is_scalar(found) {
-            vec![]
-        } else {
-            vec![output.values.len()]
+        let Description { shape: [_, columns], entries, .. } = *found.description();
+        let shape = match (entries, columns) {
+            (Entries::Scalar, _) => vec![],
+            (_, Extent::Count(1)) => vec![output.values.len()],
+            _ => vec![output.rows, output.columns],
         };
         let routine = Arc::new(Routine {
             one: Prepared::new(self.inner.program(), self.inner.constants(), &[found]),
@@ -234,6 +213,7 @@ impl Mechanism {
             "dependent_speeds" => (Kind::DependentSpeed, &[]),
             "points" => (Kind::Point, &[]),
             "frames" => (Kind::Frame, &[]),
+            "quantities" => (Kind::Quantity, &[]),
             _ => (Kind::Contact, &[]),
         };
         let all = PyList::empty(py);

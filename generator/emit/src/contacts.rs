@@ -9,8 +9,8 @@ use super::record::number;
 use super::routine::Routine;
 use super::values::local;
 use hodograph_model::model::mechanism::{Law, Surface};
-use hodograph_program::program::Output;
-use hodograph_program::program::{ContactQuantity, Quantity};
+use hodograph_program::program::quantity::table::CONTACT;
+use hodograph_program::program::{ContactQuantity, Output, Quantity};
 
 impl Emitter<'_> {
     pub fn contact_output(&self, contact: usize, quantity: ContactQuantity) -> Option<&Output> {
@@ -62,43 +62,10 @@ impl Emitter<'_> {
 
     /// The routines of a contact but for its derivatives.
     pub fn contact_routines(&self, contact: usize) -> Vec<Routine> {
-        let queries = [
-            (
-                ContactQuantity::Gap,
-                "gap",
-                "Gap (distance of the striking point from what it strikes), in m, at",
-            ),
-            (
-                ContactQuantity::Velocity,
-                "contact_velocity",
-                "Velocity of the striking point relative to what is struck, along the contact basis (rows: normal, first, second), in m/s, at",
-            ),
-            (
-                ContactQuantity::PartialVelocities,
-                "partial_velocities",
-                "Partial velocities V_n, V_t, V_s of the relative velocity along the contact basis (rows) for the independent speeds (columns) at",
-            ),
-            (
-                ContactQuantity::Response,
-                "response",
-                "Response M^-1 V^T: change of the independent speeds (rows) per N s of impulse along the contact basis (columns), or of their rates per N of force, at",
-            ),
-            (
-                ContactQuantity::FreeAcceleration,
-                "free_acceleration",
-                "Free acceleration: time derivatives of the three components of the contact velocity (rows: normal, first, second) without contact forces and at constant named inputs, in m/s^2, at",
-            ),
-            (
-                ContactQuantity::Remainder,
-                "remainder_velocity",
-                "The part of the relative velocity that prescribed motion causes, along the contact basis, in m/s, at",
-            ),
-        ];
-        let queries = queries.into_iter().filter_map(|(quantity, prefix, docs)| {
+        let queries = CONTACT.iter().filter_map(|&(quantity, _)| {
             let output = self.contact_output(contact, quantity)?;
+            let (name, docs) = self.describe(output.quantity)?;
             let (result, value) = self.shaped(output);
-            let docs = format!("{docs} {}.", self.contact_words(contact));
-            let name = self.contact_method(prefix, contact);
             Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
         });
         let several = [

@@ -33,9 +33,9 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use hodograph_model::model::mechanism::Mechanism;
+use hodograph_program::program::Quantity;
 use hodograph_program::program::graph::Input;
 use hodograph_program::program::operation::{Operation, Stage, Value};
-use hodograph_program::program::{ContactQuantity, Quantity};
 use hodograph_program::program::{Guard, Program, fits};
 use record::Record;
 
@@ -224,7 +224,7 @@ impl<'a> Emitter<'a> {
             .outputs
             .iter()
             .map(|output| output.quantity)
-            .filter(|quantity| !takes_loads(*quantity))
+            .filter(|quantity| !quantity.description().takes.loads)
             .collect();
         let slice = self.program.slice(&kinematic);
         slice
@@ -284,21 +284,6 @@ impl<'a> Emitter<'a> {
             name = self.name,
         )
     }
-}
-
-/// Whether loads (and so named inputs) enter this quantity by definition.
-fn takes_loads(quantity: Quantity) -> bool {
-    matches!(
-        quantity,
-        Quantity::Forcing
-            | Quantity::Accelerations
-            | Quantity::DependentAccelerations
-            | Quantity::InverseDynamics
-            | Quantity::StateTangent
-            | Quantity::AccelerationsDerivatives
-            | Quantity::InverseDynamicsDerivatives
-            | Quantity::Contact(_, ContactQuantity::FreeAcceleration)
-    )
 }
 
 #[cfg(test)]

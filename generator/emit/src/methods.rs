@@ -11,8 +11,8 @@ use super::routine::Routine;
 use super::values::local;
 use crate::identifiers::prose;
 use hodograph_model::rust_names::snake_case;
-use hodograph_program::program::Output;
-use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
+use hodograph_program::program::quantity::Entries;
+use hodograph_program::program::{ContactQuantity, Output, Quantity};
 
 impl Emitter<'_> {
     /// All methods that do not belong to a contact.
@@ -26,6 +26,9 @@ impl Emitter<'_> {
     /// The routines that do not belong to a contact.
     pub fn routines(&self) -> Vec<Routine> {
         let described = |output: &Output| {
+            if matches!(output.quantity, Quantity::Contact(..)) {
+                return None;
+            }
             let (name, docs) = self.describe(output.quantity).filter(|_| !output.values.is_empty())?;
             let (result, value) = self.shaped(output);
             Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
@@ -127,19 +130,26 @@ impl Emitter<'_> {
             let name = record.name();
             (quote!(#name<T>), record.construct(&values))
         };
-        match output.quantity {
-            Quantity::CoordinateRates if values.len() == self.coordinates.len() => record(&self.coordinates),
-            Quantity::Accelerations if values.len() == self.speeds.len() => record(&self.speeds),
-            Quantity::DependentSpeeds | Quantity::DependentAccelerations
-                if values.len() == self.dependent.len() =>
-            {
-                record(&self.dependent)
-            }
-            Quantity::AccelerationsDerivatives | Quantity::InverseDynamicsDerivatives => {
-                self.value_and_derivatives(output)
-            }
-            _ if values.len() == 1 && is_scalar(output.quantity) => (quote!(T), quote!(#(#values)*)),
-            _ => self.matrix(output),
+        let entries = output.quantity.description().entries;
+        match self.record_of(output.quantity).filter(|record| record.len() == values.len()) {
+            Some(of) => record(of),
+            None if entries == Entries::ValueAndDerivatives => self.value_and_derivatives(output),
+            None if values.len() == 1 && entries == Entries::Scalar => (quote!(T), quote!(#(#values)*)),
+            None => self.matrix(output),
+        }
+    }
+
+    /// The record of which a quantity is one.
+    pub fn record_of(&self, quantity: Quantity) -> Option<&Record> {
+        match quantity.description().entries {
+            Entries::RatesOfCoordinates => Some(&self.coordinates),
+            Entries::RatesOfSpeeds => Some(&self.speeds),
+            Entries::DependentSpeeds | Entries::RatesOfDependentSpeeds => Some(&self.dependent),
+            Entries::Scalar
+            | Entries::Numbers
+            | Entries::Symmetric
+            | Entries::ValueAndDerivatives
+            | Entries::Lists => None,
         }
     }
 
@@ -168,111 +178,19 @@ impl Emitter<'_> {
         (shape, quote!(#krate::nalgebra::SMatrix::from(#data)))
     }
 
-    /// Name and documentation of the method of a quantity; contacts have their own.
-    fn describe(&self, quantity: Quantity) -> Option<(String, String)> {
-        let plain = |name: &str, docs: &str| Some((name.to_string(), docs.to_string()));
-        match quantity {
-            Quantity::CoordinateRates => plain(
-                "coordinate_rates",
-                "Rates q' of the generalized coordinates, in their units per second.",
-            ),
-            Quantity::DependentSpeeds => plain(
-                "dependent_speeds",
-                "Dependent generalized speeds, which the velocity constraints determine from the independent ones.",
-            ),
-            Quantity::MassMatrix => plain(
-                "mass_matrix",
-                "Mass matrix M of the independent speeds (rows and columns in their order), symmetric and positive definite: M u' = forcing, and u.M u/2 is in J.",
-            ),
-            Quantity::Forcing => plain(
-                "forcing",
-                "Forcing, the right side of M u' = forcing: loads, and inertia terms without u'. An entry times its speed is in W.",
-            ),
-            Quantity::Accelerations => plain(
-                "accelerations",
-                "Rates u' of the independent speeds without contact forces, in the units of the speeds per second.",
-            ),
-            Quantity::DependentAccelerations => plain(
-                "dependent_accelerations",
-                "Rates of the dependent speeds without contact forces, in the units of the speeds per second.",
-            ),
-            Quantity::InverseDynamics => plain(
-                "inverse_dynamics",
-                "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing. An entry times its speed is in W.",
-            ),
-            Quantity::StateTangent => plain(
-                "state_tangent",
-                "Derivative of the rates of the independent coordinates and speeds along a direction: a linear combination of the columns of `linearise`.",
-            ),
-            Quantity::AccelerationsDerivatives => plain(
-                "accelerations_derivatives",
-                "Rates u' of the independent speeds and their derivatives. Dependent coordinates and speeds follow the independent ones; parameters and \
-                 time are constant. The value is that of `accelerations` up to rounding.",
-            ),
-            Quantity::InverseDynamicsDerivatives => plain(
-                "inverse_dynamics_derivatives",
-                "The value of `inverse_dynamics` (up to rounding) and its derivatives at constant rates `acceleration` of the independent speeds; its derivative with \
-                 respect to these rates is `mass_matrix`. Dependent coordinates and speeds follow the independent ones; parameters and time are constant. At zero \
-                 rates the value is minus `forcing`.",
-            ),
-            Quantity::RatesDerivatives => plain(
-                "coordinate_rates_derivatives",
-                "Derivatives of the rates of the independent coordinates (rows) with respect to the independent coordinates, the independent speeds and the named inputs (columns).",
-            ),
-            Quantity::KineticEnergy => {
-                plain("kinetic_energy", "Kinetic energy of the motion relative to N, in J.")
-            }
-            Quantity::PotentialEnergy => {
-                plain("potential_energy", "Potential energy of gravity and springs, in J.")
-            }
-            Quantity::ConfigurationResidual => plain(
-                "configuration_residual",
-                "Left side minus right side of the configuration equations; zero where the loops are closed.",
-            ),
-            Quantity::ConfigurationJacobian => plain(
-                "configuration_jacobian",
-                "Derivatives of the configuration equations (rows) with respect to the dependent coordinates (columns).",
-            ),
-            Quantity::ConstraintResidual => plain(
-                "constraint_residual",
-                "Left side minus right side of the velocity constraints with the dependent speeds inserted; zero up to rounding.",
-            ),
-            Quantity::Contact(..) => None,
-            Quantity::Point(index, quantity) => {
-                let point = self.mechanism.points.get(index as usize)?;
-                let (name, docs) = (snake_case(&point.name), about(&point.name, &point.docs));
-                Some(match quantity {
-                    PointQuantity::Position => (
-                        format!("position_{name}"),
-                        format!("Position of {docs} from O along N.x, N.y, N.z, in m."),
-                    ),
-                    PointQuantity::Velocity => (
-                        format!("velocity_{name}"),
-                        format!("Velocity of {docs} in N along N.x, N.y, N.z, in m/s."),
-                    ),
-                    PointQuantity::Acceleration => (
-                        format!("acceleration_{name}"),
-                        format!(
-                            "Acceleration of {docs} in N along N.x, N.y, N.z, in m/s^2, for given rates `acceleration` of the independent speeds, such as those of `accelerations` or those under contact forces."
-                        ),
-                    ),
-                    PointQuantity::Jacobian => (
-                        format!("jacobian_{name}"),
-                        format!(
-                            "Partial velocities of {docs} along N.x, N.y, N.z (rows) for the independent speeds (columns)."
-                        ),
-                    ),
-                })
-            }
+    /// Name and documentation of the method of a quantity, where it has both.
+    pub fn describe(&self, quantity: Quantity) -> Option<(String, String)> {
+        let docs = quantity.description().docs;
+        let m = self.mechanism;
+        let words = match quantity {
+            Quantity::Contact(index, _) => self.contact_words(index as usize),
+            Quantity::Point(index, _) => m.points.get(index as usize).map(|at| about(&at.name, &at.docs))?,
             Quantity::Orientation(index) => {
-                let frame = self.mechanism.frames.get(index as usize)?;
-                let docs = about(&frame.name, &frame.docs);
-                Some((
-                    format!("orientation_{}", snake_case(&frame.name)),
-                    format!("Orientation of {docs}: the columns are its axes x, y, z along N.x, N.y, N.z."),
-                ))
+                m.frames.get(index as usize).map(|at| about(&at.name, &at.docs))?
             }
-        }
+            _ => String::new(),
+        };
+        Some((quantity.method(m).filter(|_| !docs.is_empty())?, docs.replacen("{}", &words, 1)))
     }
 
     /// Name of a method of a contact.
@@ -290,9 +208,4 @@ pub fn about(name: &str, docs: &str) -> String {
     let docs = paragraph.join(" ");
     let docs = docs.trim_end_matches('.');
     if docs.is_empty() { format!("`{name}`") } else { format!("`{name}` ({docs})") }
-}
-
-fn is_scalar(quantity: Quantity) -> bool {
-    use hodograph_program::program::ContactQuantity::Gap;
-    matches!(quantity, Quantity::KineticEnergy | Quantity::PotentialEnergy | Quantity::Contact(_, Gap))
 }

@@ -12,6 +12,7 @@ use hodograph_program::program::Guard;
 use hodograph_program::program::Quantity;
 use hodograph_program::program::graph::Input;
 use hodograph_program::program::operation::{Operation, Stage, Value};
+use hodograph_program::program::quantity::Takes;
 
 /// A method that computes quantities and answers with an expression made of their values.
 pub struct Routine {
@@ -119,47 +120,22 @@ impl Emitter<'_> {
 
     /// The arguments of a routine for these quantities after `&self`.
     pub fn arguments(&self, quantities: &[Quantity]) -> Arguments {
-        let loads = quantities.iter().any(|&quantity| super::takes_loads(quantity));
+        let takes =
+            |of: fn(&Takes) -> bool| quantities.iter().any(|quantity| of(&quantity.description().takes));
         let velocity = quantities.iter().any(|&quantity| self.takes_speeds(quantity));
         Arguments {
             time: self.uses_time,
             coordinates: !self.coordinates.is_empty(),
             speeds: velocity,
-            accelerations: quantities.iter().any(|quantity| {
-                matches!(
-                    quantity,
-                    Quantity::InverseDynamics
-                        | Quantity::InverseDynamicsDerivatives
-                        | Quantity::Point(_, hodograph_program::program::PointQuantity::Acceleration)
-                )
-            }),
-            inputs: !self.inputs.is_empty() && (loads || self.kinematic_inputs),
-            tangent: quantities.iter().any(|quantity| {
-                matches!(
-                    quantity,
-                    Quantity::StateTangent
-                        | Quantity::Contact(_, hodograph_program::program::ContactQuantity::Tangent)
-                )
-            }),
+            accelerations: takes(|takes| takes.accelerations),
+            inputs: !self.inputs.is_empty() && (takes(|takes| takes.loads) || self.kinematic_inputs),
+            tangent: takes(|takes| takes.tangent),
         }
     }
 
     /// Whether the quantity depends on speeds, by definition or in fact.
     fn takes_speeds(&self, quantity: Quantity) -> bool {
-        use hodograph_program::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
-        let by_definition = match quantity {
-            Q::MassMatrix
-            | Q::PotentialEnergy
-            | Q::ConfigurationResidual
-            | Q::ConfigurationJacobian
-            | Q::Orientation(_) => false,
-            Q::Contact(_, C::Velocity | C::FreeAcceleration | C::Tangent | C::Derivatives) => true,
-            Q::Contact(..) => false,
-            Q::Point(_, P::Velocity | P::Acceleration) => true,
-            Q::Point(..) => false,
-            _ => true,
-        };
-        by_definition || self.uses(quantity, |input| matches!(input, Input::Speed(_)))
+        quantity.description().takes.speeds || self.uses(quantity, |input| matches!(input, Input::Speed(_)))
     }
 
     fn uses(&self, quantity: Quantity, which: impl Fn(Input) -> bool) -> bool {

@@ -14,16 +14,6 @@ use super::record::Record;
 use super::routine::Arguments;
 use hodograph_program::program::Quantity;
 
-/// What a method of the traits writes, and where.
-struct Written {
-    /// the type's own method
-    method: Ident,
-    /// the slice that receives the result
-    slice: Ident,
-    /// what is in the slice, for the message about its length
-    what: &'static str,
-}
-
 impl Emitter<'_> {
     /// Both implementations, with the names and units that they tell.
     pub fn traits(&self) -> TokenStream {
@@ -39,6 +29,7 @@ impl Emitter<'_> {
         let parameters = self.parameters_by_slices();
         let quantities = self.quantities_by_slices();
         let configuration = self.configuration_by_slices();
+        let named = self.named_by_slices();
         let geometry = self.geometry_by_slices();
         quote! {
             /// The methods of the same names, with slices.
@@ -47,6 +38,7 @@ impl Emitter<'_> {
                 #parameters
                 #(#quantities)*
                 #configuration
+                #named
                 #geometry
             }
         }
@@ -76,8 +68,14 @@ impl Emitter<'_> {
         }
     }
 
-    /// The type's own method, called with what a `State` gives.
-    fn own(&self, method: &Ident, quantities: &[Quantity]) -> (TokenStream, TokenStream) {
+    /// The type's own method of a quantity, called with what a `State` gives.
+    fn own(&self, quantity: Quantity) -> (TokenStream, TokenStream) {
+        let method = crate::identifiers::ident(&quantity.method(self.mechanism).unwrap_or_default());
+        self.own_method(&method, &[quantity])
+    }
+
+    /// The type's own method that computes quantities, called with what a `State` gives.
+    fn own_method(&self, method: &Ident, quantities: &[Quantity]) -> (TokenStream, TokenStream) {
         let arguments = self.arguments(quantities);
         (self.unpack(arguments), {
             let passed = self.passed(arguments);
@@ -85,28 +83,23 @@ impl Emitter<'_> {
         })
     }
 
-    /// The size of a record, where a quantity is one.
-    fn record_of(&self, quantity: Quantity) -> Option<&Record> {
-        match quantity {
-            Quantity::CoordinateRates => Some(&self.coordinates),
-            Quantity::Accelerations => Some(&self.speeds),
-            Quantity::DependentSpeeds | Quantity::DependentAccelerations => Some(&self.dependent),
-            _ => None,
-        }
-    }
-
     /// The statements that write a quantity into a slice; where the mechanism has none, the slice must be
     /// empty.
-    fn written(&self, quantity: Quantity, to: &Written) -> TokenStream {
+    fn written(&self, quantity: Quantity) -> TokenStream {
+        let (_, what) = quantity.description().slice;
+        self.written_to(quantity, &slice_of(quantity), what)
+    }
+
+    /// [`Self::written`], into that slice; `what` is in it.
+    fn written_to(&self, quantity: Quantity, slice: &Ident, what: &str) -> TokenStream {
         let krate = self.krate;
-        let Written { method, slice, what } = to;
         let Some(output) = self.program.output(quantity).filter(|output| !output.values.is_empty()) else {
             return quote! {
                 DESCRIPTION.check(state)?;
                 #krate::generated::check_length(#slice, 0, #what)
             };
         };
-        let (unpack, call) = self.own(method, &[quantity]);
+        let (unpack, call) = self.own(quantity);
         if quantity == Quantity::MassMatrix && self.answers_in_place(&[quantity]) {
             // Computed here: the method's answer would be stored in one place and then in the other.
             let (compute, (_, value)) = (self.compute(&[quantity]), self.shaped(output));
@@ -171,4 +164,9 @@ impl Emitter<'_> {
             ::core::result::Result::Err(::core::convert::From::from(#krate::StateError::Undefined { what: #what }))
         }
     }
+}
+
+/// The slice into which the traits write a quantity.
+fn slice_of(quantity: Quantity) -> Ident {
+    format_ident!("{}", quantity.description().slice.0)
 }

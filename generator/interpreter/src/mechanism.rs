@@ -36,6 +36,14 @@ impl InterpretedMechanism {
         }
     }
 
+    /// The quantities that the program has and that are offered by name.
+    fn named(&self) -> impl Iterator<Item = Quantity> + '_ {
+        let has = |quantity: &Quantity| {
+            self.program().output(*quantity).is_some_and(|output| !output.values.is_empty())
+        };
+        Quantity::named().filter(has)
+    }
+
     /// Whether there is one of this number.
     pub(crate) fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
         if index < Mechanism::count(self, kind) { Ok(()) } else { Err(StateError::Missing { kind, index }) }
@@ -72,6 +80,7 @@ impl Mechanism for InterpretedMechanism {
             Kind::Point => self.model().points.len(),
             Kind::Frame => self.model().frames.len(),
             Kind::Contact => self.model().contacts.len(),
+            Kind::Quantity => self.named().count(),
             kind => self.declared(kind).count(),
         }
     }
@@ -82,6 +91,10 @@ impl Mechanism for InterpretedMechanism {
             Kind::Point => model.points.get(index).map(|point| named(&point.name)),
             Kind::Frame => model.frames.get(index).map(|frame| named(&frame.name)),
             Kind::Contact => model.contacts.get(index).map(|contact| named(&contact.name)),
+            Kind::Quantity => {
+                let row = self.named().nth(index)?.description();
+                Some(Component { name: row.word, unit: row.unit })
+            }
             kind => self.declared(kind).nth(index).map(described),
         }
     }
@@ -180,6 +193,18 @@ impl Mechanism for InterpretedMechanism {
         self.write(Request::Whole(Quantity::ConfigurationResidual), state, &[], residual, what)?;
         let what = "the derivatives of the configuration equations";
         self.write(Request::Whole(Quantity::ConfigurationJacobian), state, &[], jacobian, what)
+    }
+
+    fn quantity_shape(&self, quantity: usize) -> Option<(usize, usize)> {
+        let output = self.program().output(self.named().nth(quantity)?)?;
+        Some((output.rows, output.columns))
+    }
+
+    fn quantity(&self, quantity: usize, state: &State<'_>, values: &mut [f64]) -> Result<(), StateError> {
+        self.exists(Kind::Quantity, quantity)?;
+        let missing = StateError::Missing { kind: Kind::Quantity, index: quantity };
+        let quantity = self.named().nth(quantity).ok_or(missing)?;
+        self.write(Request::Whole(quantity), state, &[], values, quantity.description().word)
     }
 
     fn position(&self, point: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {

@@ -6,26 +6,8 @@ use std::sync::{Arc, OnceLock, PoisonError, RwLock};
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_program::interpret::{Constants, Prepared};
 use hodograph_program::program::Program;
+use hodograph_program::program::quantity::table::{POINT, WHOLE};
 use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
-
-/// Quantities of the whole mechanism.
-const WHOLE: [Quantity; 11] = [
-    Quantity::CoordinateRates,
-    Quantity::Accelerations,
-    Quantity::DependentSpeeds,
-    Quantity::DependentAccelerations,
-    Quantity::MassMatrix,
-    Quantity::Forcing,
-    Quantity::InverseDynamics,
-    Quantity::KineticEnergy,
-    Quantity::PotentialEnergy,
-    Quantity::ConfigurationResidual,
-    Quantity::ConfigurationJacobian,
-];
-
-/// Quantities of a point.
-const POINT: [PointQuantity; 4] =
-    [PointQuantity::Position, PointQuantity::Velocity, PointQuantity::Jacobian, PointQuantity::Acceleration];
 
 /// What is asked of a contact.
 const CONTACT: [OfContact; 8] = [
@@ -200,18 +182,21 @@ impl Routines {
         let of_points = WHOLE.len();
         let of_frames = of_points + POINT.len() * self.points;
         let of_contacts = of_frames + self.frames;
-        fn position<K: PartialEq>(table: &[K], key: K) -> usize {
-            table.iter().position(|known| *known == key).unwrap_or(0)
-        }
         match request {
-            Request::Whole(quantity) => position(&WHOLE, quantity),
-            Request::Point(point, quantity) => of_points + POINT.len() * point + position(&POINT, quantity),
+            Request::Whole(quantity) => row(WHOLE, quantity),
+            Request::Point(point, quantity) => of_points + POINT.len() * point + row(POINT, quantity),
             Request::Frame(frame) => of_frames + frame,
             Request::Contact(contact, what) => {
-                of_contacts + CONTACT.len() * contact + position(&CONTACT, what)
+                let place = CONTACT.iter().position(|known| *known == what).unwrap_or(0);
+                of_contacts + CONTACT.len() * contact + place
             }
         }
     }
+}
+
+/// The place of a quantity in a table.
+fn row<K: PartialEq, D>(table: &[(K, D)], quantity: K) -> usize {
+    table.iter().position(|(known, _)| *known == quantity).unwrap_or(0)
 }
 
 #[cfg(test)]
@@ -222,8 +207,10 @@ mod tests {
     #[test]
     fn requests_have_cells_of_their_own() {
         let routines = Routines { points: 3, frames: 2, cells: Vec::new(), sets: Sets::default() };
-        let mut requests: Vec<Request> = WHOLE.map(Request::Whole).to_vec();
-        requests.extend((0..3).flat_map(|point| POINT.map(|quantity| Request::Point(point, quantity))));
+        let mut requests: Vec<Request> =
+            WHOLE.iter().map(|(quantity, _)| Request::Whole(*quantity)).collect();
+        let of_point = |point| POINT.iter().map(move |(quantity, _)| Request::Point(point, *quantity));
+        requests.extend((0..3).flat_map(of_point));
         requests.extend((0..2).map(Request::Frame));
         requests.extend((0..2).flat_map(|contact| CONTACT.map(|what| Request::Contact(contact, what))));
         let places: Vec<usize> = requests.iter().map(|&request| routines.place(request)).collect();

@@ -55,6 +55,10 @@ pub struct Resolved<T: nalgebra::Scalar> {
 
 /// Cosine and sine of the angle from `first` to t. t lies along the slip of approach; without slip it is the
 /// projection of the first of N.x, N.y, N.z that is not within 30 degrees of the normal.
+///
+/// Slip of a collision is zero where both of its components are: no bound decides, and the flags of
+/// [`crate::Sensitivity`] say where rounding may matter. Contact that lasts has a bound of rounding
+/// ([`super::slip_noise`]), because there the slip selects a mode.
 #[inline(always)]
 pub fn contact_axes<T: Scalar>(contact: &Contact<T>) -> (T, T) {
     let along = |direction: Vector2<T>| {
@@ -110,7 +114,7 @@ pub fn resolve_inlined<L: KnownLaw, T: Scalar>(
 
 /// Reduced matrix and velocity of approach along n, t and s, t being the direction of slip.
 #[inline(always)]
-fn along_slip<T: Scalar>(contact: &Contact<T>, (cos, sin): (T, T)) -> (ReducedMatrix<T>, Vector3<T>) {
+pub fn along_slip<T: Scalar>(contact: &Contact<T>, (cos, sin): (T, T)) -> (ReducedMatrix<T>, Vector3<T>) {
     let Contact { velocity, .. } = contact;
     let reduced = contact.reduced.turned(cos, sin);
     let slip = (velocity.y * velocity.y + velocity.z * velocity.z).sqrt();
@@ -166,13 +170,18 @@ pub fn resolve_structured_inlined<S: Structure, L: KnownLaw, T: Scalar>(
     Ok(from_basis(contact, axes, impact))
 }
 
+/// The components along n, t and s of a vector along the contact basis.
+#[inline(always)]
+pub fn along_axes<T: Scalar>(v: &Vector3<T>, (cos, sin): (T, T)) -> Vector3<T> {
+    Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin)
+}
+
 /// Converts an outcome along the contact basis.
 #[inline(always)]
 fn from_basis<T: Scalar>(contact: &Contact<T>, (cos, sin): (T, T), mut impact: Impact<T>) -> Resolved<T> {
-    let turned = |v: &Vector3<T>| Vector3::new(v.x, v.y * cos + v.z * sin, v.z * cos - v.y * sin);
-    impact.impulse = turned(&impact.impulse);
-    impact.velocity = turned(&impact.velocity);
-    let approach = turned(&contact.velocity);
+    impact.impulse = along_axes(&impact.impulse, (cos, sin));
+    impact.velocity = along_axes(&impact.velocity, (cos, sin));
+    let approach = along_axes(&contact.velocity, (cos, sin));
     resolved(contact, (cos, sin), contact.reduced.turned(cos, sin), approach, impact)
 }
 

@@ -26,7 +26,7 @@ pub use checks::*;
 #[doc(hidden)]
 pub use closed::{closed_contact, kept_contact, slip_noise};
 pub use contact::{
-    Contact, Resolved, contact_axes, resolve, resolve_inlined, resolve_structured,
+    Contact, Resolved, along_axes, along_slip, contact_axes, resolve, resolve_inlined, resolve_structured,
     resolve_structured_inlined, resolve_without_collision,
 };
 #[doc(hidden)]

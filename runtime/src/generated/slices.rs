@@ -21,6 +21,8 @@ pub struct Description {
     pub points: &'static [Component<'static>],
     pub frames: &'static [Component<'static>],
     pub contacts: &'static [Component<'static>],
+    /// what `Mechanism::quantity` computes
+    pub quantities: &'static [Component<'static>],
     /// the numbers of the coordinates of each quaternion
     pub quaternions: &'static [[usize; 4]],
 }
@@ -44,6 +46,7 @@ impl Description {
             Kind::Point => self.points,
             Kind::Frame => self.frames,
             Kind::Contact => self.contacts,
+            Kind::Quantity => self.quantities,
         }
     }
 

@@ -27,6 +27,9 @@ pub enum Kind {
     Frame,
     /// contacts
     Contact,
+    /// quantities of the whole mechanism that [`Mechanism::quantity`](crate::Mechanism::quantity) computes: the
+    /// momenta, and position and velocity of the mass centre, as far as the mechanism has them
+    Quantity,
 }
 
 impl Kind {
@@ -42,6 +45,7 @@ impl Kind {
             Self::Point => "point",
             Self::Frame => "frame",
             Self::Contact => "contact",
+            Self::Quantity => "quantity",
         }
     }
 }

@@ -3,9 +3,10 @@
 
 pub mod random;
 
+use hodograph::generated::{Contact, Resolved, resolve, resolve_without_collision};
 use hodograph::{
-    CollisionError, CollisionOutcome, Component, ContactState, Contacts, Kind, Law, Mechanism,
-    ParameterError, ReducedMatrix, State, StateError, Surface, solve,
+    CollisionError, CollisionOutcome, Component, ContactState, Contacts, ImpactError, Kind, Law, Mechanism,
+    ParameterError, ReducedMatrix, State, StateError, Surface,
 };
 use hodograph_simulation::{Event, EventKind, Options, Progress, Simulation};
 use nalgebra::{Matrix3, Vector3};
@@ -81,6 +82,37 @@ impl Body {
 
     fn inverse(&self) -> [f64; 3] {
         [1.0 / self.mass, 1.0 / self.mass, 1.0 / self.inertia]
+    }
+
+    /// An impact that `resolve` solves, and the speeds after it.
+    fn struck(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        speeds: &mut [f64],
+        resolve: impl FnOnce(&Contact<f64>) -> Result<Resolved<f64>, ImpactError<f64>>,
+    ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
+        let ContactState { normal, first, second, velocity, reduced, .. } =
+            self.contact_state(contact, state)?;
+        let remainder = Vector3::new(0.0, -self.lines[contact].belt, 0.0);
+        let prescribed_work = Vector3::zeros();
+        let hit = resolve(&Contact { normal, first, second, velocity, reduced, remainder, prescribed_work })?;
+        let mut response = [0.0; 9];
+        self.response(contact, state, &mut response)?;
+        speeds.copy_from_slice(state.speeds);
+        for (speed, row) in speeds.iter_mut().zip(response.chunks(3)) {
+            *speed += row[0] * hit.impulse.x + row[1] * hit.impulse.y;
+        }
+        Ok(CollisionOutcome {
+            normal,
+            tangent: hit.tangent,
+            binormal: hit.binormal,
+            approach: hit.approach,
+            reduced: hit.reduced,
+            impulse_on_point: hit.impulse_on_point,
+            energy_change: hit.energy_change,
+            impact: hit.impact,
+        })
     }
 }
 
@@ -240,23 +272,16 @@ impl Contacts<f64> for Body {
         surface: &Surface<f64>,
         speeds: &mut [f64],
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
-        let here = self.contact_state(contact, state)?;
-        let impact = solve(&here.reduced, &here.velocity, surface)?;
-        let mut response = [0.0; 9];
-        self.response(contact, state, &mut response)?;
-        for (speed, row) in speeds.iter_mut().zip(response.chunks(3)) {
-            *speed += row[0] * impact.impulse.x + row[1] * impact.impulse.y;
-        }
-        Ok(CollisionOutcome {
-            normal: here.normal,
-            tangent: here.first,
-            binormal: here.second,
-            approach: here.velocity,
-            reduced: here.reduced,
-            impulse_on_point: here.normal * impact.impulse.x + here.first * impact.impulse.y,
-            energy_change: impact.contact_work,
-            impact,
-        })
+        self.struck(contact, state, speeds, |contact| resolve(contact, surface))
+    }
+    fn impact_without_collision(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        surface: &Surface<f64>,
+        speeds: &mut [f64],
+    ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
+        self.struck(contact, state, speeds, |contact| resolve_without_collision(contact, surface))
     }
 }
 

@@ -5,8 +5,7 @@ use hodograph::nalgebra::SMatrix;
 use hodograph::{Contacts, Path, StateError, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::program::Inputs;
-use hodograph_generator::program::{ContactQuantity, PointQuantity, Quantity};
-use hodograph_generator::rust_names::snake_case;
+use hodograph_generator::program::Quantity;
 use num_dual::Dual64;
 
 /// An emitted module. Matrices are by rows.
@@ -35,52 +34,7 @@ impl dyn Emitted + '_ {
 
 /// The name of the routine of a quantity. Bases and responses of contacts have none: collisions use them.
 pub fn routine(mechanism: &Mechanism, quantity: Quantity) -> Option<String> {
-    let plain = match quantity {
-        Quantity::CoordinateRates => "coordinate_rates",
-        Quantity::DependentSpeeds => "dependent_speeds",
-        Quantity::MassMatrix => "mass_matrix",
-        Quantity::Forcing => "forcing",
-        Quantity::Accelerations => "accelerations",
-        Quantity::DependentAccelerations => "dependent_accelerations",
-        Quantity::InverseDynamics => "inverse_dynamics",
-        Quantity::StateTangent => "state_tangent",
-        Quantity::AccelerationsDerivatives => "accelerations_derivatives",
-        Quantity::InverseDynamicsDerivatives => "inverse_dynamics_derivatives",
-        Quantity::RatesDerivatives => "coordinate_rates_derivatives",
-        Quantity::KineticEnergy => "kinetic_energy",
-        Quantity::PotentialEnergy => "potential_energy",
-        Quantity::ConfigurationResidual => "configuration_residual",
-        Quantity::ConfigurationJacobian => "configuration_jacobian",
-        Quantity::ConstraintResidual => "constraint_residual",
-        Quantity::Contact(index, quantity) => {
-            let prefix = match quantity {
-                ContactQuantity::Gap => "gap",
-                ContactQuantity::Velocity => "contact_velocity",
-                ContactQuantity::PartialVelocities => "partial_velocities",
-                ContactQuantity::FreeAcceleration => "free_acceleration",
-                ContactQuantity::Response => "response",
-                ContactQuantity::Remainder => "remainder_velocity",
-                ContactQuantity::Reduced => "reduced_matrix",
-                ContactQuantity::Tangent => "contact_tangent",
-                ContactQuantity::Derivatives => "contact_derivatives",
-                _ => return None,
-            };
-            return Some(format!("{prefix}_{}", snake_case(&mechanism.contacts[index as usize].name)));
-        }
-        Quantity::Point(index, quantity) => {
-            let prefix = match quantity {
-                PointQuantity::Position => "position",
-                PointQuantity::Velocity => "velocity",
-                PointQuantity::Jacobian => "jacobian",
-                PointQuantity::Acceleration => "acceleration",
-            };
-            return Some(format!("{prefix}_{}", snake_case(&mechanism.points[index as usize].name)));
-        }
-        Quantity::Orientation(index) => {
-            return Some(format!("orientation_{}", snake_case(&mechanism.frames[index as usize].name)));
-        }
-    };
-    Some(plain.to_owned())
+    quantity.method(mechanism)
 }
 
 /// A solved collision.

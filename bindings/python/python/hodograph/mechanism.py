@@ -68,6 +68,10 @@ class Mechanism(_native.Mechanism):
     frames = property(lambda self: [name for name, *_ in self._describe("frames")], doc="Names of frames.")
     contacts = property(lambda self: [name for name, *_ in self._describe("contacts")], doc="Names of contacts.")
 
+    quantities = property(
+        lambda self: {name: unit for name, unit, _ in self._describe("quantities")}, doc="Names and units for :meth:`quantity`."
+    )
+
     def _quantities(self, kind):
         return [Quantity(*entry) for entry in self._describe(kind)]
 
@@ -172,6 +176,14 @@ class Mechanism(_native.Mechanism):
     def potential_energy(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):
         """Potential energy of gravity and springs, J."""
         return self._evaluate("potential_energy", q, u, inputs, time, errors)
+
+    def quantity(self, name, q=None, u=None, inputs=None, time=None, *, errors="raise"):
+        """A quantity of the whole mechanism by its name, one of :attr:`quantities`, along N.x, N.y, N.z: ``momentum``, ``angular_momentum`` (about O),
+        ``central_angular_momentum`` (about the mass centre), ``mass_centre_position``, ``mass_centre_velocity``; (3,) or (k, 3)."""
+        known = self.quantities
+        if name not in known:
+            raise _unknown("quantity", str(name), known)
+        return self._evaluate(name, q, u, inputs, time, errors)
 
     def position(self, point, q=None, u=None, inputs=None, time=None, *, errors="raise"):
         """Position of a point from O along N.x, N.y, N.z, m, (3,) or (k, 3)."""

@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let (mut collision, found) = collide(&machine, &state, index, &budget)?;
         let asked = arguments.characteristics.form;
         let of_paper =
-            asked.map(|_| characteristics_of(&found.reduced.into(), &found.slip, &surface)).transpose()?;
+            asked.map(|_| characteristics_of(&found.reduced, &found.approach, &surface)).transpose()?;
         collision.answer.characteristics = of_paper;
         Ok(Solved { collision, index, surface, speeds: state.speeds })
     };

@@ -204,5 +204,5 @@ fn collision(arguments: &Arguments) -> Outcome<Drawn> {
     let contact = Contact::new(&machine.evaluate(&state, &wanted)?, index, &state.speeds);
     let mechanism = &machine.mechanism;
     let title = format!("{}, {}, ", mechanism.name, mechanism.contacts[index].name);
-    Ok(Drawn { title, matrix: contact.reduced.into(), velocity: contact.slip.into() })
+    Ok(Drawn { title, matrix: contact.reduced, velocity: contact.slip.into() })
 }

@@ -1,11 +1,10 @@
 //! Evaluates a collision of a model in a state.
 
-use hodograph::{Budgeted, ReducedMatrix};
+use hodograph::{Budgeted, CollisionOutcome, Contacts, Mechanism};
 use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde::Serialize;
 
 use super::Machine;
-use super::contact::{self, Contact};
 use super::report::{Named, named};
 use crate::json::Failure;
 use crate::json::answer::Answer;
@@ -23,7 +22,8 @@ pub struct Collision<'a> {
     pub kinetic_energy_change: f64,
 }
 
-/// Solves the collision of a contact; also the contact.
+/// Solves the collision of a contact, by the trait that simulations and generated modules have too; also its
+/// outcome.
 ///
 /// # Errors
 ///
@@ -33,35 +33,22 @@ pub fn collide<'a>(
     state: &State,
     index: usize,
     surface: &Budgeted<f64>,
-) -> Result<(Collision<'a>, Contact), Failure> {
-    let more =
-        [ContactQuantity::Response, ContactQuantity::DependentResponse, ContactQuantity::PrescribedWork];
-    let of_contact = contact::QUANTITIES.into_iter().chain(more);
-    let mut wanted: Vec<Quantity> =
-        of_contact.map(|quantity| Quantity::Contact(index as u32, quantity)).collect();
-    wanted.extend([Quantity::DependentSpeeds, Quantity::MassMatrix]);
-    let numbers = machine.evaluate(state, &wanted)?;
-    let contact = Contact::new(&numbers, index, &state.speeds);
-    let impact = hodograph::solve(&ReducedMatrix::from(contact.reduced), &contact.slip, surface)?;
-    // (12a), for the dependent speeds too
-    let impulse = contact.in_basis(&impact.impulse);
-    let responses = more[..2].iter().flat_map(|&quantity| numbers.of_contact(index, quantity).chunks(3));
-    let before = state.speeds.iter().chain(numbers.get(Quantity::DependentSpeeds));
-    let after = before.zip(responses).map(|(speed, response)| {
-        speed + response.iter().zip(impulse.iter()).map(|(response, impulse)| response * impulse).sum::<f64>()
-    });
-    // (24): the contact's work, less what prescribed motion at the contact takes, and what it does in the
-    // bodies
-    let prescribed: f64 = numbers
-        .three(index, ContactQuantity::PrescribedWork)
-        .iter()
-        .zip(impulse.iter())
-        .map(|(a, b)| a * b)
-        .sum();
+) -> Result<(Collision<'a>, CollisionOutcome<f64>), Failure> {
+    // A state that has no equations is refused with the place of the fault.
+    let response = Quantity::Contact(index as u32, ContactQuantity::Response);
+    machine.evaluate(state, &[Quantity::MassMatrix, Quantity::DependentSpeeds, response])?;
+    let mechanism = machine.interpreted(state)?;
+    let before = state.borrowed();
+    let mut after = state.speeds.clone();
+    let outcome = mechanism.collide_within(index, &before, surface, &mut after)?;
+    let answer = Answer::try_from(&outcome.impact)?;
+    let mut dependent = vec![0.0; machine.mechanism.speeds.len() - after.len()];
+    mechanism.dependent_speeds(&hodograph::State { speeds: &after, ..before }, &mut dependent)?;
+    let speeds = after.into_iter().chain(dependent);
     let collision = Collision {
-        answer: Answer::try_from(&impact)?,
-        u_after: named(&machine.mechanism.speeds, after),
-        kinetic_energy_change: impact.contact_work - contact.remainder.dot(&impact.impulse) + prescribed,
+        answer,
+        u_after: named(&machine.mechanism.speeds, speeds.map(|speed| speed + 0.0)),
+        kinetic_energy_change: outcome.energy_change + 0.0,
     };
-    Ok((collision, contact))
+    Ok((collision, outcome))
 }

@@ -43,6 +43,9 @@ pub struct Report<'a> {
     pub(super) qdot: Named<'a, f64>,
     pub(super) dependent: Named<'a, f64>,
     pub(super) kinetic_energy: f64,
+    /// those that are offered by name, in the order of the table of quantities
+    #[serde(flatten)]
+    pub(super) named: Named<'a, Vec<f64>>,
     pub(super) contacts: Named<'a, ContactReport>,
 }
 
@@ -104,7 +107,7 @@ impl From<Contact> for ContactReport {
             velocity: plain(contact.velocity),
             partials: contact.partials.map(|row| row.into_iter().map(|number| number + 0.0).collect()),
             remainder: plain(contact.remainder),
-            reduced: contact.reduced.map(|number| number + 0.0),
+            reduced: contact.reduced.into(),
             v: plain(contact.slip),
             characteristics: None,
         }
@@ -131,7 +134,7 @@ pub fn report<'a>(machine: &'a Machine, state: &State) -> Result<Report<'a>, Fai
     let mechanism = &machine.mechanism;
     let of_contacts = (0..mechanism.contacts.len())
         .flat_map(|index| contact::QUANTITIES.map(|quantity| Quantity::Contact(index as u32, quantity)));
-    let wanted: Vec<Quantity> = QUANTITIES.into_iter().chain(of_contacts).collect();
+    let wanted: Vec<Quantity> = QUANTITIES.into_iter().chain(Quantity::named()).chain(of_contacts).collect();
     let numbers: Numbers = machine.evaluate(state, &wanted)?;
     let (independent, dependent) = mechanism.speeds.split_at(state.speeds.len());
     let get = |quantity| numbers.get(quantity).to_vec();
@@ -145,6 +148,12 @@ pub fn report<'a>(machine: &'a Machine, state: &State) -> Result<Report<'a>, Fai
         qdot: named(&mechanism.coordinates, get(Quantity::CoordinateRates)),
         dependent: named(dependent, get(Quantity::DependentSpeeds)),
         kinetic_energy: get(Quantity::KineticEnergy).first().copied().unwrap_or(0.0),
+        named: Named(
+            Quantity::named()
+                .map(|quantity| (quantity.description().word, get(quantity)))
+                .filter(|(_, numbers)| !numbers.is_empty())
+                .collect(),
+        ),
         contacts: Named(
             mechanism
                 .contacts

@@ -1,6 +1,8 @@
 //! Writes the results of `eval` and `collide` as tables.
 
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
+use hodograph_generator::program::Quantity;
+use hodograph_generator::program::quantity::Description;
 
 use super::collision::Collision;
 use super::report::{ContactReport, Named, Report};
@@ -50,6 +52,15 @@ impl Report<'_> {
             table.row(row(name, &entries));
         }
         out += &format!("\n{}\n  kinetic energy {} J\n", table.text("  "), number(self.kinetic_energy));
+        let mut table = Table::new(["along N", "x", "y", "z"]);
+        for quantity in Quantity::named() {
+            let Description { word, unit, .. } = quantity.description();
+            let Some((_, numbers)) = self.named.0.iter().find(|(name, _)| name == word) else { continue };
+            table.row(row(&with_unit(&word.replace('_', " "), unit), numbers));
+        }
+        if !self.named.0.is_empty() {
+            out += &format!("\n{}", table.text("  "));
+        }
         for (name, contact) in &self.contacts.0 {
             out += &format!("\ncontact {name}\n\n{}", contact.table());
         }

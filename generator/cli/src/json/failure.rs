@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use hodograph::ImpactError;
 use hodograph::methods::MethodError;
+use hodograph::{CollisionError, ImpactError, StateError};
 use serde::Serialize;
 
 /// What kind of error it is: the stable names of the contract.
@@ -99,6 +99,26 @@ impl From<ImpactError<f64>> for Failure {
             _ => Kind::NotFinite,
         };
         Failure::new(kind, error.to_string())
+    }
+}
+
+impl From<StateError> for Failure {
+    fn from(error: StateError) -> Self {
+        let kind = match error {
+            StateError::NotFinite => Kind::NotFinite,
+            _ => Kind::SingularState,
+        };
+        Failure::new(kind, error.to_string())
+    }
+}
+
+impl From<CollisionError<f64>> for Failure {
+    fn from(error: CollisionError<f64>) -> Self {
+        match error {
+            CollisionError::State(error) => error.into(),
+            CollisionError::Impact(error) => error.into(),
+            error => Failure::new(Kind::SingularState, error.to_string()),
+        }
     }
 }
 

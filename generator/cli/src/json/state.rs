@@ -47,6 +47,12 @@ fn values(quantities: &[Variable]) -> Vec<f64> {
 }
 
 impl State {
+    /// The state as the traits of all mechanisms take it.
+    pub fn borrowed(&self) -> hodograph::State<'_> {
+        let State { time, coordinates, speeds, inputs, .. } = self;
+        hodograph::State { time: *time, coordinates, speeds, inputs }
+    }
+
     /// The file's values, 0 where it has none, and unit quaternions.
     pub fn initial(mechanism: &Mechanism) -> Self {
         let mut state = State {

@@ -12,6 +12,7 @@ pub mod energy;
 pub mod forces;
 pub mod inertia;
 mod matrix;
+mod momentum;
 mod outputs;
 mod products;
 mod samples;

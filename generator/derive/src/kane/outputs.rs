@@ -12,7 +12,7 @@ use super::articulated::Articulated;
 use super::base_parameters::{self, Lump, Masses, Seat};
 use super::contacts::ContactForms;
 use super::forces::{self, Wrenches};
-use super::{bounds, energy, inertia};
+use super::{bounds, energy, inertia, momentum};
 use crate::algebra::{Direction, Export, Expr};
 use crate::kinematics::Kinematics;
 use crate::kinematics::linear_forms::LinearScalar;
@@ -20,7 +20,7 @@ use crate::kinematics::solve::Solver;
 use hodograph_program::program::differentiate::differentiate;
 use hodograph_program::program::graph::{Graph, Input, Node};
 use hodograph_program::program::ldl::{Factor, factorise};
-use hodograph_program::program::{Derived, Guard, Output, Quantity};
+use hodograph_program::program::{Derived, Guard, Inputs, Output, Quantity};
 
 /// The graph under construction.
 struct Writer<'k, 'm> {
@@ -80,16 +80,11 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     writer.free_accelerations();
     writer.guards();
     let samples = super::samples::samples(writer.k.mechanism);
-    let apart = if rates.is_some() { writer.derivatives(&samples) } else { Vec::new() };
-    Derived {
-        graph: writer.graph,
-        outputs: writer.outputs,
-        guards: writer.guards,
-        structures,
-        samples,
-        apart,
-        solve: None,
-    }
+    let mut apart = if rates.is_some() { writer.derivatives(&samples) } else { Vec::new() };
+    // Their operations do not shape those of the equations of motion, nor their numbers.
+    let (graph, outputs, guards) = (writer.graph.clone(), writer.outputs.split_off(0), writer.guards.clone());
+    apart.extend(writer.momenta(&samples));
+    Derived { graph, outputs, guards, structures, samples, apart, solve: None }
 }
 
 impl Writer<'_, '_> {
@@ -409,6 +404,26 @@ impl Writer<'_, '_> {
             let nodes = self.nodes([&potential]);
             self.put(Quantity::PotentialEnergy, 1, 1, nodes);
         }
+    }
+
+    /// Momenta, and place and velocity of the mass centre, as a derivation of their own.
+    fn momenta(mut self, samples: &[Inputs]) -> Option<Derived> {
+        let before = self.k.guards.len();
+        for (quantity, components) in momentum::momenta(self.k) {
+            let nodes = self.nodes(&components);
+            self.put(quantity, 3, 1, nodes);
+        }
+        self.k.guards.drain(..before);
+        self.guards();
+        (!self.outputs.is_empty()).then(|| Derived {
+            graph: self.graph,
+            outputs: self.outputs,
+            guards: self.guards,
+            structures: Vec::new(),
+            samples: samples.to_vec(),
+            apart: Vec::new(),
+            solve: None,
+        })
     }
 
     fn configuration(&mut self) {

@@ -1,10 +1,9 @@
 //! Emits the implementation of the trait `Contacts`.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use super::super::Emitter;
-use super::Written;
 use crate::identifiers::ident;
 use hodograph_model::model::mechanism::{ContactLaw, Named};
 use hodograph_program::program::{ContactQuantity, Quantity};
@@ -49,12 +48,8 @@ impl Emitter<'_> {
             "free_acceleration",
             "free acceleration of this contact",
         );
-        let partial = self.contact_matrix(
-            ContactQuantity::PartialVelocities,
-            "partial_velocities",
-            "the partial velocities",
-        );
-        let response = self.contact_matrix(ContactQuantity::Response, "response", "the response");
+        let partial = self.contact_matrix(ContactQuantity::PartialVelocities);
+        let response = self.contact_matrix(ContactQuantity::Response);
         let collide = self.collisions("collide", "collision of this contact");
         let within = &collide;
         let without = self.collisions("impact_without_collision", "impact without collision of this contact");
@@ -218,7 +213,7 @@ impl Emitter<'_> {
                 _ => vec![Quantity::Contact(contact as u32, quantity)],
             };
             let method = ident(&self.contact_method(prefix, contact));
-            let (unpack, call) = self.own(&method, &quantities);
+            let (unpack, call) = self.own_method(&method, &quantities);
             quote!(#unpack #call)
         })
     }
@@ -232,21 +227,13 @@ impl Emitter<'_> {
                     ::core::result::Result::Ok(::core::option::Option::None)
                 };
             }
-            let method = ident(&self.contact_method("gap", contact));
-            let (unpack, call) = self.own(&method, &[quantity]);
+            let (unpack, call) = self.own(quantity);
             quote!(#unpack ::core::result::Result::map(#call, ::core::option::Option::Some))
         })
     }
 
-    fn contact_matrix(&self, quantity: ContactQuantity, prefix: &str, what: &'static str) -> TokenStream {
-        self.by_contact(|contact| {
-            let to = Written {
-                method: ident(&self.contact_method(prefix, contact)),
-                slice: format_ident!("{prefix}"),
-                what,
-            };
-            self.written(Quantity::Contact(contact as u32, quantity), &to)
-        })
+    fn contact_matrix(&self, quantity: ContactQuantity) -> TokenStream {
+        self.by_contact(|contact| self.written(Quantity::Contact(contact as u32, quantity)))
     }
 
     fn collisions(&self, prefix: &str, what: &str) -> TokenStream {

@@ -24,6 +24,9 @@ impl Emitter<'_> {
         let points = m.points.iter().map(|point| component(&point.name, ""));
         let frames = m.frames.iter().map(|frame| component(&frame.name, ""));
         let contacts = m.contacts.iter().map(|contact| component(&contact.name, ""));
+        let quantities = self.named_quantities();
+        let quantities = quantities.iter().map(|quantity| quantity.description());
+        let quantities = quantities.map(|row| component(row.word, row.unit));
         let quaternions = m.frames.iter().filter_map(|frame| match &frame.orientation {
             Orientation::Quaternion(ids) => {
                 let ids = ids.iter().map(|id| Literal::usize_unsuffixed(id.0));
@@ -44,6 +47,7 @@ impl Emitter<'_> {
                 points: &[#(#points),*],
                 frames: &[#(#frames),*],
                 contacts: &[#(#contacts),*],
+                quantities: &[#(#quantities),*],
                 quaternions: &[#(#quaternions),*],
             };
         }

@@ -2,31 +2,25 @@
 //! trait `Mechanism`.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
-use super::Written;
 use crate::Emitter;
-use hodograph_model::rust_names::snake_case;
 use hodograph_program::program::{PointQuantity, Quantity};
 
 impl Emitter<'_> {
     pub(super) fn geometry_by_slices(&self) -> TokenStream {
         let krate = self.krate;
         let m = self.mechanism;
-        let point = |quantity: PointQuantity, method: &str, at_origin: TokenStream, what: &'static str| {
-            let arms = m.points.iter().enumerate().map(|(index, point)| {
+        let point = |quantity: PointQuantity, at_origin: TokenStream, what: &'static str| {
+            let arms = (0..m.points.len()).map(|index| {
                 let number = Quantity::Point(index as u32, quantity);
                 let has = self.program.output(number).is_some_and(|output| !output.values.is_empty());
-                let own = format_ident!("{method}_{}", snake_case(&point.name));
                 let body = match (has, quantity) {
                     _ if index == 0 => quote!(DESCRIPTION.check(state)?; #at_origin),
                     (false, _) => self.undefined(what),
-                    (true, PointQuantity::Jacobian) => {
-                        let to = Written { method: own, slice: format_ident!("jacobian"), what };
-                        self.written(number, &to)
-                    }
+                    (true, PointQuantity::Jacobian) => self.written(number),
                     (true, _) => {
-                        let (unpack, call) = self.own(&own, &[number]);
+                        let (unpack, call) = self.own(number);
                         quote!(#unpack #call)
                     }
                 };
@@ -36,18 +30,17 @@ impl Emitter<'_> {
         };
         let zero = quote!(::core::result::Result::Ok(#krate::nalgebra::Vector3::zeros()));
         let given = self.given_accelerations();
-        let acceleration =
-            point(PointQuantity::Acceleration, "acceleration", zero.clone(), "acceleration of this point");
-        let position = point(PointQuantity::Position, "position", zero.clone(), "position of this point");
-        let velocity = point(PointQuantity::Velocity, "velocity", zero, "velocity of this point");
+        let acceleration = point(PointQuantity::Acceleration, zero.clone(), "acceleration of this point");
+        let position = point(PointQuantity::Position, zero.clone(), "position of this point");
+        let velocity = point(PointQuantity::Velocity, zero, "velocity of this point");
         let size = Literal::usize_unsuffixed(3 * self.speeds.len());
         let still = quote! {
             #krate::generated::check_length(jacobian, #size, "the partial velocities")?;
             jacobian.fill(T::zero());
             ::core::result::Result::Ok(())
         };
-        let jacobian = point(PointQuantity::Jacobian, "jacobian", still, "the partial velocities");
-        let frames = m.frames.iter().enumerate().map(|(index, frame)| {
+        let jacobian = point(PointQuantity::Jacobian, still, "the partial velocities");
+        let frames = (0..m.frames.len()).map(|index| {
             let quantity = Quantity::Orientation(index as u32);
             let body = if index == 0 {
                 quote! {
@@ -55,8 +48,7 @@ impl Emitter<'_> {
                     ::core::result::Result::Ok(#krate::nalgebra::Matrix3::identity())
                 }
             } else if self.program.output(quantity).is_some() {
-                let (unpack, call) =
-                    self.own(&format_ident!("orientation_{}", snake_case(&frame.name)), &[quantity]);
+                let (unpack, call) = self.own(quantity);
                 quote!(#unpack #call)
             } else {
                 self.undefined("orientation of this frame")

@@ -1,66 +1,39 @@
 //! Quantities of the whole mechanism for the trait `Mechanism`: equations of motion, energies, configuration
-//! equations.
+//! equations, and those that are offered by name.
 
-use proc_macro2::TokenStream;
-use quote::{format_ident, quote};
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
 
-use super::Written;
+use super::slice_of;
 use crate::Emitter;
+use crate::identifiers::ident;
 use hodograph_program::program::Quantity;
+use hodograph_program::program::quantity::{Entries, Offer, table::WHOLE};
 
 impl Emitter<'_> {
     pub(super) fn quantities_by_slices(&self) -> Vec<TokenStream> {
-        let krate = self.krate;
-        let vectors = [
-            (Quantity::CoordinateRates, "coordinate_rates", "rates", "the rates of the coordinates"),
-            (Quantity::Accelerations, "accelerations", "accelerations", "the accelerations"),
-            (Quantity::DependentSpeeds, "dependent_speeds", "speeds", "the dependent speeds"),
-            (
-                Quantity::DependentAccelerations,
-                "dependent_accelerations",
-                "accelerations",
-                "the dependent accelerations",
-            ),
-            (Quantity::MassMatrix, "mass_matrix", "matrix", "the mass matrix"),
-            (Quantity::Forcing, "forcing", "forcing", "the forcing"),
-        ];
-        let mut methods: Vec<TokenStream> = vectors
-            .into_iter()
-            .map(|(quantity, method, slice, what)| {
-                let to = Written { method: format_ident!("{method}"), slice: format_ident!("{slice}"), what };
-                let body = self.written(quantity, &to);
-                let Written { method, slice, .. } = to;
-                quote! {
-                    fn #method(
-                        &self,
-                        state: &#krate::State<'_, T>,
-                        #slice: &mut [T],
-                    ) -> ::core::result::Result<(), #krate::StateError> {
-                        #body
-                    }
-                }
-            })
-            .collect();
-        methods.push(self.inverse_dynamics_by_slices());
-        methods.push(self.energies_by_slices());
-        methods
+        let methods = WHOLE.iter().filter_map(|&(quantity, row)| match row.offer {
+            Offer::Written => Some(self.by_slice(quantity)),
+            Offer::Answered if row.entries == Entries::Scalar => Some(self.by_number_alone(quantity)),
+            Offer::Answered | Offer::Named | Offer::No => None,
+        });
+        methods.collect()
     }
 
-    fn inverse_dynamics_by_slices(&self) -> TokenStream {
+    /// The method that writes a quantity into a slice.
+    fn by_slice(&self, quantity: Quantity) -> TokenStream {
         let krate = self.krate;
-        let to = Written {
-            method: format_ident!("inverse_dynamics"),
-            slice: format_ident!("forces"),
-            what: "the generalized forces",
-        };
-        let body = self.written(Quantity::InverseDynamics, &to);
-        let given = self.given_accelerations();
+        let (method, slice) = (ident(quantity.description().word), slice_of(quantity));
+        let body = self.written(quantity);
+        let takes = quantity.description().takes;
+        let given = takes.accelerations.then(|| self.given_accelerations());
+        let accelerations = takes.accelerations.then(|| quote!(accelerations: &[T],));
         quote! {
-            fn inverse_dynamics(
+            fn #method(
                 &self,
                 state: &#krate::State<'_, T>,
-                accelerations: &[T],
-                forces: &mut [T],
+                #accelerations
+                #slice: &mut [T],
             ) -> ::core::result::Result<(), #krate::StateError> {
                 #given
                 #body
@@ -68,64 +41,44 @@ impl Emitter<'_> {
         }
     }
 
-    fn energies_by_slices(&self) -> TokenStream {
+    /// The method that answers an energy. Every mechanism has kinetic energy; others it may lack.
+    fn by_number_alone(&self, quantity: Quantity) -> TokenStream {
         let krate = self.krate;
-        let energy = |quantity: Quantity, method: &str, result: TokenStream| {
-            let method = format_ident!("{method}");
-            let body = match self.program.output(quantity).filter(|output| !output.values.is_empty()) {
-                Some(_) => {
-                    let (unpack, call) = self.own(&method, &[quantity]);
-                    match quantity {
-                        Quantity::PotentialEnergy => {
-                            quote!(#unpack ::core::result::Result::map(#call, ::core::option::Option::Some))
-                        }
-                        _ => quote!(#unpack #call),
+        let method = ident(quantity.description().word);
+        let always = quantity == Quantity::KineticEnergy;
+        let result = if always { quote!(T) } else { quote!(::core::option::Option<T>) };
+        let body = match self.program.output(quantity).filter(|output| !output.values.is_empty()) {
+            Some(_) => {
+                let (unpack, call) = self.own(quantity);
+                match always {
+                    true => quote!(#unpack #call),
+                    false => {
+                        quote!(#unpack ::core::result::Result::map(#call, ::core::option::Option::Some))
                     }
                 }
-                None => {
-                    let none = match quantity {
-                        Quantity::PotentialEnergy => quote!(::core::option::Option::None),
-                        _ => quote!(T::zero()),
-                    };
-                    quote! {
-                        DESCRIPTION.check(state)?;
-                        ::core::result::Result::Ok(#none)
-                    }
-                }
-            };
-            quote! {
-                fn #method(
-                    &self,
-                    state: &#krate::State<'_, T>,
-                ) -> ::core::result::Result<#result, #krate::StateError> {
-                    #body
+            }
+            None => {
+                let none = if always { quote!(T::zero()) } else { quote!(::core::option::Option::None) };
+                quote! {
+                    DESCRIPTION.check(state)?;
+                    ::core::result::Result::Ok(#none)
                 }
             }
         };
-        let kinetic = energy(Quantity::KineticEnergy, "kinetic_energy", quote!(T));
-        let potential =
-            energy(Quantity::PotentialEnergy, "potential_energy", quote!(::core::option::Option<T>));
-        quote! { #kinetic #potential }
+        quote! {
+            fn #method(
+                &self,
+                state: &#krate::State<'_, T>,
+            ) -> ::core::result::Result<#result, #krate::StateError> {
+                #body
+            }
+        }
     }
 
     pub(super) fn configuration_by_slices(&self) -> TokenStream {
         let krate = self.krate;
-        let written = |quantity: Quantity, method: &str, slice: &str, what: &'static str| {
-            let to = Written { method: format_ident!("{method}"), slice: format_ident!("{slice}"), what };
-            self.written(quantity, &to)
-        };
-        let residual = written(
-            Quantity::ConfigurationResidual,
-            "configuration_residual",
-            "residual",
-            "the residual of the configuration equations",
-        );
-        let jacobian = written(
-            Quantity::ConfigurationJacobian,
-            "configuration_jacobian",
-            "jacobian",
-            "the derivatives of the configuration equations",
-        );
+        let residual = self.written(Quantity::ConfigurationResidual);
+        let jacobian = self.written(Quantity::ConfigurationJacobian);
         quote! {
             fn configuration(
                 &self,
@@ -137,5 +90,44 @@ impl Emitter<'_> {
                 #jacobian
             }
         }
+    }
+
+    /// The quantities that this mechanism has and that are offered by name.
+    pub(super) fn named_quantities(&self) -> Vec<Quantity> {
+        let has = |quantity: &Quantity| {
+            self.program.output(*quantity).is_some_and(|output| !output.values.is_empty())
+        };
+        Quantity::named().filter(has).collect()
+    }
+
+    /// The method of the quantities that are offered by name; a mechanism without any has the trait's own.
+    pub(super) fn named_by_slices(&self) -> Option<TokenStream> {
+        let krate = self.krate;
+        let named = self.named_quantities();
+        if named.is_empty() {
+            return None;
+        }
+        let values = ident("values");
+        let arms =
+            named.iter().map(|&quantity| self.written_to(quantity, &values, quantity.description().word));
+        let body = self.by_number("quantity", "Quantity", arms.enumerate().collect());
+        let shapes = named.iter().filter_map(|&quantity| self.program.output(quantity));
+        let shapes = shapes.map(|output| {
+            let [rows, columns] = [output.rows, output.columns].map(Literal::usize_unsuffixed);
+            quote!((#rows, #columns))
+        });
+        Some(quote! {
+            fn quantity_shape(&self, quantity: usize) -> ::core::option::Option<(usize, usize)> {
+                [#(#shapes),*].get(quantity).copied()
+            }
+            fn quantity(
+                &self,
+                quantity: usize,
+                state: &#krate::State<'_, T>,
+                values: &mut [T],
+            ) -> ::core::result::Result<(), #krate::StateError> {
+                #body
+            }
+        })
     }
 }

@@ -847,6 +847,7 @@ pub mod pendulum {
                 unit: "",
             },
         ],
+        quantities: &[],
         quaternions: &[],
     };
     /// The methods of the same names, with slices.

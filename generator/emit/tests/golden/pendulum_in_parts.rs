@@ -1607,6 +1607,7 @@ pub mod pendulum_in_parts {
                 unit: "",
             },
         ],
+        quantities: &[],
         quaternions: &[],
     };
     /// The methods of the same names, with slices.

@@ -14,8 +14,8 @@ pub mod symbols;
 mod text;
 
 use crate::program::Program;
+use crate::program::Quantity;
 use crate::program::operation::Stage;
-use crate::program::{ContactQuantity, Quantity};
 use hodograph_model::model::mechanism::Mechanism;
 
 /// How equations are written.
@@ -41,21 +41,7 @@ pub fn explain(mechanism: &Mechanism, program: &Program, quantities: &[Quantity]
 
 /// The quantities that a reader of the paper looks for, as far as the program has them.
 pub fn usual(program: &Program) -> Vec<Quantity> {
-    let wanted = |quantity: &Quantity| match quantity {
-        Quantity::CoordinateRates
-        | Quantity::DependentSpeeds
-        | Quantity::MassMatrix
-        | Quantity::Forcing
-        | Quantity::KineticEnergy => true,
-        Quantity::Contact(_, quantity) => {
-            use ContactQuantity::*;
-            matches!(
-                quantity,
-                Normal | First | Second | Velocity | PartialVelocities | Remainder | Reduced | Gap
-            )
-        }
-        _ => false,
-    };
+    let wanted = |quantity: &Quantity| quantity.description().usual;
     program.outputs.iter().map(|output| output.quantity).filter(wanted).collect()
 }
 

@@ -3,9 +3,10 @@
 //! compile.
 
 use super::Program;
+use super::Quantity;
 use super::graph::Input;
 use super::operation::Operation;
-use super::{ContactQuantity, PointQuantity, Quantity};
+use super::quantity::Extent;
 use hodograph_model::model::mechanism::Mechanism;
 
 /// Checks that every input, contact, point and frame exists and that every quantity has its shape.
@@ -55,51 +56,26 @@ pub fn fits(mechanism: &Mechanism, program: &Program) -> Result<(), String> {
 
 /// The shape of a quantity, if the mechanism can have it.
 pub fn shape(mechanism: &Mechanism, quantity: Quantity) -> Option<(usize, usize)> {
+    let gap = match quantity {
+        Quantity::Contact(index, _) => mechanism.contacts.get(index as usize)?.gap.is_some(),
+        Quantity::Point(index, _) => mechanism.points.get(index as usize).map(|_| false)?,
+        Quantity::Orientation(index) => mechanism.frames.get(index as usize).map(|_| false)?,
+        _ => false,
+    };
     let p = mechanism.speeds.iter().filter(|speed| !speed.dependent).count();
-    let d = mechanism.speeds.len() - p;
     let c = mechanism.coordinates.iter().filter(|coordinate| coordinate.dependent).count();
-    Some(match quantity {
-        Quantity::CoordinateRates => (mechanism.coordinates.len(), 1),
-        Quantity::DependentSpeeds | Quantity::DependentAccelerations | Quantity::ConstraintResidual => (d, 1),
-        Quantity::MassMatrix => (p, p),
-        Quantity::Forcing | Quantity::Accelerations | Quantity::InverseDynamics => (p, 1),
-        Quantity::StateTangent => (mechanism.independent_states(), 1),
-        Quantity::AccelerationsDerivatives | Quantity::InverseDynamicsDerivatives => {
-            (p, 1 + mechanism.independent_states() + mechanism.inputs.len())
-        }
-        Quantity::RatesDerivatives => {
-            (mechanism.coordinates.len() - c, mechanism.independent_states() + mechanism.inputs.len())
-        }
-        Quantity::KineticEnergy | Quantity::PotentialEnergy => (1, 1),
-        Quantity::ConfigurationResidual => (c, 1),
-        Quantity::ConfigurationJacobian => (c, c),
-        Quantity::Contact(index, quantity) => {
-            mechanism.contacts.get(index as usize)?;
-            match quantity {
-                ContactQuantity::PartialVelocities => (3, p),
-                ContactQuantity::Reduced => (6, 1),
-                ContactQuantity::Response => (p, 3),
-                ContactQuantity::DependentResponse => (d, 3),
-                ContactQuantity::Gap => (1, 1),
-                ContactQuantity::Tangent => {
-                    let gap = mechanism.contacts.get(index as usize)?.gap.is_some();
-                    (9 + 3 * p + usize::from(gap), 1)
-                }
-                ContactQuantity::Derivatives => {
-                    let gap = mechanism.contacts.get(index as usize)?.gap.is_some();
-                    let columns = 1 + mechanism.independent_states() + mechanism.inputs.len();
-                    (9 + 3 * p + usize::from(gap), columns)
-                }
-                _ => (3, 1),
-            }
-        }
-        Quantity::Point(index, quantity) => {
-            mechanism.points.get(index as usize)?;
-            if quantity == PointQuantity::Jacobian { (3, p) } else { (3, 1) }
-        }
-        Quantity::Orientation(index) => {
-            mechanism.frames.get(index as usize)?;
-            (3, 3)
-        }
-    })
+    let directions = mechanism.independent_states() + mechanism.inputs.len();
+    let [rows, columns] = quantity.description().shape.map(|extent| match extent {
+        Extent::Count(count) => count,
+        Extent::Coordinates => mechanism.coordinates.len(),
+        Extent::IndependentCoordinates => mechanism.coordinates.len() - c,
+        Extent::DependentCoordinates => c,
+        Extent::Speeds => p,
+        Extent::DependentSpeeds => mechanism.speeds.len() - p,
+        Extent::States => mechanism.independent_states(),
+        Extent::Directions => directions,
+        Extent::ValueAndDirections => 1 + directions,
+        Extent::Collision => 9 + 3 * p + usize::from(gap),
+    });
+    Some((rows, columns))
 }

@@ -17,7 +17,7 @@ mod merge;
 pub mod operation;
 mod output;
 pub mod passes;
-mod quantity;
+pub mod quantity;
 mod semantics;
 mod slice;
 pub mod solve;

@@ -1,6 +1,14 @@
-//! The quantities that a program can compute, and their names in derivation files and cost tables.
+//! The quantities that a program can compute. What else is to be said of each stands in [`table`].
+
+mod description;
+pub mod table;
 
 use std::fmt;
+
+use hodograph_model::model::mechanism::Mechanism;
+use hodograph_model::rust_names::snake_case;
+
+pub use description::{Axes, Description, Entries, Extent, Offer, Takes};
 
 /// A quantity that a program computes. Shapes: `p` independent speeds, `d` dependent speeds, `n` coordinates,
 /// `c` configuration equations (as many as dependent coordinates). Matrices are stored by rows.
@@ -45,6 +53,16 @@ pub enum Quantity {
     ConfigurationJacobian,
     /// residual of the velocity constraints with dependent speeds inserted (d), zero up to rounding
     ConstraintResidual,
+    /// momentum of all bodies (3), along N.x, N.y, N.z, as all that follow
+    Momentum,
+    /// angular momentum of all bodies about O (3)
+    AngularMomentum,
+    /// angular momentum of all bodies about their mass centre (3)
+    CentralAngularMomentum,
+    /// position of the mass centre of all bodies from O (3)
+    MassCentrePosition,
+    /// velocity of the mass centre of all bodies (3)
+    MassCentreVelocity,
     /// a quantity of a contact (index into `Mechanism::contacts`)
     Contact(u32, ContactQuantity),
     /// a quantity of a point (index into `Mechanism::points`)
@@ -120,52 +138,6 @@ pub enum Structure {
     Isotropic,
 }
 
-/// Quantities of the whole mechanism.
-const WHOLE: [(Quantity, &str); 16] = [
-    (Quantity::CoordinateRates, "coordinate_rates"),
-    (Quantity::DependentSpeeds, "dependent_speeds"),
-    (Quantity::MassMatrix, "mass_matrix"),
-    (Quantity::Forcing, "forcing"),
-    (Quantity::Accelerations, "accelerations"),
-    (Quantity::DependentAccelerations, "dependent_accelerations"),
-    (Quantity::InverseDynamics, "inverse_dynamics"),
-    (Quantity::StateTangent, "state_tangent"),
-    (Quantity::AccelerationsDerivatives, "accelerations_derivatives"),
-    (Quantity::InverseDynamicsDerivatives, "inverse_dynamics_derivatives"),
-    (Quantity::RatesDerivatives, "rates_derivatives"),
-    (Quantity::KineticEnergy, "kinetic_energy"),
-    (Quantity::PotentialEnergy, "potential_energy"),
-    (Quantity::ConfigurationResidual, "configuration_residual"),
-    (Quantity::ConfigurationJacobian, "configuration_jacobian"),
-    (Quantity::ConstraintResidual, "constraint_residual"),
-];
-
-/// Quantities of a contact.
-const CONTACT: [(ContactQuantity, &str); 14] = [
-    (ContactQuantity::Normal, "normal"),
-    (ContactQuantity::First, "first"),
-    (ContactQuantity::Second, "second"),
-    (ContactQuantity::Velocity, "velocity"),
-    (ContactQuantity::PartialVelocities, "partial_velocities"),
-    (ContactQuantity::FreeAcceleration, "free_acceleration"),
-    (ContactQuantity::Remainder, "remainder"),
-    (ContactQuantity::Reduced, "reduced"),
-    (ContactQuantity::Response, "response"),
-    (ContactQuantity::DependentResponse, "dependent_response"),
-    (ContactQuantity::Gap, "gap"),
-    (ContactQuantity::PrescribedWork, "prescribed_work"),
-    (ContactQuantity::Tangent, "tangent"),
-    (ContactQuantity::Derivatives, "derivatives"),
-];
-
-/// Quantities of a point.
-const POINT: [(PointQuantity, &str); 4] = [
-    (PointQuantity::Position, "position"),
-    (PointQuantity::Velocity, "velocity"),
-    (PointQuantity::Jacobian, "jacobian"),
-    (PointQuantity::Acceleration, "acceleration"),
-];
-
 /// Structures of a reduced matrix.
 const STRUCTURE: [(Structure, &str); 5] = [
     (Structure::General, "general"),
@@ -185,16 +157,41 @@ fn key<K: Copy>(table: &[(K, &'static str)], word: &str) -> Option<K> {
 
 impl fmt::Display for Quantity {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = self.description().word;
         match self {
-            Quantity::Contact(index, quantity) => write!(out, "contact {index} {}", word(&CONTACT, quantity)),
-            Quantity::Point(index, quantity) => write!(out, "point {index} {}", word(&POINT, quantity)),
+            Quantity::Contact(index, _) => write!(out, "contact {index} {word}"),
+            Quantity::Point(index, _) => write!(out, "point {index} {word}"),
             Quantity::Orientation(index) => write!(out, "orientation {index}"),
-            whole => out.write_str(word(&WHOLE, whole)),
+            _ => out.write_str(word),
         }
     }
 }
 
 impl Quantity {
+    /// What is to be said of it.
+    pub fn description(self) -> &'static Description {
+        let row = match self {
+            Quantity::Contact(_, quantity) => table::find(table::CONTACT, quantity),
+            Quantity::Point(_, quantity) => table::find(table::POINT, quantity),
+            Quantity::Orientation(_) => Some(&table::ORIENTATION),
+            whole => table::find(table::WHOLE, whole),
+        };
+        // The tests find a row for every quantity.
+        row.unwrap_or(&description::PLAIN)
+    }
+
+    /// The name of the method that computes it in the module of a mechanism, where there is one.
+    pub fn method(self, mechanism: &Mechanism) -> Option<String> {
+        let prefix = self.description().method?;
+        let of = match self {
+            Quantity::Contact(index, _) => &mechanism.contacts.get(index as usize)?.name,
+            Quantity::Point(index, _) => &mechanism.points.get(index as usize)?.name,
+            Quantity::Orientation(index) => &mechanism.frames.get(index as usize)?.name,
+            _ => return Some(prefix.to_owned()),
+        };
+        Some(format!("{prefix}_{}", snake_case(of)))
+    }
+
     /// Whether it is a matrix whose columns solve systems of equations. Few values are alive while its
     /// entries are computed column by column.
     pub fn is_solved_by_columns(self) -> bool {
@@ -204,14 +201,21 @@ impl Quantity {
     /// The quantity that these words mean, as `Display` writes them.
     pub fn from_words(words: &[&str]) -> Option<Self> {
         match *words {
-            [whole] => key(&WHOLE, whole),
-            ["contact", index, quantity] => {
-                Some(Quantity::Contact(index.parse().ok()?, key(&CONTACT, quantity)?))
+            [word] => table::key(table::WHOLE, word),
+            ["contact", index, word] => {
+                Some(Quantity::Contact(index.parse().ok()?, table::key(table::CONTACT, word)?))
             }
-            ["point", index, quantity] => Some(Quantity::Point(index.parse().ok()?, key(&POINT, quantity)?)),
+            ["point", index, word] => {
+                Some(Quantity::Point(index.parse().ok()?, table::key(table::POINT, word)?))
+            }
             ["orientation", index] => Some(Quantity::Orientation(index.parse().ok()?)),
             _ => None,
         }
+    }
+
+    /// The quantities of the whole mechanism that are offered by name, in the order of their numbers.
+    pub fn named() -> impl Iterator<Item = Quantity> {
+        table::WHOLE.iter().filter(|(_, row)| row.offer == Offer::Named).map(|(quantity, _)| *quantity)
     }
 }
 
@@ -234,15 +238,44 @@ mod tests {
 
     #[test]
     fn words_read_back() {
-        let wholes = WHOLE.iter().map(|(quantity, _)| *quantity);
-        let contacts = CONTACT.iter().map(|(quantity, _)| Quantity::Contact(3, *quantity));
-        let points = POINT.iter().map(|(quantity, _)| Quantity::Point(7, *quantity));
+        let wholes = table::WHOLE.iter().map(|(quantity, _)| *quantity);
+        let contacts = table::CONTACT.iter().map(|(quantity, _)| Quantity::Contact(3, *quantity));
+        let points = table::POINT.iter().map(|(quantity, _)| Quantity::Point(7, *quantity));
         for quantity in wholes.chain(contacts).chain(points).chain([Quantity::Orientation(2)]) {
             let text = quantity.to_string();
             assert_eq!(Quantity::from_words(&text.split(' ').collect::<Vec<_>>()), Some(quantity), "{text}");
         }
         for (structure, word) in STRUCTURE {
             assert_eq!(Structure::from_word(word), Some(structure));
+        }
+    }
+
+    /// Every variant has one row: the enums count up, and a row that is missing leaves a gap.
+    #[test]
+    fn every_quantity_has_one_row() {
+        fn complete<K: Copy + Ord + fmt::Debug>(rows: &[(K, Description)], last: K, count: usize) {
+            let mut keys: Vec<K> = rows.iter().map(|(key, _)| *key).collect();
+            keys.sort_unstable();
+            keys.dedup();
+            assert_eq!((keys.len(), rows.len()), (count, count), "{keys:?}");
+            assert_eq!(keys.last(), Some(&last));
+        }
+        let whole = Quantity::MassCentreVelocity;
+        complete(table::WHOLE, whole, 21);
+        complete(table::CONTACT, ContactQuantity::Derivatives, ContactQuantity::Derivatives as usize + 1);
+        complete(table::POINT, PointQuantity::Acceleration, PointQuantity::Acceleration as usize + 1);
+    }
+
+    /// What is written for readers is there for every quantity, and what is offered by name has a unit.
+    #[test]
+    fn every_row_is_filled_in() {
+        let rows = table::WHOLE.iter().map(|(_, row)| row);
+        let rows = rows.chain(table::CONTACT.iter().map(|(_, row)| row));
+        for row in rows.chain(table::POINT.iter().map(|(_, row)| row)).chain([&table::ORIENTATION]) {
+            assert!(!row.word.is_empty() && !row.title.is_empty() && !row.symbol.is_empty(), "{row:?}");
+            assert!(row.offer != Offer::Named || !row.unit.is_empty() && row.method.is_some(), "{row:?}");
+            assert!(row.offer != Offer::Written || !row.slice.0.is_empty(), "{row:?}");
+            assert!(row.docs.is_empty() || row.docs.ends_with('.'), "{row:?}");
         }
     }
 }
