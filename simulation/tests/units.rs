@@ -53,9 +53,12 @@ fn both(name: &str, change: &[(&str, f64)], mu: f64, until: f64) -> [Ended; 2] {
     ]
 }
 
+/// The model, changes of its start, mu, and the time until which it is followed.
+type Case = (&'static str, &'static [(&'static str, f64)], f64, f64);
+
 #[test]
 fn events_do_not_depend_on_units() {
-    let cases: [(&str, &[(&str, f64)], f64, f64); 5] = [
+    let cases: [Case; 5] = [
         ("crate", &[("u1", 1.0)], 0.3, 1.0),
         ("groove_drop", &[("wx", 3.0)], 0.4, 0.6),
         ("domino3", &[], 0.3, 0.2),

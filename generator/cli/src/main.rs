@@ -49,7 +49,7 @@ enum Command {
     New(new::Arguments),
     Check(check::Arguments),
     Fmt(fmt::Arguments),
-    Simulate(simulate::Arguments),
+    Simulate(Box<simulate::Arguments>),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
     Plot(draw::Arguments),
