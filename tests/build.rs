@@ -6,8 +6,8 @@ use std::fmt::Write;
 use std::path::Path;
 
 use hodograph_generator::emit::{self, Options, Requests};
+use hodograph_generator::files;
 use hodograph_generator::model::mechanism::Mechanism;
-use hodograph_generator::reading;
 use hodograph_generator::rust_names::snake_case;
 use hodograph_generator::{artifact, check::check};
 
@@ -27,7 +27,7 @@ fn main() {
         println!("cargo::rerun-if-changed={}", path.display());
         println!("cargo::rerun-if-changed={}", derivation.display());
         // A model that is not accepted or not derived is a matter for the tests, which say so.
-        let Some(mechanism) = check(&reading::model(&path)).mechanism else { continue };
+        let Some(mechanism) = check(&files::model(&path)).mechanism else { continue };
         let Ok(derived) = std::fs::read_to_string(derivation) else { continue };
         let Ok(artifact) = artifact::decode(&derived) else { continue };
         let module = path.file_stem().expect("a stem").to_string_lossy().into_owned();

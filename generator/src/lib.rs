@@ -17,4 +17,4 @@ pub use hodograph_model::{
     arithmetic, check, diagnostics, explanations, format, model, numeric, rendering, rust_names, source,
     suggest, syntax,
 };
-pub use hodograph_program::{artifact, explain, interpret, program, reading};
+pub use hodograph_program::{artifact, explain, files, interpret, program};

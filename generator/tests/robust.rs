@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use hodograph_generator::artifact::model_hash;
 use hodograph_generator::diagnostics::codes;
 use hodograph_generator::rendering::render;
-use hodograph_generator::{check::check, reading, source::Source};
+use hodograph_generator::{check::check, files, source::Source};
 use proptest::prelude::*;
 
 /// Checks a text that must be refused with this code. The bound on the time is wide, so that it holds on
@@ -172,7 +172,7 @@ fn too_many_parts_to_look_at() {
 fn files_that_are_no_text() {
     let checked = check(&Source::bytes("x.mech", vec![b'm', 0xff, 0xfe]));
     assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
-    let checked = check(&reading::model(std::path::Path::new("/no/such/file.mech")));
+    let checked = check(&files::model(std::path::Path::new("/no/such/file.mech")));
     assert_eq!(checked.diagnostics[0].code, codes::UNREADABLE);
     let texts = ["", "\u{feff}", "\n", "//", "/", "\0", "mechanism", "mechanism ;", "mechanism A;"];
     for text in

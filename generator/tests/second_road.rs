@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_generator::numeric::{self, Evaluation, State};
-use hodograph_generator::{check::check, reading};
+use hodograph_generator::{check::check, files};
 use serde_json::Value;
 
 fn root() -> PathBuf {
@@ -26,7 +26,7 @@ fn index(list: &[Variable], name: &str) -> usize {
 
 fn mechanism(name: &str) -> Mechanism {
     let path = root().join("models").join(format!("{name}.mech"));
-    let source = reading::model(&path);
+    let source = files::model(&path);
     let checked = check(&source);
     let messages: Vec<String> = checked.diagnostics.iter().map(|d| d.one_line(&source)).collect();
     checked.mechanism.unwrap_or_else(|| panic!("{}", messages.join("\n")))

@@ -58,7 +58,7 @@ pub struct State<'a, T = f64> {
 ///     mechanism.accelerations(&state, &mut u_rates)?;
 ///     q.iter_mut().zip(q_rates).for_each(|(q, rate)| *q += dt * rate);
 ///     u.iter_mut().zip(u_rates).for_each(|(u, rate)| *u += dt * rate);
-///     mechanism.normalize(q)
+///     mechanism.normalise(q)
 /// }
 /// ```
 ///
@@ -96,7 +96,7 @@ pub trait Mechanism<T: Scalar = f64> {
     ) -> Result<(), StateError>;
     /// Divides every quaternion among the coordinates (`n`) by its length: integration lets it drift from 1.
     /// A quaternion of length 0 stays as it is.
-    fn normalize(&self, coordinates: &mut [T]) -> Result<(), StateError>;
+    fn normalise(&self, coordinates: &mut [T]) -> Result<(), StateError>;
 
     /// Rates q' of the coordinates (`n`), per second.
     fn coordinate_rates(&self, state: &State<'_, T>, rates: &mut [T]) -> Result<(), StateError>;

@@ -40,7 +40,7 @@ impl Transition<'_> {
         let done = self.project_onto_constraints(&modes, self.front.t, &mut y);
         let n = self.mechanism.count(Kind::Coordinate);
         for (speed, scale) in y[n..].iter_mut().zip(&self.front.scale) {
-            // What corrections leave of nothing, again and again, has squares that are no numbers.
+            // Repeated corrections of a speed that is zero leave numbers so small that their squares underflow.
             if speed.abs() < NOTHING * scale {
                 *speed = 0.0;
             }

@@ -17,7 +17,7 @@ pub(crate) fn close_loops(
     speeds: &[f64],
     inputs: &[f64],
 ) -> Result<(), StateError> {
-    mechanism.normalize(coordinates)?;
+    mechanism.normalise(coordinates)?;
     let count = mechanism.count(Kind::DependentCoordinate);
     if count == 0 {
         return Ok(());

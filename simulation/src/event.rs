@@ -23,11 +23,11 @@ pub struct Event {
 #[non_exhaustive]
 pub enum EventKind {
     /// Bodies collided.
-    Collision(Box<Struck>),
-    /// Several contacts struck at once: see [`crate::Together`].
-    StruckTogether(Box<StruckTogether>),
+    Collision(Box<CollisionRecord>),
+    /// Several contacts struck at once: see [`crate::ImpactsAtOnce`].
+    SimultaneousCollision(Box<SimultaneousCollision>),
     /// A sliding contact that no finite force can hold suffered an impact with zero speed of approach.
-    ImpactWithoutCollision(Box<Struck>),
+    ImpactWithoutCollision(Box<CollisionRecord>),
     /// Lasting contact begins.
     Contact {
         /// how they touch
@@ -66,7 +66,7 @@ impl EventKind {
     pub fn name(&self) -> &'static str {
         match self {
             Self::Collision(_) => "collision",
-            Self::StruckTogether(_) => "struck_together",
+            Self::SimultaneousCollision(_) => "struck_together",
             Self::ImpactWithoutCollision(_) => "impact_without_collision",
             Self::Contact { .. } => "contact",
             Self::LiftOff { .. } => "lift_off",
@@ -92,7 +92,7 @@ impl EventKind {
 
 /// A solved collision.
 #[derive(Clone, Debug)]
-pub struct Struck {
+pub struct CollisionRecord {
     /// the outcome along n, t, s, and these axes
     pub outcome: CollisionOutcome<f64>,
     /// independent speeds before
@@ -107,14 +107,14 @@ pub struct Struck {
 
 /// An impact of several contacts at once.
 #[derive(Clone, Debug)]
-pub struct StruckTogether {
+pub struct SimultaneousCollision {
     /// what each contact that could take part did
     pub shares: Vec<Share>,
     /// change of kinetic energy, J: the sum of the works, but where motion is prescribed (24)
     pub energy_change: f64,
     /// independent speeds before
     pub speeds_before: Vec<f64>,
-    /// as [`Struck::spread`]
+    /// as [`CollisionRecord::spread`]
     pub spread: Option<f64>,
 }
 

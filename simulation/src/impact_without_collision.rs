@@ -7,11 +7,11 @@ use crate::forces::JAM;
 use crate::impacts::MOST;
 use crate::motion::Failure;
 use crate::transition::Transition;
-use crate::{EventKind, Reason, SimulationError, Struck};
+use crate::{CollisionRecord, EventKind, Reason, SimulationError};
 
 impl Transition<'_> {
-    /// A sliding contact that no finite force holds suffers an impact with zero speed of approach; all that
-    /// touch answer.
+    /// A sliding contact that no finite force holds suffers an impact with zero speed of approach. Then contacts
+    /// that it presses together strike, and the modes of all that touch are decided anew.
     pub(crate) fn impact_without_collision(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         self.front.crowd += 1;
@@ -25,7 +25,7 @@ impl Transition<'_> {
         self.front.resting = false;
         self.front.y[n..n + p].copy_from_slice(&after);
         self.front.energy.impacts += outcome.energy_change;
-        let struck = Struck { outcome, speeds_before: before, last_bounce: false, spread: None };
+        let struck = CollisionRecord { outcome, speeds_before: before, last_bounce: false, spread: None };
         self.push(Some(contact), EventKind::ImpactWithoutCollision(Box::new(struck)));
         match self.approaching(&touching, &after, Some(1.0))?.first() {
             Some(&(other, _)) => self.strike(other),

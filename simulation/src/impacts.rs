@@ -13,7 +13,7 @@ use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
-use crate::{EventKind, Reason, SimulationError, Struck, StruckTogether, Together};
+use crate::{CollisionRecord, EventKind, ImpactsAtOnce, Reason, SimulationError, SimultaneousCollision};
 
 /// Touching contacts approach where their normal velocity, relative to the first approach, is below minus
 /// this.
@@ -39,7 +39,7 @@ impl Transition<'_> {
         let touching = self.touching(Some(first))?;
         self.front.resting = false;
         let speeds = self.here().speeds.to_vec();
-        if self.options.together == Together::Stop {
+        if self.options.together == ImpactsAtOnce::Stop {
             let approaching = self.approaching(&touching, &speeds, None)?;
             if approaching.len() > 1 {
                 let name = |contact: &usize| self.mechanism.component(Kind::Contact, *contact);
@@ -51,7 +51,7 @@ impl Transition<'_> {
         if self.settles_into_contact(first)? {
             return Ok(());
         }
-        if self.options.together == Together::Lzb
+        if self.options.together == ImpactsAtOnce::Lzb
             && let Some(speeds) = self.strike_together(&touching, first)?
         {
             return self.part_or_stay(&touching, &speeds, &was);
@@ -78,12 +78,14 @@ impl Transition<'_> {
         let last_bounce = !hit.bounces.is_empty();
         match hit.kind {
             HitKind::One(contact, outcome) => {
-                let struck = Struck { outcome: *outcome, speeds_before: hit.before, last_bounce, spread };
+                let struck =
+                    CollisionRecord { outcome: *outcome, speeds_before: hit.before, last_bounce, spread };
                 self.push(Some(contact), EventKind::Collision(Box::new(struck)));
             }
             HitKind::Several(shares, energy_change) => {
-                let struck = StruckTogether { shares, energy_change, speeds_before: hit.before, spread };
-                self.push(None, EventKind::StruckTogether(Box::new(struck)));
+                let struck =
+                    SimultaneousCollision { shares, energy_change, speeds_before: hit.before, spread };
+                self.push(None, EventKind::SimultaneousCollision(Box::new(struck)));
             }
         }
     }
@@ -208,11 +210,11 @@ impl Transition<'_> {
                     let approaches = |contact: &usize| approaching.iter().any(|(c, _)| c == contact);
                     order.iter().copied().find(approaches).into_iter().collect()
                 }
-                (None, Together::Sequential) => {
+                (None, ImpactsAtOnce::Sequential) => {
                     let fastest = approaching.iter().find(|(_, speed)| *speed == fastest);
                     fastest.map(|(contact, _)| *contact).into_iter().collect()
                 }
-                (None, Together::Simultaneous) if !approaching.is_empty() => touching.to_vec(),
+                (None, ImpactsAtOnce::Simultaneous) if !approaching.is_empty() => touching.to_vec(),
                 _ => approaching.iter().map(|(contact, _)| *contact).collect(),
             };
             if next.is_empty() {

@@ -78,10 +78,10 @@ pub use crate::{
     drive::{Controller, Drive, InputFunction},
     energy::EnergyAccount,
     error::{Reason, SimulationError},
-    event::{Event, EventKind, Share, Struck, StruckTogether},
+    event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
     given_law::GivenLaw,
     many::{Batch, Case, Outcome, Watch, digest, simulate_many},
-    options::{EventFunction, Options, Together},
+    options::{EventFunction, ImpactsAtOnce, Options},
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},
 };

@@ -267,9 +267,9 @@ impl Outcome {
     fn count(&mut self, kind: &EventKind, time: f64) {
         self.events += 1;
         match kind {
-            EventKind::Collision(_) | EventKind::StruckTogether(_) | EventKind::ImpactWithoutCollision(_) => {
-                self.collisions += 1
-            }
+            EventKind::Collision(_)
+            | EventKind::SimultaneousCollision(_)
+            | EventKind::ImpactWithoutCollision(_) => self.collisions += 1,
             EventKind::Rest => self.rest = Some(time),
             _ => {}
         }

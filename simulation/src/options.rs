@@ -12,7 +12,7 @@ pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
 
 /// What happens where several contacts are struck at the same time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Together {
+pub enum ImpactsAtOnce {
     /// All that approach strike at once, by Moreau's law with friction; what their impulses press together
     /// strikes next, until nothing approaches. A contact that strikes alone does so exactly, by its own law.
     #[default]
@@ -54,12 +54,12 @@ pub struct Options {
     /// where inputs come from
     pub drive: Drive,
     /// what happens where several contacts are struck together
-    pub together: Together,
-    /// of [`Together::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts
+    pub together: ImpactsAtOnce,
+    /// of [`ImpactsAtOnce::Lzb`]: the stiffnesses of contacts, by number; only their ratios matter, and contacts
     /// that are not named have 1
     pub stiffness: Vec<(usize, f64)>,
     /// whether the outcomes of all orders of up to four contacts struck together are compared
-    /// ([`crate::Struck::spread`])
+    /// ([`crate::CollisionRecord::spread`])
     pub compare_orders: bool,
     /// functions whose zeros are events
     pub events: Vec<EventFunction>,
@@ -77,7 +77,7 @@ impl Default for Options {
             laws: Vec::new(),
             law: None,
             drive: Drive::Held,
-            together: Together::default(),
+            together: ImpactsAtOnce::default(),
             stiffness: Vec::new(),
             compare_orders: false,
             events: Vec::new(),

@@ -2,7 +2,7 @@
 //!
 //! What is short, near or slow has no meaning without units. The length is the greatest of the gaps and lever
 //! arms of contacts, the time that in which their free accelerations or their velocities cover it
-//! (docs/theory.md, section 18.15).
+//! (docs/theory.md, section 18.14).
 
 use hodograph::{Contacts, Kind, State};
 
@@ -19,6 +19,8 @@ pub(crate) struct Scales {
 
 /// A gap below this part of the greatest coordinate is closed: its size tells nothing.
 const TOUCHES: f64 = 1e-9;
+/// Points that start this near, m, are meant to touch: the gap is no length of the problem.
+const NEAR: f64 = 1e-6;
 
 impl Scales {
     /// Those of a start state; 1 where nothing tells.
@@ -46,7 +48,7 @@ impl Scales {
             speed = speed.max(alone.velocity.norm());
         }
         let known = |value: f64| value.is_finite() && value > 0.0;
-        if !known(length) {
+        if length < NEAR {
             let fall = speed * speed / acceleration;
             length = if known(fall) { fall } else { 1.0 };
         }

@@ -252,7 +252,7 @@ impl<'m> Simulation<'m> {
         }
         // Integration lets quaternions drift.
         let n = self.mechanism.count(Kind::Coordinate);
-        let _ = self.mechanism.normalize(&mut self.view.1[..n]);
+        let _ = self.mechanism.normalise(&mut self.view.1[..n]);
     }
 
     /// The time to which the simulation was advanced, s.

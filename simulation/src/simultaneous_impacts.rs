@@ -8,7 +8,7 @@ use crate::contact_law::Restitution;
 use crate::lzb::{self, Fault};
 use crate::motion::Failure;
 use crate::transition::Transition;
-use crate::{EventKind, Reason, Share, SimulationError, StruckTogether};
+use crate::{EventKind, Reason, Share, SimulationError, SimultaneousCollision};
 
 /// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not
 /// touch each other.
@@ -81,8 +81,8 @@ impl Transition<'_> {
         let energy_change = self.energy_change(&speeds, &after)?;
         self.front.energy.impacts += energy_change;
         self.front.y[n..n + p].copy_from_slice(&after);
-        let struck = StruckTogether { shares, energy_change, speeds_before: speeds, spread: None };
-        self.push(None, EventKind::StruckTogether(Box::new(struck)));
+        let struck = SimultaneousCollision { shares, energy_change, speeds_before: speeds, spread: None };
+        self.push(None, EventKind::SimultaneousCollision(Box::new(struck)));
         Ok(Some(after))
     }
 

@@ -26,7 +26,7 @@ pub(crate) const ENDING: f64 = 5e-9;
 const STEPS: usize = 4000;
 /// Difference of angles by which the slope of h is formed, rad.
 const TURN: f64 = 1e-5;
-/// So often a tenth of it is tried.
+/// That difference is divided by ten at most this many times.
 const LESS: usize = 5;
 /// So near its limit the direction counts as settled, rad: what is left of the time of slip is less than
 /// [`ENDING`], and its error of first order in this.
@@ -76,8 +76,8 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
     Fate::PassesBy
 }
 
-/// Slip that has just begun starts with an acceleration of zero but for rounding: so much of what makes it
-/// up, or less, is zero. Where inputs are steep, the rounding of the time of the event is in it too.
+/// The acceleration of slip that has just begun is zero but for rounding: below this fraction of its terms it
+/// counts as zero. Where inputs are steep, the rounding of the time of the event adds to it.
 const BEGINS: f64 = 1e-7;
 
 /// Slip below this, relative to the greatest speeds so far, is rounding: it has just begun.

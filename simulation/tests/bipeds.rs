@@ -10,7 +10,7 @@ use biped::Biped;
 use common::names;
 use common::random::{Random, starts};
 use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
-use hodograph_simulation::{Event, Options, Progress, Simulation, Together};
+use hodograph_simulation::{Event, ImpactsAtOnce, Options, Progress, Simulation};
 
 hodograph::mechanism!("models/biped.mech");
 
@@ -32,7 +32,7 @@ fn land(biped: &dyn Contacts<f64>, seed: u64) -> Result<usize, String> {
     let options = Options {
         surface: Some(surface),
         compare_orders: false,
-        together: Together::Sequential,
+        together: ImpactsAtOnce::Sequential,
         ..Options::default()
     };
     let mut simulation =

@@ -107,7 +107,7 @@ fn touches_that_graze() {
         let v = (2.0 * G * (1.0 + off)).sqrt();
         let mut simulation = start(&body, &[0.0; 3], &[0.0, v, 0.0], surface(0.0, 1.0, Law::Newton));
         let events = run(&mut simulation, v / G * 2.0);
-        // Struck or not, an elastic graze comes back with the same speed, sooner by the time it would have
+        // CollisionRecord or not, an elastic graze comes back with the same speed, sooner by the time it would have
         // been above.
         let above = if off > 0.0 { 2.0 * (2.0 * off / G).sqrt() } else { 0.0 };
         let z = simulation.coordinates()[1];

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::{Law, Mechanism, State};
-use hodograph_simulation::{ContactPhase, EventKind, Options, Progress, Together};
+use hodograph_simulation::{ContactPhase, EventKind, ImpactsAtOnce, Options, Progress};
 
 const G: f64 = 9.81;
 
@@ -161,7 +161,7 @@ fn a_pushed_block_begins_to_slip() {
 #[test]
 fn striking_together_can_end_the_simulation() {
     let body = block(0.3, 0.2);
-    let options = Options { together: Together::Stop, ..surface(0.4, 0.5, Law::Newton) };
+    let options = Options { together: ImpactsAtOnce::Stop, ..surface(0.4, 0.5, Law::Newton) };
     let mut simulation = start(&body, &[0.0, 0.6, 0.0], &[0.0; 3], options);
     let error = simulation.advance_to(1.0).unwrap_err();
     assert_eq!(error.reason.kind(), "struck_together");
@@ -173,8 +173,11 @@ hodograph::mechanism!("models/cradle.mech");
 /// Three balls, of which the first comes with 1 m/s, with these stiffnesses.
 fn struck_cradle(stiffness: [f64; 2], surface: Options) -> Vec<hodograph_simulation::Event> {
     let balls = cradle::Cradle::<f64>::default();
-    let options =
-        Options { together: Together::Lzb, stiffness: vec![(0, stiffness[0]), (1, stiffness[1])], ..surface };
+    let options = Options {
+        together: ImpactsAtOnce::Lzb,
+        stiffness: vec![(0, stiffness[0]), (1, stiffness[1])],
+        ..surface
+    };
     let mut simulation = start(&balls, &[-0.2, 0.0, 0.1], &[1.0, 0.0, 0.0], options);
     let events = run(&mut simulation, 1.0);
     let energy = simulation.energy().unwrap();
@@ -191,7 +194,7 @@ fn a_cradle_answers_by_its_stiffnesses() {
         let events = struck_cradle(stiffness, surface(0.0, 1.0, Law::Stronge));
         let impact = first(&events, "struck_together");
         assert!((impact.time - 0.1).abs() < 1e-12);
-        let EventKind::StruckTogether(struck) = &impact.kind else { panic!() };
+        let EventKind::SimultaneousCollision(struck) = &impact.kind else { panic!() };
         assert_eq!(struck.speeds_before, [1.0, 0.0, 0.0]);
         assert_eq!(struck.shares.len(), 2);
         assert!(struck.energy_change.abs() < 1e-12, "{struck:?}");
@@ -210,7 +213,7 @@ fn a_cradle_answers_by_its_stiffnesses() {
 #[test]
 fn a_block_that_falls_flat_answers_at_once() {
     let body = block(0.3, 0.2);
-    let options = Options { together: Together::Lzb, ..surface(0.0, 0.5, Law::Stronge) };
+    let options = Options { together: ImpactsAtOnce::Lzb, ..surface(0.0, 0.5, Law::Stronge) };
     let mut simulation = start(&body, &[0.0, 0.6, 0.0], &[0.0; 3], options);
     let events = run(&mut simulation, 3.0);
     let impact = first(&events, "struck_together");
@@ -225,7 +228,7 @@ fn a_block_that_falls_flat_answers_at_once() {
 fn striking_together_by_stiffness_is_refused_with_friction() {
     let body = block(0.3, 0.2);
     let refused = |options: Options| {
-        let options = Options { together: Together::Lzb, ..options };
+        let options = Options { together: ImpactsAtOnce::Lzb, ..options };
         let mut simulation = start(&body, &[0.0, 0.6, 0.0], &[0.0; 3], options);
         let error = simulation.advance_to(1.0).unwrap_err();
         assert_eq!(error.reason.kind(), "lzb_not_covered");
@@ -256,7 +259,7 @@ fn the_energy_of_an_impact_of_two_contacts_on_a_belt_is_that_of_the_speeds() {
         Progress::Event(event) => event,
         Progress::Reached => panic!("nothing strikes"),
     };
-    let EventKind::StruckTogether(struck) = &event.kind else { panic!("{event:?}") };
+    let EventKind::SimultaneousCollision(struck) = &event.kind else { panic!("{event:?}") };
     let kinetic = |speeds: &[f64]| {
         let state = State { time: 0.0, coordinates: &q, speeds, inputs: &[0.0] };
         body.kinetic_energy(&state).unwrap()

@@ -41,7 +41,7 @@ fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<
     for _ in 0..10_000 {
         let mut q: Vec<f64> = middle.iter().map(|q| q + random.between(-0.4, 0.4)).collect();
         let u: Vec<f64> = rates.iter().map(|u| u + random.between(-1.0, 1.0)).collect();
-        if model.normalize(&mut q).is_err() {
+        if model.normalise(&mut q).is_err() {
             continue;
         }
         let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::{Law, Selection, State};
 use hodograph_simulation::{
-    ContactLaw, ContactPhase, Drive, EventKind, Options, Restitution, Simulation, Sliding, Together,
+    ContactLaw, ContactPhase, Drive, EventKind, ImpactsAtOnce, Options, Restitution, Simulation, Sliding,
 };
 
 const G: f64 = 9.81;
@@ -147,7 +147,7 @@ fn stick_slip_on_a_belt_has_the_period_of_its_closed_form() {
 fn impacts_have_a_friction_of_their_own() {
     let (mu, mu_impact, e, down, along) = (0.5, 0.1, 0.4, 2.0, 3.0);
     let law = ContactLaw { mu_impact: Some(mu_impact), ..ContactLaw::default() };
-    for together in [Together::Approaching, Together::Simultaneous, Together::Sequential] {
+    for together in [ImpactsAtOnce::Approaching, ImpactsAtOnce::Simultaneous, ImpactsAtOnce::Sequential] {
         let options = Options { law: Some(law.clone()), together, ..surface(mu, e, Law::Stronge) };
         let body = particle();
         let mut simulation = start(&body, &[0.0; 3], &[along, -down, 0.0], options);

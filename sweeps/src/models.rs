@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use hodograph_generator::{artifact, check, reading, rendering, source::Source};
+use hodograph_generator::{artifact, check, files, rendering, source::Source};
 use hodograph_interpreter::InterpretedMechanism;
 use sha2::{Digest, Sha256};
 
@@ -44,7 +44,7 @@ impl Model {
             ));
         }
         let text = |path: &Path, advice: &str| {
-            reading::text(path, artifact::MAX_BYTES)
+            files::text(path, artifact::MAX_BYTES)
                 .map_err(|error| format!("cannot read {}: {error}{advice}", path.display()))
         };
         let model = text(path, "")?;

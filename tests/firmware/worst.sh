@@ -1,8 +1,8 @@
-# The dearest calls: all states are counted on this machine, in singles and in doubles; the dearest of each routine are counted on the boards, where the same bits
+# The costliest calls: all states are counted on this machine, in singles and in doubles; the costliest of each routine are counted on the boards, where the same bits
 # take the same ways.
 
-# So many of the dearest states of each routine are called on a board.
-readonly dearest=300
+# So many of the costliest states of each routine are called on a board.
+readonly costliest=300
 
 # Reads the rows of `worst` and the file counts: routine by routine, in the order of the calls.
 readonly by_rows='
@@ -15,15 +15,15 @@ summary() {
         END { for (r = 1; r <= rows; r++) { split(row[r], part, OFS); print row[r], int(sum[part[1], part[2]] / calls[part[1], part[2]] + 0.5), most[part[1], part[2]] } }' "$1"
 }
 
-# choose OUTPUT: the numbers of the dearest states of every routine, as Rust.
+# choose OUTPUT: the numbers of the costliest states of every routine, as Rust.
 choose() {
     awk -F'\t' -v OFS='\t' -v counts="$work/counts" "$by_rows"'
         function call(a, b, k, count) { print a, b, k, count }' "$1" |
         sort -t"$(printf '\t')" -k1,2 -k4,4nr -k3,3n |
-        awk -F'\t' -v dearest=$dearest '
+        awk -F'\t' -v costliest=$costliest '
             BEGIN { print "&[" }
             $1 FS $2 != last { if (last != "") print "])," ; last = $1 FS $2; printf "(\"%s\", \"%s\", &[", $1, $2; many = 0 }
-            ++many <= dearest { printf "%d,", $3 }
+            ++many <= costliest { printf "%d,", $3 }
             END { if (last != "") print "]),"; print "]" }'
 }
 
@@ -56,7 +56,7 @@ worst() {
         awk -v budgets="$(awk -F'\t' '$1 == "solve" { print $2 }' "$work/all" | paste -sd' ')" -f "$here/work.awk" "$work/code" >"$work/$title.bound" ||
             wrong "the instructions of a collision have no bound"
     done
-    sed "s/STATES/$1/; s/DEAREST/$dearest/" "$here/worst.md"
+    sed "s/STATES/$1/; s/DEAREST/$costliest/" "$here/worst.md"
     budgets
     models
 }

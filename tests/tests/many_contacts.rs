@@ -3,7 +3,7 @@
 use hodograph::{ClosedContacts, Contacts, Kind, Law, Mechanism, Selection, State, StateError, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{
-    Drive, Event, EventKind, Options, Progress, Simulation, SimulationError, Together,
+    Drive, Event, EventKind, ImpactsAtOnce, Options, Progress, Simulation, SimulationError,
 };
 
 fn model(name: &str) -> InterpretedMechanism {
@@ -219,7 +219,7 @@ fn a_stack_that_falls_flat_does_not_turn() {
     for k in 1..=5 {
         start.set(&boxes, &format!("x{k}"), 0.0);
     }
-    for together in [Together::Approaching, Together::Simultaneous] {
+    for together in [ImpactsAtOnce::Approaching, ImpactsAtOnce::Simultaneous] {
         for e in [0.0, 0.5] {
             let options = Options { together, ..surface(0.4, e) };
             let end = run(&boxes, &start, options, 0.0999);

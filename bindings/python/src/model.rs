@@ -5,7 +5,7 @@ use std::path::Path;
 use hodograph_generator::check;
 use hodograph_generator::diagnostics::Severity;
 use hodograph_generator::numeric;
-use hodograph_generator::reading;
+use hodograph_generator::files;
 use hodograph_generator::source::Source;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -17,7 +17,7 @@ pub fn source(model: &str) -> Source {
     if model.contains('\n') || model.trim_start().starts_with("mechanism") {
         Source::file("the model", model)
     } else {
-        reading::model(Path::new(model))
+        files::model(Path::new(model))
     }
 }
 

@@ -220,7 +220,7 @@ pub fn simulate<'py>(
                 let impulse = struck.outcome.impulse_on_point;
                 (Some(PyArray1::from_slice(py, impulse.as_slice())), Some(struck.outcome.energy_change))
             }
-            EventKind::StruckTogether(all) => (None, Some(all.energy_change)),
+            EventKind::SimultaneousCollision(all) => (None, Some(all.energy_change)),
             _ => (None, None),
         };
         let state = [&event.coordinates, &event.speeds].map(|numbers| PyArray1::from_slice(py, numbers));

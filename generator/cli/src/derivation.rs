@@ -7,8 +7,8 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use hodograph_generator::artifact::{self, place};
+use hodograph_generator::files;
 use hodograph_generator::program::Program;
-use hodograph_generator::reading;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::evaluate::Machine;
@@ -89,7 +89,7 @@ pub fn machine(path: &Path, limits: &Limits) -> Outcome<Machine> {
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] where the child process has said why; [`Stop::Fault`].
+/// [`Stop::Reported`] where the child process has said why; [`Stop::Fault`].
 pub fn derive(model: &Model, limits: &Limits) -> Outcome<(Program, String)> {
     let answer = run(model, limits, false)?;
     let derived = artifact::decode(&answer)
@@ -136,12 +136,12 @@ fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
     }
     let output = child.stdout.take();
     let reader =
-        std::thread::spawn(move || output.map(|output| reading::up_to(output, 2 * artifact::MAX_BYTES)));
+        std::thread::spawn(move || output.map(|output| files::up_to(output, 2 * artifact::MAX_BYTES)));
     let status = wait(child, name, limits)?;
     let written = reader.join();
     if !status.success() {
         return Err(match status.code() {
-            Some(1) => Stop::Said,
+            Some(1) => Stop::Reported,
             _ => Stop::Fault(format!(
                 "deriving {name} ended with {status}; what was said of it is above. The algebra engine ends the process where another \
                  program of this user holds it: then try again. If it does so alone, please report it with the model"

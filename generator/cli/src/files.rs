@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact::place;
-use hodograph_generator::reading;
+use hodograph_generator::files;
 use hodograph_generator::rust_names::snake_case;
 use hodograph_generator::source::Source;
 
@@ -100,7 +100,7 @@ fn add(path: &Path, entries: &mut Vec<Entry>) {
     let real = |path: &Path| std::fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
     let this = real(path);
     if !entries.iter().any(|entry| !entry.inline && real(&entry.path) == this) {
-        entries.push(Entry { path: path.to_path_buf(), source: reading::model(path), inline: false });
+        entries.push(Entry { path: path.to_path_buf(), source: files::model(path), inline: false });
     }
 }
 

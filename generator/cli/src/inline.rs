@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use hodograph_generator::expand::Arguments;
-use hodograph_generator::reading;
+use hodograph_generator::files;
 use hodograph_generator::source::Source;
 use proc_macro2::{TokenStream, TokenTree};
 
@@ -30,7 +30,7 @@ pub enum Invocation {
 ///
 /// The file cannot be read, or is no Rust.
 pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
-    let text = reading::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
+    let text = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
     if !text.contains("mechanism") {
         return Ok(Vec::new());
     }

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use hodograph_generator::check::check;
 use hodograph_generator::diagnostics::Severity;
+use hodograph_generator::files;
 use hodograph_generator::model::mechanism::Mechanism;
-use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
@@ -25,12 +25,12 @@ pub struct Model {
 ///
 /// # Errors
 ///
-/// [`Stop::Call`] where there is no such file, [`Stop::Said`] where it has mistakes.
+/// [`Stop::Call`] where there is no such file, [`Stop::Reported`] where it has mistakes.
 pub fn load(path: &Path) -> Outcome<Model> {
     if let Err(error) = std::fs::metadata(path) {
         return Err(Stop::unreadable(path, &error));
     }
-    checked(reading::model(path))
+    checked(files::model(path))
 }
 
 /// Checks a model; says what is wrong on stderr, and what makes numbers doubtful. What is only superfluous or
@@ -38,13 +38,13 @@ pub fn load(path: &Path) -> Outcome<Model> {
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] where it has mistakes.
+/// [`Stop::Reported`] where it has mistakes.
 pub fn checked(source: Source) -> Outcome<Model> {
     let mut found = check(&source);
     found.diagnostics.retain(|found| found.severity == Severity::Error || !found.code.is_of_text());
     if !found.diagnostics.is_empty() {
         output::say(render(&found.diagnostics, &source).trim_end());
     }
-    let mechanism = found.mechanism.ok_or(Stop::Said)?;
+    let mechanism = found.mechanism.ok_or(Stop::Reported)?;
     Ok(Model { source, mechanism })
 }

@@ -247,7 +247,7 @@ pub fn report(stop: Stop) -> ExitCode {
             }
             ExitCode::from(1)
         }
-        Stop::Said => ExitCode::from(1),
+        Stop::Reported => ExitCode::from(1),
         Stop::ReaderGone => ExitCode::SUCCESS,
     }
 }

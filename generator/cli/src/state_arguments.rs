@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::reading;
+use hodograph_generator::files;
 
 use crate::evaluate::Machine;
 use crate::expression;
@@ -137,9 +137,9 @@ fn assignments(text: &str) -> Vec<&str> {
 /// The text of a file, or of standard input (`-`).
 fn read(place: &str) -> Outcome<String> {
     let bytes = match place {
-        "-" => reading::up_to(std::io::stdin().lock(), MAX_STATE)
+        "-" => files::up_to(std::io::stdin().lock(), MAX_STATE)
             .map_err(|error| Stop::Call(format!("cannot read the state from standard input: {error}")))?,
-        path => reading::bytes(Path::new(path), MAX_STATE).map_err(|error| {
+        path => files::bytes(Path::new(path), MAX_STATE).map_err(|error| {
             Stop::Call(format!(
                 "cannot read the state from {path}: {error}; a state is a file, `-` for standard input, numbers by name, as in q1=0.3,u1=2, \
                  or the object itself, as in '{{\"q\":{{\"q1\":0.3}}}}'"

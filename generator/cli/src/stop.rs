@@ -14,7 +14,7 @@ pub enum Stop {
     /// An error object for stdout, exit 1.
     Object(Failure),
     /// Everything has been said: exit 1.
-    Said,
+    Reported,
     /// Nobody reads any more what is written: exit 0, in silence.
     ReaderGone,
 }
@@ -39,7 +39,7 @@ impl fmt::Display for Stop {
         match self {
             Stop::Call(message) | Stop::Fault(message) => out.write_str(message),
             Stop::Object(failure) => failure.fmt(out),
-            Stop::Said | Stop::ReaderGone => Ok(()),
+            Stop::Reported | Stop::ReaderGone => Ok(()),
         }
     }
 }

@@ -8,13 +8,13 @@ use std::fmt::Write;
 use std::path::Path;
 
 use common::{ALL_JOINTS, hodograph};
+use hodograph_generator::files;
 use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::numeric::{self, State};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::{ContactQuantity, Quantity};
-use hodograph_generator::reading;
 use hodograph_generator::{artifact, check::check};
 use nalgebra::{DMatrix, DVector};
 
@@ -25,7 +25,7 @@ fn derived(folder: &Path, text: &str) -> (Mechanism, Program) {
     let run = hodograph(&["derive", &path.display().to_string()], "");
     assert_eq!(run.code, 0, "{}{}", run.stdout, run.stderr);
     let kept = std::fs::read_to_string(path.with_extension("derivation")).unwrap();
-    let mechanism = check(&reading::model(&path)).mechanism.unwrap();
+    let mechanism = check(&files::model(&path)).mechanism.unwrap();
     (mechanism, artifact::decode(&kept).unwrap().program)
 }
 

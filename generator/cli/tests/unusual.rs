@@ -8,11 +8,11 @@ mod common;
 use common::{hodograph, root};
 use hodograph_generator::check::check;
 use hodograph_generator::diagnostics::codes::NO_GAP;
+use hodograph_generator::files;
 use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::numeric::{self, Evaluation, State};
 use hodograph_generator::program::{ContactQuantity, Inputs, PointQuantity, Program, Quantity};
-use hodograph_generator::reading;
 use hodograph_generator::{artifact, rendering::render};
 
 /// A state near the initial one, with its loops closed; `None` where they cannot be.
@@ -104,7 +104,7 @@ fn they_are_accepted_derived_and_the_same_on_both_roads() {
         if path.extension().is_none_or(|extension| extension != "mech") {
             continue;
         }
-        let source = reading::model(&path);
+        let source = files::model(&path);
         let checked = check(&source);
         let others: Vec<_> = checked.diagnostics.iter().filter(|d| d.code != NO_GAP).cloned().collect();
         said += &render(&others, &source);

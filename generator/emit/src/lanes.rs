@@ -12,7 +12,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use super::Emitter;
-use super::homes::Homes;
+use super::storage::Storage;
 use super::values::local;
 use hodograph_program::program::Output;
 use hodograph_program::program::operation::{Operation, Stage, Value};
@@ -359,15 +359,15 @@ fn common(lanes: &[Lanes]) -> Vec<Value> {
 }
 
 /// The arrays that loops read.
-pub fn homes(lanes: &[Lanes]) -> Homes {
-    let mut homes = Homes::default();
+pub fn storage(lanes: &[Lanes]) -> Storage {
+    let mut storage = Storage::default();
     if !lanes.is_empty() {
-        homes.list("shared", common(lanes));
+        storage.list("shared", common(lanes));
     }
     for (number, lanes) in lanes.iter().enumerate() {
-        homes.table(&Lanes::given_array(number), lanes.given.clone(), lanes.width());
+        storage.table(&Lanes::given_array(number), lanes.given.clone(), lanes.width());
     }
-    homes
+    storage
 }
 
 /// All loops.

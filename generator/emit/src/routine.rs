@@ -72,7 +72,7 @@ impl Emitter<'_> {
         });
         let in_lanes: BTreeSet<Value> = lanes.iter().flat_map(Lanes::computed).collect();
         let order: Vec<Value> = order.into_iter().filter(|value| !in_lanes.contains(value)).collect();
-        let statements = self.statements(&order, &wanted, &lanes::homes(&lanes));
+        let statements = self.statements(&order, &wanted, &lanes::storage(&lanes));
         let loops = lanes::loops(&lanes, self);
         let wrong = self.not_finite(&results, &lanes);
         let fetch = lanes.iter().zip(0..).map(|(lanes, number)| lanes.fetch(number));

@@ -12,7 +12,7 @@ use quote::{format_ident, quote};
 
 use super::Emitter;
 use super::groups::{Statement, grouped};
-use super::homes::{Home, Homes};
+use super::storage::{ArrayEntry, Storage};
 use super::values::{Place, local};
 use hodograph_program::program::operation::{Operation, Stage, Value};
 
@@ -36,7 +36,7 @@ enum Slot {
     /// in that of a part
     Part { part: usize, at: usize },
     /// in one that loops read
-    Home(Home),
+    InArray(ArrayEntry),
 }
 
 impl Slot {
@@ -46,7 +46,7 @@ impl Slot {
                 let (array, at) = (array(*part), Literal::usize_unsuffixed(*at));
                 quote!(#array[#at])
             }
-            Slot::Home(home) => home.tokens(),
+            Slot::InArray(entry) => entry.tokens(),
         }
     }
 }
@@ -59,7 +59,7 @@ fn array(part: usize) -> Ident {
 impl Emitter<'_> {
     /// The statements that compute `values`, in their order, and fill the arrays of loops; `wanted` are those
     /// that are looked at afterwards.
-    pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>, homes: &Homes) -> TokenStream {
+    pub fn statements(&self, values: &[Value], wanted: &BTreeSet<Value>, storage: &Storage) -> TokenStream {
         let pairs = self.together(values);
         let angles = self.angles(&pairs, values);
         let of_angles = self.sines_and_cosines(&pairs);
@@ -70,9 +70,9 @@ impl Emitter<'_> {
         if rest.len() <= self.longest {
             let statements = rest.iter().filter_map(|&value| self.listed(value)).collect();
             // The arrays of loops need what is in them.
-            let needed = wanted.iter().copied().chain(homes.values());
+            let needed = wanted.iter().copied().chain(storage.values());
             let needed = needed.map(|value| local(value).to_string()).collect();
-            let (statements, full) = (grouped(statements, &needed), homes.full());
+            let (statements, full) = (grouped(statements, &needed), storage.full());
             return quote! { #(#angles)* #of_angles #statements #full };
         }
         let given = given.into_iter().filter_map(|value| self.statement(value, Place::Method));
@@ -80,13 +80,13 @@ impl Emitter<'_> {
         let wanted: BTreeSet<String> = wanted.iter().map(|&value| local(value).to_string()).collect();
         let mut gone = Gone::default();
         let calls: Vec<TokenStream> =
-            (0..parts.len()).map(|index| self.part(&parts, index, &wanted, homes, &mut gone)).collect();
+            (0..parts.len()).map(|index| self.part(&parts, index, &wanted, storage, &mut gone)).collect();
         let looked_at = gone.places.iter().filter(|(name, _)| wanted.contains(*name));
         let looked_at = looked_at.map(|(name, place)| {
             let (name, place) = (format_ident!("{name}"), place.tokens());
             quote!(let #name = #place;)
         });
-        let (empty, stores) = (homes.empty(), homes.stores(&gone.stored));
+        let (empty, stores) = (storage.empty(), storage.stores(&gone.stored));
         quote! { #(#angles)* #of_angles #(#given)* #empty #(#calls)* #(#looked_at)* #stores }
     }
 
@@ -121,7 +121,7 @@ impl Emitter<'_> {
         parts: &[&[Value]],
         index: usize,
         wanted: &BTreeSet<String>,
-        homes: &Homes,
+        storage: &Storage,
         gone: &mut Gone,
     ) -> TokenStream {
         let krate = self.krate;
@@ -142,7 +142,7 @@ impl Emitter<'_> {
             if let Some(place) = gone.places.get(&name) {
                 match place {
                     Slot::Part { part, .. } => drop(arrays.insert(*part)),
-                    Slot::Home(home) => drop(filled.insert(home.array.clone())),
+                    Slot::InArray(entry) => drop(filled.insert(entry.array.clone())),
                 }
                 places.insert(name, place.tokens());
             }
@@ -164,13 +164,13 @@ impl Emitter<'_> {
             }
             statements.extend(self.listed(value));
             let store = |tokens, name| Statement { tokens, makes: vec![], takes: BTreeSet::from([name]) };
-            if let [first, ..] = homes.of(value) {
-                for home in homes.of(value) {
-                    statements.push(store(home.store(value), local(value).to_string()));
-                    filled.insert(home.array.clone());
+            if let [first, ..] = storage.of(value) {
+                for entry in storage.of(value) {
+                    statements.push(store(entry.store(value), local(value).to_string()));
+                    filled.insert(entry.array.clone());
                 }
                 gone.stored.insert(value);
-                gone.places.insert(local(value).to_string(), Slot::Home(first.clone()));
+                gone.places.insert(local(value).to_string(), Slot::InArray(first.clone()));
                 continue;
             }
             for name in self.makes(value) {
@@ -188,7 +188,7 @@ impl Emitter<'_> {
         let earlier: Vec<_> = arrays.iter().map(|&part| array(part)).collect();
         let lengths = arrays.iter().map(|&part| Literal::usize_unsuffixed(gone.lengths[part]));
         let (name, own) = (format_ident!("part_{index}"), array(index));
-        let shapes = filled.iter().map(|array| homes.shape(array));
+        let shapes = filled.iter().map(|array| storage.shape(array));
         let shapes = filled.iter().zip(shapes).map(|(array, shape)| quote!(#array: &mut #shape,));
         let filled = filled.iter().map(|array| quote!(&mut #array,));
         let statements = grouped(statements, &BTreeSet::new());

@@ -58,7 +58,7 @@ pub fn evaluate_rows(
 }
 
 /// A collision of a mechanism, and the independent speeds after it (as many as the mechanism has).
-pub type Struck<'a> = Result<(CollisionOutcome<f64>, &'a [f64]), CollisionError<f64>>;
+pub type RowOutcome<'a> = Result<(CollisionOutcome<f64>, &'a [f64]), CollisionError<f64>>;
 
 /// A routine of the collisions of a contact at many states, for the parameters it was prepared for.
 #[derive(Clone, Debug)]
@@ -113,7 +113,7 @@ impl Collisions {
         table: &Table<'_>,
         surface: &dyn Fn(usize) -> Surface<f64>,
         rows: Range<usize>,
-        with: &mut dyn FnMut(usize, Struck<'_>),
+        with: &mut dyn FnMut(usize, RowOutcome<'_>),
     ) {
         let mechanism = &self.mechanism;
         let mut numbers = vec![0.0; self.columns.len()];

@@ -9,7 +9,7 @@ use hodograph_model::model::mechanism::{self, Mechanism, Orientation};
 use hodograph_model::{check, rendering};
 use hodograph_program::interpret::{Arguments, Constants};
 use hodograph_program::program::Program;
-use hodograph_program::{artifact, program, reading};
+use hodograph_program::{artifact, files, program};
 
 use crate::routines::{Request, Routines};
 use crate::{Error, parameters};
@@ -65,7 +65,7 @@ impl InterpretedMechanism {
     ///
     /// [`Error`]
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let source = reading::model(path);
+        let source = files::model(path);
         let checked = check::check(&source);
         let Some(model) = checked.mechanism else {
             return Err(Error::Model(rendering::render(&checked.diagnostics, &source)));

@@ -1,6 +1,6 @@
 //! Implements the trait `Mechanism` by interpreting the program of a model.
 
-use hodograph::generated::{check_length, normalize_quaternions, write};
+use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};
 use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
 use hodograph_model::model::mechanism::Variable;
@@ -126,9 +126,9 @@ impl Mechanism for InterpretedMechanism {
         write(inputs, &state.inputs, "inputs")
     }
 
-    fn normalize(&self, coordinates: &mut [f64]) -> Result<(), StateError> {
+    fn normalise(&self, coordinates: &mut [f64]) -> Result<(), StateError> {
         check_length(coordinates, self.model().coordinates.len(), "coordinates")?;
-        normalize_quaternions(coordinates, self.quaternions());
+        normalise_quaternions(coordinates, self.quaternions());
         Ok(())
     }
 

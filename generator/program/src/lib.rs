@@ -9,6 +9,6 @@
 
 pub mod artifact;
 pub mod explain;
+pub mod files;
 pub mod interpret;
 pub mod program;
-pub mod reading;

@@ -18,7 +18,7 @@ use hodograph_model::rust_names;
 use hodograph_model::source::Source;
 use hodograph_model::suggest::nearest;
 use hodograph_model::syntax::token::TokenKind;
-use hodograph_program::reading;
+use hodograph_program::files;
 
 /// The path that the user wrote, and where.
 pub struct ModelPath {
@@ -110,7 +110,7 @@ pub fn expand(path: &ModelPath, arguments: &Arguments, krate: &TokenStream, pack
         }
     };
     let mut tracked_files = vec![tracked(&path.text, place.in_package)];
-    let source = reading::model_as(path.text.clone(), &place.path);
+    let source = files::model_as(path.text.clone(), &place.path);
     let name = name(&source).unwrap_or(stem);
     let failed = |error: &TokenStream, tracked: &[TokenStream]| {
         emit::stub(&module, &name, error, tracked, &arguments.types())

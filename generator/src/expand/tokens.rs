@@ -3,11 +3,11 @@
 
 use proc_macro2::{Delimiter, Span as RustSpan, TokenStream, TokenTree};
 
-use hodograph_model::letters;
 use hodograph_model::source::Source;
 use hodograph_model::span::Span;
 use hodograph_model::syntax::lexer::classify_number;
 use hodograph_model::syntax::token::{Bad, Token, TokenKind};
+use hodograph_model::unicode;
 
 use super::compiler;
 
@@ -65,7 +65,7 @@ impl Reader {
                 TokenTree::Ident(name) => {
                     let (text, place) = (name.to_string(), name.span());
                     let raw = text.starts_with("r#");
-                    let text = letters::normal(&text).into_owned();
+                    let text = unicode::normal(&text).into_owned();
                     self.push(if raw { TokenKind::Bad(Bad::RawName) } else { TokenKind::Name }, text, place);
                 }
                 TokenTree::Literal(literal) => self.literal(&literal),

@@ -13,7 +13,7 @@ use super::{
 use crate::{Law, ReducedMatrix, Scalar, Surface, scalar::length, solve::check};
 
 /// A closed contact in scaled units, with the input that converts results back.
-struct Answering<'a, T: Scalar> {
+struct ScaledContact<'a, T: Scalar> {
     matrix: &'a ReducedMatrix<T>,
     beta: &'a Vector3<T>,
     closed: Closed<T>,
@@ -27,7 +27,7 @@ pub(super) fn select<T: Scalar>(
     mu: T,
     before: &Vector3<T>,
 ) -> Result<ContactForce<T>, ContactError<T>> {
-    let contact = answering(matrix, beta, slip, mu)?;
+    let contact = scaled_contact(matrix, beta, slip, mu)?;
     let speed = length(slip);
     let answer =
         if speed > T::zero() { contact.slipping(&(slip / speed), speed) } else { contact.resting(before) };
@@ -42,7 +42,7 @@ pub(super) fn keep<T: Scalar>(
     slip: &Vector2<T>,
     mu: T,
 ) -> Result<ContactForce<T>, ContactError<T>> {
-    let contact = answering(matrix, beta, slip, mu)?;
+    let contact = scaled_contact(matrix, beta, slip, mu)?;
     let speed = length(slip);
     let none = ContactError::NoMode { free_acceleration: beta.x };
     let answer = match mode {
@@ -64,12 +64,12 @@ pub(super) fn keep<T: Scalar>(
 }
 
 /// Checks the input.
-fn answering<'a, T: Scalar>(
+fn scaled_contact<'a, T: Scalar>(
     matrix: &'a ReducedMatrix<T>,
     beta: &'a Vector3<T>,
     slip: &Vector2<T>,
     mu: T,
-) -> Result<Answering<'a, T>, ContactError<T>> {
+) -> Result<ScaledContact<'a, T>, ContactError<T>> {
     let surface = Surface { mu, e: T::zero(), law: Law::Poisson };
     check(matrix, &Vector3::new(-T::one(), slip.x, slip.y), &surface)?;
     for value in beta.iter().copied() {
@@ -77,7 +77,7 @@ fn answering<'a, T: Scalar>(
             return Err(ContactError::Input(crate::ImpactError::NotFinite { value }));
         }
     }
-    Ok(Answering { matrix, beta, closed: Closed::new(matrix, beta, mu) })
+    Ok(ScaledContact { matrix, beta, closed: Closed::new(matrix, beta, mu) })
 }
 
 /// The answer, or an error if one of its numbers is not finite.
@@ -90,7 +90,7 @@ fn finite<T: Scalar>(answer: ContactForce<T>) -> Result<ContactForce<T>, Contact
     Ok(answer)
 }
 
-impl<T: Scalar> Answering<'_, T> {
+impl<T: Scalar> ScaledContact<'_, T> {
     /// The mode of a contact that slips.
     fn slipping(&self, d: &Vector2<T>, speed: T) -> Result<ContactForce<T>, ContactError<T>> {
         let f = self.closed.f(d);

@@ -32,7 +32,7 @@ pub use contact::{
 #[doc(hidden)]
 pub use saltation::{by_coordinate, by_coordinates, reset, salted, state};
 #[doc(hidden)]
-pub use slices::{Description, normalize_quaternions, write_array, write_rows};
+pub use slices::{Description, normalise_quaternions, write_array, write_rows};
 
 #[doc(hidden)]
 pub use crate::specialised::{AnyLaw, KnownLaw, Newton, Poisson, Stronge, solve_inlined};

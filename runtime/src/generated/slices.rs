@@ -68,16 +68,16 @@ impl Description {
     }
 
     /// Scales the quaternions among the coordinates to length 1.
-    pub fn normalize<T: Scalar>(&self, coordinates: &mut [T]) -> Result<(), StateError> {
+    pub fn normalise<T: Scalar>(&self, coordinates: &mut [T]) -> Result<(), StateError> {
         check_length(coordinates, self.coordinates.len(), "coordinates")?;
-        normalize_quaternions(coordinates, self.quaternions);
+        normalise_quaternions(coordinates, self.quaternions);
         Ok(())
     }
 }
 
 /// Scales quaternions, given by the numbers of their coordinates, to length 1; those of length 0 are not
 /// changed.
-pub fn normalize_quaternions<T: Scalar>(coordinates: &mut [T], quaternions: &[[usize; 4]]) {
+pub fn normalise_quaternions<T: Scalar>(coordinates: &mut [T], quaternions: &[[usize; 4]]) {
     for quaternion in quaternions {
         let parts = quaternion.iter().filter_map(|&index| coordinates.get(index));
         let length = parts.fold(T::zero(), |sum, &part| sum + part * part).sqrt();

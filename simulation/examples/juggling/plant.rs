@@ -69,7 +69,7 @@ impl<T: Scalar> Plant<T> {
         for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
             end = along(&end, &k, time * number(weight) / number(6.0));
         }
-        self.juggler.normalize(&mut end.0)?;
+        self.juggler.normalise(&mut end.0)?;
         Ok((end.0.into(), end.1.into()))
     }
 

@@ -132,7 +132,7 @@ fn name(mechanism: &dyn Contacts<f64>, contact: Option<usize>) -> &str {
         .map_or("", |component| component.name)
 }
 
-fn struck(event: &Event) -> Option<&hodograph_simulation::Struck> {
+fn struck(event: &Event) -> Option<&hodograph_simulation::CollisionRecord> {
     match &event.kind {
         EventKind::Collision(struck) => Some(struck),
         _ => None,
@@ -149,7 +149,7 @@ fn names(mechanism: &dyn Contacts<f64>, contacts: impl Iterator<Item = Option<us
 
 /// An impact, or several in a row.
 fn impacts_line(mechanism: &dyn Contacts<f64>, events: &[Event]) -> String {
-    let impacts: Vec<(&Event, &hodograph_simulation::Struck)> =
+    let impacts: Vec<(&Event, &hodograph_simulation::CollisionRecord)> =
         events.iter().filter_map(|event| struck(event).map(|struck| (event, struck))).collect();
     let at = names(mechanism, impacts.iter().map(|(event, _)| event.contact));
     let energy: f64 = impacts.iter().map(|(_, struck)| struck.outcome.energy_change).sum::<f64>() + 0.0;

@@ -158,7 +158,7 @@ impl Mechanism<f64> for Body {
         inputs.fill(0.0);
         Ok(())
     }
-    fn normalize(&self, _: &mut [f64]) -> Result<(), StateError> {
+    fn normalise(&self, _: &mut [f64]) -> Result<(), StateError> {
         Ok(())
     }
     fn coordinate_rates(&self, state: &State<'_>, rates: &mut [f64]) -> Result<(), StateError> {
@@ -327,7 +327,7 @@ pub fn first<'a>(events: &'a [Event], name: &str) -> &'a Event {
 
 /// Whether bodies collided, at one contact or at several at once.
 fn collided(event: &Event) -> bool {
-    matches!(event.kind, EventKind::Collision(_) | EventKind::StruckTogether(_))
+    matches!(event.kind, EventKind::Collision(_) | EventKind::SimultaneousCollision(_))
 }
 
 /// The first collision, and the speeds before it.
@@ -338,7 +338,7 @@ pub fn first_collision(events: &[Event]) -> (&Event, &[f64]) {
         .unwrap_or_else(|| panic!("no collision in {:?}", names(events)));
     let before = match &event.kind {
         EventKind::Collision(struck) => &struck.speeds_before,
-        EventKind::StruckTogether(struck) => &struck.speeds_before,
+        EventKind::SimultaneousCollision(struck) => &struck.speeds_before,
         _ => unreachable!(),
     };
     (event, before)

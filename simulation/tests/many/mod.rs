@@ -164,7 +164,7 @@ impl Ended {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
                 Some((event.kind.name(), struck.outcome.energy_change))
             }
-            EventKind::StruckTogether(struck) => Some((event.kind.name(), struck.energy_change)),
+            EventKind::SimultaneousCollision(struck) => Some((event.kind.name(), struck.energy_change)),
             _ => None,
         };
         self.events.iter().filter_map(change).max_by(|a, b| a.1.total_cmp(&b.1))

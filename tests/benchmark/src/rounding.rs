@@ -14,7 +14,7 @@ use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::{ContactQuantity, Quantity};
-use hodograph_generator::reading;
+use hodograph_generator::files;
 use serde_json::{Value, json};
 
 use crate::cases::{Case, Origin};
@@ -157,7 +157,7 @@ fn exact(
 /// The model of a derivation.
 fn mechanism(derivation: &Derivation<'_>) -> Result<Mechanism, Failure> {
     let path: PathBuf = derivation.path.clone();
-    check(&reading::model(&path))
+    check(&files::model(&path))
         .mechanism
         .ok_or_else(|| Failure::new(format!("{} is not accepted", path.display())))
 }

@@ -3,7 +3,7 @@
 use std::process::Command;
 
 use hodograph_generator::check::check;
-use hodograph_generator::reading;
+use hodograph_generator::files;
 use serde_json::Value;
 
 use crate::cases::Origin;
@@ -65,7 +65,7 @@ pub fn difference(
 
 /// The names in a model.
 pub fn names(derivation: &Derivation<'_>) -> Result<Names, Failure> {
-    let mechanism = check(&reading::model(&derivation.path)).mechanism;
+    let mechanism = check(&files::model(&derivation.path)).mechanism;
     let mechanism = mechanism.ok_or_else(|| Failure::new("a model that was derived is not accepted"))?;
     Ok(Names {
         coordinates: mechanism.coordinates.iter().map(|coordinate| coordinate.name.clone()).collect(),

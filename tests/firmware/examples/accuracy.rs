@@ -83,7 +83,7 @@ fn model(single: &dyn Contacts<f32>, double: &dyn Contacts<f64>) -> [String; 2] 
             from.iter().map(|x| x + (size * random.number()) as f32).collect()
         };
         let (mut q, mut u, w) = (near(&q0, 0.5), near(&u0, 2.0), near(&w0, 1.0));
-        let _ = single.normalize(&mut q);
+        let _ = single.normalise(&mut q);
         let wide = |slice: &[f32]| slice.iter().copied().map(f64::from).collect::<Vec<_>>();
         let time = random.number();
         let at = State { time: time as f32, coordinates: &q, speeds: &u, inputs: &w };

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact;
 use hodograph_generator::check::check;
+use hodograph_generator::files;
 use hodograph_generator::interpret::{Array, Evaluator};
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::Quantity;
-use hodograph_generator::reading;
 use serde_json::Value;
 
 /// A shipped model with its derivation.
@@ -50,7 +50,7 @@ impl Model {
     /// A model and its derivation, which must be that of this text.
     pub fn load(name: &str) -> Model {
         let path = root().join("models").join(name).with_extension("mech");
-        let source = reading::model(&path);
+        let source = files::model(&path);
         let mechanism = check(&source).mechanism.unwrap_or_else(|| panic!("{name} is not accepted"));
         let derivation = std::fs::read_to_string(path.with_extension("derivation"))
             .unwrap_or_else(|error| panic!("{name} has no derivation: {error}"));

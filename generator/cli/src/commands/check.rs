@@ -45,7 +45,7 @@ const PAUSE: Duration = Duration::from_millis(250);
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a model has an error.
+/// [`Stop::Reported`] if a model has an error.
 pub fn run(arguments: &Arguments) -> Outcome {
     match arguments.watch {
         true => watch(&arguments.models),
@@ -80,7 +80,7 @@ fn once(paths: &[PathBuf], format: Format) -> Outcome {
     }
     let model = if models == 1 { "model" } else { "models" };
     output::say(format_args!("{models} {model} checked, {wrong} with errors"));
-    if wrong == 0 { Ok(()) } else { Err(Stop::Said) }
+    if wrong == 0 { Ok(()) } else { Err(Stop::Reported) }
 }
 
 /// Checks again and again: whenever a file is other than before.
@@ -93,7 +93,7 @@ fn watch(paths: &[PathBuf]) -> Outcome {
                 output::text("\n")?;
             }
             match once(paths, Format::Text) {
-                Ok(()) | Err(Stop::Said) => {}
+                Ok(()) | Err(Stop::Reported) => {}
                 // A file that is being saved may be missing for a moment.
                 Err(Stop::Call(message) | Stop::Fault(message)) => output::say(message),
                 Err(other) => return Err(other),

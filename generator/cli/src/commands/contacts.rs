@@ -69,7 +69,7 @@ struct Named<'a> {
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a line had an error, [`Stop::Call`] for a file that cannot be read.
+/// [`Stop::Reported`] if a line had an error, [`Stop::Call`] for a file that cannot be read.
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.file.as_os_str() == "-" {
         if io::stdin().is_terminal() {
@@ -107,7 +107,7 @@ fn answer_lines(arguments: &Arguments, input: &mut impl BufRead, from: &str) -> 
             other => other?,
         }
     }
-    if all_solved { Ok(()) } else { Err(Stop::Said) }
+    if all_solved { Ok(()) } else { Err(Stop::Reported) }
 }
 
 /// The name of a problem and its answers.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use hodograph_generator::artifact::{self, Loaded, MAX_BYTES};
-use hodograph_generator::reading;
+use hodograph_generator::files;
 
 use crate::derivation::{self, Limits};
 use crate::files::{Entry, collect};
@@ -38,7 +38,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a model has an error, cannot be derived or (`--check`) is stale.
+/// [`Stop::Reported`] if a model has an error, cannot be derived or (`--check`) is stale.
 pub fn run(arguments: &Arguments) -> Outcome {
     let (mut all_well, mut report) = (true, output::Report::default());
     let mut taken: HashMap<PathBuf, PathBuf> = HashMap::new();
@@ -57,7 +57,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         });
         match done {
             Ok(well) => all_well &= well,
-            Err(Stop::Said) => all_well = false,
+            Err(Stop::Reported) => all_well = false,
             Err(Stop::Fault(message)) => {
                 output::say(format_args!("error: {message}"));
                 all_well = false;
@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             Err(other) => return Err(other),
         }
     }
-    if all_well { Ok(()) } else { Err(Stop::Said) }
+    if all_well { Ok(()) } else { Err(Stop::Reported) }
 }
 
 /// Derives or checks one model; false if it is stale.
@@ -100,7 +100,7 @@ fn one(
 
 /// How a fresh derivation differs from what its model gives now.
 fn difference(model: &Model, path: &Path, limits: &Limits) -> Outcome<Option<String>> {
-    let kept = reading::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
+    let kept = files::text(path, MAX_BYTES).map_err(|error| Stop::unreadable(path, &error))?;
     let (_, derived) = derivation::derive(model, limits)?;
     let [kept, derived]: [Vec<&str>; 2] = [&kept, &derived].map(|text| text.lines().collect());
     if kept == derived {

@@ -35,11 +35,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let text = std::io::read_to_string(std::io::stdin().lock())
         .map_err(|error| Stop::Fault(format!("cannot read the model: {error}")))?;
     let source = Source::file(arguments.name.clone(), text);
-    let mechanism = check(&source).mechanism.ok_or(Stop::Said)?;
+    let mechanism = check(&source).mechanism.ok_or(Stop::Reported)?;
     let derived = hodograph_generator::derive(&mechanism).map_err(|error| match error {
         DerivationError::Model(error) => {
             output::say(render(&[error.diagnostic()], &source).trim_end());
-            Stop::Said
+            Stop::Reported
         }
         DerivationError::Session(error) => Stop::Fault(error.to_string()),
     })?;

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use hodograph_generator::files;
 use hodograph_generator::format::{Unformatted, format};
-use hodograph_generator::reading;
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::{MAX_BYTES, Source};
 
@@ -31,7 +31,7 @@ pub struct Arguments {
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a model cannot be parsed, or is laid out in another way and `--check` asks.
+/// [`Stop::Reported`] if a model cannot be parsed, or is laid out in another way and `--check` asks.
 pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.models.iter().any(|path| path == Path::new("-")) {
         return match arguments.models.as_slice() {
@@ -61,19 +61,19 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let verb = if arguments.check { "to lay out" } else { "laid out" };
     let left = if failed > 0 { format!(", {failed} left as they are") } else { String::new() };
     output::say(format_args!("{} {verb}, {same} as they should be{left}", models(changed)));
-    if failed > 0 || arguments.check && changed > 0 { Err(Stop::Said) } else { Ok(()) }
+    if failed > 0 || arguments.check && changed > 0 { Err(Stop::Reported) } else { Ok(()) }
 }
 
 /// From standard input to standard output.
 fn stream(check: bool) -> Outcome {
-    let bytes = reading::up_to(std::io::stdin().lock(), MAX_BYTES)
+    let bytes = files::up_to(std::io::stdin().lock(), MAX_BYTES)
         .map_err(|error| Stop::Fault(format!("standard input: {error}")))?;
     let source = Source::bytes("standard input", bytes);
-    let text = laid_out(&source)?.ok_or(Stop::Said)?;
+    let text = laid_out(&source)?.ok_or(Stop::Reported)?;
     match check {
         false => output::text(&text),
         true if source.text() == Some(text.as_str()) => Ok(()),
-        true => Err(Stop::Said),
+        true => Err(Stop::Reported),
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::ValueEnum;
 use hodograph_generator::check::check;
-use hodograph_generator::reading;
+use hodograph_generator::files;
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
 
@@ -50,10 +50,10 @@ enum Base {
 ///
 /// # Errors
 ///
-/// The file cannot be read ([`Stop::Call`]) or imported ([`Stop::Said`]).
+/// The file cannot be read ([`Stop::Call`]) or imported ([`Stop::Reported`]).
 pub fn run(arguments: &Arguments) -> Outcome {
     let file = arguments.file.display().to_string();
-    let bytes = reading::bytes(&arguments.file, MAX_BYTES)
+    let bytes = files::bytes(&arguments.file, MAX_BYTES)
         .map_err(|error| Stop::unreadable(&arguments.file, &error))?;
     let source = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
@@ -78,13 +78,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
             if !found.diagnostics.is_empty() {
                 output::say(render(&found.diagnostics, &source).trim_end());
             }
-            if found.has_errors() { Err(Stop::Said) } else { Ok(()) }
+            if found.has_errors() { Err(Stop::Reported) } else { Ok(()) }
         }
         Err(problems) => {
             for problem in problems {
                 output::say(format_args!("error: {problem}"));
             }
-            Err(Stop::Said)
+            Err(Stop::Reported)
         }
     }
 }

@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use clap::ValueEnum;
 use hodograph::{ReducedMatrix, snapshot_at};
 use hodograph_generator::artifact::place;
+use hodograph_generator::files;
 use hodograph_generator::program::Quantity;
-use hodograph_generator::reading;
 use nalgebra::Vector3;
 
 use crate::derivation::{self, Limits};
@@ -185,7 +185,7 @@ fn collision(arguments: &Arguments) -> Outcome<Drawn> {
     let Some(path) = &arguments.model else {
         let unreadable =
             |error: String| Stop::Call(format!("cannot read the collision from standard input: {error}"));
-        let bytes = reading::up_to(std::io::stdin().lock(), MAX_BYTES)
+        let bytes = files::up_to(std::io::stdin().lock(), MAX_BYTES)
             .map_err(|error| unreadable(error.to_string()))?;
         let text = String::from_utf8(bytes).map_err(|error| unreadable(error.to_string()))?;
         let case = Fields::new(Json::parse(&text)?, "a collision")?;

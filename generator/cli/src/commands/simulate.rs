@@ -18,7 +18,7 @@ use std::path::PathBuf;
 use hodograph::State as Borrowed;
 use hodograph_generator::artifact::place;
 use hodograph_interpreter::{InterpretedMechanism, motion};
-use hodograph_simulation::{EventKind, Options, Progress, Simulation, SimulationError, Together};
+use hodograph_simulation::{EventKind, ImpactsAtOnce, Options, Progress, Simulation, SimulationError};
 
 use self::lines::{Format, Lines};
 use self::pictures::{PictureFiles, Pictures};
@@ -164,11 +164,11 @@ fn simulated(arguments: &Arguments) -> Outcome {
         drive,
         breaks,
         together: match arguments.together {
-            TogetherArgument::Approaching => Together::Approaching,
-            TogetherArgument::Sequential => Together::Sequential,
-            TogetherArgument::Simultaneous => Together::Simultaneous,
-            TogetherArgument::Lzb => Together::Lzb,
-            TogetherArgument::Stop => Together::Stop,
+            TogetherArgument::Approaching => ImpactsAtOnce::Approaching,
+            TogetherArgument::Sequential => ImpactsAtOnce::Sequential,
+            TogetherArgument::Simultaneous => ImpactsAtOnce::Simultaneous,
+            TogetherArgument::Lzb => ImpactsAtOnce::Lzb,
+            TogetherArgument::Stop => ImpactsAtOnce::Stop,
         },
         stiffness,
         compare_orders: arguments.spread,

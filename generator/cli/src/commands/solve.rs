@@ -191,7 +191,7 @@ pub fn characteristics_of(
 ///
 /// # Errors
 ///
-/// [`Stop::Said`] if a line had an error, [`Stop::Call`] for an option that the method does not
+/// [`Stop::Reported`] if a line had an error, [`Stop::Call`] for an option that the method does not
 /// have.
 pub fn run(arguments: &Arguments) -> Outcome {
     arguments.check()?;
@@ -229,7 +229,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             other => other?,
         }
     }
-    if all_solved { Ok(()) } else { Err(Stop::Said) }
+    if all_solved { Ok(()) } else { Err(Stop::Reported) }
 }
 
 fn answer(line: &[u8], arguments: &Arguments) -> Result<Answer, Failure> {

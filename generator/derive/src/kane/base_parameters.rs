@@ -16,12 +16,12 @@ use crate::kinematics::linear_forms::{self, Triple};
 use hodograph_model::model::mechanism::{FrameId, PointId};
 use hodograph_model::number::Number;
 
-/// Where a lump is: the frame it turns with and its reference point (`None`: a point at rest).
-pub type Seat = (FrameId, Option<PointId>);
+/// Where lumped inertia is attached: the frame it turns with and its reference point (`None`: a point at rest).
+pub type Attachment = (FrameId, Option<PointId>);
 
 /// Mass that moves rigidly with a frame, about its reference point, along the home axes of the frame.
 #[derive(Clone, Debug)]
-pub struct Lump {
+pub struct LumpedInertia {
     /// kg
     pub mass: Expr,
     /// first moment, kg m
@@ -30,9 +30,9 @@ pub struct Lump {
     pub second: Symmetric,
 }
 
-impl Lump {
+impl LumpedInertia {
     fn empty() -> Self {
-        Lump {
+        LumpedInertia {
             mass: Expr::zero(),
             moment: linear_forms::zero(),
             second: std::array::from_fn(|_| Expr::zero()),
@@ -40,7 +40,7 @@ impl Lump {
     }
 
     /// Adds another lump whose reference point is at `r`, along the same axes.
-    fn add_at(&mut self, other: &Lump, r: &Triple) {
+    fn add_at(&mut self, other: &LumpedInertia, r: &Triple) {
         for (i, j) in ENTRIES {
             let shift = other.mass.mul(&r[i]).mul(&r[j]);
             let mixed = other.moment[i].mul(&r[j]).add(&other.moment[j].mul(&r[i]));
@@ -89,18 +89,18 @@ pub fn gathered(z: &mut Intermediates, value: &Expr) -> Expr {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Masses {
     /// on the other side of the joint, as everything that lies on its axis: fewest parameters
-    Handed,
-    /// in the body itself. Articulated inertias want that: handed on, the masses of all that follows would
-    /// stand in one number, from which most is taken again where hinges give way, and what is left would
-    /// have the rounding of the whole.
-    Kept,
+    Regrouped,
+    /// in the body itself, as articulated inertias need it: regrouped, one number would hold the masses of all
+    /// outer bodies. The recursion subtracts most of it again at the joints, and the small difference would
+    /// carry the rounding error of the large number.
+    InBody,
 }
 
 /// All inertia of the mechanism.
-pub fn lumps(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Seat, Lump> {
-    let mut lumps: BTreeMap<Seat, Lump> = BTreeMap::new();
+pub fn lumped_inertias(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Attachment, LumpedInertia> {
+    let mut lumps: BTreeMap<Attachment, LumpedInertia> = BTreeMap::new();
     for body in &k.mechanism.bodies {
-        let mut lump = Lump::empty();
+        let mut lump = LumpedInertia::empty();
         let place = format!("body `{}`", body.name);
         let mass = k.within(place, |k| k.scalar(&body.mass));
         lump.mass = k.z.name(mass);
@@ -118,7 +118,7 @@ pub fn lumps(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Seat, Lump> {
                 std::array::from_fn(|i| if i < 3 { trace.sub(&inertia[i]) } else { inertia[i].neg() });
         }
         let (reference, r) = rigid_way(k, frame, Some(body.centre));
-        lumps.entry((frame, reference)).or_insert_with(Lump::empty).add_at(&lump, &r);
+        lumps.entry((frame, reference)).or_insert_with(LumpedInertia::empty).add_at(&lump, &r);
     }
     regroup(k, &mut lumps, masses);
     for lump in lumps.values_mut() {
@@ -168,8 +168,9 @@ fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (
 }
 
 /// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
-fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Masses) {
-    let mut frames: Vec<FrameId> = lumps.keys().map(|seat| seat.0).filter(|&f| f != FrameId::N).collect();
+fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Attachment, LumpedInertia>, masses: Masses) {
+    let mut frames: Vec<FrameId> =
+        lumps.keys().map(|attachment| attachment.0).filter(|&f| f != FrameId::N).collect();
     for frame in frames.clone() {
         frames.extend(k.ancestry(frame).into_iter().map(|frame| k.turning(frame)));
     }
@@ -179,15 +180,19 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Mas
     for frame in frames {
         let Some(axis) = joint_axis(k, frame) else { continue };
         let base = k.turning(k.frames[frame.0].base);
-        let seats: Vec<Seat> = lumps.keys().copied().filter(|seat| seat.0 == frame).collect();
-        for seat in seats {
+        let attachments: Vec<Attachment> =
+            lumps.keys().copied().filter(|attachment| attachment.0 == frame).collect();
+        for attachment in attachments {
             // Points on the axis move with the base as they do with the frame, whether the joint is fixed in
             // the base or not; where it is, the way goes on to the base's own reference point.
-            let (target, r) =
-                if base == FrameId::N { (seat.1, linear_forms::zero()) } else { rigid_way(k, base, seat.1) };
-            let Some(lump) = lumps.get_mut(&seat) else { continue };
-            let mut rod = Lump::empty();
-            if masses == Masses::Handed {
+            let (target, r) = if base == FrameId::N {
+                (attachment.1, linear_forms::zero())
+            } else {
+                rigid_way(k, base, attachment.1)
+            };
+            let Some(lump) = lumps.get_mut(&attachment) else { continue };
+            let mut rod = LumpedInertia::empty();
+            if masses == Masses::Regrouped {
                 rod.mass = std::mem::replace(&mut lump.mass, Expr::zero());
             }
             rod.moment[axis] = std::mem::replace(&mut lump.moment[axis], Expr::zero());
@@ -200,12 +205,12 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Seat, Lump>, masses: Mas
             }
             let (home, base_home) = (k.frames[frame.0].home, k.frames[base.0].home);
             let along = k.tree.convert(&mut k.z, &unit(axis), home, base_home);
-            let turned = Lump {
+            let turned = LumpedInertia {
                 mass: rod.mass.clone(),
                 moment: linear_forms::scale(&rod.moment[axis], &along),
                 second: ENTRIES.map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
             };
-            lumps.entry((base, target)).or_insert_with(Lump::empty).add_at(&turned, &r);
+            lumps.entry((base, target)).or_insert_with(LumpedInertia::empty).add_at(&turned, &r);
         }
     }
 }

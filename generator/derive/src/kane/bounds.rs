@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use super::base_parameters::{Lump, Seat};
+use super::base_parameters::{Attachment, LumpedInertia};
 use super::elimination_order::{self, Node};
 use super::sums::sum_scalar;
 use crate::algebra::Expr;
@@ -27,7 +27,7 @@ enum Magnitude {
 use Magnitude::{Of, Speed};
 
 /// A bound of each diagonal entry of the mass matrix of all speeds.
-pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>) -> Vec<Expr> {
+pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Attachment, LumpedInertia>) -> Vec<Expr> {
     // Twice the kinetic energy: coefficients of products of magnitudes, each pair once.
     let mut form: BTreeMap<(Magnitude, Magnitude), Expr> = BTreeMap::new();
     let two = Expr::integer(2);
@@ -47,8 +47,9 @@ pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>) -> Vec<Exp
             }
         }
     }
-    let points: Vec<_> = lumps.keys().filter_map(|seat| seat.1).collect();
-    let frames: Vec<_> = lumps.keys().map(|seat| seat.0).filter(|&frame| frame != FrameId::N).collect();
+    let points: Vec<_> = lumps.keys().filter_map(|attachment| attachment.1).collect();
+    let frames: Vec<_> =
+        lumps.keys().map(|attachment| attachment.0).filter(|&frame| frame != FrameId::N).collect();
     let order = elimination_order::elimination_order(k, &points, &frames);
     let relations: Vec<_> = order.iter().map(|&node| relation(k, node)).collect();
     for (at, &node) in order.iter().enumerate() {

@@ -11,7 +11,7 @@
 use std::collections::BTreeMap;
 
 use super::accelerations::Accelerations;
-use super::base_parameters::{Lump, Seat, gathered};
+use super::base_parameters::{Attachment, LumpedInertia, gathered};
 use super::elimination_order::{self, Node};
 use crate::algebra::{Expr, Intermediates};
 use crate::kinematics::axes::{Symmetric, entry};
@@ -101,7 +101,7 @@ pub fn ground(k: &mut Kinematics<'_>) -> Mixed {
 /// Forces and torques, active and inertia together, for given accelerations.
 pub fn wrenches(
     k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Seat, Lump>,
+    lumps: &BTreeMap<Attachment, LumpedInertia>,
     accelerations: &mut Accelerations,
 ) -> Wrenches {
     let mut wrenches = Wrenches::default();
@@ -142,7 +142,7 @@ pub fn wrenches(
 /// derivatives of all speeds.
 pub fn generalized_forces(
     k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Seat, Lump>,
+    lumps: &BTreeMap<Attachment, LumpedInertia>,
     derivatives: Vec<Expr>,
 ) -> Vec<Expr> {
     let ground = ground(k);

@@ -8,7 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use super::base_parameters::{Lump, Seat};
+use super::base_parameters::{Attachment, LumpedInertia};
 use super::matrix::{Matrix, both_halves, full, name_matrix, times, transposed, turn_rows};
 use super::products::Products;
 use super::sums::{
@@ -37,7 +37,7 @@ struct Form {
 /// the last speed stands for prescribed motion (the remainders, with speed 1).
 pub fn full_mass_matrix(
     k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Seat, Lump>,
+    lumps: &BTreeMap<Attachment, LumpedInertia>,
 ) -> BTreeMap<(usize, usize), Expr> {
     let mut form = Form::default();
     let (mut points, mut frames) = (Vec::new(), Vec::new());

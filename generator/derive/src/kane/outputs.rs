@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::accelerations::Accelerations;
 use super::articulated::Articulated;
-use super::base_parameters::{self, Lump, Masses, Seat};
+use super::base_parameters::{self, Attachment, LumpedInertia, Masses};
 use super::contacts::ContactForms;
 use super::forces::{self, Wrenches};
 use super::{bounds, energy, inertia, momentum};
@@ -31,7 +31,7 @@ struct Writer<'k, 'm> {
     guards: Vec<Guard<Node>>,
     independent: Vec<usize>,
     dependent: Vec<usize>,
-    lumps: BTreeMap<Seat, Lump>,
+    lumps: BTreeMap<Attachment, LumpedInertia>,
     /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where
     /// dependent speeds enter
     largest: Vec<Node>,
@@ -47,7 +47,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     for (slot, speed) in k.mechanism.speeds.iter().enumerate() {
         if speed.dependent { dependent.push(slot) } else { independent.push(slot) }
     }
-    let lumps = base_parameters::lumps(k, Masses::Handed);
+    let lumps = base_parameters::lumped_inertias(k, Masses::Regrouped);
     let mut writer = Writer {
         k,
         graph: Graph::new(),
@@ -227,7 +227,7 @@ impl Writer<'_, '_> {
     /// forces.
     fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
         let mut apart = self.apart();
-        let lumps = base_parameters::lumps(self.k, Masses::Kept);
+        let lumps = base_parameters::lumped_inertias(self.k, Masses::InBody);
         let acting = forces::wrenches(self.k, &lumps, &mut apart);
         let all = || contacts.iter().flat_map(|forms| forms.forces.iter().flatten()).chain([&acting]);
         let points = all().flat_map(|wrenches| wrenches.forces.keys().copied()).collect();

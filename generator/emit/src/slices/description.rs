@@ -73,8 +73,8 @@ impl Emitter<'_> {
             fn dependent_coordinate(&self, index: usize) -> ::core::option::Option<usize> {
                 DESCRIPTION.dependent_coordinates.get(index).copied()
             }
-            fn normalize(&self, coordinates: &mut [T]) -> ::core::result::Result<(), #krate::StateError> {
-                DESCRIPTION.normalize(coordinates)
+            fn normalise(&self, coordinates: &mut [T]) -> ::core::result::Result<(), #krate::StateError> {
+                DESCRIPTION.normalise(coordinates)
             }
         }
     }

@@ -1628,11 +1628,11 @@ pub mod pendulum_in_parts {
         fn dependent_coordinate(&self, index: usize) -> ::core::option::Option<usize> {
             DESCRIPTION.dependent_coordinates.get(index).copied()
         }
-        fn normalize(
+        fn normalise(
             &self,
             coordinates: &mut [T],
         ) -> ::core::result::Result<(), ::hodograph::StateError> {
-            DESCRIPTION.normalize(coordinates)
+            DESCRIPTION.normalise(coordinates)
         }
         fn parameter_values(
             &self,

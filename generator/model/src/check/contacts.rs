@@ -122,7 +122,7 @@ impl Places<'_> {
     }
 
     /// The bodies with frames in which the place is a fixed one.
-    fn homes(&self, point: PointId) -> Vec<BodyId> {
+    fn carriers(&self, point: PointId) -> Vec<BodyId> {
         let bodies = (0..self.m.bodies.len()).map(BodyId);
         bodies.filter(|b| self.m.bodies[b.0].frame.is_some() && self.is_fixed_in(point, *b)).collect()
     }
@@ -140,8 +140,8 @@ impl Places<'_> {
             (Some(a), Some(b)) if a == b && self.m.bodies[a.0].frame.is_some() => a,
             (Some(_), Some(_)) => return None,
             _ => {
-                let homes = self.homes(point);
-                *homes.iter().find(|home| self.is_fixed_in(struck, **home))?
+                let carriers = self.carriers(point);
+                *carriers.iter().find(|home| self.is_fixed_in(struck, **home))?
             }
         };
         if point == struck || self.views.iter().all(|views| distance(views).is_none_or(|d| d < 1e-12)) {
@@ -193,7 +193,7 @@ impl Places<'_> {
         }
         // without another body to which it belongs it may be meant so: a rim against a wall that it does not
         // touch first there
-        let home = self.homes(point).first().map(|home| &self.m.bodies[home.0].name)?;
+        let home = self.carriers(point).first().map(|home| &self.m.bodies[home.0].name)?;
         let stated = &self.m.bodies[body.0].name;
         let message = format!(
             "`{name}` is not a point of `{stated}`, but of `{home}`: it moves through `{stated}` along the normal"

@@ -3,11 +3,11 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::diagnostics::{Diagnostic, codes};
-use crate::letters;
 use crate::rust_names::{is_keyword, is_value, snake_case};
 use crate::span::Span;
 use crate::suggest;
 use crate::syntax::tree::{Name, Tree};
+use crate::unicode;
 
 /// What a name stands for. Indices as in `Mechanism`: frame 0 is N, point 0 is O, dependent speeds follow the
 /// independent ones and particles the bodies.
@@ -249,7 +249,7 @@ pub fn reserved(name: &Name) -> Option<Diagnostic> {
             if c == '·' { "write `*` for a product" } else { "names are made of letters, digits and `_`" };
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
     }
-    if let Some(c) = letters::with_two_spellings(&name.text) {
+    if let Some(c) = unicode::with_two_spellings(&name.text) {
         let message = format!(
             "`{c}` (U+{:04X}) can be written in two ways: names that look alike may differ",
             c as u32

@@ -2,8 +2,8 @@
 //! text that is not a token becomes a bad token.
 
 use super::token::{Bad, Token, TokenKind, is_decimal};
-use crate::letters;
 use crate::span::Span;
+use crate::unicode;
 
 /// The tokens of a text, at most `most` and a few. Positions are bytes.
 pub fn tokens(text: &str, most: usize) -> Vec<Token> {
@@ -138,7 +138,7 @@ impl<'a> Lexer<'a> {
             let length = self.run(length + 1, |c| c == '_' || unicode_ident::is_xid_continue(c));
             self.push(TokenKind::Bad(Bad::RawName), length, self.rest()[..length].to_owned());
         } else {
-            self.push(TokenKind::Name, length, letters::normal(name).into_owned());
+            self.push(TokenKind::Name, length, unicode::normal(name).into_owned());
         }
     }
 

@@ -6,8 +6,8 @@ use std::collections::HashSet;
 use super::token::{Bad, Token, TokenKind};
 use super::tree::{Name, Section, Tree};
 use crate::diagnostics::{Diagnostic, codes};
-use crate::letters;
 use crate::span::Span;
+use crate::unicode;
 
 /// Brackets, signs and exponents may be nested this deep.
 pub const MAX_DEPTH: usize = 64;
@@ -39,14 +39,14 @@ pub fn parse(tokens: &[Token]) -> (Tree, Vec<Diagnostic>) {
 /// Words in which Cyrillic letters stand among Latin ones are refused, each once, and then read as they look:
 /// it is one mistake.
 fn in_latin<'t>(tokens: &'t [Token], diagnostics: &mut Vec<Diagnostic>) -> Cow<'t, [Token]> {
-    let is_mixed = |token: &Token| token.kind == TokenKind::Name && letters::mixed(&token.text).is_some();
+    let is_mixed = |token: &Token| token.kind == TokenKind::Name && unicode::mixed(&token.text).is_some();
     if !tokens.iter().any(is_mixed) {
         return Cow::Borrowed(tokens);
     }
     let mut seen = HashSet::new();
     let mut tokens = tokens.to_vec();
     for token in tokens.iter_mut().filter(|token| token.kind == TokenKind::Name) {
-        let Some(found) = letters::mixed(&token.text) else { continue };
+        let Some(found) = unicode::mixed(&token.text) else { continue };
         if seen.insert(token.text.clone()) && diagnostics.len() < MAX_ERRORS {
             let message = format!("`{}` has a {} letter among Latin ones", token.text, found.script);
             diagnostics.push(Diagnostic::new(codes::BAD_TOKEN, token.span, message).help(found.advice()));

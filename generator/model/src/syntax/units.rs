@@ -3,8 +3,8 @@
 use super::tree::{Expr, ExprKind};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::{Dimension, Exponent};
-use crate::letters;
 use crate::number::Number;
+use crate::unicode;
 use crate::{suggest, vocabulary};
 
 /// A unit: its dimension and its size in SI, `number * pi^pi_power`.
@@ -170,7 +170,7 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
 
 fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, format!("there is no unit `{name}`"));
-    if let Some(found) = letters::lookalike(name) {
+    if let Some(found) = unicode::lookalike(name) {
         return error.help(found.advice());
     }
     if let Some(right) = vocabulary::unit(name) {

@@ -6,8 +6,8 @@ use std::path::Path;
 use hodograph_model::source::Source;
 
 use super::{Artifact, MAX_BYTES, decode, model_hash};
+use crate::files;
 use crate::program::Program;
-use crate::reading;
 
 /// What was found where the derivation of a model is kept.
 #[derive(Clone, Debug)]
@@ -24,7 +24,7 @@ pub enum Loaded {
 
 /// Looks for the derivation of a model in a file.
 pub fn load(path: &Path, source: &Source) -> Loaded {
-    match reading::text(path, MAX_BYTES) {
+    match files::text(path, MAX_BYTES) {
         Ok(text) => load_text(&text, source),
         Err(error) if error.kind() == ErrorKind::NotFound => Loaded::Absent,
         Err(error) => Loaded::Damaged(format!("it cannot be read: {error}")),

@@ -75,7 +75,7 @@ fn mechanism<T: Number>(output: &mut Output, mechanism: &dyn Contacts<T>) {
     for number in 0..STATES {
         let mut near = |from: &[T; MOST], size: f64| from.map(|x| x + T::of(size * random.number()));
         let (mut q, u, w) = (near(&q0, 0.5), near(&u0, 2.0), near(&w0, 1.0));
-        let _ = mechanism.normalize(&mut q[..n]);
+        let _ = mechanism.normalise(&mut q[..n]);
         let time = T::of(random.number());
         let (mu, e) = (T::of(0.75 + 0.75 * random.number()), T::of(0.5 + 0.5 * random.number()));
         let law = [Law::Newton, Law::Poisson, Law::Stronge][number as usize % 3];

@@ -79,7 +79,7 @@ fn mechanism<T: Number>(output: &mut Output, mechanism: &dyn Contacts<T>) {
             let far = if family == 7 { 1000.0 } else { 0.5 };
             let mut near = |from: &[T; MOST], size: f64| from.map(|x| x + T::of(size * random.number()));
             let (mut q, u, w) = (near(&q0, far), near(&u0, 2.0), near(&w0, 1.0));
-            let _ = mechanism.normalize(&mut q[..n]);
+            let _ = mechanism.normalise(&mut q[..n]);
             let time = T::of(random.number());
             let ahead = State { time, coordinates: &q[..n], speeds: &u[..p], inputs: &w[..inputs] };
             let (speeds, surface) = struck(&mut random, family, mechanism, &ahead);

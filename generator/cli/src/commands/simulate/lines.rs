@@ -2,7 +2,7 @@
 
 use hodograph::{Kind as Of, Mechanism, Selection, State};
 use hodograph_interpreter::InterpretedMechanism;
-use hodograph_simulation::{EnergyAccount, Event, EventKind, Struck, StruckTogether};
+use hodograph_simulation::{CollisionRecord, EnergyAccount, Event, EventKind, SimultaneousCollision};
 use serde::Serialize;
 
 use super::summary::Summary;
@@ -207,7 +207,7 @@ impl<'m> Lines<'m> {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
                 self.struck(event, struck, &mut line)?;
             }
-            EventKind::StruckTogether(struck) => self.together(event, struck, &mut line),
+            EventKind::SimultaneousCollision(struck) => self.together(event, struck, &mut line),
             EventKind::Contact { mode, selection } => {
                 certain(selection);
                 line.mode = Some(mode.name());
@@ -223,7 +223,7 @@ impl<'m> Lines<'m> {
     }
 
     /// What belongs to an impact: the fields of `collide`, and the speeds before as `u`.
-    fn struck<'a>(&'a self, event: &'a Event, struck: &'a Struck, line: &mut Line<'a>) -> Outcome {
+    fn struck<'a>(&'a self, event: &'a Event, struck: &'a CollisionRecord, line: &mut Line<'a>) -> Outcome {
         line.answer = Some(Answer::try_from(&struck.outcome.impact)?);
         line.u_after = Some(self.after(event));
         line.kinetic_energy_change = Some(struck.outcome.energy_change + 0.0);
@@ -234,7 +234,7 @@ impl<'m> Lines<'m> {
     }
 
     /// What belongs to an impact of several contacts, and the speeds before as `u`.
-    fn together<'a>(&'a self, event: &'a Event, struck: &'a StruckTogether, line: &mut Line<'a>) {
+    fn together<'a>(&'a self, event: &'a Event, struck: &'a SimultaneousCollision, line: &mut Line<'a>) {
         let shares = struck.shares.iter().map(|share| ShareOf {
             contact: self
                 .mechanism

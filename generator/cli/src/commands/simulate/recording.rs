@@ -119,7 +119,7 @@ impl<'m> Recording<'m> {
     pub fn before(&mut self, event: &Event, simulation: &Simulation<'_>) {
         let speeds = match &event.kind {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => &struck.speeds_before,
-            EventKind::StruckTogether(struck) => &struck.speeds_before,
+            EventKind::SimultaneousCollision(struck) => &struck.speeds_before,
             _ => &event.speeds,
         };
         let state = Borrowed {
@@ -191,7 +191,7 @@ impl<'m> Recording<'m> {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
                 show(event.contact, Some(struck.outcome.impulse_on_point));
             }
-            EventKind::StruckTogether(struck) => {
+            EventKind::SimultaneousCollision(struck) => {
                 struck
                     .shares
                     .iter()

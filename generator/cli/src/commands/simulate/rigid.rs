@@ -25,7 +25,7 @@ pub fn turns_about_origin(mechanism: &InterpretedMechanism, point: usize, state:
     for other in 1..=OTHERS {
         let step = |(index, value): (usize, &f64)| value + 0.3 * (1.7 * (index + 3 * other) as f64).sin();
         let mut moved: Vec<f64> = state.coordinates.iter().enumerate().map(step).collect();
-        if mechanism.normalize(&mut moved).is_err() {
+        if mechanism.normalise(&mut moved).is_err() {
             return false;
         }
         let Some(there) = place(&moved) else { return false };

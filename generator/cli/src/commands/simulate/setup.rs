@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use hodograph::Surface;
+use hodograph_generator::files;
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
-use hodograph_generator::reading;
 
 use crate::animation::{Setup, Value};
 use crate::json::state::State;
@@ -26,6 +26,6 @@ pub fn setup(path: &Path, model: &Mechanism, state: &State, surfaces: &[(usize, 
         surfaces: surfaces.iter().map(of_contact).collect(),
         parameters: model.parameters.iter().zip(&state.parameters).map(value).collect(),
         start: coordinates.chain(model.speeds.iter().zip(&state.speeds)).map(value).collect(),
-        model: reading::model(path).text().unwrap_or_default().to_owned(),
+        model: files::model(path).text().unwrap_or_default().to_owned(),
     }
 }

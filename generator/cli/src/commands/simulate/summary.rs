@@ -42,7 +42,7 @@ impl Summary {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
                 (Some(struck.outcome.impact.impulse.x), Some(struck.outcome.energy_change))
             }
-            EventKind::StruckTogether(struck) => (None, Some(struck.energy_change)),
+            EventKind::SimultaneousCollision(struck) => (None, Some(struck.energy_change)),
             _ => (None, None),
         };
         let contact = contact.to_owned();

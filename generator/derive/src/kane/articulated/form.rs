@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::super::base_parameters::{Lump, Seat};
+use super::super::base_parameters::{Attachment, LumpedInertia};
 use super::super::elimination_order::Node;
 use super::super::matrix::{
     Matrix, arm_matrix, both_halves, column, full, name_matrix, times, transposed, turn_rows,
@@ -140,7 +140,7 @@ fn split<K: Ord + Copy>(
 
 impl Form {
     /// The inertia of all lumps.
-    pub fn new(k: &mut Kinematics<'_>, lumps: &BTreeMap<Seat, Lump>) -> Self {
+    pub fn new(k: &mut Kinematics<'_>, lumps: &BTreeMap<Attachment, LumpedInertia>) -> Self {
         let mut form = Form::default();
         for (&(frame, point), lump) in lumps {
             if let Some(point) = point {

@@ -23,7 +23,7 @@ mod relation;
 use std::collections::BTreeMap;
 
 use super::accelerations::Accelerations;
-use super::base_parameters::{Lump, Seat};
+use super::base_parameters::{Attachment, LumpedInertia};
 use super::elimination_order::{self, Node};
 use super::forces::Wrenches;
 use crate::algebra::Expr;
@@ -53,7 +53,7 @@ impl Articulated {
     /// where the graph is no tree, or constraints couple the speeds.
     pub fn new(
         k: &mut Kinematics<'_>,
-        lumps: &BTreeMap<Seat, Lump>,
+        lumps: &BTreeMap<Attachment, LumpedInertia>,
         mut points: Vec<PointId>,
         mut frames: Vec<FrameId>,
     ) -> Option<Self> {
@@ -61,8 +61,8 @@ impl Articulated {
             return None;
         }
         let mut form = Form::new(k, lumps);
-        points.extend(lumps.keys().filter_map(|seat| seat.1));
-        frames.extend(lumps.keys().map(|seat| seat.0).filter(|&frame| frame != FrameId::N));
+        points.extend(lumps.keys().filter_map(|attachment| attachment.1));
+        frames.extend(lumps.keys().map(|attachment| attachment.0).filter(|&frame| frame != FrameId::N));
         let order = elimination_order::elimination_order(k, &points, &frames);
         let mut last: BTreeMap<usize, usize> = BTreeMap::new();
         for (at, node) in order.iter().enumerate() {

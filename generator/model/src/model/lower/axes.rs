@@ -9,9 +9,9 @@ use super::calls::is_function;
 use super::dimensions::model_of;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
-use crate::letters;
 use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
+use crate::unicode;
 
 impl Lowering<'_> {
     /// The frame before `.`, which must have axes.
@@ -80,7 +80,7 @@ impl Lowering<'_> {
                 format!("a frame has no axis `{}`", field.text),
             );
             let methods = ["vec", "rotate", "euler", "space", "quaternion", "spin"];
-            let error = if let Some(found) = letters::lookalike(&field.text) {
+            let error = if let Some(found) = unicode::lookalike(&field.text) {
                 error.help(found.advice())
             } else if methods.contains(&field.text.as_str()) {
                 error.help(format!("`{}` needs arguments in parentheses", field.text))

@@ -103,7 +103,7 @@ pub(super) struct DefinitionFacts {
 pub(super) struct FrameFacts {
     /// it could not be read: what rests on it is no further mistake
     pub broken: bool,
-    /// it has axes: neither itself nor what it is oriented in is made by `spin`
+    /// it has no axes of its own: it, or a frame that it is oriented in, is made by `spin`
     pub no_axes: bool,
     /// on what its orientation depends
     pub orientation: Traits,

@@ -5,10 +5,10 @@ use super::super::mechanism::{FrameId, PointId};
 use super::super::names::Symbol;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
-use crate::letters;
 use crate::span::Span;
 use crate::syntax::tree::{ExprKind, Name, Record};
 use crate::syntax::units;
+use crate::unicode;
 use crate::vocabulary;
 
 /// At most this number of unknown names is compared with the declared ones.
@@ -67,7 +67,7 @@ impl Lowering<'_> {
 
     /// A declared name that looks the same and is written in letters of another script, and its place.
     fn looks_like(&self, text: &str) -> Option<(String, Option<Span>)> {
-        if let Some(found) = letters::lookalike(text)
+        if let Some(found) = unicode::lookalike(text)
             && self.names.get(&found.latin).is_some()
         {
             return Some((found.advice(), self.names.place(&found.latin)));
@@ -77,7 +77,7 @@ impl Lowering<'_> {
             return None;
         }
         let (other, found) = self.names.all().find_map(|other| {
-            letters::lookalike(other)
+            unicode::lookalike(other)
                 .filter(|found| found.latin == text)
                 .map(|found| (other.to_owned(), found))
         })?;

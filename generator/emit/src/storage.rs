@@ -11,7 +11,7 @@ use hodograph_program::program::operation::Value;
 
 /// A place in an array.
 #[derive(Clone)]
-pub struct Home {
+pub struct ArrayEntry {
     /// the array
     pub array: Ident,
     /// the place in it
@@ -29,12 +29,12 @@ struct Filled {
 
 /// All arrays that the loops of a routine read, and where in them each value belongs.
 #[derive(Default)]
-pub struct Homes {
+pub struct Storage {
     arrays: Vec<Filled>,
-    places: BTreeMap<Value, Vec<Home>>,
+    places: BTreeMap<Value, Vec<ArrayEntry>>,
 }
 
-impl Homes {
+impl Storage {
     /// Adds an array of numbers.
     pub fn list(&mut self, name: &str, values: Vec<Value>) {
         self.add(Filled { name: format_ident!("{name}"), rows: vec![values], width: None });
@@ -50,14 +50,14 @@ impl Homes {
             for (column, &value) in values.iter().enumerate() {
                 let [row, column] = [row, column].map(Literal::usize_unsuffixed);
                 let index = if filled.width.is_some() { quote!([#row][#column]) } else { quote!([#column]) };
-                self.places.entry(value).or_default().push(Home { array: filled.name.clone(), index });
+                self.places.entry(value).or_default().push(ArrayEntry { array: filled.name.clone(), index });
             }
         }
         self.arrays.push(filled);
     }
 
     /// Where a value belongs.
-    pub fn of(&self, value: Value) -> &[Home] {
+    pub fn of(&self, value: Value) -> &[ArrayEntry] {
         self.places.get(&value).map_or(&[], Vec::as_slice)
     }
 
@@ -83,7 +83,7 @@ impl Homes {
     /// The statements that store every value but those that are stored already.
     pub fn stores(&self, stored: &BTreeSet<Value>) -> TokenStream {
         let left = self.places.iter().filter(|(value, _)| !stored.contains(value));
-        let stores = left.flat_map(|(&value, homes)| homes.iter().map(move |home| home.store(value)));
+        let stores = left.flat_map(|(&value, storage)| storage.iter().map(move |slot| slot.store(value)));
         quote!(#(#stores)*)
     }
 
@@ -97,7 +97,7 @@ impl Homes {
     }
 }
 
-impl Home {
+impl ArrayEntry {
     /// The value in it.
     pub fn tokens(&self) -> TokenStream {
         let (array, index) = (&self.array, &self.index);
