@@ -170,7 +170,12 @@ fn coupled_constraints_are_derived_or_refused() {
 /// numbers double with each.
 #[test]
 fn definitions_that_square_one_another_are_derived() {
-    for step in ["{a}*{a}/2 + {a}/3", "2*{a}^2 - 1", "{a}*sin({a}) + cos({a})/7", "({a} + 0.1)*({a} - 0.2)/(1 + {a}^2)"] {
+    for step in [
+        "{a}*{a}/2 + {a}/3",
+        "2*{a}^2 - 1",
+        "{a}*sin({a}) + cos({a})/7",
+        "({a} + 0.1)*({a} - 0.2)/(1 + {a}^2)",
+    ] {
         let chain: String =
             (0..39).map(|i| format!("a{} = {}; ", i + 1, step.replace("{a}", &format!("a{i}")))).collect();
         let text = format!(
