@@ -56,6 +56,9 @@ fn read(text: &str) -> Result<Node, String> {
     if let Some(strange) = text.chars().find(|&c| matches!(c, ';' | '{' | '}' | '=')) {
         return Err(format!("`{strange}` cannot stand in an expression of the time t"));
     }
+    if text.trim().is_empty() {
+        return Err("a number is missing".to_owned());
+    }
     let depth = |depth: i32, c| match c {
         '(' if depth >= 0 => depth + 1,
         ')' if depth >= 0 => depth - 1,
@@ -69,7 +72,8 @@ fn read(text: &str) -> Result<Node, String> {
     let model = format!("mechanism Input;\ndefinitions {{ x = {text}; }}\n");
     let (tree, mistakes) = parse(&lexer::tokens(&model, usize::MAX));
     if let Some(mistake) = mistakes.first() {
-        return Err(format!("it cannot be read: {}", mistake.message));
+        // The end of the text is the semicolon behind it.
+        return Err(format!("it cannot be read: {}", mistake.message.replace("found `;`", "found the end")));
     }
     let [definition] = &tree.definitions[..] else {
         return Err("give one expression of the time t, as in 2*sin(3*t)".to_owned());

@@ -102,6 +102,7 @@ pub fn json(value: &impl serde::Serialize) -> Outcome {
 ///
 /// The file cannot be written: then what was there before is there still.
 pub fn file(path: &Path, bytes: &[u8]) -> Outcome {
+    check(path)?;
     written(path, bytes).map_err(|error| Stop::unwritable(path, &error))
 }
 
@@ -131,6 +132,12 @@ pub fn check(path: &Path) -> Outcome {
     if path.is_dir() {
         return refused(io::ErrorKind::IsADirectory);
     }
+    check_folder(path)
+}
+
+/// Refuses a path whose folder is missing.
+fn check_folder(path: &Path) -> Outcome {
+    let refused = |kind| Err(Stop::unwritable(path, &io::Error::from(kind)));
     match folder(path).metadata() {
         Ok(data) if data.is_dir() => Ok(()),
         Ok(_) => refused(io::ErrorKind::NotADirectory),
@@ -210,6 +217,7 @@ fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
 ///
 /// The folder exists or cannot be written: then nothing of it is there.
 pub fn files(path: &Path, files: &[(String, String)]) -> Outcome {
+    check_folder(path)?;
     let make = || -> io::Result<()> {
         let folder = tempfile::Builder::new().prefix(".hodograph").tempdir_in(folder(path))?;
         let _unfinished = Unfinished::file(folder.path());

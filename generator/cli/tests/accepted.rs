@@ -165,3 +165,24 @@ fn coupled_constraints_are_derived_or_refused() {
     }
     assert_eq!((derived, too_large), (5, 2));
 }
+
+/// Definitions that square one another stay finite, and so are accepted; the digits of exact bounds of such
+/// numbers double with each.
+#[test]
+fn definitions_that_square_one_another_are_derived() {
+    for step in [
+        "{a}*{a}/2 + {a}/3",
+        "2*{a}^2 - 1",
+        "{a}*sin({a}) + cos({a})/7",
+        "({a} + 0.1)*({a} - 0.2)/(1 + {a}^2)",
+    ] {
+        let chain: String =
+            (0..39).map(|i| format!("a{} = {}; ", i + 1, step.replace("{a}", &format!("a{i}")))).collect();
+        let text = format!(
+            "mechanism Squares; parameters {{ m: kg = 1, l: m = 1, g: m/s^2 = 9.81 }} coordinates {{ q1: rad = 0.3 }} \
+             speeds {{ u1: rad/s }} definitions {{ a0 = cos(q1); {chain} }} points {{ P = O + l*(q1 + 0.1*a39)*N.x; }} \
+             particles {{ A {{ point: P, mass: m }} }} loads {{ gravity: -g*N.x; }}"
+        );
+        assert_eq!(outcome(&text), Some(Ok(())), "{step}");
+    }
+}

@@ -256,3 +256,13 @@ fn codes_have_pages() {
     assert_eq!(absent.code, 2);
     assert!(absent.stderr.contains("there is no code E999"), "{}", absent.stderr);
 }
+
+/// A file whose folder is missing is refused by the folder's name.
+#[test]
+fn missing_folders_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("none").join("sleds.svg").display().to_string();
+    let model = common::model("two_sleds");
+    let run = hodograph(&["plot", &model, "--mu", "0.6", "--e", "0.8", "--output", &place], "");
+    assert!(run.code == 1 && run.stderr.contains("its folder"), "{}", run.stderr);
+}

@@ -173,3 +173,22 @@ fn imported_joints_of_every_kind_agree() {
     let (mechanism, program) = derived(folder.path(), &run.stdout);
     agrees(&mechanism, &program);
 }
+
+/// The bounds of definitions that are squared in others are exact numbers with ever more digits: from some on
+/// they are measured by themselves, and the program is the same to the numeric road.
+#[test]
+fn definitions_that_are_squared_agree() {
+    let folder = tempfile::tempdir().unwrap();
+    for (count, step) in [(3, "2*{a}^2 - 1"), (12, "{a}*{a}/2 + {a}/3"), (39, "{a}*{a}/2 + {a}/3")] {
+        let chain: String =
+            (0..count).map(|i| format!("a{} = {}; ", i + 1, step.replace("{a}", &format!("a{i}")))).collect();
+        let text = format!(
+            "mechanism Squares; parameters {{ m: kg = 1, l: m = 1, g: m/s^2 = 9.81 }} coordinates {{ q1: rad = 0.3 }} \
+             speeds {{ u1: rad/s = 1 }} definitions {{ a0 = cos(q1); {chain} }} \
+             points {{ P = O + l*(q1 + 0.1*a{count})*N.x; }} particles {{ A {{ point: P, mass: m }} }} \
+             loads {{ gravity: -g*N.x; }}"
+        );
+        let (mechanism, program) = derived(folder.path(), &text);
+        agrees(&mechanism, &program);
+    }
+}

@@ -123,6 +123,10 @@ fn states_are_given_by_name() {
     for more in [&["--state", "q3=1,q3=2"][..], &["--state", "q3=1,4"], &["--state", "{}", "--state", "{}"]] {
         assert_eq!(eval(more).told().0, 2, "{more:?}");
     }
+    for (given, told) in [("q3=", "a number is missing"), ("q3=2*", "found the end")] {
+        let message = eval(&["--state", given]).line()["error"]["message"].to_string();
+        assert!(message.contains(told) && !message.contains(';'), "{message}");
+    }
     let singular = hodograph(&["eval", &common::model("planar_double_pendulum"), "--parameter", "l2=0"], "");
     let message = singular.line()["error"]["message"].to_string();
     assert!(message.contains("change the parameters: l2 is 0"), "{message}");

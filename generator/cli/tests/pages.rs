@@ -33,6 +33,15 @@ for (const row of rows.concat([...document.querySelectorAll('.matrix')])) {
     if (above.bottom > below.top + 1) complain(`the fraction ${describe(fraction)}`);
   }
 }
+// Numbers in tables are seen to their last digit.
+for (const number of document.querySelectorAll('.names mn, .names td:nth-child(3)')) {
+  const text = number.lastChild;
+  if (!text || text.nodeType !== 3) continue;
+  const digit = document.createRange();
+  digit.setStart(text, text.length - 1);
+  digit.setEnd(text, text.length);
+  if (!digit.getClientRects().length || digit.getBoundingClientRect().width < 1) complain(`digits are left out: ${describe(number)}`);
+}
 rows.forEach((row, index) => {
   const [left, sign, right] = [...row.children].map(box);
   if (left.right > sign.left + 0.5 || sign.right > right.left + 0.5) complain(`the columns of ${describe(row)}`);

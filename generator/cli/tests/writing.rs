@@ -123,6 +123,8 @@ fn energies_that_are_not_defined_are_not_shown() {
         .collect();
     assert_eq!(energies, ["kinetic"]);
     assert!(data["notes"][0].as_str().unwrap().contains("not defined"), "{}", data["notes"]);
+    // nor is a place that follows from velocities alone
+    assert!(data["notes"][1].as_str().unwrap().contains("other points follows from"), "{}", data["notes"]);
     assert!(!fs::read_to_string(&svg).unwrap().contains(">potential<"));
     let bytes = fs::read(&mcap).unwrap();
     for message in mcap::MessageStream::new(&bytes).unwrap() {

@@ -115,12 +115,17 @@ impl fmt::Display for NoSurface {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.missing.len() {
             3 => write!(out, "contact {} has no surface", self.contact),
-            _ => write!(
-                out,
-                "contact {} has no surface: {} is missing",
-                self.contact,
-                self.missing.join(" and ")
-            ),
+            2 => {
+                write!(
+                    out,
+                    "contact {} has no surface: {} are missing",
+                    self.contact,
+                    self.missing.join(" and ")
+                )
+            }
+            _ => {
+                write!(out, "contact {} has no surface: {} is missing", self.contact, self.missing.join(", "))
+            }
         }
     }
 }

@@ -151,7 +151,9 @@ pub fn unit(word: &str) -> Option<&'static str> {
 pub fn unit_advice(word: &str) -> Option<&'static str> {
     match word {
         "lb" | "lbs" | "lbm" | "lbf" | "in" | "inch" | "ft" | "foot" | "feet" | "oz" | "slug" | "mi"
-        | "mph" => Some("only SI units: convert the value"),
+        | "mph" | "kgf" | "kp" | "dyn" | "erg" | "psi" | "bar" | "atm" | "cal" | "kcal" | "hp" | "knot" => {
+            Some("only SI units: convert the value")
+        }
         "f32" | "f64" | "float" | "double" | "real" | "Real" | "int" => Some(
             "after the colon stands a unit, such as `kg` or `m/s`; the type of numbers is chosen in Rust",
         ),

@@ -5,6 +5,16 @@
 //! number beside the published one. Equation numbers are the paper's. The paper takes s = t x n in this
 //! example (and n x t elsewhere); this program prints s = t x n, too.
 
+/// Prints a line; ends the program where nobody reads on, as in `| head`.
+macro_rules! say {
+    ($($text:tt)*) => {{
+        use std::io::Write as _;
+        if writeln!(std::io::stdout(), $($text)*).is_err() {
+            std::process::exit(0);
+        }
+    }};
+}
+
 mod integrate;
 mod paper;
 mod picture;
@@ -78,7 +88,7 @@ fn show() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&folder)?;
     let path = folder.canonicalize()?.join("two_sleds.svg");
     std::fs::write(&path, picture::picture(&outcomes)?)?;
-    println!(
+    say!(
         "Two sleds, each sliding on a plane of its own, collide at one point, with friction: the example of S. Djerassi's paper.\n\
          Hodograph derived their equations of motion from models/two_sleds.mech; the collision is solved exactly. While the bodies\n\
          touch, friction turns and slows the slip. It stops and begins anew in another direction, or stays zero, or lasts to the end.\n\
@@ -86,7 +96,7 @@ fn show() -> Result<(), Box<dyn Error>> {
         path.display()
     );
     nine(&outcomes);
-    println!(
+    say!(
         "\nEvery number of the paper beside ours, energies and speeds after: cargo run --release --example two_sleds -- --compare"
     );
     Ok(())
@@ -94,15 +104,20 @@ fn show() -> Result<(), Box<dyn Error>> {
 
 /// Prints the nine outcomes.
 fn nine(outcomes: &[Outcome]) {
-    println!("Nine outcomes, e = {E}: impulse and velocity of separation along n, t, s = t x n\n");
-    println!("                    impulse, N s                      velocity of separation, m/s");
-    println!("  mu   law              I_n        I_t        I_s         v_n        v_t        v_s   path");
+    say!("Nine outcomes, e = {E}: impulse and velocity of separation along n, t, s = t x n\n");
+    say!("                    impulse, N s                      velocity of separation, m/s");
+    say!("  mu   law              I_n        I_t        I_s         v_n        v_t        v_s   path");
     for Outcome { mu, law, hit } in outcomes {
         let (i, v) = (flipped(&hit.impulse), flipped(&hit.separation));
         let (law, path) = (format!("{law:?}"), hit.path.phases().join(", "));
-        println!(
+        say!(
             " {mu:4}  {law:8} {:11.6} {:10.6} {:10.6}  {:10.7} {:10.7} {:10.7}   {path}",
-            i.x, i.y, i.z, v.x, v.y, v.z,
+            i.x,
+            i.y,
+            i.z,
+            v.x,
+            v.y,
+            v.z,
         );
     }
 }
@@ -114,12 +129,12 @@ fn compare() -> Result<(), Box<dyn Error>> {
     let u = Speeds::default();
     let e = E;
 
-    println!(
+    say!(
         "Two sleds, each sliding on a plane of its own, collide at one point, with friction. The tables show what Hodograph computes\n\
          from the model file beside what the paper prints (S. Djerassi, Three-dimensional, one-point collision with friction, section 5):\n\
          the contact, its course for two coefficients of friction, then the outcomes for three, under three laws of restitution.\n"
     );
-    println!("n = A.y, t along the slip of approach, s = t x n (the sign of this example in the paper)\n");
+    say!("n = A.y, t along the slip of approach, s = t x n (the sign of this example in the paper)\n");
 
     let first = sleds.collide_bc_ac(&q, &u, &Surface { mu: 1.1, e, law: Law::Stronge })?;
     let contact = Contact::of(&first);
@@ -137,14 +152,14 @@ fn compare() -> Result<(), Box<dyn Error>> {
         sticking: (&sticking.0, sticking.1.separation.x),
     })?;
 
-    println!();
+    say!();
     let outcomes = outcomes()?;
     nine(&outcomes);
 
-    println!(
+    say!(
         "\nEnergy of the nine outcomes, J: (23) from impulses, (23) from speeds, (35a) integrated along the path\n"
     );
-    println!("  mu   law      I.(v1 + v2)/2   u M u/2 after - before   integral of (v_n - mu s) dI_n");
+    say!("  mu   law      I.(v1 + v2)/2   u M u/2 after - before   integral of (v_n - mu s) dI_n");
     for Outcome { mu, law, hit } in &outcomes {
         let before = sleds.kinetic_energy(&q, &u)?;
         let after = sleds.kinetic_energy(&q, &hit.speeds)?;
@@ -152,7 +167,7 @@ fn compare() -> Result<(), Box<dyn Error>> {
         let note =
             if hit.impact.energy_gained().is_some() { "  Newton's hypothesis gains energy" } else { "" };
         let law = format!("{law:?}");
-        println!(
+        say!(
             " {mu:4}  {law:8} {:+14.10} {:+24.10} {:+31.10}{note}",
             hit.impact.contact_work,
             after - before,
@@ -160,16 +175,19 @@ fn compare() -> Result<(), Box<dyn Error>> {
         );
     }
 
-    println!(
-        "\nGeneralized speeds after the collision by (12a); before: u1 = u4 = 1 m/s, u3 = u6 = 0.1 rad/s\n"
-    );
-    println!("  mu   law              u1         u2         u3         u4         u5         u6");
+    say!("\nGeneralized speeds after the collision by (12a); before: u1 = u4 = 1 m/s, u3 = u6 = 0.1 rad/s\n");
+    say!("  mu   law              u1         u2         u3         u4         u5         u6");
     for Outcome { mu, law, hit } in &outcomes {
         let (u, d) = (&hit.speeds, &hit.dependent_speeds);
         let law = format!("{law:?}");
-        println!(
+        say!(
             " {mu:4}  {law:8} {:10.6} {:10.6} {:10.6} {:10.6} {:10.6} {:10.6}",
-            u.u1, d.u2, u.u3, u.u4, d.u5, u.u6,
+            u.u1,
+            d.u2,
+            u.u3,
+            u.u4,
+            d.u5,
+            u.u6,
         );
     }
     Ok(())

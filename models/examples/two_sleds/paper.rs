@@ -77,7 +77,7 @@ fn rows(numbers: &Numbers<'_>) -> Vec<Row> {
 /// Prints the table. The error names a number that should agree and does not.
 pub fn compare(numbers: &Numbers<'_>) -> Result<(), String> {
     let mut wrong = Vec::new();
-    println!("                           the paper        this program");
+    say!("                           the paper        this program");
     for Row(what, printed, ours, why) in rows(numbers) {
         let mark = match (agrees(printed, ours), why) {
             (true, _) => String::new(),
@@ -87,9 +87,9 @@ pub fn compare(numbers: &Numbers<'_>) -> Result<(), String> {
             }
             (false, why) => format!("   <- cannot be reproduced: {why}"),
         };
-        println!("  {what:24} {printed:>9} {ours:18.9}{mark}");
+        say!("  {what:24} {printed:>9} {ours:18.9}{mark}");
     }
-    println!("  docs/assumptions.md lists what else the print gets wrong.");
+    say!("  docs/assumptions.md lists what else the print gets wrong.");
     if wrong.is_empty() { Ok(()) } else { Err(format!("not reproduced: {}", wrong.join(", "))) }
 }
 

@@ -337,7 +337,8 @@
       });
       // What is outside of the part that is shown is cut off.
       const inner = Math.max(width - left - 12, 1);
-      const plot = make(svg, "svg", "", { x: left, y: 0, viewBox: `${left} 0 ${inner} ${height}` });
+      // Where the style sheet does not size nested pictures the attributes do.
+      const plot = make(svg, "svg", "", { x: left, y: 0, width: inner, height, viewBox: `${left} 0 ${inner} ${height}` });
       plot.style.width = `${inner}px`; plot.style.height = `${height}px`;
       let before = -9;
       data.events.forEach((e) => {

@@ -168,6 +168,12 @@ document.getElementById('view').click();
 if (Math.hypot(tip()[0] - seen[0], tip()[1] - seen[1]) > 0.01) complain('the view does not come back');
 const charts = [...document.querySelectorAll('.chart')];
 if (charts.length !== 2 || charts.some((chart) => !chart.querySelector('.curve'))) complain('curves are missing');
+// Curves begin and end where the lines behind them do: both have one axis of time.
+for (const chart of charts) {
+  const line = box(chart.querySelector('line.grid, line.axis')), curves = [...chart.querySelectorAll('.curve')].map(box);
+  const off = [Math.min(...curves.map((c) => c.left)) - line.left, Math.max(...curves.map((c) => c.right)) - line.right];
+  if (off.some((o) => !(Math.abs(o) < 2))) complain(`curves are off their axis of time by ${off}`);
+}
 // Events are marked on the slider and in the curves, time runs as slowly as 0.01, and the curves show less of it.
 if (document.querySelectorAll('#marks .mark').length !== data.events.length) complain('events are not marked on the slider');
 if (charts.some((chart) => chart.querySelectorAll('.mark').length !== data.events.length)) complain('events are not marked in the curves');

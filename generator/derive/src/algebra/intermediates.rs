@@ -50,6 +50,11 @@ impl Direction {
     }
 }
 
+/// Most binary digits of a number in a bound. The digits of a square are twice those of its base, and of forty
+/// definitions that square one another there would be no end; a quantity whose bound has more is measured by
+/// itself.
+const MOST_DIGITS: u64 = 1000;
+
 /// All symbols of a derivation and what they mean.
 #[derive(Debug, Default)]
 pub struct Intermediates {
@@ -336,7 +341,10 @@ impl Intermediates {
         }
         use Function::*;
         let bound = match self.meanings[symbol as usize].clone() {
-            Meaning::Named(value) => self.bound(&value),
+            Meaning::Named(value) => match self.bound(&value) {
+                bound if digits(&bound) <= MOST_DIGITS => bound,
+                _ => self.call(Abs, vec![Expr::symbol(symbol)]),
+            },
             Meaning::Call(Sin | Cos | Sign | Tanh, _) => Expr::one(),
             Meaning::Pi => Expr::symbol(symbol),
             _ => self.call(Abs, vec![Expr::symbol(symbol)]),
@@ -389,6 +397,12 @@ impl Intermediates {
         }
         false
     }
+}
+
+/// Binary digits of the number in an expression that [`Intermediates::name`] gave.
+fn digits(named: &Expr) -> u64 {
+    let number = leading_number(named).0;
+    number.numer().bits() + number.denom().bits()
 }
 
 /// The opposite of a sum, term by term.

@@ -338,9 +338,11 @@ impl Parser<'_> {
             };
             if self.peek().is_none_or(|token| token.kind != TokenKind::Name) {
                 let lost = self.expected("a name or `:`");
-                if self.is_sign(',') {
-                    self.advise(format!("state a {} for each", word.text));
-                }
+                let help = match self.is_sign(',') {
+                    true => format!("state a {} for each", word.text),
+                    false => format!("as in `{}`", example_of_load(&word.text)),
+                };
+                self.advise(help);
                 return Err(lost);
             }
             let name = self.name("a name")?;

@@ -39,6 +39,9 @@ pub fn run(arguments: &Arguments) -> Outcome {
     };
     let path = given.with_file_name(format!("{file}.mech"));
     output::check(&path)?;
+    if path.exists() {
+        return Err(Stop::Fault(format!("{} exists: give another name, or remove it", path.display())));
+    }
     let text = PENDULUM.replace("mechanism Pendulum;", &format!("mechanism {mechanism};"));
     output::new_file(&path, text.as_bytes())?;
     let shown = path.display();

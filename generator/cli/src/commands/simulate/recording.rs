@@ -214,7 +214,7 @@ impl<'m> Recording<'m> {
         for (name, values) in energies {
             self.shown.series.push(series("energy", name, "J", values));
         }
-        let notes: Vec<String> = note.into_iter().collect();
+        let notes: Vec<String> = note.into_iter().chain(placeless(&self.shown.points)).collect();
         self.shown.notes.clone_from(&notes);
         for (panel, unit, curves) in [("gap", "m", self.gaps), ("normal force", "N", self.pressures)] {
             for (contact, values) in model.contacts.iter().zip(curves) {
@@ -234,6 +234,21 @@ impl<'m> Recording<'m> {
         });
         Recorded { states: states.collect(), shown: self.shown, notes }
     }
+}
+
+/// What is to be said of points that are nowhere at any time, and so are not drawn.
+fn placeless(points: &[Point]) -> Option<String> {
+    let nowhere = |point: &&Point| point.places.iter().all(|place| place[0].is_nan());
+    let names: Vec<&str> = points.iter().filter(nowhere).map(|point| point.name.as_str()).collect();
+    let told = match &names[..] {
+        [] => return None,
+        [one] => (*one).to_owned(),
+        [some @ .., last] if names.len() <= 4 => format!("{} and {last}", some.join(", ")),
+        all => format!("{} and {} other points", all[..3].join(", "), all.len() - 3),
+    };
+    Some(format!(
+        "the position of {told} follows from velocities alone, not from coordinates: it is not drawn"
+    ))
 }
 
 /// Where a point is, along N.x, N.y, N.z; no number where it cannot be known.

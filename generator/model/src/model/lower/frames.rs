@@ -217,7 +217,8 @@ impl Lowering<'_> {
         value: &Expr,
     ) -> Option<(Orientation, Traits)> {
         if arguments.len() != 4 {
-            self.arguments_expected(operation, "four coordinates, the scalar part first", value);
+            let what = "four coordinates, the scalar part first, as in `N.quaternion(e0, e1, e2, e3)`";
+            self.arguments_expected(operation, what, value);
             return None;
         }
         let (mut coordinates, mut unread) = (Vec::new(), false);

@@ -20,7 +20,8 @@ impl Lowering<'_> {
             if load.word.text == "gravity" {
                 if let Some(first) = gravity {
                     let error = Diagnostic::new(codes::LOAD, load.word.span, "gravity is stated twice")
-                        .related(first, "first here");
+                        .related(first, "first here")
+                        .help("it acts on everything that has mass: leave one of them out");
                     self.report(error);
                 }
                 gravity = Some(load.word.span);
@@ -36,6 +37,8 @@ impl Lowering<'_> {
                         Diagnostic::new(codes::LOAD, load.word.span, format!("there is no load `{other}`"));
                     let near = vocabulary::load(other).or_else(|| suggest::nearest(other, WORDS.into_iter()));
                     self.report(match near {
+                        Some("spring") if other.contains("damper") || other == "dashpot" => error
+                            .help("a damper is a spring with `damping`: `spring P to H: { damping: c };`"),
                         Some(near) => error.help(format!("did you mean `{near}`?")),
                         None => error.help("loads are gravity, force, torque, spring and torsion"),
                     });

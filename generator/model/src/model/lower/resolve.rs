@@ -44,7 +44,8 @@ impl Lowering<'_> {
         // comparing spellings is slow; nobody reads so many suggestions
         let near =
             if self.unknown.len() <= MAX_SUGGESTIONS { self.names.nearest(&name.text, fits) } else { None };
-        if near.is_none() && units::is_symbol(&name.text) && name.text.chars().count() > 1 {
+        let is_unit = units::is_symbol(&name.text) && name.text.chars().count() > 1;
+        if near.is_none() && is_unit {
             self.report(error.help(format!(
                 "units stand in declarations only: declare a quantity in it, as in `a: {} = ..`",
                 name.text
@@ -53,7 +54,10 @@ impl Lowering<'_> {
         }
         let error = match near {
             Some(near) => {
-                let help = format!("did you mean `{near}`?");
+                let mut help = format!("did you mean `{near}`?");
+                if is_unit {
+                    help += &format!(" A unit stands in declarations only, as in `a: {} = ..`", name.text);
+                }
                 match self.names.place(near) {
                     Some(place) => error.related(place, format!("`{near}` is declared here")).help(help),
                     None => error.help(help),
@@ -168,11 +172,20 @@ impl Lowering<'_> {
             ("a point", Symbol::Body(_)) => {
                 Some(format!("its mass centre is `{}`", names(own()?, ["centre", "point"])?))
             }
+            ("a point", Symbol::Frame(_)) if name == "N" => Some("`O` is a point fixed in it".to_owned()),
             ("a point", Symbol::Frame(_)) => {
                 let body = with(["frame", "frame"]).into_iter().next()?;
                 let record = records().find(|record| format!("`{}`", record.name.text) == body)?;
                 let centre = names(record, ["centre", "point"])?;
                 Some(format!("the mass centre of its body {body} is `{centre}`"))
+            }
+            ("a frame or body", Symbol::Point(_)) => {
+                let mut bodies = self.tree.bodies.iter();
+                let own = bodies.find(|body| names(body, ["centre", "centre"]).as_deref() == Some(name));
+                Some(match own {
+                    Some(body) => format!("it is the mass centre of the body `{}`", body.name.text),
+                    None => "name the body that it belongs to, or its frame".to_owned(),
+                })
             }
             ("a frame", Symbol::Body(_)) => {
                 Some(format!("its frame is `{}`", names(own()?, ["frame", "frame"])?))

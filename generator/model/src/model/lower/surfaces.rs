@@ -102,7 +102,9 @@ impl Lowering<'_> {
         let numbers: Option<Vec<f64>> = given.iter().map(|number| self.constant(number).constant).collect();
         let numbers = numbers?;
         let wrong = match form {
-            Form::Positive(count) if numbers.len() != *count => Some("so many numbers are not its own"),
+            Form::Positive(0) if !numbers.is_empty() => Some("this law takes no numbers"),
+            Form::Positive(1) if numbers.len() != 1 => Some("this law takes one number"),
+            Form::Positive(count) if numbers.len() != *count => Some("this law takes two numbers"),
             Form::Positive(_) if !numbers.iter().all(|number| *number > 0.0) => {
                 Some("its numbers are positive")
             }

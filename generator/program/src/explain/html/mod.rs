@@ -10,7 +10,7 @@ mod mathml;
 use escape::plain;
 use mathml::{Writer, letters, math};
 
-use super::symbols::unit;
+use super::symbols::{Form, form, unit};
 use super::{Document, Equation, Place, Rank, Section, Term, text};
 
 const STYLE: &str = include_str!("page.css");
@@ -102,9 +102,7 @@ fn names(document: &Document, writer: &Writer<'_>) -> String {
                 "<tr><td>{}</td><td><code>{}</code></td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
                 math(&writer.name(&entry.name)),
                 plain(&entry.name),
-                entry
-                    .value
-                    .map_or(String::new(), |value| math(&writer.term(&Term::Number(value), Rank::Sum))),
+                entry.value.map_or(String::new(), |value| digits(value, writer)),
                 if unit.is_empty() { "1".to_owned() } else { plain(&unit) },
                 prose(&entry.docs)
             );
@@ -112,6 +110,19 @@ fn names(document: &Document, writer: &Writer<'_>) -> String {
         out += "</tbody>\n</table>\n";
     }
     out + "</section>\n"
+}
+
+/// A value in a table. Digits are text, which breaks where the column ends: browsers leave out what a formula
+/// has beyond.
+fn digits(value: f64, writer: &Writer<'_>) -> String {
+    let text = |digits: &str| plain(&digits.replace('-', "\u{2212}"));
+    match form(value) {
+        Form::Decimal(digits) => text(&digits),
+        Form::Power(mantissa, exponent) => {
+            format!("{} \u{00b7} 10<sup>{}</sup>", text(&mantissa), text(&exponent.to_string()))
+        }
+        Form::Ratio(..) => math(&writer.term(&Term::Number(value), Rank::Sum)),
+    }
 }
 
 fn sections(document: &Document, writer: &Writer<'_>) -> String {
