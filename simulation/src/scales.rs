@@ -17,8 +17,9 @@ pub(crate) struct Scales {
     pub time: f64,
 }
 
-/// A gap below this part of the greatest coordinate is closed: its size tells nothing.
-const TOUCHES: f64 = 1e-9;
+/// A gap below this part of the greatest coordinate, or of the height of a fall at the speeds of the start, is closed:
+/// its size tells nothing.
+const TOUCHES: f64 = 1e-8;
 
 impl Scales {
     /// Those of a start state; 1 where nothing tells.
@@ -28,14 +29,12 @@ impl Scales {
             unit.contains("rad") || unit.contains("deg")
         };
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
-        let mut length = 0.0_f64;
+        let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
         let (mut acceleration, mut speed) = (0.0_f64, 0.0_f64);
         for contact in 0..mechanism.count(Kind::Contact) {
             let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
             let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
-            if gap.abs() > TOUCHES * place {
-                length = length.max(gap.abs());
-            }
+            gaps = gaps.max(gap.abs());
             for (index, column) in alone.partials.column_iter().enumerate() {
                 // What an angular speed gives to the point is an arm.
                 if angular(index) {
@@ -46,8 +45,11 @@ impl Scales {
             speed = speed.max(alone.velocity.norm());
         }
         let known = |value: f64| value.is_finite() && value > 0.0;
+        let fall = speed * speed / acceleration;
+        if gaps > TOUCHES * if known(fall) { place.max(fall) } else { place } {
+            length = length.max(gaps);
+        }
         if !known(length) {
-            let fall = speed * speed / acceleration;
             length = if known(fall) { fall } else { 1.0 };
         }
         // The faster of falling and going.

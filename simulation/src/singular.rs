@@ -2,7 +2,7 @@
 //!
 //! The lowest point of a disc is undefined where the disc lies flat; the point at which it touches runs around
 //! its rim ever faster before, or changes sides at once. A motion of a single contact ends there: what would
-//! follow is the impact of a whole face (docs/theory.md, section 17.15).
+//! follow is the impact of a whole face (docs/theory.md, section 17.16).
 
 use hodograph::{Kind, State, StateError};
 
