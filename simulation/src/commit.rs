@@ -92,6 +92,7 @@ impl Transition<'_> {
             held: &modes.held,
             closed: &modes.closed,
             resting: modes.resting,
+            scale: &self.front.scale,
         };
         let part = part_of(&motion, (step.t, step.start(), step.first()), time - step.t)?;
         let mut y = part.end;

@@ -222,7 +222,15 @@ impl Transition<'_> {
             }
             let faded = hits.len() > touching.len() && fastest < FADED * scale;
             let hit = if hits.len() >= patience && touching.len() > 1 {
-                self.plastic_impact(touching, &speeds)
+                match self.plastic_impact(touching, &speeds) {
+                    // It is proven that nothing approaches any more, beside the slip that is left. The bound of
+                    // an approach is relative to the first one, and may be less than that proof.
+                    Ok(last) => {
+                        hits.push(last);
+                        return Ok(hits);
+                    }
+                    unsolved => unsolved,
+                }
             } else {
                 self.hit(&next, &speeds, faded)
             };

@@ -10,9 +10,9 @@ use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, margins};
-use crate::mode_changes::{FIRST as AFTER, NO_SLIP};
+use crate::mode_changes::FIRST as AFTER;
 use crate::mode_selection::{Choice, Decision, choose};
-use crate::motion::{Evaluation, Failure};
+use crate::motion::{Evaluation, Failure, NO_SLIP};
 use crate::phase::{Closed, Phase, mus};
 use crate::stepper::Step;
 use crate::transition::Transition;

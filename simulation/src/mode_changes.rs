@@ -6,14 +6,12 @@ use nalgebra::{DVector, Vector2, Vector3};
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, hold_good};
 use crate::mode_selection::{Choice, Decision, choose};
-use crate::motion::Failure;
+use crate::motion::{Failure, NO_SLIP};
 use crate::pair::Friction;
 use crate::phase::{Leaving, Phase, mus};
 use crate::transition::Transition;
 use crate::{EventKind, Reason, SimulationError};
 
-/// Slip below this, relative to the speeds that make it up, is none.
-pub(crate) const NO_SLIP: f64 = 1e-11;
 /// The first step of a slip that begins, beside the time of the problem.
 pub(crate) const FIRST: f64 = 5e-7;
 

@@ -12,6 +12,8 @@ use crate::pair::Pair;
 use crate::phase::Closed;
 use crate::slip_direction::settle_directions;
 
+/// Slip below this, relative to the speeds that make it up, is none.
+pub(crate) const NO_SLIP: f64 = 1e-11;
 /// Below this speed of slip, relative to the speeds that make it up, its direction is the one in which it
 /// began.
 pub(crate) const DIRECTION: f64 = 1e-10;
@@ -42,6 +44,8 @@ pub(crate) struct Motion<'a> {
     pub closed: &'a [Closed],
     /// Nothing moves: what is left of the rates is rounding.
     pub resting: bool,
+    /// the greatest speeds so far
+    pub scale: &'a [f64],
 }
 
 /// All that is known of a state.
@@ -50,6 +54,15 @@ pub(crate) struct Evaluation {
     pub support: ClosedContacts,
     pub holds: Vec<Hold>,
     pub forces: Option<Forces>,
+}
+
+/// The direction of slip that began along `began`: its own, where it is more than rounding of the terms that make it
+/// up. `now` is their size, `ever` that of the greatest speeds so far: what projections have left of a slip that begins
+/// from none may be rounding of those, against the way it goes, although nothing else moves any more.
+fn direction(slip: Vector2<f64>, began: Vector2<f64>, now: f64, ever: f64) -> Vector2<f64> {
+    let speed = slip.norm();
+    let forward = slip.dot(&began) > 0.0;
+    if speed > DIRECTION * now && (forward || speed > NO_SLIP * ever) { slip / speed } else { began }
 }
 
 /// Numbers of the state beyond coordinates and speeds: work of friction and of inputs.
@@ -89,10 +102,9 @@ impl Motion<'_> {
             .map(|(i, closed)| match closed.slides {
                 None => Hold::Stick,
                 Some(began) => {
-                    let slip = support.slip(i);
-                    let speed = slip.norm();
-                    let known = speed > DIRECTION * support.velocity_size(i, speeds);
-                    Hold::Slide(if known { slip / speed } else { began })
+                    let (now, ever) =
+                        (support.velocity_size(i, speeds), support.velocity_size(i, self.scale));
+                    Hold::Slide(direction(support.slip(i), began, now, ever))
                 }
             })
             .collect()
@@ -185,5 +197,24 @@ impl Motion<'_> {
         let none = vec![0.0; state.inputs.len()];
         self.mechanism.forcing(&State { inputs: &none, ..*state }, &mut without)?;
         Ok(with.iter().zip(&without).zip(state.speeds).map(|((a, b), u)| (a - b) * u).sum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two links of a chain on a floor came to rest but for 1.5e-14 m/s, which is all that moved there. Slip began the
+    /// other way, was at once taken to go forward, and had to begin again, 2000 times.
+    #[test]
+    fn slip_goes_the_way_it_began_while_it_is_rounding() {
+        let (began, left) = (Vector2::new(-1.0, 0.0), Vector2::new(1.485_565e-14, 0.0));
+        assert_eq!(direction(left, began, left.norm(), 0.7), began);
+        assert_eq!(direction(-left, began, left.norm(), 0.7), began);
+        // Slip that is none of itself has the way it began; what is more than rounding has its own.
+        assert_eq!(direction(-left, began, 0.7, 0.7), began);
+        assert_eq!(direction(1e3 * left, began, 1e3 * left.norm(), 0.7), -began);
+        let across = Vector2::new(-3e-6, 4e-6);
+        assert!((direction(across, began, 1e-3, 0.7) - Vector2::new(-0.6, 0.8)).norm() < 1e-15);
     }
 }

@@ -30,14 +30,12 @@ impl Scales {
             unit.contains("rad") || unit.contains("deg")
         };
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
-        let mut length = 0.0_f64;
+        let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
         let (mut acceleration, mut speed) = (0.0_f64, 0.0_f64);
         for contact in 0..mechanism.count(Kind::Contact) {
             let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
             let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
-            if gap.abs() > TOUCHES * place {
-                length = length.max(gap.abs());
-            }
+            gaps = gaps.max(gap.abs());
             for (index, column) in alone.partials.column_iter().enumerate() {
                 // What an angular speed gives to the point is an arm.
                 if angular(index) {
@@ -48,8 +46,11 @@ impl Scales {
             speed = speed.max(alone.velocity.norm());
         }
         let known = |value: f64| value.is_finite() && value > 0.0;
-        if length < NEAR {
-            let fall = speed * speed / acceleration;
+        let fall = speed * speed / acceleration;
+        if gaps > NEAR.max(TOUCHES * place) {
+            length = length.max(gaps);
+        }
+        if !known(length) {
             length = if known(fall) { fall } else { 1.0 };
         }
         // The faster of falling and going.

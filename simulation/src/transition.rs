@@ -100,6 +100,7 @@ impl Transition<'_> {
             held: &self.front.held,
             closed,
             resting: self.front.resting,
+            scale: &self.front.scale,
         }
     }
 
