@@ -290,6 +290,19 @@ fn far_places_do_not_round_the_gap() {
     }
 }
 
+/// A particle that is fast along the floor strikes it on time too.
+#[test]
+fn speeds_along_the_floor_do_not_hide_it() {
+    let body = particle();
+    let fall = (2.0 / G).sqrt();
+    for speed in [1e5, 1e10, 1e16] {
+        let mut simulation =
+            start(&body, &[0.0, 1.0, 0.0], &[speed, 0.0, 0.0], surface(0.0, 0.5, Law::Newton));
+        let events = run(&mut simulation, 0.6);
+        assert!((collisions(&events)[0] - fall).abs() < 1e-12, "{speed:e}: {:?}", names(&events));
+    }
+}
+
 /// No step is short enough for a tolerance below the rounding of its numbers: refused.
 #[test]
 fn tolerances_below_rounding_are_refused() {

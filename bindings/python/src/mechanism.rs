@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
 use hodograph::{Contacts as _, Kind, Mechanism as _, StateError};
+use hodograph_generator::artifact::{self, Loaded};
+use hodograph_generator::check;
 use hodograph_generator::explain::{self, Format};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::Quantity;
 use hodograph_generator::program::quantity::{Description, Entries, Extent};
-use hodograph_generator::artifact::{self, Loaded};
-use hodograph_generator::check;
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::{Columns, evaluate_rows};
 use numpy::PyArrayDyn;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use hodograph_generator::check;
 use hodograph_generator::diagnostics::Severity;
-use hodograph_generator::numeric;
 use hodograph_generator::files;
+use hodograph_generator::numeric;
 use hodograph_generator::source::Source;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

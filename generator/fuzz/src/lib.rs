@@ -1,7 +1,7 @@
 //! One run of the fuzzer: checks a text, renders the diagnostics, and tests properties that must always hold.
 
-use hodograph_generator::expand::Inline;
 use hodograph_generator::artifact::model_hash;
+use hodograph_generator::expand::Inline;
 use hodograph_generator::rendering::render;
 use hodograph_generator::{check::check, source::Source};
 

@@ -170,7 +170,8 @@ impl ModelFunction {
         if self.routine == Routine::Simulate {
             return places::resolve_motion(&self.name, &self.prepared()?.known, given);
         }
-        let places = places::resolve(&self.name, self.mechanism()?, &self.prepared()?.known, self.collides(), given)?;
+        let places =
+            places::resolve(&self.name, self.mechanism()?, &self.prepared()?.known, self.collides(), given)?;
         if self.collides() && self.prepared()?.contacts.is_empty() {
             return plan_err!("{}: the model has no contacts", self.name);
         }

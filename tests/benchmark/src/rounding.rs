@@ -8,13 +8,13 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use hodograph_generator::check::check;
+use hodograph_generator::files;
 use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::graph::Input;
 use hodograph_generator::program::{ContactQuantity, Quantity};
-use hodograph_generator::files;
 use serde_json::{Value, json};
 
 use crate::cases::{Case, Origin};

@@ -70,8 +70,8 @@ fn what_cannot_be_parsed_is_left_alone() {
     assert!(matches!(error, Unformatted::Mistakes(mistakes) if mistakes.len() == 1));
 }
 
-/// All models of the repository.
-fn models() -> Vec<String> {
+/// All models of the repository, and whether they have a derivation.
+fn models() -> Vec<(String, bool)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut folders =
         vec![root.join("models"), root.join("tests"), root.join("generator"), root.join("simulation")];
@@ -85,7 +85,7 @@ fn models() -> Vec<String> {
             } else if name.ends_with(".mech")
                 && let Ok(text) = std::fs::read_to_string(&path)
             {
-                models.push(text);
+                models.push((text, path.with_extension("derivation").exists()));
             }
         }
     }
@@ -96,7 +96,7 @@ fn models() -> Vec<String> {
 #[test]
 fn every_model_keeps_its_meaning_and_its_style() {
     let mut parsed = 0;
-    for text in models() {
+    for (text, _) in models() {
         let source = Source::file("x.mech", text.as_str());
         match format(&source) {
             Ok(once) => {
@@ -117,6 +117,16 @@ fn every_model_keeps_its_meaning_and_its_style() {
         }
     }
     assert!(parsed > 150, "{parsed}");
+}
+
+#[test]
+fn derived_models_are_laid_out() {
+    let derived: Vec<String> =
+        models().into_iter().filter(|(_, derived)| *derived).map(|(text, _)| text).collect();
+    assert!(derived.len() > 60, "{}", derived.len());
+    for text in derived {
+        assert_eq!(formatted(&text), text, "run `hodograph fmt` on this model");
+    }
 }
 
 /// A model with other blanks, line breaks and comments between its tokens.
@@ -152,7 +162,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
     #[test]
     fn any_layout_is_put_in_order(which in 0usize..10_000, seed in any::<u64>()) {
-        thread_local!(static MODELS: Vec<String> = models());
+        thread_local!(static MODELS: Vec<String> = models().into_iter().map(|(text, _)| text).collect());
         let text = MODELS.with(|models| models[which % models.len()].clone());
         let text = in_disorder(&text, seed);
         match format(&Source::file("x.mech", text.as_str())) {
