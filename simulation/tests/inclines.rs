@@ -11,7 +11,7 @@ const TAN: f64 = 0.3;
 /// mu - tan of the angle, or of mu m g less the push over m g
 const EXCESS: [f64; 9] = [1e-6, 1e-9, 1e-12, 0.0, -1e-12, -1e-11, -1e-10, -1e-9, -1e-6];
 /// Four corners share their load in many ways. Slip that begins with less than 1e-6 of g has directions that are known
-/// to some 1e-6 rad only, and is followed slowly.
+/// to some 1e-6 rad only; its motion may come to no end (docs/contact.md).
 const OF_FOUR: [f64; 5] = [1e-6, 1e-9, 1e-12, 0.0, -1e-6];
 
 /// A speed that should be this one after a second, from rest; `rounding` is what may be off of accelerations of
