@@ -24,6 +24,24 @@ pub struct Label {
     pub text: String,
 }
 
+/// A change of the text that may cure a mistake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fix {
+    /// where
+    pub place: Place,
+    /// what to write there
+    pub text: String,
+}
+
+/// Where a fix writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// in place of what stands here
+    Replace(Span),
+    /// at the end of the braces that follow what stands here, as one more field
+    IntoBraces(Span),
+}
+
 /// One mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -39,6 +57,8 @@ pub struct Diagnostic {
     pub related: Vec<Label>,
     /// what to do
     pub help: Option<String>,
+    /// changes that may cure it, each by itself, the likeliest first
+    pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
@@ -51,6 +71,7 @@ impl Diagnostic {
             primary: Label { span, text: String::new() },
             related: Vec::new(),
             help: None,
+            fixes: Vec::new(),
         }
     }
 
@@ -68,6 +89,18 @@ impl Diagnostic {
     /// Points to another place.
     pub fn related(mut self, span: Span, text: impl Into<String>) -> Self {
         self.related.push(Label { span, text: text.into() });
+        self
+    }
+
+    /// Asks whether another word is meant, which can be put in place of what is wrong.
+    pub fn did_you_mean(self, word: &str) -> Self {
+        let place = Place::Replace(self.primary.span);
+        self.help(format!("did you mean `{word}`?")).fix(place, word)
+    }
+
+    /// Offers a change that may cure it.
+    pub fn fix(mut self, place: Place, text: impl Into<String>) -> Self {
+        self.fixes.push(Fix { place, text: text.into() });
         self
     }
 

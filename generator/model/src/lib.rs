@@ -28,3 +28,4 @@ pub mod suggest;
 pub mod syntax;
 pub mod unicode;
 pub mod vocabulary;
+pub mod words;

@@ -211,6 +211,11 @@ pub fn function(word: &str) -> Option<&'static str> {
     look(&table, word)
 }
 
+/// The word that an advice such as ``did you mean `norm`?`` offers.
+pub fn word_meant(advice: &str) -> Option<&str> {
+    advice.strip_prefix("did you mean `")?.split('`').next()
+}
+
 /// Whether it is how others call the derivative.
 pub fn differentiates(function: &str) -> bool {
     matches!(function, "diff" | "der" | "ddt" | "derivative" | "Derivative" | "deriv" | "dot_" | "dt" | "D")

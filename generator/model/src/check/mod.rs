@@ -20,10 +20,10 @@ mod unit_vectors;
 mod vector_constraints;
 
 use crate::diagnostics::{Diagnostic, Severity, codes};
-use crate::model::{self, mechanism::Mechanism};
+use crate::model::{self, mechanism::Mechanism, symbols::Symbols};
 use crate::source::Source;
 use crate::span::Span;
-use crate::syntax;
+use crate::syntax::{self, token::Token, tree::Tree};
 
 pub use bodies::{Impossible, impossible_bodies};
 pub use unit_vectors::{ROUNDED_QUATERNION, UNIT_QUATERNION};
@@ -45,13 +45,53 @@ impl Checked {
     }
 }
 
+/// All that is known of a model, mistaken or not.
+#[derive(Clone, Debug, Default)]
+pub struct Analysis {
+    /// its tokens
+    pub tokens: Vec<Token>,
+    /// what of it could be parsed
+    pub tree: Tree,
+    /// its names and their places
+    pub symbols: Symbols,
+    /// what could be read of the mechanism: a whole only if `has_errors` says no
+    pub mechanism: Option<Mechanism>,
+    /// errors and warnings, in the order of their places
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Analysis {
+    /// Whether an error was found.
+    pub fn has_errors(&self) -> bool {
+        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
+    }
+}
+
 /// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
 pub fn check(source: &Source) -> Checked {
+    let analysis = analyse(source);
+    let failed = analysis.has_errors();
+    Checked { mechanism: analysis.mechanism.filter(|_| !failed), diagnostics: analysis.diagnostics }
+}
+
+/// The names of a model and their places, without a check of its numbers.
+pub fn names(tokens: &[Token]) -> (Tree, Symbols) {
+    let (tree, diagnostics) = syntax::parse(tokens);
+    if model::too_many(&tree).is_some() {
+        return (tree, Symbols::default());
+    }
+    let symbols = model::lower(&tree, diagnostics).symbols;
+    (tree, symbols)
+}
+
+/// Reads and checks a model, and keeps all that was found on the way.
+pub fn analyse(source: &Source) -> Analysis {
     let tokens = match source.tokens() {
-        Ok(tokens) => tokens,
-        Err(error) => return Checked { mechanism: None, diagnostics: vec![*error] },
+        Ok(tokens) => tokens.into_owned(),
+        Err(error) => return Analysis { diagnostics: vec![*error], ..Analysis::default() },
     };
     let (tree, diagnostics) = syntax::parse(&tokens);
+    let mut symbols = Symbols::default();
     // without a name nothing else could be read
     let unread = tree.name.is_none() && tree.sections.is_empty();
     let (mut mechanism, mut diagnostics) = if let Some(error) = model::too_many(&tree) {
@@ -59,8 +99,9 @@ pub fn check(source: &Source) -> Checked {
     } else if unread {
         (None, diagnostics)
     } else {
-        let (mechanism, readable, diagnostics) = model::lower(&tree, diagnostics);
-        (Some((mechanism, readable)), diagnostics)
+        let lowered = model::lower(&tree, diagnostics);
+        symbols = lowered.symbols;
+        (Some((lowered.mechanism, lowered.readable)), lowered.diagnostics)
     };
     if let Some((mechanism, readable)) = &mut mechanism {
         let sound = !diagnostics.iter().any(Diagnostic::hides_meaning);
@@ -88,5 +129,6 @@ pub fn check(source: &Source) -> Checked {
         diagnostics.iter().filter(|d| d.code != codes::NO_GAP).map(|d| d.primary.span).collect();
     diagnostics.retain(|d| d.code != codes::NO_GAP || !failed && !others.contains(&d.primary.span));
     diagnostics.sort_by_key(|d| (d.primary.span, d.code));
-    Checked { mechanism: mechanism.map(|(mechanism, _)| mechanism).filter(|_| !failed), diagnostics }
+    let mechanism = mechanism.map(|(mechanism, _)| mechanism);
+    Analysis { tokens, tree, symbols, mechanism, diagnostics }
 }

@@ -3,15 +3,16 @@
 mod dependency_order;
 mod lower;
 pub mod mechanism;
-mod names;
+pub mod names;
 mod provenance;
 mod readable;
+pub mod symbols;
 mod typed;
 
 use crate::diagnostics::{Diagnostic, codes};
 use crate::syntax::tree::Tree;
 
-pub use lower::lower;
+pub use lower::{Lowered, lower};
 pub use readable::Readable;
 
 /// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with

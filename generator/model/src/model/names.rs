@@ -200,6 +200,11 @@ impl Names {
         self.order.iter().map(|(text, _)| text.as_str())
     }
 
+    /// All names and what they stand for, in the order of their declaration.
+    pub fn declared(&self) -> impl Iterator<Item = (&str, Symbol)> {
+        self.order.iter().map(|(text, symbol)| (text.as_str(), *symbol))
+    }
+
     /// Where it is declared; `None` for what is given.
     pub fn place(&self, name: &str) -> Option<Span> {
         self.symbols.get(name).and_then(|(_, place)| *place)

@@ -4,7 +4,8 @@ use super::parser::{Lost, Parser};
 use super::token::TokenKind;
 use super::tree::*;
 use super::units;
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
+use crate::span::Span;
 
 impl Parser<'_> {
     /// One entry of a section, without what ends it.
@@ -178,7 +179,17 @@ impl Parser<'_> {
                 }
                 _ => format!("state the unit, as in `{n}: kg = 1` for a mass; {none}: `{n}: 1 = 1`"),
             };
-            self.report(Diagnostic::new(codes::EXPECTED, self.here(), message).help(help));
+            let units: &[&str] = match section {
+                Section::Coordinates => &["rad", "m", "1"],
+                Section::Speeds | Section::Dependent => &["rad/s", "m/s", "1"],
+                Section::Inputs => &["N", "N*m", "1"],
+                _ => &["kg", "m", "1"],
+            };
+            let after = Span { start: name.span.end, end: name.span.end };
+            let error = Diagnostic::new(codes::EXPECTED, self.here(), message).help(help);
+            let offer =
+                |error: Diagnostic, unit: &&str| error.fix(Place::Replace(after), format!(": {unit}"));
+            self.report(units.iter().fold(error, offer));
             return Err(Lost);
         }
         self.at += 1;

@@ -5,6 +5,7 @@ mod expressions;
 pub mod lexer;
 mod outline;
 mod parser;
+pub mod repair;
 mod sections;
 pub mod token;
 pub mod tree;

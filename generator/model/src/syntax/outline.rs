@@ -204,7 +204,7 @@ impl Parser<'_> {
             let near =
                 vocabulary::section(&token.text).or_else(|| suggest::nearest(&token.text, words.into_iter()));
             let error = match near {
-                Some(word) => error.help(format!("did you mean `{word}`?")),
+                Some(word) => error.did_you_mean(word),
                 None => error.help(format!("the sections are {}", words.join(", "))),
             };
             self.report(error);

@@ -98,6 +98,11 @@ fn symbol(name: &str) -> Option<Unit> {
     })
 }
 
+/// The symbols without prefixes, each with its dimension.
+pub fn symbols() -> impl Iterator<Item = (&'static str, Dimension)> {
+    SYMBOLS.iter().map(|&(text, [m, kg, s], ..)| (text, Dimension::of(m, kg, s)))
+}
+
 /// Whether it is the symbol of a unit, perhaps with a prefix.
 pub fn is_symbol(name: &str) -> bool {
     symbol(name).is_some()
@@ -189,7 +194,7 @@ fn unknown(name: &str, expr: &Expr) -> Diagnostic {
         return error.help("this unit takes no prefix");
     }
     match suggest::nearest(name, SYMBOLS.iter().map(|s| s.0).chain(["kg", "mm", "cm", "km", "ms", "kN"])) {
-        Some(near) => error.help(format!("did you mean `{near}`?")),
+        Some(near) => error.did_you_mean(near),
         None => error
             .help("units are kg g m s min h rad deg rev N Pa J W Hz 1, with SI prefixes, and their products"),
     }

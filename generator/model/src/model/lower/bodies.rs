@@ -2,12 +2,12 @@
 
 use super::super::mechanism::{Body, FrameId, Inertia, PointId, Scalar};
 use super::{Lowering, QuantityFacts};
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
 use crate::dimension::Dimension;
 use crate::number::Number;
 use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Field, Name, Record};
-use crate::{suggest, vocabulary};
+use crate::{suggest, vocabulary, words};
 
 impl Lowering<'_> {
     pub(super) fn bodies(&mut self) {
@@ -65,7 +65,7 @@ impl Lowering<'_> {
                 self.report(match near {
                     Some(near) => {
                         meant.push(near);
-                        error.help(format!("did you mean `{near}`?"))
+                        error.did_you_mean(near)
                     }
                     None => error.help(match (what, field.name.text.as_str()) {
                         ("a particle", "inertia" | "frame") => {
@@ -110,8 +110,9 @@ impl Lowering<'_> {
             let message = format!("`{}` has no {}", owner.text, missing.join(" and no "));
             let examples: Vec<String> =
                 missing.iter().map(|field| self.example_of(field.trim_matches('`'))).collect();
-            let help = format!("add `{}`", examples.join(", "));
-            self.report(Diagnostic::new(code, owner.span, message).help(help));
+            let added = examples.join(", ");
+            let error = Diagnostic::new(code, owner.span, message).help(format!("add `{added}`"));
+            self.report(error.fix(Place::IntoBraces(owner.span), added));
         }
         found
     }
@@ -187,13 +188,8 @@ impl Lowering<'_> {
 
     /// A body; `None` if a part of it could not be read.
     fn body(&mut self, record: &Record) -> Option<()> {
-        let [frame, centre, mass, inertia] = self.record(
-            "a body",
-            &record.name,
-            &record.fields,
-            ["frame", "centre", "mass", "inertia"],
-            &["frame", "centre", "mass", "inertia"],
-        );
+        let [frame, centre, mass, inertia] =
+            self.record("a body", &record.name, &record.fields, words::BODY, &words::BODY);
         for field in [frame, centre, mass].into_iter().flatten() {
             self.notes(field, &[]);
         }
@@ -240,7 +236,7 @@ impl Lowering<'_> {
 
     /// A particle; `None` if a part of it could not be read.
     fn particle(&mut self, record: &Record) -> Option<()> {
-        let known = ["point", "mass"];
+        let known = words::PARTICLE;
         let [point, mass] = self.record("a particle", &record.name, &record.fields, known, &known);
         for field in [point, mass].into_iter().flatten() {
             self.notes(field, &[]);

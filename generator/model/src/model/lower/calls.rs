@@ -7,11 +7,11 @@ use super::super::typed::{Traits, Typed, TypedValue};
 use super::Lowering;
 use crate::arithmetic::Function;
 use crate::arithmetic::reproducible;
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
 use crate::dimension::{Dimension, Exponent};
 use crate::span::Span;
 use crate::syntax::tree::{Expr, ExprKind, Name};
-use crate::{suggest, vocabulary};
+use crate::{suggest, vocabulary, words};
 
 const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
     ("sin", Function::Sin),
@@ -33,12 +33,9 @@ const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
     ("max", Function::Max),
 ];
 
-const OTHER_FUNCTIONS: &[&str] =
-    &["pow", "dot", "cross", "norm", "unit", "position", "velocity", "angular_velocity", "d"];
-
 /// Whether this is the name of a function.
 pub(super) fn is_function(name: &str) -> bool {
-    SCALAR_FUNCTIONS.iter().any(|(function, _)| *function == name) || OTHER_FUNCTIONS.contains(&name)
+    words::look(words::FUNCTIONS, name).is_some()
 }
 
 impl Lowering<'_> {
@@ -146,12 +143,12 @@ impl Lowering<'_> {
             };
             match named {
                 Some(symbol @ (Symbol::Point(_) | Symbol::Frame(_) | Symbol::Body(_))) => {
-                    self.used.insert(symbol);
+                    self.places.uses(symbol, argument.span);
                 }
                 _ => drop(self.expression(argument)),
             }
         }
-        let all = SCALAR_FUNCTIONS.iter().map(|(text, _)| *text).chain(OTHER_FUNCTIONS.iter().copied());
+        let all = words::FUNCTIONS.iter().map(|word| word.text);
         let error = match self.names.get(&name.text) {
             Some(symbol) => {
                 let message = format!("`{}` is {}, not a function", name.text, symbol.kind());
@@ -164,8 +161,11 @@ impl Lowering<'_> {
                     format!("there is no function `{}`", name.text),
                 );
                 match (vocabulary::function(&name.text), suggest::nearest(&name.text, all.clone())) {
-                    (Some(advice), _) => error.help(advice),
-                    (None, Some(near)) => error.help(format!("did you mean `{near}`?")),
+                    (Some(advice), _) => match vocabulary::word_meant(advice) {
+                        Some(word) => error.fix(Place::Replace(name.span), word).help(advice),
+                        None => error.help(advice),
+                    },
+                    (None, Some(near)) => error.did_you_mean(near),
                     (None, None) => {
                         error.help(format!("the functions are {}", all.collect::<Vec<_>>().join(", ")))
                     }

@@ -6,6 +6,7 @@ use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 use crate::syntax::tree::{ExprKind, Field, Name, Record};
+use crate::words;
 
 impl Lowering<'_> {
     pub(super) fn contacts(&mut self) {
@@ -19,7 +20,7 @@ impl Lowering<'_> {
 
     /// A contact; `None` if a part of it could not be read.
     fn contact(&mut self, record: &Record) -> Option<()> {
-        let known = ["point", "against", "normal", "gap", "surface"];
+        let known = words::CONTACT;
         let [point, against, normal, gap, surface] =
             self.record("a contact", &record.name, &record.fields, known, &["point", "normal"]);
         let mut body = None;
@@ -274,7 +275,7 @@ impl Lowering<'_> {
         let tree = self.tree;
         let mut warnings = Vec::new();
         let mut warn = |code, symbol: Symbol, name: &Name, what: &str, help: &str| {
-            if !self.used.contains(&symbol) {
+            if !self.places.is_used(symbol) {
                 let message = format!("the {what} `{}` is never used", name.text);
                 warnings.push(Diagnostic::new(code, name.span, message).help(help));
             }

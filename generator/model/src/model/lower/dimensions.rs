@@ -63,6 +63,7 @@ impl Lowering<'_> {
 
     /// Demands a dimension; 0 has any.
     pub fn demand(&mut self, typed: &Typed, wanted: Dimension, what: &str) {
+        self.places.wants(typed.span, Some(wanted), None, what);
         let Some(dimension) = typed.dimension else { return };
         if typed.is_poison() {
             return;

@@ -76,7 +76,7 @@ impl Lowering<'_> {
         }
         let function = if linear { "velocity" } else { "position" };
         let error = Diagnostic::new(codes::WRONG_KIND, equation.span(), "points cannot be equated")
-            .help(format!("did you mean `{function}({p}) = {function}({q})`?"));
+            .did_you_mean(&format!("{function}({p}) = {function}({q})"));
         self.report(error);
         true
     }

@@ -6,6 +6,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
 use super::super::names::Symbol;
+use super::super::symbols::Value;
 use super::super::typed::{Traits, Typed, TypedValue};
 use super::Lowering;
 use super::sums::negated;
@@ -49,7 +50,12 @@ impl Lowering<'_> {
             }
             ExprKind::Rate(inner) => self.rate(inner, expr.span),
         };
-        self.in_range(typed)
+        let typed = self.in_range(typed);
+        if !typed.is_poison() {
+            let (dimension, is_vector) = (typed.dimension, typed.is_vector());
+            self.places.values.push(Value { place: expr.span, dimension, is_vector });
+        }
+        typed
     }
 
     /// A constant must be a number that a double can hold.
@@ -176,7 +182,7 @@ impl Lowering<'_> {
     pub(super) fn as_coordinate(&mut self, expr: &Expr) -> Option<CoordinateId> {
         let ExprKind::Name(text) = &expr.kind else { return None };
         let symbol = self.names.get(text)?;
-        self.used.insert(symbol);
+        self.places.uses(symbol, expr.span);
         match symbol {
             Symbol::Coordinate(i) => Some(CoordinateId(i)),
             _ => None,

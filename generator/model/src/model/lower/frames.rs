@@ -9,10 +9,8 @@ use super::Lowering;
 use super::axes::axis_named;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
-use crate::suggest;
 use crate::syntax::tree::{Expr, ExprKind, Name};
-
-const OPERATIONS: [&str; 5] = ["rotate", "euler", "space", "quaternion", "spin"];
+use crate::{suggest, words};
 
 impl Lowering<'_> {
     /// The orientation of frame `i` in its parent.
@@ -77,8 +75,8 @@ impl Lowering<'_> {
             _ => {
                 let message = format!("a frame has no operation `{}`", operation.text);
                 let error = Diagnostic::new(codes::FRAME, operation.span, message);
-                self.report(match suggest::nearest(&operation.text, OPERATIONS.into_iter()) {
-                    Some(near) => error.help(format!("did you mean `{near}`?")),
+                self.report(match suggest::nearest(&operation.text, words::ORIENTATIONS.into_iter()) {
+                    Some(near) => error.did_you_mean(near),
                     None => error.help("a frame is made by rotate, euler, space, quaternion or spin"),
                 });
                 None
@@ -133,7 +131,7 @@ impl Lowering<'_> {
             };
             let meant = meant.filter(|text| axis_named(text).is_some());
             self.report(match meant {
-                Some(axis) => error.help(format!("did you mean `{}{axis}`?", if negative { "-" } else { "" })),
+                Some(axis) => error.did_you_mean(&format!("{}{axis}", if negative { "-" } else { "" })),
                 None if is_axis(angle) => error.help("the axis comes first, then the angle: `N.rotate(z, q1)`"),
                 None => error.help("an axis is `x`, `y`, `z`, `-x`, `-y`, `-z`, or `[a, b, c]`, a unit vector in the axes of the frame before `.rotate`"),
             });
@@ -191,7 +189,7 @@ impl Lowering<'_> {
         let Some(Ok(axes)) = axes.map(<[Axis; 3]>::try_from) else {
             let error = Diagnostic::new(codes::FRAME, sequence.span, "this is not a sequence of axes");
             self.report(match sequence_meant(sequence) {
-                Some(meant) => error.help(format!("did you mean `{meant}`?")),
+                Some(meant) => error.did_you_mean(&meant),
                 None => error.help("write three of x, y, z together, as in `xyz` or `zxz`"),
             });
             return None;

@@ -8,9 +8,7 @@ use crate::dimension::Dimension;
 use crate::number::Number;
 use crate::span::Span;
 use crate::syntax::tree::{self, Expr, ExprKind, Field, Name};
-use crate::{suggest, vocabulary};
-
-const WORDS: [&str; 5] = ["gravity", "force", "torque", "spring", "torsion"];
+use crate::{suggest, vocabulary, words};
 
 impl Lowering<'_> {
     pub(super) fn loads(&mut self) {
@@ -35,11 +33,12 @@ impl Lowering<'_> {
                 other => {
                     let error =
                         Diagnostic::new(codes::LOAD, load.word.span, format!("there is no load `{other}`"));
-                    let near = vocabulary::load(other).or_else(|| suggest::nearest(other, WORDS.into_iter()));
+                    let near =
+                        vocabulary::load(other).or_else(|| suggest::nearest(other, words::LOADS.into_iter()));
                     self.report(match near {
                         Some("spring") if other.contains("damper") || other == "dashpot" => error
                             .help("a damper is a spring with `damping`: `spring P to H: { damping: c };`"),
-                        Some(near) => error.help(format!("did you mean `{near}`?")),
+                        Some(near) => error.did_you_mean(near),
                         None => error.help("loads are gravity, force, torque, spring and torsion"),
                     });
                     None
@@ -180,7 +179,7 @@ impl Lowering<'_> {
             self.report(error);
             return None;
         }
-        let known = ["stiffness", "length", "damping"];
+        let known = words::SPRING;
         let [stiffness, length, damping] =
             self.record("a spring", &Self::owner(load), &load.fields, known, &[]);
         let stiffness = self.spring_value(stiffness, Dimension::of(0, 1, -2), "a stiffness");
@@ -244,7 +243,7 @@ impl Lowering<'_> {
         let vector = self.need_vector(&axis, "the axis of a torsion spring");
         self.demand(&axis, Dimension::none(), "the axis of a torsion spring");
         self.need_free_of_speeds(&axis, "the axis of a torsion spring");
-        let known = ["angle", "rest", "stiffness", "damping"];
+        let known = words::TORSION;
         let owner = Self::owner(load);
         let [angle, rest, stiffness, damping] =
             self.record("a torsion spring", &owner, &load.fields, known, &["angle"]);

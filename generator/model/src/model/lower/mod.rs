@@ -22,13 +22,15 @@ mod requirements;
 mod resolve;
 mod sums;
 mod surfaces;
+mod table;
 
 use std::collections::HashSet;
 
 use super::dependency_order::{Item, Stated, order};
 use super::mechanism::*;
-use super::names::{Names, Symbol};
+use super::names::Names;
 use super::readable::Readable;
+use super::symbols::{Places, Symbols};
 use super::typed::{Traits, Typed, TypedValue};
 use crate::diagnostics::{Code, Diagnostic};
 use crate::span::Span;
@@ -38,7 +40,7 @@ use balances::Balances;
 
 /// Lowers a tree. The mechanism is complete only if no error was reported; what of it can be relied on
 /// otherwise is said beside it.
-pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable, Vec<Diagnostic>) {
+pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> Lowered {
     let mut diagnostics = diagnostics;
     if let Some(error) = tree.name.as_ref().and_then(super::names::reserved) {
         diagnostics.push(error);
@@ -80,7 +82,21 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> (Mechanism, Readable,
     lowering.copied();
     lowering.unused();
     lowering.without_gap();
-    (lowering.out, lowering.readable, lowering.diagnostics)
+    let symbols = lowering.table();
+    let Lowering { out: mechanism, readable, diagnostics, .. } = lowering;
+    Lowered { mechanism, readable, diagnostics, symbols }
+}
+
+/// What a tree means.
+pub struct Lowered {
+    /// the mechanism; complete only if no error was reported
+    pub mechanism: Mechanism,
+    /// what of it can be relied on
+    pub readable: Readable,
+    /// all mistakes so far
+    pub diagnostics: Vec<Diagnostic>,
+    /// its names and their places
+    pub symbols: Symbols,
 }
 
 /// What is known of a quantity besides what the mechanism holds.
@@ -130,7 +146,8 @@ pub(super) struct Lowering<'a> {
     pub stated: Stated<'a>,
     pub names: Names,
     pub diagnostics: Vec<Diagnostic>,
-    pub used: HashSet<Symbol>,
+    /// what is used, read and demanded at places of the text
+    pub(in crate::model) places: Places,
     /// coordinates of quaternions whose units are wrong: their frames say nothing of their rates
     pub unread_quaternions: HashSet<usize>,
     /// unknown names that are reported already
@@ -176,7 +193,7 @@ impl<'a> Lowering<'a> {
             stated: Stated::of(tree),
             names,
             diagnostics,
-            used: HashSet::new(),
+            places: Places::default(),
             unread_quaternions: HashSet::new(),
             unknown: HashSet::new(),
             out,

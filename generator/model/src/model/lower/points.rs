@@ -61,7 +61,7 @@ impl Lowering<'_> {
             if let ExprKind::Name(text) = &term.kind
                 && let Some(symbol @ Symbol::Point(p)) = self.names.get(text)
             {
-                self.used.insert(symbol);
+                self.places.uses(symbol, term.span);
                 if *negative {
                     let error = Diagnostic::new(codes::POINT, term.span, "a point cannot be subtracted")
                         .help("the vector from Q to P is `position(P, Q)`");

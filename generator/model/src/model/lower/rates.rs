@@ -116,7 +116,7 @@ impl Lowering<'_> {
                     continue;
                 }
             }
-            self.used.insert(Symbol::Coordinate(i));
+            self.places.implied(Symbol::Coordinate(i));
             let sides = {
                 let left = self.quantity_in_expression(Symbol::Coordinate(i), coordinate.span);
                 let right = self.quantity_in_expression(Symbol::Speed(speed), rate.span);
@@ -138,7 +138,7 @@ impl Lowering<'_> {
         let needed = self.coordinates[coordinate].unit.as_ref()?.dimension.over(&Dimension::of(0, 0, 1))?;
         let fits = |i: &usize| {
             let fits = self.speeds[*i].unit.as_ref().is_some_and(|unit| unit.dimension == needed);
-            fits && !self.used.contains(&Symbol::Speed(*i))
+            fits && !self.places.is_used(Symbol::Speed(*i))
         };
         let mut fitting = (0..self.speeds.len()).filter(fits);
         match (fitting.next(), fitting.next()) {

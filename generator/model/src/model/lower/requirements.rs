@@ -9,6 +9,7 @@ use crate::diagnostics::{Diagnostic, codes};
 impl Lowering<'_> {
     /// Demands a scalar.
     pub fn need_scalar(&mut self, typed: &Typed, what: &str) -> Option<Scalar> {
+        self.places.wants(typed.span, None, Some(false), what);
         match &typed.value {
             TypedValue::Scalar(scalar) => Some(scalar.clone()),
             TypedValue::Poison => None,
@@ -24,6 +25,7 @@ impl Lowering<'_> {
 
     /// Demands a vector; the number 0 is one.
     pub fn need_vector(&mut self, typed: &Typed, what: &str) -> Option<Vector> {
+        self.places.wants(typed.span, None, Some(true), what);
         match &typed.value {
             TypedValue::Vector(vector) => Some(vector.clone()),
             TypedValue::Poison => None,

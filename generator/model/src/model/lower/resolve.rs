@@ -4,7 +4,7 @@ use super::super::dependency_order::body_frame;
 use super::super::mechanism::{FrameId, PointId};
 use super::super::names::Symbol;
 use super::Lowering;
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
 use crate::span::Span;
 use crate::syntax::tree::{ExprKind, Name, Record};
 use crate::syntax::units;
@@ -20,7 +20,7 @@ impl Lowering<'_> {
         match self.names.get(&name.text) {
             Some(Symbol::Broken) => return None,
             Some(symbol) => {
-                self.used.insert(symbol);
+                self.places.uses(symbol, name.span);
                 // of two declarations the other may be meant
                 return Some(symbol).filter(|symbol| fits(*symbol) || !self.names.is_ambiguous(&name.text));
             }
@@ -38,6 +38,10 @@ impl Lowering<'_> {
             return None;
         }
         if let Some(advice) = self.meant_by(&name.text) {
+            let error = match vocabulary::word_meant(&advice) {
+                Some(word) => error.fix(Place::Replace(name.span), word),
+                None => error,
+            };
             self.report(error.help(advice));
             return None;
         }
@@ -58,6 +62,7 @@ impl Lowering<'_> {
                 if is_unit {
                     help += &format!(" A unit stands in declarations only, as in `a: {} = ..`", name.text);
                 }
+                let error = error.fix(Place::Replace(name.span), near);
                 match self.names.place(near) {
                     Some(place) => error.related(place, format!("`{near}` is declared here")).help(help),
                     None => error.help(help),

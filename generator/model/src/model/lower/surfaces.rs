@@ -5,6 +5,7 @@ use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::suggest;
 use crate::syntax::tree::{ExprKind, Field};
+use crate::words;
 
 /// The numbers of a law.
 enum Form {
@@ -37,7 +38,7 @@ impl Lowering<'_> {
             return (surface, more);
         };
         let owner = &field.name;
-        let known = ["mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution"];
+        let known = words::SURFACE;
         let [mu, e, law, mu_static, mu_impact, sliding, restitution] =
             self.record("a surface", owner, fields, known, &[]);
         if let Some(value) = mu.and_then(|mu| self.coefficient(mu, "a coefficient of friction")) {
@@ -156,7 +157,7 @@ impl Lowering<'_> {
                 Diagnostic::new(codes::SURFACE, field.value.span, "there is no such law of restitution");
             let near = suggest::nearest(&name, Law::ALL.into_iter().map(Law::name));
             self.report(match near {
-                Some(near) => error.help(format!("did you mean `{near}`?")),
+                Some(near) => error.did_you_mean(near),
                 None => error.help("the laws are newton, poisson and stronge"),
             });
         }
