@@ -1,7 +1,7 @@
 //! Compares the messages about malformed models word for word: `tests/diagnostics/NAME.mech` and the expected
 //! `NAME.txt`.
 //!
-//! `HODOGRAPH_UPDATE=1 cargo test -p hodograph-generator --test diagnostics` writes the expectations anew;
+//! `HODOGRAPH_UPDATE=1 cargo test -p hodograph-generator --test all diagnostics::` writes the expectations anew;
 //! read the difference before you commit it.
 
 use std::path::{Path, PathBuf};

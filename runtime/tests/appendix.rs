@@ -1,9 +1,7 @@
 //! Appendix B: the ellipse g = 0 and the hyperbola h = 0 in the plane of u = mu cos phi and v = mu sin phi,
 //! and the run mu = mu_s of section 5.
 
-mod common;
-
-use common::two_sleds;
+use crate::common::two_sleds;
 use hodograph::{Characteristics, Hodograph, Law, Motion, Path, ReducedMatrix, Surface, rates};
 use nalgebra::{Matrix2, Matrix3, SymmetricEigen, Vector2, Vector3};
 use proptest::prelude::*;

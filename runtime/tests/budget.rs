@@ -1,9 +1,7 @@
 //! A budget of quadratures changes no bit of an answer, and is kept: the least budget that suffices is found
 //! by trying, and every smaller one is refused.
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 use hodograph::nalgebra::{Matrix3, Vector2, Vector3};
 use hodograph::structure::{Balanced, Planar, solve_structured};
 use hodograph::{
@@ -87,7 +85,7 @@ fn singles_keep_their_budget() {
 
 #[test]
 fn the_velocity_reached_lies_on_the_way() {
-    let (matrix, approach, surface) = common::two_sleds(0.6, Law::Stronge);
+    let (matrix, approach, surface) = crate::common::two_sleds(0.6, Law::Stronge);
     let mut last = approach.x;
     for quadratures in 0.. {
         match solve(&matrix, &approach, &surface.within(quadratures)) {
@@ -116,7 +114,7 @@ fn closed_forms_need_no_quadrature() {
 
 #[test]
 fn the_error_says_what_to_do_and_other_mistakes_come_first() {
-    let (matrix, approach, surface) = common::two_sleds(0.6, Law::Stronge);
+    let (matrix, approach, surface) = crate::common::two_sleds(0.6, Law::Stronge);
     let error = solve(&matrix, &approach, &surface.within(1)).unwrap_err();
     assert_eq!(error.kind(), "budget_exceeded");
     let text = error.to_string();
@@ -128,7 +126,7 @@ fn the_error_says_what_to_do_and_other_mistakes_come_first() {
 
 #[test]
 fn a_reference_to_a_surface_is_a_surface() {
-    let (matrix, approach, surface) = common::two_sleds(0.6, Law::Stronge);
+    let (matrix, approach, surface) = crate::common::two_sleds(0.6, Law::Stronge);
     let by_reference: &dyn ContactSurface<f64> = &surface;
     assert_eq!(by_reference.quadratures(), u32::MAX);
     assert_eq!(solve(&matrix, &approach, &&surface), solve(&matrix, &approach, &surface));

@@ -1,8 +1,6 @@
 //! Contact that lasts: modes, forces and accelerations of closed contacts.
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 use hodograph::{
     ContactError, ContactForce, ContactMode, ReducedMatrix, Selection, contact_force, contact_mode,
     contact_mode_after,

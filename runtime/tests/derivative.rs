@@ -1,8 +1,6 @@
 //! The derivative of the outcome against central differences, and where it does not exist.
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 use hodograph::{Law, NonSmoothness, ReducedMatrix, Surface, derivative, saltation, solve, speed_derivative};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 

@@ -1,9 +1,7 @@
 //! Restitution too small to change a sum, and speeds beyond the range of their ratio: an outcome that obeys
 //! its law, or an error that names the number at fault.
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar, solve_structured};
 use hodograph::{Impact, ImpactError, Law, ReducedMatrix, Surface, solve};
 use nalgebra::{Matrix3, Vector3};

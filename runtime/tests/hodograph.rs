@@ -1,9 +1,7 @@
 //! The moments where phases begin, the course between them, and the flags that say where an outcome is
 //! sensitive.
 
-mod common;
-
-use common::{reference_cases, two_sleds};
+use crate::common::{reference_cases, two_sleds};
 use hodograph::{
     Characteristics, Hodograph, Law, Motion, Path, ReducedMatrix, Snapshot, Surface, phi_bar, rates, solve,
 };

@@ -4,11 +4,9 @@
 //!
 //! The laws are evaluated in numbers of twice the digits, independently of the solver's own verification.
 
-mod common;
-
-use common::double_double::Double;
-use common::random::Random;
-use common::second_road::{self, condition};
+use crate::common::double_double::Double;
+use crate::common::random::Random;
+use crate::common::second_road::{self, condition};
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar, solve_structured};
 use hodograph::{
     Characteristics, Hodograph, Impact, ImpactError, Law, ReducedMatrix, Scalar, Surface, solve,

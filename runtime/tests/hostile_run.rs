@@ -2,15 +2,13 @@
 //! numbers of 32 digits, every input that has none must be refused. The table in `docs/solver.md` counts what
 //! came of it; the test holds the rows of a small run, and that none is wrong in silence.
 //!
-//! `HODOGRAPH_UPDATE=1 cargo test --release -p hodograph --test hostile_run` makes the table anew.
-
-mod common;
+//! `HODOGRAPH_UPDATE=1 cargo test --release -p hodograph --test all hostile_run::` makes the table anew.
 
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use common::random::Random;
-use common::second_road::{self, Failure, condition};
+use crate::common::random::Random;
+use crate::common::second_road::{self, Failure, condition};
 use hodograph::{Characteristics, Impact, Law, ReducedMatrix, Surface, solve};
 use nalgebra::{Matrix3, Vector3};
 

@@ -2,9 +2,7 @@
 //! error of summation.
 #![cfg(feature = "std")]
 
-mod common;
-
-use common::reference_cases;
+use crate::common::reference_cases;
 use hodograph::methods::{
     Integration, MethodError, Partial, Summation, Switch, integrate, irs, stability, sum,
 };

@@ -1,8 +1,6 @@
 //! The nine outcomes of the paper's example, and its characteristics.
 
-mod common;
-
-use common::two_sleds;
+use crate::common::two_sleds;
 use hodograph::{Characteristics, Law, Path, rates, solve};
 
 /// mu, law, I_n2, v_n2, v_t2, v_s2 (s = t x n), dE, path.

@@ -1,9 +1,7 @@
 //! Every reference collision, to max(1e-12, 32 x condition x 2.2e-16), with the right path and number of
 //! compressions.
 
-mod common;
-
-use common::{Case, reference_cases};
+use crate::common::{Case, reference_cases};
 use hodograph::solve;
 
 #[test]

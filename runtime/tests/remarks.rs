@@ -1,8 +1,6 @@
 //! What the paper remarks by the way: each remark that is true, held by a test.
 
-mod common;
-
-use common::{random::Random, two_sleds};
+use crate::common::{random::Random, two_sleds};
 use hodograph::{
     Characteristics, Hodograph, ImpactError, Law, Motion, Path, ReducedMatrix, Snapshot, Surface,
     energy_gained, invariant_directions, phi_bar, rates, snapshot_at, solve,

@@ -1,8 +1,6 @@
 //! The solver in other number types.
 
-mod common;
-
-use common::{reference_cases, two_sleds};
+use crate::common::{reference_cases, two_sleds};
 use hodograph::{Law, ReducedMatrix, Surface, solve};
 use nalgebra::Vector3;
 use num_dual::Dual64;

@@ -1,10 +1,8 @@
 //! Compares outcomes with an independent solution in numbers of twice the digits (`common/second_road.rs`):
 //! ill-conditioned, singular and nearly straight contacts, in any axes and units.
 
-mod common;
-
-use common::random::Random;
-use common::second_road::{self, Failure, condition};
+use crate::common::random::Random;
+use crate::common::second_road::{self, Failure, condition};
 use hodograph::methods::{Integration, integrate};
 use hodograph::{Characteristics, Hodograph, Law, Motion, Path, ReducedMatrix, Surface, rates, solve};
 use nalgebra::{Matrix3, Vector3};

@@ -1,8 +1,6 @@
 //! Forces of several contacts at once, in memory of the caller.
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 use hodograph::several::{Dense, SeveralContacts, Unfound, certify, memory_of_several, solve_several};
 use hodograph::{ReducedMatrix, Selection, contact_mode};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector2, Vector3};

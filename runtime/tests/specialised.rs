@@ -11,10 +11,8 @@ use hodograph::structure::{
 use hodograph::{ContactSurface, Impact, ImpactError, Law, ReducedMatrix, Scalar, Surface, solve};
 use nalgebra::{Matrix3, Vector3};
 
-mod common;
-
-use common::random::Random;
-use common::reference_cases;
+use crate::common::random::Random;
+use crate::common::reference_cases;
 
 type Answer<T> = Result<Impact<T>, ImpactError<T>>;
 

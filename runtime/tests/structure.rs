@@ -7,10 +7,8 @@ use hodograph::{
 use nalgebra::{Matrix3, Vector3};
 use num_dual::Dual64;
 
-mod common;
-
-use common::random::Random;
-use common::second_road;
+use crate::common::random::Random;
+use crate::common::second_road;
 
 fn compare(
     one: &Result<Impact<f64>, ImpactError<f64>>,

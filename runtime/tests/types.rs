@@ -1,8 +1,6 @@
 //! The solver in other numbers than `f64`: single precision, and dual numbers of the crate `num-dual`.
 
-mod common;
-
-use common::reference_cases;
+use crate::common::reference_cases;
 use hodograph::{ReducedMatrix, Surface, solve};
 use nalgebra::{Const, Vector3};
 use num_dual::{Derivative, DualSVec};

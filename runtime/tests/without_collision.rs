@@ -1,9 +1,7 @@
 //! Impact without collision: v_n = 0 and f < 0 (Painleve).
 
-mod common;
-
-use common::random::Random;
-use common::second_road::{self, condition};
+use crate::common::random::Random;
+use crate::common::second_road::{self, condition};
 use hodograph::{
     Impact, ImpactError, Law, ReducedMatrix, Surface, derivative_without_collision, impact_without_collision,
     rates, solve,

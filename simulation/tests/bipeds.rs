@@ -1,14 +1,12 @@
 //! Bipeds land on heels and toes from random postures: up to four points strike, slide and stick at a time,
 //! and the forces of a foot that stands are not unique.
 //!
-//! All starts: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test bipeds --
+//! All starts: `HODOGRAPH_STARTS=100 cargo test --release -p hodograph-simulation --test all bipeds:: --
 //! --nocapture`
 
-mod common;
-
+use crate::common::names;
+use crate::common::random::{Random, starts};
 use biped::Biped;
-use common::names;
-use common::random::{Random, starts};
 use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
 use hodograph_simulation::{Event, ImpactsAtOnce, Options, Progress, Simulation};
 

@@ -1,9 +1,7 @@
 //! Bodies in three dimensions on real contacts: a cube on its edge, three balls in a row, a rattleback that
 //! reverses.
 
-mod common;
-
-use common::{first, first_collision, names, run, start, surface};
+use crate::common::{first, first_collision, names, run, start, surface};
 use cradle::Cradle;
 use hodograph::{Contacts, Law, Mechanism, State};
 use hodograph_models::rattleback;

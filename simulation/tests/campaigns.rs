@@ -1,25 +1,20 @@
 //! Random drops of mechanisms with several contacts: every motion comes to its end, and none gains energy.
 //!
-//! `cargo test -p hodograph-simulation --test campaigns` tries a few of each; all of them:
+//! `cargo test -p hodograph-simulation --test all campaigns::` tries a few of each; all of them:
 //!
-//! `HODOGRAPH_DROPS=1000 cargo test --release -p hodograph-simulation --test campaigns -- --nocapture`
+//! `HODOGRAPH_DROPS=1000 cargo test --release -p hodograph-simulation --test all campaigns:: -- --nocapture`
 //!
-//! `HODOGRAPH_DROPS=81..82` tries one start alone, and a name after `--test campaigns` one family.
-
-mod many;
-#[path = "common/random.rs"]
-#[allow(dead_code)]
-mod random;
+//! `HODOGRAPH_DROPS=81..82` tries one start alone, and a name after `campaigns::` one family.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::time::Instant;
 
+use crate::common::random::Random;
+use crate::many::{Ended, Start, follow, model, name, surface, with_parameters};
 use hodograph::{Contacts, Kind, Law, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
-use many::{Ended, Start, follow, model, name, surface, with_parameters};
-use random::Random;
 
 /// A family of motions.
 struct Family {

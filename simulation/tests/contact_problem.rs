@@ -1,8 +1,6 @@
 //! The forces of several contacts: random problems, statically indeterminate ones, ties, symmetry.
 
-mod contact_families;
-
-use contact_families::{Contacts, FAMILIES, Random, problem};
+use crate::contact_families::{Contacts, FAMILIES, Random, problem};
 use hodograph_simulation::contact_problem::{
     Impossible, Mode, Problem, Solutions, Unsolved, certificate, enumerate, rest, solve, with_modes,
     with_modes_near,

@@ -1,10 +1,8 @@
 //! Inputs that are sampled: held between samples, at the exact times, and refused where they are no numbers.
 
-mod common;
-
 use std::sync::{Arc, Mutex};
 
-use common::{Body, Line, Part, first, run, start, surface};
+use crate::common::{Body, Line, Part, first, run, start, surface};
 use hodograph::{Law, State};
 use hodograph_simulation::{Drive, Options, Progress, Simulation};
 

@@ -1,10 +1,8 @@
 //! Discs that fall flat: the motion of the lowest point ends where that is no longer one point.
 
-mod many;
-
+use crate::many::{Start, follow, model, surface};
 use hodograph::Law;
 use hodograph_simulation::{EventKind, Reason, Simulation};
-use many::{Start, follow, model, surface};
 
 const G: f64 = 9.81;
 const RADIUS: f64 = 0.05;

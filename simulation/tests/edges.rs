@@ -1,8 +1,6 @@
 //! Starts and questions at the edge of what is allowed: none may hang, panic, or give what is not so.
 
-mod common;
-
-use common::{Body, Line, Part, collisions, first, names, run, start, surface};
+use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::{Contacts, Law, State, Surface};
 use hodograph_simulation::{ContactPhase, Drive, Options, Progress, Simulation};
 

@@ -1,11 +1,9 @@
 //! More answers in closed form: the end of slip in three dimensions, momentum over a chatter, a belt, gaps
 //! that are curved or move.
 
-mod common;
-
+use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use ball_on_lift::BallOnLift;
 use bead_on_sphere::BeadOnSphere;
-use common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::Law;
 use hodograph_simulation::{ContactPhase, Options};
 use puck_on_incline::PuckOnIncline;

@@ -1,9 +1,7 @@
 //! Bodies at the edge of friction: a thousandth of a billionth decides whether they stick or slide.
 
-mod many;
-
+use crate::many::{Ended, Start, follow, model, surface};
 use hodograph::{Kind, Law, Mechanism};
-use many::{Ended, Start, follow, model, surface};
 
 const G: f64 = 9.81;
 /// tan of the angle of the incline in the model

@@ -1,8 +1,6 @@
 //! One contact: answers that are known in closed form.
 
-mod common;
-
-use common::{Body, Line, Part, collisions, first, names, run, start, surface};
+use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::Law;
 use hodograph_simulation::ContactPhase;
 

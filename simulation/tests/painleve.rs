@@ -7,9 +7,7 @@
 //! integrated for a sequence of stiffnesses, eps halved each time, and extrapolated to eps = 0 (Richardson);
 //! that the differences fall by two each time is asserted.
 
-mod common;
-
-use common::{Body, Line, Part, first, run, start, surface};
+use crate::common::{Body, Line, Part, first, run, start, surface};
 use hodograph::{Contacts, Law, Mechanism, State};
 use hodograph_simulation::EventKind;
 

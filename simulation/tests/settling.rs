@@ -1,9 +1,7 @@
 //! Motions that did not settle once: two boxes with a hinge thrown on a table, and balls in a groove.
 
-mod many;
-
+use crate::many::{Start, follow, model, surface, with_parameters};
 use hodograph::Law;
-use many::{Start, follow, model, surface, with_parameters};
 
 /// The numbers of an object in a state file: `"name": number`.
 fn numbers(text: &str, object: &str) -> Vec<(String, f64)> {

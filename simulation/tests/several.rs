@@ -1,8 +1,6 @@
 //! Several contacts, and modes that change.
 
-mod common;
-
-use common::{Body, Line, Part, collisions, first, names, run, start, surface};
+use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::{Law, Mechanism, State};
 use hodograph_simulation::{ContactPhase, EventKind, ImpactsAtOnce, Options, Progress};
 

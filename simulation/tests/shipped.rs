@@ -1,12 +1,10 @@
 //! Every shipped model with a gap runs for ten seconds from random starts.
 //!
-//! 300 starts of each: `HODOGRAPH_STARTS=300 cargo test --release -p hodograph-simulation --test shipped --
+//! 300 starts of each: `HODOGRAPH_STARTS=300 cargo test --release -p hodograph-simulation --test all shipped:: --
 //! --nocapture`
 
-mod common;
-
-use common::names;
-use common::random::{Random, starts};
+use crate::common::names;
+use crate::common::random::{Random, starts};
 use hodograph::{CollisionError, Contacts, ImpactError, Kind, Law, State, StateError, Surface};
 use hodograph_simulation::{Event, Options, Progress, Reason, Simulation, SimulationError};
 

@@ -1,15 +1,10 @@
 //! Rods that turn hundreds of times within a step of the integration: none misses the wall.
 //!
-//! `HODOGRAPH_SPINS=100000 cargo test --release -p hodograph-simulation --test spins -- --nocapture`
+//! `HODOGRAPH_SPINS=100000 cargo test --release -p hodograph-simulation --test all spins:: -- --nocapture`
 
-mod many;
-#[path = "common/random.rs"]
-#[allow(dead_code)]
-mod random;
-
+use crate::common::random::Random;
+use crate::many::{Start, follow, model, surface};
 use hodograph::Law;
-use many::{Start, follow, model, surface};
-use random::Random;
 
 /// A rod of length 1 at angle q + spin t, whose pivot approaches a wall by h - v t.
 struct Spin {

@@ -1,10 +1,8 @@
 //! Laws of contact beyond one mu and one e, against answers in closed form.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{Body, Line, Part, collisions, first, names, run, start, surface};
+use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use hodograph::{Law, Selection, State};
 use hodograph_simulation::{
     ContactLaw, ContactPhase, Drive, EventKind, ImpactsAtOnce, Options, Restitution, Simulation, Sliding,

@@ -1,8 +1,6 @@
 //! A table on four feet with four corners each: sixteen contacts at once, of which three would do.
 
-mod common;
-
-use common::{first, names, run, start, surface};
+use crate::common::{first, names, run, start, surface};
 use hodograph::{Contacts, Law, State};
 use hodograph_simulation::{ContactPhase, Simulation};
 use table::Table;

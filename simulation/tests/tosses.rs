@@ -1,7 +1,7 @@
 //! Measured tosses of a cube onto a table, as a batch: their end does not depend on the tolerance, on the order of the
 //! rows or on the number of threads.
 //!
-//! All 55 tosses: `HODOGRAPH_STARTS=55 cargo test --release -p hodograph-simulation --features parallel --test tosses --
+//! All 55 tosses: `HODOGRAPH_STARTS=55 cargo test --release -p hodograph-simulation --features parallel --test all tosses:: --
 //! --nocapture`
 
 use hodograph::{Law, Surface};

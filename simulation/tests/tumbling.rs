@@ -1,12 +1,10 @@
 //! A box that falls on its corners comes to rest on a face, and no event gives it energy.
 //!
-//! All 200 starts: `HODOGRAPH_STARTS=200 cargo test --release -p hodograph-simulation --test tumbling --
+//! All 200 starts: `HODOGRAPH_STARTS=200 cargo test --release -p hodograph-simulation --test all tumbling:: --
 //! --nocapture`
 
-mod common;
-
-use common::random::{Random, starts};
-use common::{names, start};
+use crate::common::random::{Random, starts};
+use crate::common::{names, start};
 use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
 use hodograph_simulation::{Event, EventKind, Options, Progress};
 use tumbling_box::TumblingBox;

@@ -1,11 +1,9 @@
 //! The same motion in millimetres, grams and milliseconds has the same events.
 
-mod many;
-
+use crate::many::{Ended, Start, follow, model, surface, with_parameters};
 use hodograph::{Kind, Law, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
-use many::{Ended, Start, follow, model, surface, with_parameters};
 
 /// How many of the small units one of these is: lengths, masses and times are a thousand times the number.
 fn factor(unit: &str) -> f64 {

@@ -1,10 +1,8 @@
 //! Accelerations of points and free accelerations of contacts, each computed in three ways: by the derived
 //! program, by numbers that carry derivatives, and by differences along the motion.
 
-mod common;
-
-use common::random::{Sample, samples};
-use common::{Model, models};
+use crate::common::random::{Sample, samples};
+use crate::common::{Model, models};
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use nalgebra::Vector3;
 

@@ -1,14 +1,12 @@
 //! Mode and force of closed contacts of all shipped models in random states: every state gives a result or an
 //! error, and every result satisfies the laws of mechanics.
 //!
-//! `HODOGRAPH_STATES=100000 cargo test --workspace --test closed_contacts -- --nocapture` tries so many
+//! `HODOGRAPH_STATES=100000 cargo test -p hodograph-tests --test all closed_contacts:: -- --nocapture` tries so many
 //! states.
 
-mod common;
-
-use common::Model;
-use common::emitted::emitted;
-use common::random::{Random, Sample, samples};
+use crate::common::Model;
+use crate::common::emitted::emitted;
+use crate::common::random::{Random, Sample, samples};
 use hodograph::nalgebra::{DMatrix, DVector, Vector3};
 use hodograph::{
     ClosedContactError, CollisionError, ContactError, ContactMode, ContactOutcome, Contacts, ImpactError,

@@ -1,11 +1,9 @@
 //! Many states at once: generated modules, the interpreter and columns answer with the same bits, whatever
 //! the size of the batch, and a state without an answer fails alone.
 
-mod common;
-
-use common::Model;
-use common::emitted::{Emitted, emitted, routine};
-use common::random::samples;
+use crate::common::Model;
+use crate::common::emitted::{Emitted, emitted, routine};
+use crate::common::random::samples;
 use hodograph::{CollisionError, Kind, Law, Mechanism, State, StateError, Surface};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::{Inputs, Quantity};

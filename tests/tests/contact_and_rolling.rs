@@ -3,9 +3,7 @@
 //! The models of `models/` roll by constraints; those of `tests/models` are free bodies with a contact, whose
 //! force is found by its mode.
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 use hodograph::nalgebra::Vector3;
 use hodograph::{ContactMode, Law, Margins, Selection, Surface};
 use hodograph_models::{ball_on_turntable, rattleback, rolling_disc};

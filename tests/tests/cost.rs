@@ -1,8 +1,6 @@
 //! Compares the numbers of operations of derived programs with those of other generators.
 
-mod common;
-
-use common::Model;
+use crate::common::Model;
 use hodograph_generator::arithmetic::Function;
 use hodograph_generator::program::Quantity;
 use hodograph_generator::program::operation::{Operation, Stage};

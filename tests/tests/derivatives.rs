@@ -2,11 +2,9 @@
 //! running these modules on numbers that carry derivatives, and by the directional derivative of the
 //! accelerations.
 
-mod common;
-
-use common::emitted::{Emitted, emitted};
-use common::random::samples;
-use common::{Model, root};
+use crate::common::emitted::{Emitted, emitted};
+use crate::common::random::samples;
+use crate::common::{Model, root};
 use hodograph_generator::program::{ContactQuantity as C, Inputs, Quantity as Q};
 use hodograph_generator::rust_names::snake_case;
 use nalgebra::{DMatrix, DVector};
@@ -152,7 +150,7 @@ fn the_derivative_along_a_direction_is_a_sum_of_columns() {
 fn derivatives_of_contacts_are_their_derivatives_along_each_direction() {
     let (mut contacts, mut worst) = (0, 0.0_f64);
     let simulated = ["../simulation/models/biped", "../simulation/models/tumbling_box"].map(Model::load);
-    for model in common::models().into_iter().chain(simulated) {
+    for model in crate::common::models().into_iter().chain(simulated) {
         let m = &model.mechanism;
         let count = m.independent_states() + m.inputs.len();
         for contact in 0..m.contacts.len() as u32 {

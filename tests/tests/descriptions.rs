@@ -1,8 +1,6 @@
 //! One mechanism described in two ways has the same equations.
 
-mod common;
-
-use common::{Model, difference};
+use crate::common::{Model, difference};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 

@@ -1,8 +1,6 @@
 //! The models that the documents show are accepted as they stand.
 
-mod common;
-
-use common::root;
+use crate::common::root;
 use hodograph_generator::check::check;
 use hodograph_generator::source::Source;
 

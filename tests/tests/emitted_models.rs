@@ -1,11 +1,9 @@
 //! The emitted modules of all shipped models compute the same bits as the interpreter, and their collisions
 //! satisfy the laws of mechanics.
 
-mod common;
-
-use common::emitted::{Emitted, Hit, emitted};
-use common::random::samples;
-use common::{Model, models, root};
+use crate::common::emitted::{Emitted, Hit, emitted};
+use crate::common::random::samples;
+use crate::common::{Model, models, root};
 use hodograph::{Law, Surface};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};

@@ -1,10 +1,8 @@
 //! Sets of quantities, `evaluate control(mass_matrix, ..)`: their answers are those of the separate methods
 //! and of the interpreter, for less work.
 
-mod common;
-
-use common::Model;
-use common::random::samples;
+use crate::common::Model;
+use crate::common::random::samples;
 use hodograph::nalgebra::SMatrix;
 use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};

@@ -1,11 +1,9 @@
 //! The table of `docs/gallery.md` is that of the shipped models, and the page shows every one of them.
 //!
-//! `HODOGRAPH_UPDATE=1 cargo test -p hodograph-tests --test gallery` writes the table anew.
+//! `HODOGRAPH_UPDATE=1 cargo test -p hodograph-tests --test all gallery::` writes the table anew.
 
-mod common;
-
-use common::random::{Sample, samples};
-use common::{Model, models, root};
+use crate::common::random::{Sample, samples};
+use crate::common::{Model, models, root};
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 use nalgebra::Matrix3;
 
@@ -24,7 +22,7 @@ fn the_table_is_fresh() {
         std::fs::write(&path, format!("{before}{BEGIN}{HEAD}{table}{END}{after}")).expect("written");
         return;
     }
-    let advice = "run `HODOGRAPH_UPDATE=1 cargo test -p hodograph-tests --test gallery`";
+    let advice = "run `HODOGRAPH_UPDATE=1 cargo test -p hodograph-tests --test all gallery::`";
     let fresh: String = rows.iter().map(Row::line).collect();
     assert_eq!(old.strip_prefix(HEAD).unwrap_or_default(), fresh, "docs/gallery.md is stale: {advice}");
 }
@@ -119,7 +117,7 @@ fn agreement(model: &Model, samples: &[Sample]) -> f64 {
     let mut worst = 0.0_f64;
     for sample in samples {
         let mut compare = |quantity: Q, theirs: &[f64]| {
-            worst = worst.max(common::difference(&model.get(&sample.inputs, quantity).values, theirs));
+            worst = worst.max(crate::common::difference(&model.get(&sample.inputs, quantity).values, theirs));
         };
         compare(Q::MassMatrix, &sample.numeric.mass_matrix.concat());
         compare(Q::Forcing, &sample.numeric.forcing);

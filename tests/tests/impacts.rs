@@ -1,10 +1,8 @@
 //! Collisions of emitted modules agree with outcomes computed elsewhere (see `tests/data/README.md`), those
 //! of the paper among them.
 
-mod common;
-
-use common::emitted::{Emitted, Hit, emitted};
-use common::{Model, Reference, number, references, root};
+use crate::common::emitted::{Emitted, Hit, emitted};
+use crate::common::{Model, Reference, number, references, root};
 use hodograph::{Law, ReducedMatrix, Surface};
 use nalgebra::Vector3;
 use serde_json::Value;

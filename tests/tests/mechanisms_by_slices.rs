@@ -1,11 +1,9 @@
 //! The traits `Mechanism` and `Contacts`: generated modules and the interpreter compute the same bits, and
 //! the same as the modules' own methods.
 
-mod common;
-
-use common::Model;
-use common::emitted::{Emitted, emitted, routine};
-use common::random::samples;
+use crate::common::Model;
+use crate::common::emitted::{Emitted, emitted, routine};
+use crate::common::random::samples;
 use hodograph::nalgebra::Vector3;
 use hodograph::{
     ClosedContactError, CollisionError, ContactMode, Contacts, ImpactError, Kind, Law, ParameterError, State,

@@ -3,9 +3,7 @@
 //!
 //! `tests/models/<robot>.mech` is what `hodograph import tests/data/peers/<robot>.urdf --contact ee` writes.
 
-mod common;
-
-use common::{Model, difference, numbers};
+use crate::common::{Model, difference, numbers};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity, Quantity};
 use serde_json::Value;

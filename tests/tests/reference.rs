@@ -1,8 +1,6 @@
 //! The derived equations agree with numbers computed elsewhere (see `tests/data/README.md`).
 
-mod common;
-
-use common::{Model, Reference, difference, number, numbers, references};
+use crate::common::{Model, Reference, difference, number, numbers, references};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 use serde_json::Value;

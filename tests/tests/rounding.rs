@@ -1,13 +1,12 @@
 //! How many digits forward dynamics keeps: doubles against numbers of twice the digits, at random states.
 
-mod common;
 // The benchmark measures more mechanisms at more states, beside another program.
 #[allow(dead_code)]
 #[path = "../benchmark/src/precise.rs"]
 mod precise;
 
-use common::Model;
-use common::random::Random;
+use crate::common::Model;
+use crate::common::random::Random;
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Quantity;
 use precise::{Precise, evaluate};

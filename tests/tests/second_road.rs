@@ -2,10 +2,8 @@
 //! which shares nothing with the derivation but the meaning of the model, and against identities of
 //! mechanics.
 
-mod common;
-
-use common::random::{Sample, samples};
-use common::{Model, models};
+use crate::common::random::{Sample, samples};
+use crate::common::{Model, models};
 use hodograph::{Kind, Mechanism, State};
 use hodograph_generator::interpret::Array;
 use hodograph_generator::model::mechanism::{LoadKind, Place, PointId};

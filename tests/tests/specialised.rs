@@ -3,9 +3,7 @@
 
 use hodograph::{CollisionError, ImpactError, Law, Surface};
 
-mod common;
-
-use common::random::Random;
+use crate::common::random::Random;
 
 macro_rules! collisions {
     ($($module:ident $machine:ident $file:literal $contact:ident $collide:ident ($($time:expr)?);)*) => {

@@ -2,15 +2,13 @@
 //! must return the right exit code, and must leave no files behind.
 #![cfg(unix)]
 
-mod common;
-
 use std::fs::{self, File};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{ALL_JOINTS, hodograph, model};
+use crate::common::{ALL_JOINTS, hodograph, model};
 
 fn tool() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_hodograph"));
@@ -262,7 +260,7 @@ fn codes_have_pages() {
 fn missing_folders_are_named() {
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("none").join("sleds.svg").display().to_string();
-    let model = common::model("two_sleds");
+    let model = crate::common::model("two_sleds");
     let run = hodograph(&["plot", &model, "--mu", "0.6", "--e", "0.8", "--output", &place], "");
     assert!(run.code == 1 && run.stderr.contains("its folder"), "{}", run.stderr);
 }

@@ -2,12 +2,10 @@
 //! accelerations and contacts at random states.
 #![cfg(feature = "derive")]
 
-mod common;
-
 use std::fmt::Write;
 use std::path::Path;
 
-use common::{ALL_JOINTS, hodograph};
+use crate::common::{ALL_JOINTS, hodograph};
 use hodograph_generator::files;
 use hodograph_generator::interpret::Evaluator;
 use hodograph_generator::model::mechanism::{Mechanism, Orientation};

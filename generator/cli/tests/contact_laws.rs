@@ -1,8 +1,6 @@
 //! `simulate` with static friction, friction in impacts and e by the speed of approach, from options and the model.
 
-mod common;
-
-use common::{Run, hodograph, number, root};
+use crate::common::{Run, hodograph, number, root};
 use serde_json::Value;
 
 fn simulate(arguments: &[&str]) -> Run {

@@ -1,8 +1,6 @@
 //! `hodograph contacts`: problems of real simulations, and the contract of its JSON lines.
 
-mod common;
-
-use common::{data, hodograph, kind, number, numbers};
+use crate::common::{data, hodograph, kind, number, numbers};
 use serde_json::{Value, json};
 
 fn case() -> Value {

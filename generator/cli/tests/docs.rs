@@ -1,12 +1,10 @@
 //! Runs the examples of the documentation and compares their output with that in the pages.
 #![cfg(unix)]
 
-mod common;
-
 use std::path::Path;
 use std::process::Command;
 
-use common::{hodograph, root};
+use crate::common::{hodograph, root};
 
 /// The commands of a page and the lines that it shows for each.
 fn examples(page: &str) -> Vec<(String, Vec<String>)> {
@@ -102,13 +100,13 @@ fn renew(page: &str, shown: &[String], output: &str) {
 #[test]
 fn the_figure_of_the_readme_is_fresh() {
     let path = root().join("docs/two_sleds_hodograph.svg");
-    let model = common::model("two_sleds");
+    let model = crate::common::model("two_sleds");
     let drawn = hodograph(&["plot", &model, "--mu", "0.6,1.1,1.6", "--e", "0.8"], "").stdout;
     if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
         std::fs::write(&path, &drawn).unwrap();
     }
     let kept = std::fs::read_to_string(&path).unwrap();
-    assert_eq!(kept, drawn, "run `HODOGRAPH_UPDATE=1 cargo test --workspace --test docs`");
+    assert_eq!(kept, drawn, "run `HODOGRAPH_UPDATE=1 cargo test -p hodograph-cli --test all docs::`");
 }
 
 #[test]
@@ -143,7 +141,7 @@ fn examples_run_as_shown() {
             let same = cfg!(all(target_arch = "x86_64", target_os = "linux"));
             assert!(
                 !same || begins(&stdout, &shown),
-                "{page} shows other digits than `{command}`: run `HODOGRAPH_UPDATE=1 cargo test --workspace --test docs`\n{stdout}"
+                "{page} shows other digits than `{command}`: run `HODOGRAPH_UPDATE=1 cargo test -p hodograph-cli --test all docs::`\n{stdout}"
             );
         }
     }

@@ -1,8 +1,6 @@
 //! Tests of `plot`, `explain` and the figures of `simulate`.
 
-mod common;
-
-use common::{hodograph, model, number};
+use crate::common::{hodograph, model, number};
 use serde_json::{Value, json};
 
 #[test]

@@ -1,12 +1,10 @@
 //! `hodograph export --c`: the crate builds, a C program that calls it gets the answers of the tool, and
 //! every header is C and C++.
 
-mod common;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use common::{hodograph, root};
+use crate::common::{hodograph, root};
 
 /// Exports a model to a folder of its own, and gives the folder.
 fn export(model: &Path, into: &Path, options: &[&str]) -> PathBuf {

@@ -1,11 +1,9 @@
 //! `check`, `derive` and `expand`: files, directories, Rust files with inline models.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::{Run, hodograph, model};
+use crate::common::{Run, hodograph, model};
 
 const ROD: &str = "mechanism Rod;\nparameters { m: kg = 1, l: m = 0.5, g: m/s^2 = 9.81 }\ncoordinates { q1: rad = 0.3 }\n\
     speeds { u1: rad/s }\nframes { B = N.rotate(z, q1); }\npoints { G = O - l/2*B.y; P = O - l*B.y; }\n\
@@ -22,7 +20,7 @@ fn text(path: &Path) -> String {
 
 #[test]
 fn shipped_models_are_accepted_and_fresh() {
-    let models = text(&common::root().join("models"));
+    let models = text(&crate::common::root().join("models"));
     let checked = run(&["check", &models]);
     assert_eq!(checked.code, 0, "{}", checked.stdout);
     // not every model is for simulation

@@ -1,14 +1,12 @@
 //! What a new user does first: a model from `new`, numbers by name, tables, completions, pages of `man`,
 //! mistakes for editors, and `check --watch`.
 
-mod common;
-
 use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{hodograph, model, number};
+use crate::common::{hodograph, model, number};
 use serde_json::Value;
 
 fn place(folder: &tempfile::TempDir, name: &str) -> String {
@@ -89,7 +87,7 @@ fn the_readme_shows_the_new_model() {
     };
     let written = bare(include_str!("../src/commands/new/pendulum.mech"));
     for page in ["README.md", "CONTRIBUTING.md"] {
-        let text = fs::read_to_string(common::root().join(page)).unwrap();
+        let text = fs::read_to_string(crate::common::root().join(page)).unwrap();
         let block = text.split("```text\n").find(|block| block.contains("mechanism Pendulum;")).unwrap();
         assert_eq!(bare(block.split("```").next().unwrap()), written, "{page}");
     }
@@ -127,7 +125,8 @@ fn states_are_given_by_name() {
         let message = eval(&["--state", given]).line()["error"]["message"].to_string();
         assert!(message.contains(told) && !message.contains(';'), "{message}");
     }
-    let singular = hodograph(&["eval", &common::model("planar_double_pendulum"), "--parameter", "l2=0"], "");
+    let singular =
+        hodograph(&["eval", &crate::common::model("planar_double_pendulum"), "--parameter", "l2=0"], "");
     let message = singular.line()["error"]["message"].to_string();
     assert!(message.contains("change the parameters: l2 is 0"), "{message}");
 }

@@ -1,11 +1,9 @@
 //! `hodograph import`: imported robots against another program's numbers, and against the balance of power.
 #![cfg(feature = "derive")]
 
-mod common;
-
 use std::path::Path;
 
-use common::{ALL_JOINTS, data, difference, hodograph, number, numbers, root};
+use crate::common::{ALL_JOINTS, data, difference, hodograph, number, numbers, root};
 use serde_json::{Map, Value, json};
 
 /// Imports a URDF into a folder and derives it.

@@ -1,13 +1,11 @@
 //! Unusual paths: for directories, devices, pipes, and missing or too large files a command ends soon and
 //! says why.
 
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use common::{Run, hodograph, model};
+use crate::common::{Run, hodograph, model};
 
 fn run(arguments: &[&str]) -> Run {
     let begun = Instant::now();

@@ -1,9 +1,7 @@
 //! Mechanisms that are not shipped: those written from the language reference alone, against Lagrange's
 //! equations (`tests/data/mechanisms`, see `tests/data/README.md`), and the examples of the reference itself.
 
-mod common;
-
-use common::{difference, hodograph, number, numbers, root};
+use crate::common::{difference, hodograph, number, numbers, root};
 use hodograph_generator::check::check;
 use hodograph_generator::explanations::within;
 use hodograph_generator::model::mechanism::Variable;

@@ -1,8 +1,6 @@
 //! `simulate`: times of events, contact that lasts, and what is refused.
 
-mod common;
-
-use common::{Run, hodograph, number, root};
+use crate::common::{Run, hodograph, number, root};
 use serde_json::Value;
 
 fn model(name: &str) -> String {
@@ -100,7 +98,14 @@ fn surfaces_are_asked_for_and_checked_before_the_start() {
     assert_eq!(back.code, 2);
     assert!(back.stderr.contains("before the start"), "{}", back.stderr);
     let free = hodograph(
-        &["simulate", &common::model("shaken_pendulum_moving_plate"), "--until", "0.1", "--step", "0.1"],
+        &[
+            "simulate",
+            &crate::common::model("shaken_pendulum_moving_plate"),
+            "--until",
+            "0.1",
+            "--step",
+            "0.1",
+        ],
         "",
     );
     assert!(free.code == 0 || free.stderr.contains("has no surface"), "{}", free.stderr);
@@ -161,7 +166,7 @@ fn starts_inside_a_wall_are_refused() {
 /// A contact without gap is told, and needs no surface.
 #[test]
 fn missing_gaps_are_told() {
-    let model = common::model("rolling_disc");
+    let model = crate::common::model("rolling_disc");
     let run = hodograph(&["simulate", &model, "--until", "0.1", "--step", "0.1"], "");
     assert_eq!((run.code, run.lines().len()), (0, 2), "{}", run.stderr);
     assert!(run.stderr.contains("contact rim_wall has no gap in the model"), "{}", run.stderr);

@@ -1,12 +1,10 @@
 //! Follows the README's instructions for a crate of one's own literally: its manifest, its source, the model
 //! of CONTRIBUTING.md, and the command that derives it.
 
-mod common;
-
 use std::path::Path;
 use std::process::Command;
 
-use common::root;
+use crate::common::root;
 
 /// The block of a page after `heading` that begins with this fence, and its text.
 fn block(page: &str, heading: &str, fence: &str) -> String {

@@ -3,11 +3,10 @@
 
 #[path = "common/browser.rs"]
 mod browser;
-mod common;
 
 use std::path::PathBuf;
 
-use common::hodograph;
+use crate::common::hodograph;
 
 /// Signs of a formula stand beside each other, numerators over denominators, equations below each other.
 const EQUATIONS: &str = r#"

@@ -1,9 +1,7 @@
 //! docs/paper.md: its commands run, its files, tests and programs exist, its figures are what its commands
 //! draw; and what the tool shows of the paper agrees with the numbers that the paper prints.
 
-mod common;
-
-use common::{Run, hodograph, model, number, numbers, root};
+use crate::common::{Run, hodograph, model, number, numbers, root};
 use serde_json::{Value, json};
 
 const NINE: &str = include_str!("../../../docs/paper/two_sleds.jsonl");
@@ -76,11 +74,13 @@ fn missing(command: &str) -> Option<String> {
                 || exists(format!("{folder}/examples/{name}/main.rs"));
             (!found).then(|| name.to_owned())
         }
-        ("test", _, Some(file)) => {
+        ("test", _, Some("all")) => {
             let folder = if after("-p") == Some("hodograph") { "runtime/tests" } else { "tests/tests" };
-            let path = root().join(format!("{folder}/{file}.rs"));
-            let text = std::fs::read_to_string(path).unwrap_or_default();
-            let name = words[words.len() - 1];
+            let Some((file, name)) = words[words.len() - 1].split_once("::") else {
+                return Some(command.to_owned());
+            };
+            let text =
+                std::fs::read_to_string(root().join(format!("{folder}/{file}.rs"))).unwrap_or_default();
             (!text.contains(&format!("fn {name}("))).then(|| name.to_owned())
         }
         _ => Some(command.to_owned()),
@@ -156,7 +156,7 @@ fn figures_are_fresh() {
         let kept = std::fs::read_to_string(&path).unwrap_or_default();
         assert!(
             kept == drawn.stdout,
-            "{image}: run `HODOGRAPH_UPDATE=1 cargo test --workspace --test paper`"
+            "{image}: run `HODOGRAPH_UPDATE=1 cargo test -p hodograph-cli --test all paper::`"
         );
     }
 }

@@ -1,12 +1,10 @@
 //! `simulate --mcap`: the recording is read back and held against the lines of the same run.
 
-mod common;
-
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{Run, hodograph, number, root};
+use crate::common::{Run, hodograph, number, root};
 use serde_json::{Value, json};
 
 /// A message: nanoseconds and content.
@@ -115,7 +113,8 @@ fn recordings_say_what_the_lines_say() {
         assert_eq!(at("/speeds"), speeds, "{line}");
         // A second road: what `eval` says of the same state.
         let state = json!({"q": line["q"], "u": speeds}).to_string();
-        let here = hodograph(&["eval", &common::model("slender_rod_5dof"), "--state", "-"], &state).line();
+        let here =
+            hodograph(&["eval", &crate::common::model("slender_rod_5dof"), "--state", "-"], &state).line();
         let transforms = at("/tf")["transforms"].as_array().unwrap();
         assert_eq!(
             (&transforms[0]["parent_frame_id"], &transforms[0]["child_frame_id"]),
@@ -197,7 +196,7 @@ fn the_world_stands_upright_and_bytes_are_the_same() {
     }
     assert_eq!(fs::read(&paths[0]).unwrap(), fs::read(&paths[1]).unwrap());
     let topics = messages(&paths[0]);
-    let model = fs::read_to_string(common::model("planar_double_pendulum")).unwrap();
+    let model = fs::read_to_string(crate::common::model("planar_double_pendulum")).unwrap();
     let up = if model.contains("-g*N.y") { [0.0, 1.0, 0.0] } else { [-1.0, 0.0, 0.0] };
     let rotation = &topics["/tf"][0].1["transforms"][0]["rotation"];
     near(turned(rotation, up), [0.0, 0.0, 1.0], 1e-15);

@@ -1,10 +1,8 @@
 //! `hodograph eval` and `hodograph collide` against numbers computed elsewhere (`tests/data/README.md`).
 
-mod common;
-
 use std::collections::BTreeMap;
 
-use common::{data, difference, hodograph, model, number, numbers, root};
+use crate::common::{data, difference, hodograph, model, number, numbers, root};
 use serde_json::{Map, Value, json};
 
 fn parsed(name: &str) -> Value {

@@ -1,9 +1,7 @@
 //! Rolling balls, stated in every way that the language allows. The vector equation says nothing along one
 //! direction, which the derivation must find.
 
-mod common;
-
-use common::{Run, hodograph, number, numbers};
+use crate::common::{Run, hodograph, number, numbers};
 use hodograph_generator::check::check;
 use hodograph_generator::numeric::{self, State};
 use hodograph_generator::source::Source;
@@ -74,7 +72,10 @@ fn evaluated(text: &str) -> Value {
         (numbers(&answer["mass_matrix"]), expected.mass_matrix.concat()),
         (numbers(&answer["forcing"]), expected.forcing),
     ] {
-        assert!(common::difference(&found, &expected, 1e-3) < 1e-12, "{text}\n{found:?}\n{expected:?}");
+        assert!(
+            crate::common::difference(&found, &expected, 1e-3) < 1e-12,
+            "{text}\n{found:?}\n{expected:?}"
+        );
     }
     answer
 }

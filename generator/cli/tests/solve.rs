@@ -1,11 +1,9 @@
 //! `hodograph solve`: the contract of its JSON lines.
 
-mod common;
-
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Command, Stdio};
 
-use common::{data, difference, hodograph, kind, number, numbers};
+use crate::common::{data, difference, hodograph, kind, number, numbers};
 use serde_json::{Value, json};
 
 fn case() -> Value {

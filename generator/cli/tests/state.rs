@@ -1,8 +1,6 @@
 //! `hodograph eval` and `hodograph collide`: states, names, completed loops, and what is wrong with them.
 
-mod common;
-
-use common::{Run, hodograph, model, number, numbers};
+use crate::common::{Run, hodograph, model, number, numbers};
 use serde_json::{Value, json};
 
 fn eval(name: &str, state: &Value) -> Run {

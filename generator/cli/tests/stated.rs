@@ -2,9 +2,7 @@
 //! others, quaternions; and what only the text of a model lacks is said by `check` alone.
 #![cfg(feature = "derive")]
 
-mod common;
-
-use common::hodograph;
+use crate::common::hodograph;
 
 const BALL: &str = "mechanism Ball;
 parameters { m: kg = 1, r: mm = 50, h: m = 2, w: rad/s = 3, spare: 1 = 1 }

@@ -3,9 +3,7 @@
 //! without a warning, derived, and equal to the numeric evaluation.
 #![cfg(feature = "derive")]
 
-mod common;
-
-use common::{hodograph, root};
+use crate::common::{hodograph, root};
 use hodograph_generator::check::check;
 use hodograph_generator::diagnostics::codes::NO_GAP;
 use hodograph_generator::files;

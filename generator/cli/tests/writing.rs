@@ -1,14 +1,12 @@
 //! Files that are written whole or not at all, and never over what is read; energies that are not defined;
 //! tolerances that no step can meet.
 
-mod common;
-
 use std::fs;
 use std::io::Read;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use common::{Run, hodograph, model, root};
+use crate::common::{Run, hodograph, model, root};
 
 const BALL: [&str; 10] = ["--until", "2", "--step", "0.001", "--mu", "0", "--e", "0.5", "--law", "newton"];
 

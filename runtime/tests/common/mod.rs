@@ -1,10 +1,7 @@
 //! The reference collisions, read from `tests/data`.
 
-#[allow(dead_code)]
 pub mod double_double;
-#[allow(dead_code)]
 pub mod random;
-#[allow(dead_code)]
 pub mod second_road;
 
 use hodograph::{Impact, Law, ReducedMatrix, Surface};
@@ -12,7 +9,6 @@ use nalgebra::Vector3;
 use serde_json::Value;
 
 /// One reference collision and its answer.
-#[allow(dead_code)]
 pub struct Case {
     pub line: String,
     pub family: String,
@@ -41,7 +37,6 @@ fn top(v: &Vector3<f64>) -> f64 {
     v.amax()
 }
 
-#[allow(dead_code)]
 impl Case {
     fn read(line: &str) -> Self {
         let case: Value = serde_json::from_str(line).expect("JSON");
@@ -81,13 +76,11 @@ impl Case {
 }
 
 /// All reference collisions.
-#[allow(dead_code)]
 pub fn reference_cases() -> Vec<Case> {
     include_str!("../../../tests/data/impact_cases.jsonl").lines().map(Case::read).collect()
 }
 
 /// The paper's example (section 5), with s = n x t.
-#[allow(dead_code)]
 pub fn two_sleds(mu: f64, law: Law) -> (ReducedMatrix<f64>, Vector3<f64>, Surface<f64>) {
     let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
     (matrix, Vector3::new(-0.946108022, 1.06306701, 0.0), Surface { mu, e: 0.8, law })

@@ -1,5 +1,4 @@
 //! Planar bodies written by hand, for tests of the simulation.
-#![allow(dead_code)]
 
 pub mod random;
 

@@ -1,5 +1,4 @@
 //! Mechanisms with several contacts, read from their model files, and their motions.
-#![allow(dead_code)]
 
 use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
 use hodograph_interpreter::InterpretedMechanism;

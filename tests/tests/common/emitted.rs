@@ -2,7 +2,7 @@
 //! implementations.
 
 use hodograph::nalgebra::SMatrix;
-use hodograph::{Contacts, Path, StateError, Surface};
+use hodograph::{Contacts, StateError, Surface};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Quantity;
@@ -56,8 +56,6 @@ pub struct Hit {
     pub contact_work: f64,
     /// work of the normal impulse
     pub normal_work: f64,
-    /// phases
-    pub path: Path,
 }
 
 /// A list as an array.
@@ -141,7 +139,6 @@ macro_rules! hit {
             energy_change: hit.energy_change,
             contact_work: hit.impact.contact_work,
             normal_work: hit.impact.normal_work,
-            path: hit.path,
         })
     }};
 }

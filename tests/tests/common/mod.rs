@@ -1,5 +1,4 @@
 //! The shipped models with their derivations, and the reference data.
-#![allow(dead_code)]
 
 pub mod emitted;
 pub mod random;

@@ -1,5 +1,4 @@
 //! Runs the tool in tests.
-#![allow(dead_code)] // each test file uses a part
 
 use std::io::Write;
 use std::path::PathBuf;

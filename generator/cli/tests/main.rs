@@ -1,0 +1,33 @@
+//! The tool as its users call it.
+//!
+//! One program holds all of them: `cargo test -p hodograph-cli --test all NAME::` runs those of `tests/NAME.rs`.
+
+mod accepted;
+mod adverse;
+mod builds;
+mod chains;
+mod common;
+mod contact_laws;
+mod contacts;
+mod docs;
+mod drawn;
+mod export;
+mod files;
+mod first_minutes;
+mod import;
+mod in_the_compiler;
+mod inputs;
+mod mechanisms;
+mod motion;
+mod own_crate;
+mod pages;
+mod paper;
+mod recordings;
+mod reference;
+mod rolling;
+mod solve;
+mod state;
+mod stated;
+mod structure;
+mod unusual;
+mod writing;

@@ -1,0 +1,18 @@
+//! The language, its mistakes and what becomes of a model, from text to tokens.
+//!
+//! One program holds all of them: `cargo test -p hodograph-generator --test all NAME::` runs those of `tests/NAME.rs`.
+
+mod cascades;
+mod diagnostics;
+mod errors_page;
+mod expansion;
+mod kept_configurations;
+mod language;
+mod language_page;
+mod mistakes;
+mod mistakes_of_a_cart;
+mod overconstrained;
+mod robust;
+mod second_road;
+mod slips;
+mod stages;

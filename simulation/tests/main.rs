@@ -1,0 +1,29 @@
+//! Motions with contact against closed forms, balances and other computations.
+//!
+//! One program holds all of them: `cargo test -p hodograph-simulation --test all NAME::` runs those of `tests/NAME.rs`.
+
+mod bipeds;
+mod bodies;
+mod campaigns;
+mod common;
+mod contact_families;
+mod contact_problem;
+mod controller;
+mod discs;
+mod edges;
+mod energy_under_poisson;
+mod exact;
+mod examples;
+mod inclines;
+mod many;
+mod one_contact;
+mod painleve;
+mod settling;
+mod several;
+mod shipped;
+mod spins;
+mod surfaces;
+mod table;
+mod tosses;
+mod tumbling;
+mod units;

@@ -1,0 +1,34 @@
+//! Derived, emitted and interpreted models against independent computations, and what users build.
+//!
+//! One program holds all of them: `cargo test -p hodograph-tests --test all NAME::` runs those of `tests/NAME.rs`.
+
+mod accelerations;
+mod bicycle;
+mod closed_contacts;
+mod columns;
+mod commands;
+mod common;
+mod contact_and_rolling;
+mod cost;
+mod derivations;
+mod derivatives;
+mod descriptions;
+mod documents;
+mod downstream;
+mod emitted_equals_interpreted;
+mod emitted_models;
+mod evaluate;
+mod gallery;
+mod impacts;
+mod inlined;
+mod many_contacts;
+mod mechanisms_by_slices;
+mod peers;
+mod records;
+mod reference;
+mod rolling;
+mod rounding;
+mod saltation;
+mod second_road;
+mod specialised;
+mod ui;
