@@ -1,6 +1,7 @@
 //! The language, its mistakes and what becomes of a model, from text to tokens.
 //!
-//! One program holds all of them: `cargo test -p hodograph-generator --test all NAME::` runs those of `tests/NAME.rs`.
+//! One program holds all of them: `cargo test -p hodograph-generator --test all language::`
+//! runs those of `tests/language.rs`.
 
 mod cascades;
 mod diagnostics;

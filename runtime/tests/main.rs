@@ -1,6 +1,7 @@
 //! The solver against independent computations, laws of mechanics and hostile input.
 //!
-//! One program holds all of them: `cargo test -p hodograph --test all NAME::` runs those of `tests/NAME.rs`.
+//! One program holds all of them: `cargo test -p hodograph --test all slip::`
+//! runs those of `tests/slip.rs`.
 
 mod appendix;
 mod budget;

@@ -1,6 +1,7 @@
 //! Motions with contact against closed forms, balances and other computations.
 //!
-//! One program holds all of them: `cargo test -p hodograph-simulation --test all NAME::` runs those of `tests/NAME.rs`.
+//! One program holds all of them: `cargo test -p hodograph-simulation --test all painleve::`
+//! runs those of `tests/painleve.rs`.
 
 mod bipeds;
 mod bodies;

@@ -1,6 +1,7 @@
 //! Derived, emitted and interpreted models against independent computations, and what users build.
 //!
-//! One program holds all of them: `cargo test -p hodograph-tests --test all NAME::` runs those of `tests/NAME.rs`.
+//! One program holds all of them: `cargo test -p hodograph-tests --test all impacts::`
+//! runs those of `tests/impacts.rs`.
 
 mod accelerations;
 mod bicycle;

@@ -33,7 +33,7 @@ fn devices_are_no_models() {
         for device in ["/dev/zero", "/dev/null"] {
             let run = run(&with(command, device));
             assert_eq!(run.code, 1, "{command:?} {device}: {}{}", run.stdout, run.stderr);
-            let said = run.stdout + &run.stderr;
+            let said = format!("{}{}", run.stdout, run.stderr);
             assert!(said.contains("error[E001]") && said.contains("it is a pipe or a device"), "{said}");
         }
     }
@@ -87,7 +87,7 @@ fn large_files_are_not_read() {
         fs::File::create(&path).unwrap().set_len(80 << 20).unwrap();
         let said = run(&[command, &text(&path)]);
         assert_ne!(said.code, 0);
-        let all = said.stdout + &said.stderr;
+        let all = format!("{}{}", said.stdout, said.stderr);
         assert!(all.contains("larger than"), "{name}: {all}");
     }
     let state = folder.path().join("state.json");

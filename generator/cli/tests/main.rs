@@ -1,6 +1,7 @@
 //! The tool as its users call it.
 //!
-//! One program holds all of them: `cargo test -p hodograph-cli --test all NAME::` runs those of `tests/NAME.rs`.
+//! One program holds all of them: `cargo test -p hodograph-cli --test all files::`
+//! runs those of `tests/files.rs`.
 
 mod accepted;
 mod adverse;

@@ -259,7 +259,8 @@ fn balls_answer_by_their_stiffnesses() {
     ] {
         let run = call(more);
         assert_eq!(run.code, code, "{more:?} {}", run.stderr);
-        assert!((run.stderr.clone() + &run.stdout).contains(what), "{more:?} {} {}", run.stderr, run.stdout);
+        let said = format!("{}{}", run.stderr, run.stdout);
+        assert!(said.contains(what), "{more:?} {} {}", run.stderr, run.stdout);
     }
 }
 
