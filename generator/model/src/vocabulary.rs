@@ -38,6 +38,11 @@ pub fn section(word: &str) -> Option<&'static str> {
         ("nonholonomic", "constraints"),
         ("holonomic", "configuration"),
         ("loops", "configuration"),
+        ("geometry", "shapes"),
+        ("geometries", "shapes"),
+        ("geoms", "shapes"),
+        ("colliders", "shapes"),
+        ("surfaces", "shapes"),
         ("collisions", "contacts"),
         ("impacts", "contacts"),
     ];
@@ -106,6 +111,51 @@ pub fn field(word: &str, known: &[&str]) -> Option<&'static str> {
         ("rest_angle", "rest"),
     ];
     table.iter().find(|(habit, here)| *habit == word && known.contains(here)).map(|(_, here)| *here)
+}
+
+/// The shape that is meant, or the field of a shape.
+pub fn shape(word: &str) -> Option<&'static str> {
+    let table = [
+        ("ball", "sphere"),
+        ("point", "sphere"),
+        ("circle", "disc"),
+        ("disk", "disc"),
+        ("ring", "disc"),
+        ("wheel", "disc"),
+        ("rim", "disc"),
+        ("tyre", "torus"),
+        ("tire", "torus"),
+        ("pill", "capsule"),
+        ("rod", "capsule"),
+        ("tube", "cylinder"),
+        ("cuboid", "box"),
+        ("cube", "box"),
+        ("block", "box"),
+        ("hull", "polytope"),
+        ("convex", "polytope"),
+        ("mesh", "polytope"),
+        ("polygon", "polytope"),
+        ("ground", "plane"),
+        ("floor", "plane"),
+        ("wall", "plane"),
+        ("halfspace", "half_space"),
+        ("heightfield", "surface"),
+        ("height", "surface"),
+        ("terrain", "surface"),
+        ("body", "of"),
+        ("frame", "of"),
+        ("on", "of"),
+        ("centre", "at"),
+        ("center", "at"),
+        ("place", "at"),
+        ("position", "at"),
+        ("origin", "at"),
+        ("normal", "axis"),
+        ("direction", "axis"),
+        ("color", "colour"),
+        ("rho", "density"),
+    ];
+    look(&table, word)
 }
 
 /// What to write for a unit.

@@ -30,6 +30,7 @@ pub const SECTIONS: &[Word] = &[
     word("velocities", "point = vector;", "velocities in terms of speeds"),
     word("bodies", "name { frame: B, centre: G, mass: m, inertia: [xx, yy, zz] },", "masses and inertias"),
     word("particles", "name { point: P, mass: m },", "masses without inertia"),
+    word("shapes", "name { of: Body, sphere: r },", "surfaces of bodies, of frames and of the ground"),
     word("loads", "force on P: vector;", "forces and torques"),
     word("kinematics", "d(q)/dt = u;", "kinematical equations"),
     word("constraints", "expression = expression;", "velocity constraints"),
@@ -47,9 +48,9 @@ pub const WORDS: &[Word] = &[
     word("fixed", "fixed name: unit = value", "a parameter whose value is folded into the equations"),
     word("dependent", "dependent name: unit = value", "a coordinate that follows from the configuration"),
     word("of", "P of B", "a point of a body or frame"),
-    word("in", "B in A", "relative to a frame"),
+    word("in", "B in A", "relative to a frame; `Ball in Bowl`, a shape within another"),
     word("about", "about A.z", "about an axis or a point"),
-    word("on", "on P", "what a load acts on"),
+    word("on", "on P", "what a load acts on; `Foot on Floor`, two shapes that may meet"),
     word("from", "from Q", "where the opposite of a load acts"),
     word("to", "P to Q", "the other end of a spring"),
     word("velocity", "velocity vector", "what moves with this velocity"),
@@ -58,6 +59,10 @@ pub const WORDS: &[Word] = &[
 
 /// The fields of a body.
 pub const BODY: [&str; 4] = ["frame", "centre", "mass", "inertia"];
+/// The fields of a body that takes mass and inertia from a shape.
+pub const BODY_OF_SHAPE: [&str; 3] = ["frame", "centre", "shape"];
+/// The fields of a shape besides the one that says what it is.
+pub const SHAPE: [&str; 6] = ["of", "at", "axis", "axes", "density", "colour"];
 /// The fields of a particle.
 pub const PARTICLE: [&str; 2] = ["point", "mass"];
 /// The fields of a contact.
@@ -79,7 +84,30 @@ pub const FIELDS: &[Word] = &[
     word("against", "against: Q of B", "what is struck; left out: what is fixed in N"),
     word("normal", "normal: N.y", "the unit vector from what is struck to what strikes"),
     word("gap", "gap: distance", "the distance, m"),
-    word("surface", "surface: { mu: 0.3, e: 0.5, law: stronge }", "friction and restitution"),
+    word(
+        "surface",
+        "surface: { mu: 0.3, e: 0.5, law: stronge }",
+        "friction and restitution; of a shape, `surface: h*sin(k*x)`, the height z = h(x, y)",
+    ),
+    word("shape", "shape: Hull", "the shape from which mass and inertia follow"),
+    word("of", "of: Body", "the body, particle or frame with which the shape moves; left out: N"),
+    word("at", "at: P + vector", "the place of the shape; left out: the mass centre of its body"),
+    word("axis", "axis: B.z", "the axis of rotation of the shape"),
+    word("axes", "axes: B", "the frame along whose axes the shape lies; left out: its own"),
+    word("density", "density: rho", "the density, kg/m^3"),
+    word("colour", "colour: teal", "how the shape is drawn: a name or [red, green, blue]"),
+    word("sphere", "sphere: r", "a ball"),
+    word("capsule", "capsule: [r, l]", "all within r of a segment of length l"),
+    word("cylinder", "cylinder: [r, l]", "a cylinder, radius and length"),
+    word("cone", "cone: [r, h]", "a cone, radius and height; its place is the centre of its base"),
+    word("disc", "disc: r", "a thin rim"),
+    word("torus", "torus: [R, r]", "a tyre, radius and radius of its tube"),
+    word("ellipsoid", "ellipsoid: [a, b, c]", "semi-axes along x, y and z"),
+    word("box", "box: [a, b, c]", "lengths along x, y and z"),
+    word("polytope", "polytope: [P, Q, G + a*B.x]", "the convex hull of points"),
+    word("plane", "plane: N.z", "a plane with its normal"),
+    word("half_space", "half_space: N.z", "what lies behind a plane with this normal"),
+    word("curve", "curve: h*sin(k*x)", "y = h(x) in the plane of x and y"),
     word("mu", "mu: 0.3", "the coefficient of friction"),
     word("e", "e: 0.5", "the coefficient of restitution, from 0 to 1"),
     word("law", "law: stronge", "the hypothesis of restitution: newton, poisson or stronge"),
@@ -200,7 +228,8 @@ mod tests {
     fn every_word_that_is_read_has_its_meaning() {
         let sections: Vec<&str> = Section::ALL.iter().map(|section| section.word()).collect();
         assert_eq!(SECTIONS.iter().map(|word| word.text).collect::<Vec<_>>(), sections);
-        let records = [&BODY[..], &PARTICLE, &CONTACT, &SURFACE, &SPRING, &TORSION];
+        let kinds = crate::model::mechanism::Kind::ALL.map(|kind| kind.word());
+        let records = [&BODY[..], &BODY_OF_SHAPE, &SHAPE, &kinds, &PARTICLE, &CONTACT, &SURFACE, &SPRING, &TORSION];
         for field in records.into_iter().flatten() {
             assert!(look(FIELDS, field).is_some(), "{field}");
         }

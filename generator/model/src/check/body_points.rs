@@ -13,6 +13,10 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
     for (i, point) in m.points.iter().enumerate() {
         let Place::Material { frame, from, .. } = point.place else { continue };
+        // of shapes it is said where they are stated
+        if of_a_shape(m, PointId(i)) {
+            continue;
+        }
         let stays = seen.iter().any(|seen| stays_on(m, &seen.at, frame, from).unwrap_or(true));
         if stays {
             continue;
@@ -40,6 +44,14 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
         }
     }
     out
+}
+
+/// Whether a pair of shapes gave this point.
+fn of_a_shape(m: &Mechanism, point: PointId) -> bool {
+    m.contacts.iter().filter(|contact| contact.shapes.is_some()).any(|contact| {
+        let struck = matches!(contact.against, Against::Point(struck, _) if struck == point);
+        contact.point == point || struck
+    })
 }
 
 /// Whether the point moves as a point of something that has this frame does. `None` where nothing tells.

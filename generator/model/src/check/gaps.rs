@@ -17,6 +17,8 @@ const TOUCHING: f64 = 1e-6;
 /// of the contacts.
 pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
+    // of the contacts of one pair, the deepest
+    let mut deepest: Vec<(f64, Diagnostic)> = Vec::new();
     for contact in &m.contacts {
         let Some(gap) = &contact.gap else { continue };
         let places = [contact.span, contact.point_span, contact.against_span, contact.normal_span];
@@ -25,9 +27,17 @@ pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagn
         }
         match strange(m, contact, gap, seen) {
             Some(diagnostic) => out.push(diagnostic),
-            None => out.extend(begins_inside(m, contact, gap)),
+            None => {
+                let Some(found) = begins_inside(m, contact, gap) else { continue };
+                match deepest.iter_mut().find(|(_, known)| known.primary.span == found.1.primary.span) {
+                    Some(known) if known.0 <= found.0 => {}
+                    Some(known) => *known = found,
+                    None => deepest.push(found),
+                }
+            }
         }
     }
+    out.extend(deepest.into_iter().map(|(_, found)| found));
     out
 }
 
@@ -151,7 +161,7 @@ fn on_surface(m: &Mechanism, gap: &Scalar, state: &State) -> Option<State> {
 }
 
 /// A gap that is negative with the initial values, where the model states any that it depends on.
-fn begins_inside(m: &Mechanism, contact: &Contact, gap: &Scalar) -> Option<Diagnostic> {
+fn begins_inside(m: &Mechanism, contact: &Contact, gap: &Scalar) -> Option<(f64, Diagnostic)> {
     let mut state = State::of(m);
     numeric::assemble(m, &mut state).ok()?;
     let state = stated(m, &state, true);
@@ -162,12 +172,20 @@ fn begins_inside(m: &Mechanism, contact: &Contact, gap: &Scalar) -> Option<Diagn
     let size = state.coordinates.iter().fold(1.0_f64, |size, q| size.max(q.abs()));
     if value < -TOUCHING * size && m.coordinates.iter().zip(&slopes).any(decides) {
         let gap = super::bodies::number(value);
+        if let Some(pair) = contact.shapes {
+            let [a, b] = pair.map(|id| &m.shapes[id.0].name);
+            let message =
+                format!("with the initial values `{a}` and `{b}` overlap by {} m", super::bodies::number(-value));
+            let help = format!("start where they are apart; `touching({})` starts with this gap 0", contact.name);
+            let found = Diagnostic::new(codes::BEGINS_INSIDE, contact.gap_span, message);
+            return Some((value, found.help(help)));
+        }
         let message = format!(
             "with the initial values the gap of `{}` is {gap} m: it begins inside what it strikes",
             contact.name
         );
         let help = "start where the gap is positive or 0, or turn the signs of gap and normal";
-        return Some(Diagnostic::new(codes::BEGINS_INSIDE, contact.gap_span, message).help(help));
+        return Some((value, Diagnostic::new(codes::BEGINS_INSIDE, contact.gap_span, message).help(help)));
     }
     None
 }

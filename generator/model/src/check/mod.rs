@@ -14,6 +14,7 @@ mod loads;
 mod loops;
 mod motion;
 mod physics;
+mod shapes;
 mod start;
 mod states;
 mod unit_vectors;
@@ -123,6 +124,9 @@ pub fn analyse(source: &Source) -> Analysis {
     // only the first mistake at a place is reported: others there follow from it
     let mut places = std::collections::HashSet::new();
     diagnostics.retain(|d| d.severity == Severity::Warning || places.insert(d.primary.span));
+    // several contacts of one pair of shapes say the same
+    let mut said = std::collections::HashSet::new();
+    diagnostics.retain(|d| d.severity == Severity::Error || said.insert((d.code, d.primary.span)));
     // a contact without a gap is worth a word only where nothing else is wrong with it
     let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
     let others: Vec<Span> =

@@ -4,12 +4,12 @@
 use super::states::Seen;
 use super::{
     bodies, body_points, configuration, contacts, coupled, gaps, independent_constraints, loads, loops,
-    motion, states, unit_vectors, vector_constraints,
+    motion, shapes, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
 use crate::model::mechanism::{
-    Definition, DefinitionId, DefinitionValue, Equation, Mechanism, Point, PointId, Scalar, Vector,
+    Definition, DefinitionId, DefinitionValue, Equation, Mechanism, Point, PointId, Scalar, ShapeId, Vector,
 };
 use crate::numeric::{self, Failure, Level, State, Views};
 use crate::span::Span;
@@ -91,6 +91,11 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         out.extend(undetermined(m).or_else(|| nowhere(m, &failures)));
         out.extend(unit_vectors::normals(m, &alone));
         return out;
+    }
+    let of_shapes = shapes::shapes(m, alone.last(), &seen);
+    if let Some(rest) = without_contacts_of(m, &of_shapes) {
+        let readable = Readable { contacts: vec![true; rest.contacts.len()], ..readable.clone() };
+        return of_shapes.into_iter().map(|(_, found)| found).chain(look(&rest, &readable)).collect();
     }
     let met: Vec<State> = seen.iter().map(|seen| seen.state.clone()).collect();
     out.extend(unit_vectors::normals(m, &stated(&met, true)));
@@ -217,6 +222,19 @@ fn without_unread_contacts(m: &Mechanism, readable: &Readable) -> Option<Mechani
     let mut rest = m.clone();
     let mut at = readable.contacts.iter();
     rest.contacts.retain(|_| at.next().copied().unwrap_or(false));
+    Some(rest)
+}
+
+/// The mechanism without the shapes in which something is wrong and their contacts, if there are any.
+fn without_contacts_of(m: &Mechanism, wrong: &[(ShapeId, Diagnostic)]) -> Option<Mechanism> {
+    if wrong.is_empty() {
+        return None;
+    }
+    let mut rest = m.clone();
+    let has = |shapes: [ShapeId; 2]| wrong.iter().any(|(id, _)| shapes.contains(id));
+    rest.contacts.retain(|contact| !contact.shapes.is_some_and(has));
+    rest.contacts.iter_mut().for_each(|contact| contact.shapes = None);
+    rest.shapes.clear();
     Some(rest)
 }
 

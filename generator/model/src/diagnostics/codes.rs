@@ -101,6 +101,8 @@ codes! {
     CONTACT = "E082", "a contact is not stated correctly";
     SURFACE = "E083", "a surface that is impossible";
     START = "E084", "a start in contact that cannot be found";
+    SHAPE = "E085", "a shape is not stated correctly";
+    PAIR = "E086", "shapes between which no contact is compiled";
     UNUSED_PARAMETER = "W001", "a parameter is never used";
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";

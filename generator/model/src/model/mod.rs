@@ -4,6 +4,7 @@ mod dependency_order;
 mod lower;
 pub mod mechanism;
 pub mod names;
+mod pairs;
 mod provenance;
 mod readable;
 pub mod symbols;

@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::pairs;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::rust_names::{is_keyword, is_value, snake_case};
 use crate::span::Span;
@@ -23,6 +24,7 @@ pub enum Symbol {
     Point(usize),
     Body(usize),
     Contact(usize),
+    Shape(usize),
     Time,
     Pi,
     /// declared by an entry that could not be read
@@ -42,6 +44,7 @@ impl Symbol {
             Symbol::Point(_) => "a point",
             Symbol::Body(_) => "a body",
             Symbol::Contact(_) => "a contact",
+            Symbol::Shape(_) => "a shape",
             Symbol::Time => "the time",
             Symbol::Pi => "the number pi",
             Symbol::Broken => "something that could not be read",
@@ -101,13 +104,17 @@ impl Names {
         for (i, body) in tree.bodies.iter().chain(&tree.particles).enumerate() {
             add(&body.name, Symbol::Body(i));
         }
-        for (i, contact) in tree.contacts.iter().enumerate() {
-            add(&contact.name, Symbol::Contact(i));
+        for (i, shape) in tree.shapes.iter().enumerate() {
+            add(&shape.name, Symbol::Shape(i));
+        }
+        let contacts = pairs::names(tree);
+        for (i, (contact, _)) in contacts.iter().enumerate() {
+            add(contact, Symbol::Contact(i));
         }
         for name in &tree.broken {
             names.symbols.entry(name.text.clone()).or_insert((Symbol::Broken, Some(name.span)));
         }
-        names.collisions(tree, diagnostics);
+        names.collisions(tree, &contacts, diagnostics);
         names
     }
 
@@ -160,9 +167,9 @@ impl Names {
     }
 
     /// Routines of the generated code are named after these, in snake case.
-    fn collisions(&self, tree: &Tree, diagnostics: &mut Vec<Diagnostic>) {
+    fn collisions(&self, tree: &Tree, contacts: &[(Name, usize)], diagnostics: &mut Vec<Diagnostic>) {
         let kinds: [(&str, Vec<&Name>); 4] = [
-            ("contact", tree.contacts.iter().map(|c| &c.name).collect()),
+            ("contact", contacts.iter().map(|(name, _)| name).collect()),
             ("point", tree.points.iter().map(|p| &p.name).collect()),
             ("frame", tree.frames.iter().map(|f| &f.name).collect()),
             ("body", tree.bodies.iter().chain(&tree.particles).map(|b| &b.name).collect()),

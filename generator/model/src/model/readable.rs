@@ -14,6 +14,8 @@ pub struct Readable {
     pub masses: Vec<bool>,
     /// each body and particle as a whole
     pub bodies: Vec<bool>,
+    /// each shape
+    pub shapes: Vec<bool>,
     /// each contact
     pub contacts: Vec<bool>,
 }

@@ -60,11 +60,12 @@ impl Parser<'_> {
                 let value = self.expression()?;
                 self.tree.velocities.push(Velocity { point, value });
             }
-            Bodies | Particles | Contacts => {
+            Bodies | Particles | Shapes | Contacts => {
                 let record = self.record(docs)?;
                 match section {
                     Bodies => self.tree.bodies.push(record),
                     Particles => self.tree.particles.push(record),
+                    Shapes => self.tree.shapes.push(record),
                     _ => self.tree.contacts.push(record),
                 }
             }
@@ -283,7 +284,26 @@ impl Parser<'_> {
         Ok(fields)
     }
 
+    /// `Foot on Floor`, `Ball in Bowl`: two shapes in place of a field.
+    fn pair(&mut self) -> Option<Field> {
+        let word = self.peek_at(1).filter(|word| word.is_word("on") || word.is_word("in"))?;
+        let is_name = |ahead| self.peek_at(ahead).is_some_and(|token| token.kind == TokenKind::Name);
+        if !is_name(0) || !is_name(2) {
+            return None;
+        }
+        let word = Name { text: word.text.clone(), span: word.span };
+        let first = self.take_name()?;
+        self.at += 1;
+        let second = self.take_name()?;
+        let value = Expr { kind: ExprKind::Name(first.text), span: first.span };
+        let notes = vec![Note { word: word.clone(), name: Some(second) }];
+        Some(Field { name: word, value, notes, fields: None })
+    }
+
     fn field(&mut self) -> Result<Field, Lost> {
+        if let Some(pair) = self.pair() {
+            return Ok(pair);
+        }
         let name = self.name("the name of a field")?;
         if self.is_sign('=') {
             let help = format!("fields are written `{}: ..`", name.text);

@@ -10,7 +10,7 @@ impl Parser<'_> {
     pub(super) fn entries(&mut self, section: Section) {
         use Section::*;
         let separator = match section {
-            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => ',',
+            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes | Contacts => ',',
             _ => ';',
         };
         let nesting = self.nesting();
@@ -91,7 +91,7 @@ impl Parser<'_> {
             Kinematics => tree.kinematics.last_mut().map(|entry| &mut entry.right),
             Constraints => tree.constraints.last_mut().map(|entry| &mut entry.right),
             Configuration => tree.configuration.last_mut().map(|entry| &mut entry.right),
-            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => None,
+            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes | Contacts => None,
         };
         if let Some(value) = value {
             value.kind = ExprKind::Error;
@@ -186,7 +186,7 @@ impl Parser<'_> {
         let begins = |kind| match section {
             Parameters | Inputs | Coordinates | Speeds | Dependent => kind == TokenKind::Sign(':'),
             Definitions | Frames | Points | Velocities => kind == TokenKind::Sign('='),
-            Bodies | Particles | Contacts => kind == TokenKind::Open('{'),
+            Bodies | Particles | Shapes | Contacts => kind == TokenKind::Open('{'),
             _ => false,
         };
         let [Some(word), Some(name), Some(sign)] = [0, 1, 2].map(|ahead| self.peek_at(ahead)) else { return };

@@ -27,6 +27,7 @@ pub enum Section {
     Velocities,
     Bodies,
     Particles,
+    Shapes,
     Loads,
     Kinematics,
     Constraints,
@@ -36,7 +37,7 @@ pub enum Section {
 
 impl Section {
     /// All, in order.
-    pub const ALL: [Section; 17] = [
+    pub const ALL: [Section; 18] = [
         Section::Parameters,
         Section::Inputs,
         Section::Coordinates,
@@ -49,6 +50,7 @@ impl Section {
         Section::Velocities,
         Section::Bodies,
         Section::Particles,
+        Section::Shapes,
         Section::Loads,
         Section::Kinematics,
         Section::Constraints,
@@ -71,6 +73,7 @@ impl Section {
             Section::Velocities => "velocities",
             Section::Bodies => "bodies",
             Section::Particles => "particles",
+            Section::Shapes => "shapes",
             Section::Loads => "loads",
             Section::Kinematics => "kinematics",
             Section::Constraints => "constraints",
@@ -116,6 +119,8 @@ pub struct Tree {
     pub bodies: Vec<Record>,
     /// particles
     pub particles: Vec<Record>,
+    /// shapes
+    pub shapes: Vec<Record>,
     /// loads
     pub loads: Vec<Load>,
     /// kinematical equations
@@ -237,7 +242,8 @@ pub struct Field {
     pub name: Name,
     /// value
     pub value: Expr,
-    /// what `velocity` before the value, or `in`, `about`, `of` after it say
+    /// what `velocity` before the value, or `in`, `about`, `of` after it say; of a pair of shapes, `Foot on
+    /// Floor`, the second: the name of the field is then `on` or `in`, and its value the first
     pub notes: Vec<Note>,
     /// the fields of a value in braces, in place of an expression
     pub fields: Option<Vec<Field>>,
@@ -246,7 +252,7 @@ pub struct Field {
 /// A word and a name beside the value of a field.
 #[derive(Clone, Debug)]
 pub struct Note {
-    /// `velocity`, `in`, `about` or `of`
+    /// `velocity`, `in`, `about`, `of` or `on`
     pub word: Name,
     /// what follows it; absent for `velocity`
     pub name: Option<Name>,

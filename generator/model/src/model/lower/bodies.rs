@@ -14,7 +14,10 @@ impl Lowering<'_> {
         let tree = self.tree;
         for record in &tree.bodies {
             let before = self.mistakes();
-            let read = self.body(record).is_some();
+            let read = match super::shapes::shape_field(record) {
+                Some(_) => self.body_of_shape(record).is_some(),
+                None => self.body(record).is_some(),
+            };
             self.readable.bodies.push(read && self.mistakes() == before);
         }
         for record in &tree.particles {

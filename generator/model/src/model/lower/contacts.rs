@@ -2,6 +2,7 @@
 
 use super::super::mechanism::{Against, BodyId, Contact, FrameId, PointId, Vector};
 use super::super::names::Symbol;
+use super::super::pairs;
 use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
@@ -11,7 +12,13 @@ use crate::words;
 impl Lowering<'_> {
     pub(super) fn contacts(&mut self) {
         let tree = self.tree;
-        for record in &tree.contacts {
+        let names = pairs::names(tree);
+        for (i, record) in tree.contacts.iter().enumerate() {
+            if let Some(pair) = pairs::pair(record) {
+                let own = names.iter().filter(|(_, of)| *of == i).map(|(name, _)| name);
+                self.contacts_of_shapes(record, pair, &own.collect::<Vec<_>>());
+                continue;
+            }
             let before = self.mistakes();
             let read = self.contact(record).is_some();
             self.readable.contacts.push(read && self.mistakes() == before);
@@ -88,6 +95,7 @@ impl Lowering<'_> {
             gap_span,
             surface,
             law: law.unwrap_or_default(),
+            shapes: None,
             span: record.name.span,
         });
         read.then_some(())

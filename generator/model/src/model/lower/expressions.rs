@@ -4,7 +4,7 @@ use num_bigint::BigInt;
 use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
-use super::super::mechanism::{CoordinateId, DefinitionId, Scalar, Vector};
+use super::super::mechanism::{CoordinateId, DefinitionId, Height, Scalar, Vector};
 use super::super::names::Symbol;
 use super::super::symbols::Value;
 use super::super::typed::{Traits, Typed, TypedValue};
@@ -100,6 +100,10 @@ impl Lowering<'_> {
 
     fn name(&mut self, name: &Name) -> Typed {
         let span = name.span;
+        if let Some(place) = ["x", "y"].iter().take(self.along_surface).position(|axis| *axis == name.text) {
+            let value = Scalar::Definition(Height::PLACES[place]);
+            return Typed::scalar(value, Some(Dimension::of(1, 0, 0)), Traits::default(), span);
+        }
         let constant_only = self.constant_only;
         let scalar = |s: Symbol| {
             use Symbol::*;
@@ -139,7 +143,11 @@ impl Lowering<'_> {
                     Typed { value, span, traits: known.traits.seen_from(span), ..known.clone() }
                 }
             },
-            Symbol::Frame(_) | Symbol::Point(_) | Symbol::Body(_) | Symbol::Contact(_) => {
+            Symbol::Frame(_)
+            | Symbol::Point(_)
+            | Symbol::Body(_)
+            | Symbol::Contact(_)
+            | Symbol::Shape(_) => {
                 let help = match symbol {
                     Symbol::Frame(_) => format!("its axes are `{0}.x`, `{0}.y` and `{0}.z`", name.text),
                     Symbol::Point(_) => format!("its position from O is `position({})`", name.text),

@@ -20,6 +20,7 @@ mod quantities;
 mod rates;
 mod requirements;
 mod resolve;
+mod shapes;
 mod sums;
 mod surfaces;
 mod table;
@@ -74,6 +75,8 @@ pub fn lower(tree: &Tree, diagnostics: Vec<Diagnostic>) -> Lowered {
     // what is wrong with these does not touch the motion
     let motion = lowering.balances.incomplete;
     lowering.bodies();
+    lowering.shapes();
+    lowering.masses_of_shapes();
     lowering.loads();
     lowering.balances.incomplete = motion;
     lowering.equations();
@@ -162,6 +165,8 @@ pub(super) struct Lowering<'a> {
     pub points: Vec<PointFacts>,
     /// only numbers and functions are allowed
     pub constant_only: bool,
+    /// so many of `x` and `y` stand for a place along a surface
+    pub along_surface: usize,
     /// what is found out about dimensions
     pub(in crate::model::lower) balances: Balances,
     /// what of the mechanism could be read
@@ -187,6 +192,7 @@ impl<'a> Lowering<'a> {
             determining_constraints: None,
             configuration: Vec::new(),
             contacts: Vec::new(),
+            shapes: Vec::new(),
         };
         Lowering {
             tree,
@@ -205,6 +211,7 @@ impl<'a> Lowering<'a> {
             frames: vec![FrameFacts::default(); tree.frames.len() + 1],
             points: vec![PointFacts::default(); tree.points.len() + 1],
             constant_only: false,
+            along_surface: 0,
             balances: Balances::default(),
             readable: Readable::default(),
         }

@@ -49,7 +49,7 @@ impl Lowering<'_> {
     }
 
     /// `Q + vector`: the point and the vector.
-    fn offset(&mut self, value: &Expr) -> Option<(PointId, Vector, Traits)> {
+    pub(super) fn offset(&mut self, value: &Expr) -> Option<(PointId, Vector, Traits)> {
         let single = [(false, value.clone())];
         let terms: &[(bool, Expr)] = match &value.kind {
             ExprKind::Sum(terms) => terms,

@@ -37,7 +37,8 @@ impl Lowering<'_> {
             Symbol::Frame(i) => i.checked_sub(1).and_then(|i| tree.frames.get(i)).map(|frame| &frame.docs),
             Symbol::Point(i) => i.checked_sub(1).and_then(|i| tree.points.get(i)).map(|point| &point.docs),
             Symbol::Body(i) => tree.bodies.iter().chain(&tree.particles).nth(i).map(|body| &body.docs),
-            Symbol::Contact(i) => tree.contacts.get(i).map(|contact| &contact.docs),
+            Symbol::Contact(i) => self.out.contacts.get(i).map(|contact| &contact.docs),
+            Symbol::Shape(i) => tree.shapes.get(i).map(|shape| &shape.docs),
             Symbol::Time | Symbol::Pi | Symbol::Broken => None,
         };
         docs.map_or("", String::as_str)

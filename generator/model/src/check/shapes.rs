@@ -1,0 +1,164 @@
+//! Checks shapes by numbers: whether they move with what they are said to be of, their axes, their sizes, and
+//! the mass centres of the bodies that they make.
+
+use super::bodies::number;
+use super::states::{Seen, at_rest};
+use crate::diagnostics::{Diagnostic, codes};
+use crate::model::mechanism::*;
+use crate::numeric::hyper_dual::HyperDual;
+use crate::numeric::views::{cross3, norm3, sub3};
+use crate::numeric::{Failure, Level, State, Views};
+
+/// A place or axis that leaves its frame by this share of its velocity is not fixed in it.
+const SLIP: f64 = 1e-9;
+
+/// What is wrong with shapes, each with the number of the shape.
+pub fn shapes(m: &Mechanism, state: Option<&State>, seen: &[Seen<'_>]) -> Vec<(ShapeId, Diagnostic)> {
+    let mut out = Vec::new();
+    for (i, shape) in m.shapes.iter().enumerate() {
+        let found = state
+            .and_then(|state| impossible_size(m, state, shape))
+            .or_else(|| stranger(m, shape, seen))
+            .or_else(|| long_axis(m, shape, seen))
+            .or_else(|| turning_axis(m, shape, seen));
+        out.extend(found.map(|found| (ShapeId(i), found)));
+    }
+    out
+}
+
+/// A length or density that is not positive with the values of the model.
+fn impossible_size(m: &Mechanism, state: &State, shape: &Shape) -> Option<Diagnostic> {
+    let values = at_rest(m, state);
+    let sizes = shape.sizes.iter().zip(&shape.size_spans).zip(shape.kind.sizes());
+    for ((size, span), name) in sizes {
+        let Ok(value) = values.scalar(size, Level::Geometry) else { continue };
+        if value.re <= 0.0 {
+            let message = format!("the {name} of `{}` is {} m", shape.name, number(value.re));
+            let help = "the dimensions of a shape are positive";
+            return Some(Diagnostic::new(codes::SHAPE, *span, message).help(help));
+        }
+    }
+    let density = values.scalar(shape.density.as_ref()?, Level::Geometry).ok()?;
+    (density.re <= 0.0).then(|| {
+        let message = format!("the density of `{}` is {} kg/m^3", shape.name, number(density.re));
+        Diagnostic::new(codes::SHAPE, shape.span, message).help("the density of a shape is positive")
+    })
+}
+
+/// Whether two vectors are the same at every state, beside the size of the first; there must be a state.
+fn always(
+    seen: &[Seen<'_>],
+    pair: impl Fn(&Views<'_>) -> Result<Option<[Vec<[f64; 3]>; 2]>, Failure>,
+) -> Option<bool> {
+    let mut holds = None;
+    for seen in seen {
+        let Some([a, b]) = pair(&seen.views).ok()? else { return None };
+        let size = a.iter().chain(&b).fold(0.0_f64, |size, v| size.max(norm3(*v)));
+        let same = a.iter().zip(&b).all(|(a, b)| norm3(sub3(*a, *b)) <= SLIP * size.max(1e-9));
+        holds = Some(holds.unwrap_or(true) && same);
+    }
+    holds
+}
+
+/// A place that does not move with the frame of its shape.
+fn stranger(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagnostic> {
+    let home = match shape.body {
+        Some(body) => m.bodies[body.0].centre,
+        None if shape.frame == FrameId::N => PointId::O,
+        // no point tells how a frame without a body moves
+        None => shape.at.point,
+    };
+    for anchor in std::iter::once(&shape.at).chain(&shape.vertices) {
+        let moves = |views: &Views<'_>| {
+            if !views.now.same_root(anchor.point, home) {
+                return Ok(None);
+            }
+            let place = |values: &crate::numeric::Evaluator<'_>| {
+                let by = values.vector(&anchor.by, Level::Geometry)?.map(HyperDual::rate);
+                let at = values.rate_of_position(anchor.point)?;
+                Ok([0, 1, 2].map(|i| at[i] + by[i]))
+            };
+            let matter = |values: &crate::numeric::Evaluator<'_>| {
+                let by = values.vector(&anchor.by, Level::Geometry)?;
+                let (at, from) = (values.position(anchor.point)?, values.position(home)?);
+                let arm = [0, 1, 2].map(|i| (at[i] + by[i] - from[i]).still());
+                let turning = values.angular_velocity(shape.frame)?;
+                let of_home = values.velocity(home)?;
+                let turned = [
+                    turning[1] * arm[2] - turning[2] * arm[1],
+                    turning[2] * arm[0] - turning[0] * arm[2],
+                    turning[0] * arm[1] - turning[1] * arm[0],
+                ];
+                Ok([0, 1, 2].map(|i| of_home[i] + turned[i]))
+            };
+            Ok(Some([views.vector_parts(place)?, views.vector_parts(matter)?]))
+        };
+        if always(seen, moves) == Some(false) {
+            let with = match shape.body {
+                Some(body) => &m.bodies[body.0].name,
+                None => &m.frames[shape.frame.0].name,
+            };
+            let message = format!("`{}` does not move with `{with}`", shape.name);
+            let help = if shape.frame == FrameId::N && shape.body.is_none() {
+                "a shape without `of` is fixed in N: say of which body it is, as in `of: Body`"
+            } else {
+                "place it from a point that moves with it, such as its mass centre, by a vector along its axes"
+            };
+            let place = if shape.vertices.is_empty() { shape.at_span } else { shape.span };
+            return Some(Diagnostic::new(codes::SHAPE, place, message).help(help));
+        }
+    }
+    None
+}
+
+/// An axis that is not a unit vector. Normals of planes in contacts are looked at as normals.
+fn long_axis(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagnostic> {
+    let axis = shape.axis.as_ref()?;
+    let lengths = seen.iter().filter_map(|seen| {
+        let values = at_rest(m, seen.state);
+        let v = values.vector(axis, Level::Geometry).ok()?;
+        Some(norm3(v.map(|c| c.re)))
+    });
+    let off = |length: &f64| length.is_finite() && (length - 1.0).abs() > 1e-9;
+    let length = lengths.collect::<Vec<f64>>().into_iter().find(off)?;
+    let what = if shape.kind.is_flat() { "normal" } else { "axis" };
+    let message = format!("the {what} of `{}` has the length {}, not 1", shape.name, number(length));
+    let help = if length < 1e-12 { "it is zero" } else { "`unit(v)` is the unit vector along v" };
+    Some(Diagnostic::new(codes::SHAPE, shape.axis_span, message).help(help))
+}
+
+/// An axis that turns in the frame of its shape; it may be one about which the shape spins.
+fn turning_axis(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagnostic> {
+    let particle = shape.body.is_some_and(|body| m.bodies[body.0].frame.is_none());
+    let frame = (!particle).then_some(shape.frame)?;
+    let own = shape.axis.clone().map(|axis| vec![axis]);
+    let of_frame = shape.axes.map(|axes| {
+        let axis = |which: usize| {
+            let one = |i| crate::number::Number::integer(i64::from(i == which));
+            Vector::Components(axes, Box::new([0, 1, 2].map(|i| Scalar::Number(one(i)))))
+        };
+        vec![axis(0), axis(1), axis(2)]
+    });
+    for axis in own.into_iter().chain(of_frame).flatten() {
+        let turns = |views: &Views<'_>| {
+            let rate = views.vector_parts(|values| {
+                Ok(values.vector(&axis, Level::Geometry)?.map(HyperDual::rate))
+            })?;
+            let now = views.now.vector(&axis, Level::Geometry)?.map(|c| c.re);
+            let turning = views.vector_parts(|values| values.angular_velocity(frame))?;
+            Ok(Some([rate, turning.into_iter().map(|w| cross3(w, now)).collect()]))
+        };
+        if always(seen, turns) == Some(false) {
+            let what = match (shape.kind.is_flat(), shape.axes) {
+                (true, _) => "the normal",
+                (_, Some(_)) => "the frame of the axes",
+                (_, None) => "the axis",
+            };
+            let with = &m.frames[frame.0].name;
+            let message = format!("{what} of `{}` turns in `{with}`", shape.name);
+            let help = format!("it is fixed in `{with}`, as `{with}.z` is; or the shape is of another frame");
+            return Some(Diagnostic::new(codes::SHAPE, shape.axis_span, message).help(help));
+        }
+    }
+    None
+}

@@ -1,0 +1,39 @@
+//! Explanations of E085 and E086: shapes, and contacts between them.
+
+use super::Explanation;
+use crate::diagnostics::codes::*;
+
+pub(super) const TABLE: &[Explanation] = &[
+    Explanation {
+        code: SHAPE,
+        text: "A shape is one of sphere, capsule, cylinder, cone, disc, torus, ellipsoid, box, polytope, plane, \
+            half_space, surface and curve, with its dimensions: lengths that are positive and depend on \
+            parameters only. It moves with the body or frame after `of`, without which it is fixed in N; its \
+            place `at`, its vertices and its axis must move with that too. Round shapes have an `axis`, which is \
+            a unit vector. A body that takes its mass from a shape needs one with volume and `density`.",
+        wrong: Some(
+            "shapes { Knob { of: Rod, at: P, sphere: -0.1 }, Wall { at: O + l*N.x, plane: -N.x } }\n\
+            contacts { tip { Knob on Wall } }",
+        ),
+        right: Some(
+            "shapes { Knob { of: Rod, at: P, sphere: l/10 }, Wall { at: O + l*N.x, plane: -N.x } }\n\
+            contacts { tip { Knob on Wall } }",
+        ),
+    },
+    Explanation {
+        code: PAIR,
+        text: "Contacts are compiled between pairs of shapes whose nearest points have a closed form: everything \
+            convex on a plane, a sphere on (or in) a sphere, capsule, cylinder or box, and on a disc or torus, \
+            and the vertices of a box or polytope on a surface. What strikes stands first. Edges and faces that \
+            end are not contacts: for two boxes, place spheres at the corners that meet, or state points, \
+            normals and gaps.",
+        wrong: Some(
+            "shapes { Bar { of: Rod, capsule: [l/20, l], axis: B.y }, Post { at: O + l*N.x, box: [l/4, l, l] } }\n\
+            contacts { tip { Bar on Post } }",
+        ),
+        right: Some(
+            "shapes { Knob { of: Rod, at: P, sphere: l/20 }, Post { at: O + l*N.x, box: [l/4, l, l] } }\n\
+            contacts { tip { Knob on Post } }",
+        ),
+    },
+];

@@ -1,0 +1,225 @@
+//! Contact points, normals and gaps of pairs of shapes, in closed form (section 22 of docs/theory.md).
+//!
+//! With the nearest points p_1 and p_2 of the two surfaces and the unit normal n from the second to the first,
+//! the gap is g = n . (p_1 - p_2). The point of a contact is p_1, as a material point of the first shape.
+
+use super::algebra::*;
+use crate::model::mechanism::{Anchor, Kind, Scalar, Shape, Vector};
+use crate::span::Span;
+
+/// Where two shapes touch.
+pub struct Touch {
+    /// the point of the first shape
+    pub point: Anchor,
+    /// from the second to the first
+    pub normal: Vector,
+    /// their distance
+    pub gap: Scalar,
+}
+
+/// All contacts of a pair, in the order of their numbers; `at` is where the pair is stated. Pairs that are not
+/// compiled have none.
+pub fn touches(first: &Shape, inside: bool, second: &Shape, at: Span) -> Vec<Touch> {
+    match (second.kind, inside) {
+        (Kind::Plane | Kind::HalfSpace, _) => on_plane(first, second, at),
+        (Kind::Surface, _) => corners(first).iter().filter_map(|p| on_height(p, second, 2)).collect(),
+        (Kind::Curve, _) => corners(first).iter().filter_map(|p| on_height(p, second, 1)).collect(),
+        (Kind::Box, true) => in_box(first, second),
+        (_, false) => vec![on_solid(first, second, at)],
+        (_, true) => vec![in_solid(first, second, at)],
+    }
+}
+
+/// The axis of a shape that has one.
+fn axis_of(shape: &Shape) -> Vector {
+    shape.axis.clone().unwrap_or(Vector::Zero)
+}
+
+/// The axes of the frame along which a shape lies.
+fn axes_of(shape: &Shape) -> [Vector; 3] {
+    let frame = shape.axes.unwrap_or(shape.frame);
+    [0, 1, 2].map(|i| axis(frame, i))
+}
+
+/// What of a convex shape can be nearest to a plane with the normal n.
+fn on_plane(shape: &Shape, plane: &Shape, at: Span) -> Vec<Touch> {
+    let normal = axis_of(plane);
+    // a point of the shape, deeper than which it reaches by `depth` along -n, at `by` from there
+    let touch = |core: Anchor, by: Vector, depth: Scalar| Touch {
+        gap: less(dot(&core.from(&plane.at), &normal), depth),
+        point: core.plus(by),
+        normal: normal.clone(),
+    };
+    let ball = |centre: Anchor, radius: &Scalar| {
+        touch(centre, opposite(&scaled(radius.clone(), &normal)), radius.clone())
+    };
+    // the lowest point of a circle of radius R about the axis a: along -m with m = n - (n.a) a
+    let rim = |centre: Anchor, radius: &Scalar, tube: Option<&Scalar>| {
+        let a = axis_of(shape);
+        let m = total([normal.clone(), opposite(&scaled(dot(&normal, &a), &a))]);
+        let out = opposite(&scaled(radius.clone(), &unit(&m, at)));
+        let depth = product([radius.clone(), norm(&m)]);
+        match tube {
+            None => touch(centre, out, depth),
+            Some(tube) => {
+                let by = total([out, opposite(&scaled(tube.clone(), &normal))]);
+                touch(centre, by, sum([depth, tube.clone()]))
+            }
+        }
+    };
+    let along = |length: Scalar| scaled(length, &axis_of(shape));
+    let ends = |length: &Scalar| {
+        [along(half(length)), opposite(&along(half(length)))].map(|by| shape.at.plus(by))
+    };
+    match (shape.kind, &shape.sizes[..]) {
+        (Kind::Sphere, [r]) => vec![ball(shape.at.clone(), r)],
+        (Kind::Capsule, [r, l]) => ends(l).map(|end| ball(end, r)).into(),
+        (Kind::Disc, [r]) => vec![rim(shape.at.clone(), r, None)],
+        (Kind::Cylinder, [r, l]) => ends(l).map(|end| rim(end, r, None)).into(),
+        (Kind::Torus, [r, tube]) => vec![rim(shape.at.clone(), r, Some(tube))],
+        (Kind::Cone, [r, h]) => {
+            let apex = shape.at.plus(along(h.clone()));
+            vec![rim(shape.at.clone(), r, None), touch(apex, Vector::Zero, integer(0))]
+        }
+        (Kind::Ellipsoid, sizes) => {
+            // the support point -A n/sqrt(n.A n), where A has the squares of the semi-axes
+            let axes = axes_of(shape);
+            let parts = axes.iter().zip(sizes).map(|(e, s)| {
+                let along = dot(&normal, e);
+                (scaled(product([square(s.clone()), along.clone()]), e), product([s.clone(), along]))
+            });
+            let (terms, squares): (Vec<Vector>, Vec<Scalar>) =
+                parts.map(|(term, share)| (term, square(share))).unzip();
+            let depth = root(Scalar::Add(squares));
+            let by = opposite(&scaled(quotient(integer(1), depth.clone(), at), &total(terms)));
+            vec![touch(shape.at.clone(), by, depth)]
+        }
+        _ => corners(shape).into_iter().map(|p| touch(p, Vector::Zero, integer(0))).collect(),
+    }
+}
+
+/// The vertices of a box or polytope.
+fn corners(shape: &Shape) -> Vec<Anchor> {
+    if shape.kind != Kind::Box {
+        return shape.vertices.clone();
+    }
+    let axes = axes_of(shape);
+    let corner = |number: usize| {
+        let sides = axes.iter().zip(&shape.sizes).enumerate().map(|(i, (e, size))| {
+            let side = scaled(half(size), e);
+            if number >> i & 1 == 0 { side } else { opposite(&side) }
+        });
+        shape.at.plus(total(sides))
+    };
+    (0..8).map(corner).collect()
+}
+
+/// The point of a solid that is nearest to a place outside of it, from the solid's own place; d is the place.
+fn nearest(solid: &Shape, d: &Vector, at: Span) -> Vector {
+    let a = axis_of(solid);
+    match (solid.kind, &solid.sizes[..]) {
+        (Kind::Capsule, [_, l]) => scaled(between_bounds(dot(d, &a), &half(l)), &a),
+        (Kind::Cylinder, [r, l]) => {
+            let along = scaled(between_bounds(dot(d, &a), &half(l)), &a);
+            let m = total([d.clone(), opposite(&scaled(dot(d, &a), &a))]);
+            // the squares keep this smooth on the axis
+            let reach = root(greater(dot(&m, &m), square(r.clone())));
+            total([along, scaled(quotient(r.clone(), reach, at), &m)])
+        }
+        (Kind::Disc | Kind::Torus, [r, ..]) => {
+            let m = total([d.clone(), opposite(&scaled(dot(d, &a), &a))]);
+            scaled(r.clone(), &unit(&m, at))
+        }
+        (Kind::Box, sizes) => {
+            let sides = axes_of(solid);
+            let part = |(e, size): (&Vector, &Scalar)| scaled(between_bounds(dot(d, e), &half(size)), e);
+            total(sides.iter().zip(sizes).map(part))
+        }
+        _ => Vector::Zero,
+    }
+}
+
+/// By how much a solid is thicker than the points that [`nearest`] gives.
+fn thickness(solid: &Shape) -> Option<Scalar> {
+    match solid.kind {
+        Kind::Sphere | Kind::Capsule => solid.sizes.first().cloned(),
+        Kind::Torus => solid.sizes.get(1).cloned(),
+        _ => None,
+    }
+}
+
+/// A ball on a solid: the normal is along w, from the nearest point of the solid to the centre of the ball.
+fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
+    let d = ball.at.from(&solid.at);
+    let w = match nearest(solid, &d, at) {
+        Vector::Zero => d,
+        nearest => total([d, opposite(&nearest)]),
+    };
+    let (radius, normal) = (radius_of(ball), unit(&w, at));
+    let away = match thickness(solid) {
+        None => radius.clone(),
+        Some(thickness) => sum([radius.clone(), thickness]),
+    };
+    Touch {
+        point: ball.at.plus(opposite(&scaled(radius, &normal))),
+        gap: less(norm(&w), away),
+        normal,
+    }
+}
+
+/// A ball within a sphere, a capsule or a cylinder without ends: w leads from the middle to the ball's centre.
+fn in_solid(ball: &Shape, hollow: &Shape, at: Span) -> Touch {
+    let d = ball.at.from(&hollow.at);
+    let a = axis_of(hollow);
+    let w = match hollow.kind {
+        Kind::Cylinder => total([d.clone(), opposite(&scaled(dot(&d, &a), &a))]),
+        Kind::Capsule => total([d.clone(), opposite(&nearest(hollow, &d, at))]),
+        _ => d,
+    };
+    let (radius, out) = (radius_of(ball), unit(&w, at));
+    Touch {
+        point: ball.at.plus(scaled(radius.clone(), &out)),
+        gap: less(less(radius_of(hollow), radius), norm(&w)),
+        normal: opposite(&out),
+    }
+}
+
+/// A ball within a box: six walls.
+fn in_box(ball: &Shape, hollow: &Shape) -> Vec<Touch> {
+    let d = ball.at.from(&hollow.at);
+    let radius = radius_of(ball);
+    let mut out = Vec::new();
+    for (e, size) in axes_of(hollow).iter().zip(&hollow.sizes) {
+        for inward in [opposite(e), e.clone()] {
+            let gap = less(sum([half(size), dot(&d, &inward)]), radius.clone());
+            let point = ball.at.plus(opposite(&scaled(radius.clone(), &inward)));
+            out.push(Touch { point, normal: inward, gap });
+        }
+    }
+    out
+}
+
+/// A point on a surface z = h(x, y), or, with one slope, on a curve y = h(x). The gap
+/// (z - h)/sqrt(1 + |grad h|^2) vanishes on the surface, and there its rate is n . v.
+fn on_height(point: &Anchor, surface: &Shape, slopes: usize) -> Option<Touch> {
+    let height = surface.height.as_ref()?;
+    let [x, y, z] = axes_of(surface);
+    let d = point.from(&surface.at);
+    let (up, across) = if slopes == 2 { (z, vec![x, y]) } else { (y, vec![x]) };
+    let mut places: Vec<Scalar> = across.iter().map(|e| dot(&d, e)).collect();
+    places.resize(2, integer(0));
+    let places: [Scalar; 2] = places.try_into().ok()?;
+    let slope = |i: usize| height.slopes[i].at(&places);
+    let steep = (0..slopes).map(|i| square(slope(i)));
+    let length = root(Scalar::Add(std::iter::once(integer(1)).chain(steep).collect()));
+    let terms = across.iter().enumerate().map(|(i, e)| opposite(&scaled(slope(i), e)));
+    let steepest = total(std::iter::once(up.clone()).chain(terms));
+    let at = surface.span;
+    let gap = quotient(less(dot(&d, &up), height.value.at(&places)), length.clone(), at);
+    let normal = scaled(quotient(integer(1), length, at), &steepest);
+    Some(Touch { point: point.clone(), normal, gap })
+}
+
+fn radius_of(round: &Shape) -> Scalar {
+    round.sizes.first().cloned().unwrap_or_else(|| integer(0))
+}
