@@ -164,7 +164,8 @@ fn compare(name: &str, m: &Mechanism, looks: impl Fn(&[Said], &Pose) -> Option<f
             said(m, &state)
         };
         let h = 1e-3;
-        let around: Option<Vec<Vec<Said>>> = [-2.0, -1.0, 1.0, 2.0].into_iter().map(|k| moved(k * h)).collect();
+        let around: Option<Vec<Vec<Said>>> =
+            [-2.0, -1.0, 1.0, 2.0].into_iter().map(|k| moved(k * h)).collect();
         let Some(around) = around else { continue };
         let coordinates = state.coordinates.iter().zip(&direction);
         let coordinates = coordinates.map(|(q, d)| HyperDual { re: *q, e1: *d, ..HyperDual::ZERO }).collect();
@@ -188,7 +189,9 @@ fn compare(name: &str, m: &Mechanism, looks: impl Fn(&[Said], &Pose) -> Option<f
             }
         }
     }
-    println!("{name}: {worst:.1e} beside nearest points, {worst_rate:.1e} of rates, {worst_difference:.1e} beside differences");
+    println!(
+        "{name}: {worst:.1e} beside nearest points, {worst_rate:.1e} of rates, {worst_difference:.1e} beside differences"
+    );
     assert!(worst < 1e-12, "{name}: {worst:e}");
     assert!(worst_rate < 1e-12, "{name}: {worst_rate:e}");
     assert!(worst_difference < 1e-6, "{name}: {worst_difference:e}");
@@ -219,7 +222,10 @@ fn off_circle(p: V, c: V, a: V, radius: f64, n: V) -> f64 {
 
 #[test]
 fn spheres_and_capsules_on_planes() {
-    let m = model(&format!("S {{ of: A, at: G + k*E.x, sphere: 0.2*k }}, {PLANE}").replace("0.2*k", "2*k"), "S on P");
+    let m = model(
+        &format!("S {{ of: A, at: G + k*E.x, sphere: 0.2*k }}, {PLANE}").replace("0.2*k", "2*k"),
+        "S on P",
+    );
     compare("sphere on plane", &m, |said, pose| {
         let [one] = said else { panic!() };
         let c = plus(pose.at[0], pose.axes[0][0], 0.1);
@@ -231,9 +237,8 @@ fn spheres_and_capsules_on_planes() {
         let [a, b] = said else { panic!() };
         let n = plane(pose).1;
         let ends = [0.3, -0.3].map(|s| plus(pose.at[0], pose.axes[0][2], s));
-        let off = [(a, ends[0]), (b, ends[1])].map(|(one, end)| {
-            off_plane(one, pose).max(norm3(sub3(one.point, plus(end, n, -0.2))))
-        });
+        let off = [(a, ends[0]), (b, ends[1])]
+            .map(|(one, end)| off_plane(one, pose).max(norm3(sub3(one.point, plus(end, n, -0.2)))));
         Some(off[0].max(off[1]))
     });
 }
@@ -259,8 +264,9 @@ fn rims_on_planes() {
     compare("cylinder on plane", &m, |said, pose| {
         let [a, b] = said else { panic!() };
         let (n, axis) = (plane(pose).1, pose.axes[0][2]);
-        let rims = [(a, 0.3), (b, -0.3)]
-            .map(|(one, s)| off_circle(one.point, plus(pose.at[0], axis, s), axis, 0.2, n).max(off_plane(one, pose)));
+        let rims = [(a, 0.3), (b, -0.3)].map(|(one, s)| {
+            off_circle(one.point, plus(pose.at[0], axis, s), axis, 0.2, n).max(off_plane(one, pose))
+        });
         (!flat(pose)).then(|| rims[0].max(rims[1]))
     });
     let m = model(&format!("S {{ of: A, cone: [2*k, 5*k], axis: E.z }}, {PLANE}"), "S on P");
@@ -305,7 +311,8 @@ fn ellipsoids_and_corners_on_planes() {
         assert!(left.is_empty());
         Some(worst)
     });
-    let m = model(&format!("S {{ of: A, polytope: [G, G + k*E.x, G + 2*k*E.y - k*E.z] }}, {PLANE}"), "S on P");
+    let m =
+        model(&format!("S {{ of: A, polytope: [G, G + k*E.x, G + 2*k*E.y - k*E.z] }}, {PLANE}"), "S on P");
     compare("polytope on plane", &m, |said, pose| {
         let at = [[0.0; 3], [0.1, 0.0, 0.0], [0.0, 0.2, -0.1]];
         let off = said.iter().zip(at).map(|(one, v)| {
@@ -322,7 +329,7 @@ fn projection(kind: Kind, c: V) -> Option<(V, f64)> {
         Kind::Sphere => Some(([0.0; 3], 0.4)),
         Kind::Capsule => {
             // above, beside or below the segment
-            let z = if c[2] > 0.3 { 0.3 } else if c[2] < -0.3 { -0.3 } else { c[2] };
+            let z = c[2].clamp(-0.3, 0.3);
             Some(([0.0, 0.0, z], 0.2))
         }
         Kind::Cylinder => {
@@ -441,7 +448,9 @@ fn spheres_within_solids() {
 /// rate of the gap is n . v.
 #[test]
 fn vertices_on_heights() {
-    for (shape, planar) in [("surface: k*sin(3*x/k/10)*cos(2*y/k/10)", false), ("curve: k*sin(3*x/k/10)^2", true)] {
+    for (shape, planar) in
+        [("surface: k*sin(3*x/k/10)*cos(2*y/k/10)", false), ("curve: k*sin(3*x/k/10)^2", true)]
+    {
         let m = model(&format!("S {{ of: A, polytope: [G + k*E.x] }}, W {{ of: B, {shape} }}"), "S on W");
         let height = |x: f64, y: f64| {
             if planar { 0.1 * (3.0 * x).sin().powi(2) } else { 0.1 * (3.0 * x).sin() * (2.0 * y).cos() }

@@ -1,7 +1,7 @@
-//! A ball, a disc and a celt on a contact that sticks move as those that are constrained to roll.
+//! A ball, a disc, a torus and an ellipsoid on a contact that sticks move as those that are constrained to roll.
 //!
-//! The models of `models/` roll by constraints; those of `tests/models` are free bodies with a contact, whose
-//! force is found by its mode.
+//! The models of `models/`, and `rolling_torus`, roll by constraints; the others of `tests/models` are free bodies with
+//! a contact of two shapes, whose force is found by its mode.
 
 use crate::common::random::Random;
 use hodograph::nalgebra::Vector3;
@@ -13,8 +13,10 @@ mod emitted {
     hodograph::mechanism!("models/ball_on_contact.mech");
     hodograph::mechanism!("models/disc_on_contact.mech");
     hodograph::mechanism!("models/rattleback_on_contact.mech");
+    hodograph::mechanism!("models/rolling_torus.mech");
+    hodograph::mechanism!("models/torus_on_contact.mech");
 }
-use emitted::{ball_on_contact, disc_on_contact, rattleback_on_contact};
+use emitted::{ball_on_contact, disc_on_contact, rattleback_on_contact, rolling_torus, torus_on_contact};
 
 const ROUGH: Surface<f64> = Surface { mu: 2.0, e: 0.0, law: Law::Poisson };
 
@@ -111,7 +113,37 @@ fn a_disc_rolls_on_a_contact() {
         met.note(&kept.margins, selected.mode, selected.selection, apart(&found, &expected));
     }
     println!("{met:?}");
-    assert!(met.worst < 1e-10 && met.holds > 200, "{met:?}");
+    assert!(met.worst < 1e-12 && met.holds > 200, "{met:?}");
+}
+
+#[test]
+fn a_torus_rolls_on_a_contact() {
+    let (rolling, free) =
+        (rolling_torus::RollingTorus::<f64>::default(), torus_on_contact::TorusOnContact::default());
+    let mut random = Random::new("torus");
+    let mut met = Met::default();
+    for _ in 0..400 {
+        let [q1, q3, q4, q5] = [(); 4].map(|()| 3.0 * random.number());
+        let q2 = 1.2 * random.number();
+        let [u1, u2, u3] = [(); 3].map(|()| 3.0 * random.number());
+        let q = rolling_torus::Coordinates { q1, q2, q3, q4, q5 };
+        let u = rolling_torus::Speeds { u1, u2, u3 };
+        let rates = rolling.accelerations(&q, &u).unwrap();
+        let v = rolling.velocity_g(&q, &u).unwrap();
+        let a = rolling.acceleration_g(&q, &u, &rates).unwrap();
+        let expected = [rates.u1, rates.u2, rates.u3, a.x, a.y, a.z];
+
+        let g = rolling.position_g(&q).unwrap();
+        let q = torus_on_contact::Coordinates { q1, q2, q3, q4: g.x, q5: g.y, q6: g.z };
+        let u = torus_on_contact::Speeds { u1, u2, u3, u4: v.x, u5: v.y, u6: v.z };
+        assert!(free.gap_ground(&q).unwrap().abs() < 1e-15);
+        let kept = free.contact_force_ground(&q, &u, ContactMode::Stick, &ROUGH).unwrap();
+        let found: [f64; 6] = kept.accelerations.into();
+        let selected = free.contact_mode_ground(&q, &u, &ROUGH).unwrap();
+        met.note(&kept.margins, selected.mode, selected.selection, apart(&found, &expected));
+    }
+    println!("{met:?}");
+    assert!(met.worst < 1e-12 && met.holds > 150, "{met:?}");
 }
 
 #[test]
@@ -147,7 +179,7 @@ fn a_rattleback_rolls_on_a_contact() {
         met.note(&kept.margins, selected.mode, selected.selection, apart(&found, &expected));
     }
     println!("{met:?}");
-    assert!(met.worst < 1e-10 && met.holds > 100, "{met:?}");
+    assert!(met.worst < 1e-12 && met.holds > 100, "{met:?}");
 }
 
 /// Mode and force in single precision, and with derivatives by the lean of the disc: against differences of

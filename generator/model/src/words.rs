@@ -229,7 +229,8 @@ mod tests {
         let sections: Vec<&str> = Section::ALL.iter().map(|section| section.word()).collect();
         assert_eq!(SECTIONS.iter().map(|word| word.text).collect::<Vec<_>>(), sections);
         let kinds = crate::model::mechanism::Kind::ALL.map(|kind| kind.word());
-        let records = [&BODY[..], &BODY_OF_SHAPE, &SHAPE, &kinds, &PARTICLE, &CONTACT, &SURFACE, &SPRING, &TORSION];
+        let records =
+            [&BODY[..], &BODY_OF_SHAPE, &SHAPE, &kinds, &PARTICLE, &CONTACT, &SURFACE, &SPRING, &TORSION];
         for field in records.into_iter().flatten() {
             assert!(look(FIELDS, field).is_some(), "{field}");
         }

@@ -174,9 +174,12 @@ fn begins_inside(m: &Mechanism, contact: &Contact, gap: &Scalar) -> Option<(f64,
         let gap = super::bodies::number(value);
         if let Some(pair) = contact.shapes {
             let [a, b] = pair.map(|id| &m.shapes[id.0].name);
-            let message =
-                format!("with the initial values `{a}` and `{b}` overlap by {} m", super::bodies::number(-value));
-            let help = format!("start where they are apart; `touching({})` starts with this gap 0", contact.name);
+            let message = format!(
+                "with the initial values `{a}` and `{b}` overlap by {} m",
+                super::bodies::number(-value)
+            );
+            let help =
+                format!("start where they are apart; `touching({})` starts with this gap 0", contact.name);
             let found = Diagnostic::new(codes::BEGINS_INSIDE, contact.gap_span, message);
             return Some((value, found.help(help)));
         }

@@ -45,16 +45,23 @@ fn impossible_size(m: &Mechanism, state: &State, shape: &Shape) -> Option<Diagno
     })
 }
 
-/// Whether two vectors are the same at every state, beside the size of the first; there must be a state.
-fn always(
-    seen: &[Seen<'_>],
-    pair: impl Fn(&Views<'_>) -> Result<Option<[Vec<[f64; 3]>; 2]>, Failure>,
-) -> Option<bool> {
+/// The parts of two velocities, and the size of the velocities of which they are sums.
+struct Compared {
+    parts: [Vec<[f64; 3]>; 2],
+    size: f64,
+}
+
+/// The greatest of the lengths.
+fn greatest(vectors: &[[f64; 3]]) -> f64 {
+    vectors.iter().fold(0.0_f64, |size, v| size.max(norm3(*v)))
+}
+
+/// Whether two velocities are the same at every state; `None` where no state tells.
+fn always(seen: &[Seen<'_>], pair: impl Fn(&Views<'_>) -> Result<Option<Compared>, Failure>) -> Option<bool> {
     let mut holds = None;
     for seen in seen {
-        let Some([a, b]) = pair(&seen.views).ok()? else { return None };
-        let size = a.iter().chain(&b).fold(0.0_f64, |size, v| size.max(norm3(*v)));
-        let same = a.iter().zip(&b).all(|(a, b)| norm3(sub3(*a, *b)) <= SLIP * size.max(1e-9));
+        let Compared { parts: [a, b], size } = pair(&seen.views).ok()??;
+        let same = a.iter().zip(&b).all(|(a, b)| norm3(sub3(*a, *b)) <= SLIP * size);
         holds = Some(holds.unwrap_or(true) && same);
     }
     holds
@@ -91,7 +98,11 @@ fn stranger(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagnosti
                 ];
                 Ok([0, 1, 2].map(|i| of_home[i] + turned[i]))
             };
-            Ok(Some([views.vector_parts(place)?, views.vector_parts(matter)?]))
+            let parts = [views.vector_parts(place)?, views.vector_parts(matter)?];
+            let turning = views.vector_parts(|values| values.angular_velocity(shape.frame))?;
+            let far = norm3(views.now.position(anchor.point)?.map(|c| c.re));
+            let size = greatest(&parts[0]) + greatest(&parts[1]) + far * greatest(&turning);
+            Ok(Some(Compared { parts, size }))
         };
         if always(seen, moves) == Some(false) {
             let with = match shape.body {
@@ -141,12 +152,13 @@ fn turning_axis(m: &Mechanism, shape: &Shape, seen: &[Seen<'_>]) -> Option<Diagn
     });
     for axis in own.into_iter().chain(of_frame).flatten() {
         let turns = |views: &Views<'_>| {
-            let rate = views.vector_parts(|values| {
-                Ok(values.vector(&axis, Level::Geometry)?.map(HyperDual::rate))
-            })?;
+            let rate = views
+                .vector_parts(|values| Ok(values.vector(&axis, Level::Geometry)?.map(HyperDual::rate)))?;
             let now = views.now.vector(&axis, Level::Geometry)?.map(|c| c.re);
             let turning = views.vector_parts(|values| values.angular_velocity(frame))?;
-            Ok(Some([rate, turning.into_iter().map(|w| cross3(w, now)).collect()]))
+            let size = greatest(&rate) + greatest(&turning) * norm3(now);
+            let turned = turning.into_iter().map(|w| cross3(w, now)).collect();
+            Ok(Some(Compared { parts: [rate, turned], size }))
         };
         if always(seen, turns) == Some(false) {
             let what = match (shape.kind.is_flat(), shape.axes) {

@@ -52,7 +52,13 @@ pub fn explanation(code: Code) -> Option<&'static Explanation> {
 }
 
 fn tables() -> impl Iterator<Item = &'static Explanation> {
-    syntax::TABLE.iter().chain(names::TABLE).chain(values::TABLE).chain(mechanics::TABLE).chain(shapes::TABLE).chain(silent::TABLE)
+    syntax::TABLE
+        .iter()
+        .chain(names::TABLE)
+        .chain(values::TABLE)
+        .chain(mechanics::TABLE)
+        .chain(shapes::TABLE)
+        .chain(silent::TABLE)
 }
 
 /// The whole model of an example: its sections take the place of those of [`FRAME`]; a model with a head is

@@ -12,7 +12,7 @@ pub(super) const TABLE: &[Explanation] = &[
             place `at`, its vertices and its axis must move with that too. Round shapes have an `axis`, which is \
             a unit vector. A body that takes its mass from a shape needs one with volume and `density`.",
         wrong: Some(
-            "shapes { Knob { of: Rod, at: P, sphere: -0.1 }, Wall { at: O + l*N.x, plane: -N.x } }\n\
+            "shapes { Knob { of: Rod, at: P, sphere: -l/10 }, Wall { at: O + l*N.x, plane: -N.x } }\n\
             contacts { tip { Knob on Wall } }",
         ),
         right: Some(

@@ -65,7 +65,8 @@ pub fn contacts((striking, vertices): (Kind, usize), inside: bool, struck: Kind)
 pub fn possible(striking: Kind) -> Vec<String> {
     let mut out = Vec::new();
     for (word, inside) in [("on", false), ("in", true)] {
-        let struck = Kind::ALL.into_iter().filter(|struck| contacts((striking, 1), inside, *struck).is_some());
+        let struck =
+            Kind::ALL.into_iter().filter(|struck| contacts((striking, 1), inside, *struck).is_some());
         let list: Vec<String> = struck.map(Kind::with_article).collect();
         if !list.is_empty() {
             out.push(format!("{word} {}", list.join(", ")));

@@ -10,7 +10,8 @@ impl Parser<'_> {
     pub(super) fn entries(&mut self, section: Section) {
         use Section::*;
         let separator = match section {
-            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes | Contacts => ',',
+            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes
+            | Contacts => ',',
             _ => ';',
         };
         let nesting = self.nesting();
@@ -91,7 +92,8 @@ impl Parser<'_> {
             Kinematics => tree.kinematics.last_mut().map(|entry| &mut entry.right),
             Constraints => tree.constraints.last_mut().map(|entry| &mut entry.right),
             Configuration => tree.configuration.last_mut().map(|entry| &mut entry.right),
-            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes | Contacts => None,
+            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes
+            | Contacts => None,
         };
         if let Some(value) = value {
             value.kind = ExprKind::Error;

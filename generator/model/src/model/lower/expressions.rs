@@ -143,11 +143,7 @@ impl Lowering<'_> {
                     Typed { value, span, traits: known.traits.seen_from(span), ..known.clone() }
                 }
             },
-            Symbol::Frame(_)
-            | Symbol::Point(_)
-            | Symbol::Body(_)
-            | Symbol::Contact(_)
-            | Symbol::Shape(_) => {
+            Symbol::Frame(_) | Symbol::Point(_) | Symbol::Body(_) | Symbol::Contact(_) | Symbol::Shape(_) => {
                 let help = match symbol {
                     Symbol::Frame(_) => format!("its axes are `{0}.x`, `{0}.y` and `{0}.z`", name.text),
                     Symbol::Point(_) => format!("its position from O is `position({})`", name.text),

@@ -89,11 +89,8 @@ impl Lowering<'_> {
     fn mass_of_shape(&mut self, i: usize, record: &Record, field: &Field) -> Option<()> {
         let ExprKind::Name(text) = &field.value.kind else {
             if !matches!(field.value.kind, ExprKind::Error) {
-                let error = Diagnostic::new(
-                    codes::WRONG_KIND,
-                    field.value.span,
-                    "`shape` needs the name of a shape",
-                );
+                let error =
+                    Diagnostic::new(codes::WRONG_KIND, field.value.span, "`shape` needs the name of a shape");
                 self.report(error.help("declare it under `shapes`, with a density, and write its name here"));
             }
             return None;

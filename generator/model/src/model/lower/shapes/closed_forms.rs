@@ -1,4 +1,4 @@
-//! Contact points, normals and gaps of pairs of shapes, in closed form (section 22 of docs/theory.md).
+//! Contact points, normals and gaps of pairs of shapes, in closed form (section 16.8 of docs/theory.md).
 //!
 //! With the nearest points p_1 and p_2 of the two surfaces and the unit normal n from the second to the first,
 //! the gap is g = n . (p_1 - p_2). The point of a contact is p_1, as a material point of the first shape.
@@ -68,9 +68,8 @@ fn on_plane(shape: &Shape, plane: &Shape, at: Span) -> Vec<Touch> {
         }
     };
     let along = |length: Scalar| scaled(length, &axis_of(shape));
-    let ends = |length: &Scalar| {
-        [along(half(length)), opposite(&along(half(length)))].map(|by| shape.at.plus(by))
-    };
+    let ends =
+        |length: &Scalar| [along(half(length)), opposite(&along(half(length)))].map(|by| shape.at.plus(by));
     match (shape.kind, &shape.sizes[..]) {
         (Kind::Sphere, [r]) => vec![ball(shape.at.clone(), r)],
         (Kind::Capsule, [r, l]) => ends(l).map(|end| ball(end, r)).into(),
@@ -160,11 +159,7 @@ fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
         None => radius.clone(),
         Some(thickness) => sum([radius.clone(), thickness]),
     };
-    Touch {
-        point: ball.at.plus(opposite(&scaled(radius, &normal))),
-        gap: less(norm(&w), away),
-        normal,
-    }
+    Touch { point: ball.at.plus(opposite(&scaled(radius, &normal))), gap: less(norm(&w), away), normal }
 }
 
 /// A ball within a sphere, a capsule or a cylinder without ends: w leads from the middle to the ball's centre.

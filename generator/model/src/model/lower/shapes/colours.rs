@@ -33,7 +33,8 @@ impl Lowering<'_> {
                 let error =
                     Diagnostic::new(codes::SHAPE, field.value.span, format!("there is no colour `{name}`"));
                 let names = NAMED.map(|(name, _)| name);
-                let meant = if name == "gray" { Some("grey") } else { suggest::nearest(name, names.into_iter()) };
+                let meant =
+                    if name == "gray" { Some("grey") } else { suggest::nearest(name, names.into_iter()) };
                 self.report(match meant {
                     Some(near) => error.did_you_mean(near),
                     None => error.help(format!("there are {}, and `[red, green, blue]`", names.join(", "))),

@@ -13,10 +13,16 @@ use crate::syntax::tree::{Field, Name, Record};
 
 impl Lowering<'_> {
     /// The contacts of a pair, one for each of its names.
-    pub(in crate::model::lower) fn contacts_of_shapes(&mut self, record: &Record, pair: Pair<'_>, names: &[&Name]) {
+    pub(in crate::model::lower) fn contacts_of_shapes(
+        &mut self,
+        record: &Record,
+        pair: Pair<'_>,
+        names: &[&Name],
+    ) {
         let before = self.mistakes();
         let touches = self.pair(record, pair);
-        let fields: Vec<Field> = record.fields.iter().filter(|f| f.name != pair.field.name).cloned().collect();
+        let fields: Vec<Field> =
+            record.fields.iter().filter(|f| f.name != pair.field.name).cloned().collect();
         for field in fields.iter().filter(|field| field.name.text != "surface") {
             let follows = ["point", "against", "normal", "gap"].contains(&field.name.text.as_str());
             let what = if follows { "follows from the shapes" } else { "is no field of a contact of shapes" };
@@ -138,8 +144,7 @@ impl Lowering<'_> {
     fn parts(&mut self, name: &Name, docs: &str, ids: [ShapeId; 2], touch: Touch) -> Parts {
         let [striking, struck] = ids.map(|id| self.out.shapes[id.0].clone());
         let bodies = &self.out.bodies;
-        let is_particle =
-            |shape: &Shape| shape.body.is_some_and(|body| bodies[body.0].frame.is_none());
+        let is_particle = |shape: &Shape| shape.body.is_some_and(|body| bodies[body.0].frame.is_none());
         // a particle is where its centre is: nothing of it turns
         let (of_particle, on_particle) = (is_particle(&striking), is_particle(&struck));
         let point = if of_particle {

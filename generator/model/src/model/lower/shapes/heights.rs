@@ -7,7 +7,8 @@ use crate::span::Span;
 
 impl Height {
     /// Stands for x and y in a height: no definition has such an index.
-    pub(in crate::model::lower) const PLACES: [DefinitionId; 2] = [DefinitionId(usize::MAX), DefinitionId(usize::MAX - 1)];
+    pub(in crate::model::lower) const PLACES: [DefinitionId; 2] =
+        [DefinitionId(usize::MAX), DefinitionId(usize::MAX - 1)];
 
     /// A height with its slopes; `None` if it depends on its place in a way that has none here.
     pub(super) fn of(value: Scalar, at: Span) -> Option<Height> {

@@ -1,4 +1,4 @@
-//! Mass, mass centre and inertia of shapes of uniform density (section 22 of docs/theory.md).
+//! Mass, mass centre and inertia of shapes of uniform density (section 16.8 of docs/theory.md).
 
 use super::algebra::*;
 use crate::model::mechanism::{Axis, FrameId, Kind, Scalar, Shape, Vector};
@@ -85,7 +85,8 @@ pub fn mass_properties(shape: &Shape) -> Result<MassProperties, &'static str> {
             let mass = of_round(1, 3, &[r, r, h]);
             let across = moment(&mass, vec![(3, 20, r, r), (3, 80, h, h)]);
             let along = moment(&mass, vec![(3, 10, r, r)]);
-            let up = shape.axis.as_ref().map_or(Vector::Zero, |a| scaled(product([ratio(1, 4), h.clone()]), a));
+            let up =
+                shape.axis.as_ref().map_or(Vector::Zero, |a| scaled(product([ratio(1, 4), h.clone()]), a));
             upright(mass, across, along, up)
         }
         (Kind::Torus, [big, r]) => {

@@ -116,7 +116,8 @@ impl Lowering<'_> {
                 // what could not be read is said already
                 (None, _) if matches!(field.value.kind, ExprKind::Error) => wrong = true,
                 (None, _) => {
-                    let known: Vec<&str> = Kind::ALL.iter().map(|kind| kind.word()).chain(words::SHAPE).collect();
+                    let known: Vec<&str> =
+                        Kind::ALL.iter().map(|kind| kind.word()).chain(words::SHAPE).collect();
                     let message = format!("there is no shape and no field `{word}`");
                     let error = Diagnostic::new(codes::FIELD, field.name.span, message);
                     let near =
@@ -283,7 +284,14 @@ impl Lowering<'_> {
     }
 
     /// A point that the model does not name.
-    fn hidden_point(&mut self, name: String, docs: String, frame: FrameId, at: &Anchor, span: Span) -> PointId {
+    fn hidden_point(
+        &mut self,
+        name: String,
+        docs: String,
+        frame: FrameId,
+        at: &Anchor,
+        span: Span,
+    ) -> PointId {
         use super::super::mechanism::{Place, Point};
         let place = Place::Material { frame, from: at.point, by: at.by.clone() };
         self.out.points.push(Point { name, docs, place, velocity: None, span, motion_span: span });
