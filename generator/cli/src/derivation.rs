@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 
 use hodograph_generator::artifact::{self, place};
 use hodograph_generator::files;
+use hodograph_generator::format::plain;
 use hodograph_generator::program::Program;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -109,7 +110,7 @@ pub fn trace(model: &Model, limits: &Limits) -> Outcome<String> {
 /// What the process that derives writes before its answer: what stands above it is the engine's.
 pub const ANSWER: &str = "\nthe answer of hodograph derive-worker:\n";
 
-/// Runs the process that derives: it reads the model from standard input, and writes its answer at the end of
+/// Runs the process that derives: it reads the model, its parts expanded, from standard input, and writes its answer at the end of
 /// standard output. So there is no file that could be left.
 fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
     if !cfg!(feature = "derive") {
@@ -132,7 +133,7 @@ fn run(model: &Model, limits: &Limits, trace: bool) -> Outcome<String> {
         .map_err(|error| fault("cannot start the process that derives", error))?;
     if let Some(mut input) = child.stdin.take() {
         // It reads all of it before anything else; if it ends before that, its exit code says so.
-        let _ = input.write_all(model.source.text().unwrap_or_default().as_bytes());
+        let _ = input.write_all(plain(&model.source).as_bytes());
     }
     let output = child.stdout.take();
     let reader =

@@ -52,14 +52,15 @@ pub struct Related {
 
 impl Place {
     fn new(label: &Label, source: &Source) -> Self {
-        let at = source.location(label.span);
+        let (source, span) = source.locate(label.span);
+        let at = source.location_here(span);
         let (line, column) = at.map_or((1, 1), |at| (at.line, at.column));
         // An inline model has places of tokens, not of characters: its end is not known.
         let end = match (source.is_inline(), source.text()) {
             (false, Some(_)) => {
-                let mut behind = label.span;
+                let mut behind = span;
                 behind.start = behind.end;
-                source.location(behind)
+                source.location_here(behind)
             }
             _ => None,
         };

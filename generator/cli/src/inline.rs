@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use hodograph_generator::expand::Arguments;
-use hodograph_generator::files;
+use hodograph_generator::files::{self, Beside};
 use hodograph_generator::source::Source;
 use proc_macro2::{TokenStream, TokenTree};
 
@@ -58,6 +58,10 @@ pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
                         let taken: Vec<Range<usize>> =
                             arguments.taken.iter().filter_map(|argument| places(argument)).collect();
                         let source = Source::file(name.clone(), blanked(&text, from..to, &taken));
+                        let source = match package(path) {
+                            Ok(package) => source.importing(&beside(&package)),
+                            Err(_) => source,
+                        };
                         sources.push((from, Invocation::Inline(source)));
                     }
                     Some(TokenTree::Literal(literal)) => {
@@ -74,6 +78,12 @@ pub fn models(path: &Path) -> Outcome<Vec<Invocation>> {
     }
     sources.sort_by_key(|&(from, _)| from);
     Ok(sources.into_iter().map(|(_, source)| source).collect())
+}
+
+/// Imports of inline models are relative to Cargo.toml.
+fn beside(package: &Path) -> Beside {
+    let path = package.join("Cargo.toml");
+    Beside { name: path.display().to_string(), path }
 }
 
 fn is_invocation(name: &TokenTree, bang: &TokenTree) -> bool {

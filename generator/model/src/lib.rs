@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! source text -> syntax   tokens and an untyped tree, with the place of everything
+//!             -> parts    parts, repetitions and imported files as tokens of a model without them
 //!             -> model    names resolved, dimensions checked, all mistakes collected
 //!             -> check    the model as a whole, counted and in numbers (numeric)
 //! ```
@@ -20,6 +21,7 @@ pub mod graph;
 pub mod model;
 pub mod number;
 pub mod numeric;
+pub mod parts;
 pub mod rendering;
 pub mod rust_names;
 pub mod source;

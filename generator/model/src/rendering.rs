@@ -56,45 +56,50 @@ impl Diagnostic {
         let title = level.primary_title(clean(&self.message)).id(self.code.0);
         let help = self.help.as_deref().map(|help| Level::HELP.message(clean(help)));
         let renderer = Renderer::plain();
-        let primary = source.text().map(|text| within(text, self.primary.span));
-        let (Some(text), Some(primary)) =
-            (source.text(), primary.filter(|place| self.has_line(source, place)))
-        else {
+        let (file, span) = source.locate(self.primary.span);
+        let primary = file.text().map(|text| within(text, span));
+        let (Some(text), Some(primary)) = (file.text(), primary.filter(|place| self.has_line(file, place))) else {
             let place = Level::NOTE.message(format!("in {}", self.place(source)));
-            return renderer.render(&[title.element(place).elements(help)]);
+            let others = self.related.iter().filter(|label| file.name() != source.locate(label.span).0.name());
+            let notes = others.map(|label| Level::NOTE.message(self.note(label, source)));
+            return renderer.render(&[title.element(place).elements(notes).elements(help)]);
         };
-        // what is far away is named by its line
-        let (near, far): (Vec<&Label>, Vec<&Label>) = self.related.iter().partition(|label| {
-            let place = within(text, label.span);
-            place.start.abs_diff(primary.start) < MAX_DISTANCE && self.has_line(source, &place)
+        // what is far away is named by its line, what is in another file is shown by itself
+        let (here, elsewhere): (Vec<&Label>, Vec<&Label>) =
+            self.related.iter().partition(|label| std::ptr::eq(source.locate(label.span).0, file));
+        let place_of = |label: &Label| within(text, source.locate(label.span).1);
+        let (near, far): (Vec<&Label>, Vec<&Label>) = here.into_iter().partition(|label| {
+            let place = place_of(label);
+            place.start.abs_diff(primary.start) < MAX_DISTANCE && self.has_line(file, &place)
         });
         let labels: Vec<(Range<usize>, &str, bool)> =
             std::iter::once((primary, self.primary.text.as_str(), true))
-                .chain(near.iter().map(|label| (within(text, label.span), label.text.as_str(), false)))
+                .chain(near.iter().map(|label| (place_of(label), label.text.as_str(), false)))
                 .collect();
-        let (window, first_line) = window(text, labels.iter().map(|(range, ..)| range));
-        let annotations = labels.iter().map(|(range, words, primary)| {
-            let kind = if *primary { AnnotationKind::Primary } else { AnnotationKind::Context };
-            let annotation = kind.span(range.start - window.start..range.end - window.start);
-            if words.is_empty() { annotation } else { annotation.label(clean(words)) }
+        let snippet = snippet(file.name(), text, &labels);
+        let (others, unseen): (Vec<&Label>, Vec<&Label>) =
+            elsewhere.into_iter().partition(|label| source.locate(label.span).0.text().is_some());
+        let others = others.into_iter().map(|label| {
+            let (file, span) = source.locate(label.span);
+            let text = file.text().unwrap_or_default();
+            self::snippet(file.name(), text, &[(within(text, span), label.text.as_str(), false)])
         });
-        let snippet = Snippet::source(&text[window.clone()])
-            .path(source.name())
-            .line_start(first_line)
-            .fold(true)
-            .annotations(annotations);
-        let notes = far.iter().map(|label| {
-            let line = source.location(label.span).map_or(0, |at| at.line);
-            Level::NOTE.message(format!("{} (line {line})", clean(&label.text)))
-        });
-        renderer.render(&[title.element(snippet).elements(notes).elements(help)])
+        let notes = far.iter().chain(&unseen).map(|label| Level::NOTE.message(self.note(label, source)));
+        renderer.render(&[title.element(snippet).elements(others).elements(notes).elements(help)])
+    }
+
+    /// A place that is not shown, by its line.
+    fn note(&self, label: &Label, source: &Source) -> String {
+        let line = source.location(label.span).map_or(0, |at| at.line);
+        clean(&format!("{} (line {line})", label.text))
     }
 
     /// One line: `models/x.mech:14:23: error[E020]: unknown name `zz`; did you mean `z`?`
     pub fn one_line(&self, source: &Source) -> String {
+        let name = source.locate(self.primary.span).0.name();
         let place = match source.location(self.primary.span) {
-            Some(at) => format!("{}:{}:{}", source.name(), at.line, at.column),
-            None => source.name().to_owned(),
+            Some(at) => format!("{name}:{}:{}", at.line, at.column),
+            None => name.to_owned(),
         };
         let severity = match self.severity {
             Severity::Error => "error",
@@ -107,10 +112,11 @@ impl Diagnostic {
     /// The message as the text of a compile error. For a file: one line with the place, then the line and a
     /// caret. For an inline model, whose tokens the compiler underlines: what is wrong and what to do.
     pub fn compiler_text(&self, source: &Source) -> String {
-        if source.text().is_none() && !source.is_inline() {
+        let (file, _) = source.locate(self.primary.span);
+        if file.text().is_none() && !file.is_inline() {
             return self.one_line(source);
         }
-        if source.text().is_some() {
+        if file.text().is_some() {
             let line = Diagnostic { help: None, ..self.clone() }.one_line(source);
             let rendered = self.render(source);
             // the first line is said already, and so is the place under it
@@ -144,11 +150,12 @@ impl Diagnostic {
 
     /// The file, and the line and column if there are any.
     fn place(&self, source: &Source) -> String {
+        let (file, _) = source.locate(self.primary.span);
         match source.location(self.primary.span).filter(|_| !self.is_of_the_whole()) {
-            Some(at) if source.text().is_some_and(|text| !text.is_empty()) => {
-                format!("{}:{}:{}", source.name(), at.line, at.column)
+            Some(at) if file.text().is_some_and(|text| !text.is_empty()) => {
+                format!("{}:{}:{}", file.name(), at.line, at.column)
             }
-            _ => source.name().to_owned(),
+            _ => file.name().to_owned(),
         }
     }
 
@@ -159,6 +166,25 @@ impl Diagnostic {
         };
         line_of(text, place).len() <= MAX_LINE
     }
+}
+
+/// The lines of a text with these places.
+fn snippet<'t>(
+    name: &'t str,
+    text: &'t str,
+    labels: &[(Range<usize>, &str, bool)],
+) -> Snippet<'t, annotate_snippets::Annotation<'t>> {
+    let (window, first_line) = window(text, labels.iter().map(|(range, ..)| range));
+    let annotations = labels.iter().map(|(range, words, primary)| {
+        let kind = if *primary { AnnotationKind::Primary } else { AnnotationKind::Context };
+        let annotation = kind.span(range.start - window.start..range.end - window.start);
+        if words.is_empty() { annotation } else { annotation.label(clean(words)) }
+    });
+    Snippet::source(&text[window.clone()])
+        .path(name)
+        .line_start(first_line)
+        .fold(true)
+        .annotations(annotations)
 }
 
 /// The line of a place.

@@ -1,8 +1,10 @@
 //! The text of a model: characters of a file, or tokens that a compiler has read.
 
 use std::borrow::Cow;
+use std::sync::Arc;
 
 use crate::diagnostics::{Diagnostic, codes};
+use crate::parts::{self, Expansion, Files, NoFiles};
 use crate::span::{Location, Span};
 use crate::syntax::lexer;
 use crate::syntax::token::{Token, TokenKind};
@@ -17,6 +19,15 @@ pub const MAX_TOKENS: usize = 500_000;
 pub struct Source {
     name: String,
     content: Content,
+    parts: Option<Arc<Parts>>,
+}
+
+/// What a model with parts stands for.
+#[derive(Clone, Debug)]
+struct Parts {
+    expansion: Expansion,
+    /// the files that it imports
+    imported: Vec<Source>,
 }
 
 #[derive(Clone, Debug)]
@@ -40,6 +51,68 @@ fn ends_lines_with_returns(text: &str) -> bool {
 }
 
 impl Source {
+    /// A text of its own, or what its parts expand to.
+    fn new(name: String, content: Content) -> Source {
+        Source { name, content, parts: None }.importing(&NoFiles)
+    }
+
+    /// The same model with the files that it imports: a model that imports any cannot be read without.
+    pub fn importing(mut self, files: &dyn Files) -> Source {
+        self.parts = None;
+        let may_have_parts = match &self.content {
+            Content::File(text) => parts::WORDS.iter().any(|word| text.contains(word)),
+            Content::Inline { .. } => true,
+            Content::Unreadable(_) => false,
+        };
+        let expansion = match self.tokens() {
+            Ok(tokens) if may_have_parts => parts::expand(&tokens, files, MAX_TOKENS),
+            _ => None,
+        };
+        self.parts = expansion.map(|expansion| {
+            // an imported file is a text to quote from
+            let source = |(name, text): &(String, String)| Source {
+                name: name.clone(),
+                content: Content::File(text.clone()),
+                parts: None,
+            };
+            let imported = expansion.files.iter().map(source).collect();
+            Arc::new(Parts { expansion, imported })
+        });
+        self
+    }
+
+    /// What its parts expand to, if it has any.
+    pub fn expansion(&self) -> Option<&Expansion> {
+        self.parts.as_ref().map(|parts| &parts.expansion)
+    }
+
+    /// Whether it holds parts for other models, and no mechanism.
+    pub fn is_library(&self) -> bool {
+        self.expansion().is_some_and(|expansion| expansion.is_library)
+    }
+
+    /// The names of the files that it imports, directly or through others.
+    pub fn imported(&self) -> impl Iterator<Item = &Source> {
+        self.parts.iter().flat_map(|parts| &parts.imported)
+    }
+
+    /// The text in which a place stands, and where in it: the model itself or a file that it imports.
+    pub fn locate(&self, span: Span) -> (&Source, Span) {
+        let Some(parts) = &self.parts else { return (self, span) };
+        let Some(place) = parts.expansion.places.find(span) else { return (self, Span::default()) };
+        let file = (place.file as usize).checked_sub(1).and_then(|file| parts.imported.get(file));
+        (file.unwrap_or(self), place.span)
+    }
+
+    /// Where in the model itself a place belongs to: there, or the use or import through which it came.
+    pub fn in_itself(&self, span: Span) -> Span {
+        let Some(parts) = &self.parts else { return span };
+        let places = &parts.expansion.places;
+        let Some(place) = places.find(span) else { return Span::default() };
+        let mut around = std::iter::once(place).chain(places.sites(place).into_iter().map(|site| site.place));
+        around.find(|place| place.file == 0).map_or(Span::default(), |place| place.span)
+    }
+
     /// A model in a file. `name` is what messages call it: its path, as the user knows it.
     pub fn file(name: impl Into<String>, text: impl Into<String>) -> Source {
         let (name, text) = (name.into(), text.into());
@@ -53,7 +126,7 @@ impl Source {
                 "save the file with line feeds, as editors and `tr '\\r' '\\n'` do",
             );
         }
-        Source { name, content: Content::File(text) }
+        Source::new(name, Content::File(text))
     }
 
     /// A model in a file, from its bytes. Bytes that are no UTF-8 are reported by `check`.
@@ -74,20 +147,20 @@ impl Source {
     /// A model among the tokens of a Rust source, each with its line and column where they are known. `name` is
     /// what messages call it.
     pub fn inline(name: impl Into<String>, tokens: Vec<Token>, locations: Vec<Option<Location>>) -> Source {
-        Source { name: name.into(), content: Content::Inline { tokens, locations } }
+        Source::new(name.into(), Content::Inline { tokens, locations })
     }
 
     /// A model that could not be read. `check` reports why and what to do.
     pub fn unreadable(name: String, message: String, help: &str) -> Source {
         let error = Diagnostic::new(codes::UNREADABLE, Span::default(), message).help(help);
-        Source { name, content: Content::Unreadable(Box::new(error)) }
+        Source::new(name, Content::Unreadable(Box::new(error)))
     }
 
     /// A model in a file that is larger than [`MAX_BYTES`]; `check` reports it.
     pub fn too_large(name: String) -> Source {
         let message = format!("the file is larger than {} MiB", MAX_BYTES >> 20);
         let error = Diagnostic::new(codes::TOO_LARGE, Span::default(), message).help("is it a model?");
-        Source { name, content: Content::Unreadable(Box::new(error)) }
+        Source::new(name, Content::Unreadable(Box::new(error)))
     }
 
     /// What messages call it.
@@ -100,7 +173,7 @@ impl Source {
         matches!(self.content, Content::Inline { .. })
     }
 
-    /// The text of a file.
+    /// The text of a file, as it was written.
     pub fn text(&self) -> Option<&str> {
         match &self.content {
             Content::File(text) => Some(text),
@@ -108,8 +181,11 @@ impl Source {
         }
     }
 
-    /// Its tokens.
+    /// The tokens of the model without parts.
     pub fn tokens(&self) -> Result<Cow<'_, [Token]>, Box<Diagnostic>> {
+        if let Some(parts) = &self.parts {
+            return Ok(Cow::Borrowed(&parts.expansion.tokens));
+        }
         let too_large = |message: String| {
             Box::new(Diagnostic::new(codes::TOO_LARGE, Span::default(), message).help("is it a model?"))
         };
@@ -129,6 +205,12 @@ impl Source {
 
     /// The words of an inline model at a place, as they were written but for blanks; long ones end in `..`.
     pub fn words(&self, span: Span) -> String {
+        let (source, span) = self.locate(span);
+        if !source.is_inline() {
+            let text = source.text().and_then(|text| text.get(span.range())).unwrap_or_default();
+            let short: String = text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(40).collect();
+            return short;
+        }
         let Content::Inline { tokens, .. } = &self.content else { return String::new() };
         let mut words = String::new();
         for token in tokens.get(span.range()).unwrap_or_default() {
@@ -151,6 +233,12 @@ impl Source {
 
     /// Line and column of the beginning of a place; of an inline model as the compiler tells them.
     pub fn location(&self, span: Span) -> Option<Location> {
+        let (source, span) = self.locate(span);
+        source.location_here(span)
+    }
+
+    /// The same of a place in this text itself, as [`Source::locate`] gives it.
+    pub fn location_here(&self, span: Span) -> Option<Location> {
         if let Content::Inline { locations, .. } = &self.content {
             return *locations.get(span.start as usize).or(locations.last())?;
         }

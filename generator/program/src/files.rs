@@ -3,8 +3,9 @@
 
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
+use hodograph_model::parts::{Files, Imported};
 use hodograph_model::source::{self, Source};
 
 /// The bytes of a file of at most `most` bytes.
@@ -46,13 +47,58 @@ pub fn model(path: &Path) -> Source {
 /// As [`model`], with the name that messages give it.
 pub fn model_as(name: impl Into<String>, path: &Path) -> Source {
     match bytes(path, source::MAX_BYTES) {
-        Ok(bytes) => Source::bytes(name, bytes),
+        Ok(bytes) => {
+            let name = name.into();
+            let imports = Beside { path: path.to_path_buf(), name: name.clone() };
+            Source::bytes(name, bytes).importing(&imports)
+        }
         Err(error) if error.kind() == ErrorKind::FileTooLarge => Source::too_large(name.into()),
         Err(error) => {
             let message = format!("the file cannot be read: {error}");
             Source::unreadable(name.into(), message, "check the path")
         }
     }
+}
+
+/// Finds what a model imports by paths relative to its file.
+#[derive(Clone, Debug)]
+pub struct Beside {
+    /// the file of the model
+    pub path: PathBuf,
+    /// what messages call it
+    pub name: String,
+}
+
+impl Files for Beside {
+    fn read(&self, importing: Option<&Imported>, path: &str) -> Result<Imported, String> {
+        if Path::new(path).has_root() {
+            return Err("is no relative path".to_owned());
+        }
+        let (from, name) = match importing {
+            None => (self.path.as_path(), self.name.as_str()),
+            Some(file) => (Path::new(&file.key), file.name.as_str()),
+        };
+        let found = from.with_file_name("").join(path);
+        let text = text(&found, source::MAX_BYTES).map_err(|error| format!("cannot be read: {error}"))?;
+        let key = std::fs::canonicalize(&found).unwrap_or(found).to_string_lossy().into_owned();
+        let name = plainly(&Path::new(name).with_file_name("").join(path));
+        Ok(Imported { key, name, text })
+    }
+}
+
+/// A path without `.` and, where a folder stands before it, without `..`.
+fn plainly(path: &Path) -> String {
+    let mut parts: Vec<Component<'_>> = Vec::new();
+    for part in path.components() {
+        match (part, parts.last()) {
+            (Component::CurDir, _) => {}
+            (Component::ParentDir, Some(Component::Normal(_))) => {
+                parts.pop();
+            }
+            _ => parts.push(part),
+        }
+    }
+    parts.iter().collect::<PathBuf>().to_string_lossy().into_owned()
 }
 
 /// All that a reader has, if that is at most `most` bytes.
@@ -95,6 +141,13 @@ mod tests {
         );
         assert_eq!(up_to(&[7; 10][..], 10).unwrap().len(), 10);
         assert_eq!(up_to(io::repeat(7), 10).unwrap_err().kind(), ErrorKind::FileTooLarge);
+    }
+
+    #[test]
+    fn paths_of_imports_are_plain() {
+        for (path, expected) in [("a/./b", "a/b"), ("a/../b", "b"), ("../b", "../b"), ("a/b/../../c", "c")] {
+            assert_eq!(plainly(Path::new(path)), expected);
+        }
     }
 
     #[test]

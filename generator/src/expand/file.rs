@@ -111,6 +111,7 @@ pub fn expand(path: &ModelPath, arguments: &Arguments, krate: &TokenStream, pack
     };
     let mut tracked_files = vec![tracked(&path.text, place.in_package)];
     let source = files::model_as(path.text.clone(), &place.path);
+    tracked_files.extend(source.imported().map(|file| tracked(file.name(), place.in_package)));
     let name = name(&source).unwrap_or(stem);
     let failed = |error: &TokenStream, tracked: &[TokenStream]| {
         emit::stub(&module, &name, error, tracked, &arguments.types())

@@ -14,14 +14,18 @@ use super::{derivation, report};
 use hodograph_emit as emit;
 use hodograph_model::check::check;
 use hodograph_model::rust_names;
+use hodograph_program::files::Beside;
 
 /// The module of an inline model.
 pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, package: &Path) -> TokenStream {
     // The tokens are the user's; the call itself stands in the wrapper of the runtime.
     let first = model.clone().into_iter().next().map_or_else(Span::call_site, |token| token.span());
     let (name, at) = name(&model).map_or((None, first), |(name, at)| (Some(name), at));
-    let model = Inline::new("mechanism!", model);
+    // paths of imports are relative to Cargo.toml, as that of a model file is
+    let imports = Beside { path: package.join("Cargo.toml"), name: "Cargo.toml".to_owned() };
+    let model = Inline::new("mechanism!", model).importing(&imports);
     let source = &model.source;
+    let imported: Vec<TokenStream> = source.imported().map(|file| in_package(file.name())).collect();
     let checked = check(source);
     let module = rust_names::snake_case(name.as_deref().unwrap_or("mechanism"));
     let failed = |error: &TokenStream, tracked: &[TokenStream]| match &name {
@@ -30,20 +34,24 @@ pub fn expand(model: TokenStream, arguments: &Arguments, krate: &TokenStream, pa
         None => error.clone(),
     };
     let Some(mechanism) = checked.mechanism else {
-        return failed(&report::of_inline(&model, &checked.diagnostics), &[]);
+        return failed(&report::of_inline(&model, &checked.diagnostics), &imported);
     };
     let shown = format!("derived/{module}.derivation");
     let command = format!("hodograph derive {}", invoking_file(first, package));
     let path = package.join(&shown);
-    let relative = format!("/{shown}");
-    let tracked =
-        path.is_file().then(|| quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #relative)));
-    let tracked: Vec<TokenStream> = tracked.into_iter().collect();
+    let tracked: Vec<TokenStream> =
+        path.is_file().then(|| in_package(&shown)).into_iter().chain(imported).collect();
     let (krate, files, requests) = (krate.clone(), tracked.clone(), arguments.requests.clone());
     let options = emit::Options { krate, module: module.clone(), tracked: files, requests };
     let found = || derivation::find(source, &mechanism, &path, &shown, &command);
     let result = emitted(&mechanism, arguments, at, &options, found);
     result.unwrap_or_else(|errors| failed(&errors, &tracked))
+}
+
+/// The expression that names a file of the package in generated code.
+fn in_package(path: &str) -> TokenStream {
+    let path = format!("/{path}");
+    quote!(::core::concat!(::core::env!("CARGO_MANIFEST_DIR"), #path))
 }
 
 /// The name after `mechanism`, which follows the documentation, and where it stands.

@@ -3,6 +3,7 @@
 
 use proc_macro2::{Delimiter, Span as RustSpan, TokenStream, TokenTree};
 
+use hodograph_model::parts::Files;
 use hodograph_model::source::Source;
 use hodograph_model::span::Span;
 use hodograph_model::syntax::lexer::classify_number;
@@ -29,8 +30,15 @@ impl Inline {
         Inline { source: Source::inline(name, reader.tokens, locations), places: reader.places }
     }
 
-    /// The user's tokens at a place: the first and the last.
+    /// The same model with the files that it imports.
+    pub fn importing(self, files: &dyn Files) -> Inline {
+        Inline { source: self.source.importing(files), places: self.places }
+    }
+
+    /// The user's tokens at a place: the first and the last. What stands in an imported file is where it is used
+    /// or imported.
     pub fn rust_spans(&self, span: Span) -> Option<(RustSpan, RustSpan)> {
+        let span = self.source.in_itself(span);
         let first = self.places.get(span.start as usize).or(self.places.last())?;
         let last = (span.end as usize).checked_sub(1).and_then(|i| self.places.get(i)).unwrap_or(first);
         Some((*first, *last))

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
 use clap::ValueEnum;
-use hodograph_generator::check::check;
+use hodograph_generator::check::{Checked, check};
+use hodograph_generator::diagnostics::Severity;
+use hodograph_generator::diagnostics::codes::EMPTY;
 use hodograph_generator::rendering::render;
+use hodograph_generator::source::Source;
 
-use crate::files::collect;
+use crate::files::{Entry, collect};
 use crate::findings::{Finding, sarif};
 use crate::output;
 use crate::stop::{Outcome, Stop};
@@ -57,9 +60,9 @@ fn once(paths: &[PathBuf], format: Format) -> Outcome {
     let (mut models, mut wrong, mut report) = (0, 0, output::Report::default());
     let mut findings = Vec::new();
     for entry in collect(paths)? {
-        let found = check(&entry.source);
+        let found = looked_at(&entry.source);
         models += 1;
-        wrong += usize::from(found.has_errors());
+        wrong += usize::from(found.diagnostics.iter().any(|found| found.severity == Severity::Error));
         let misnamed = found.mechanism.as_ref().and_then(|mechanism| entry.misnamed(&mechanism.name));
         match format {
             Format::Text => {
@@ -81,6 +84,16 @@ fn once(paths: &[PathBuf], format: Format) -> Outcome {
     let model = if models == 1 { "model" } else { "models" };
     output::say(format_args!("{models} {model} checked, {wrong} with errors"));
     if wrong == 0 { Ok(()) } else { Err(Stop::Reported) }
+}
+
+/// What is found in a model. A file of parts has what its text shows; what they mean is seen where they are
+/// used.
+fn looked_at(source: &Source) -> Checked {
+    let mut found = check(source);
+    if source.is_library() {
+        found.diagnostics.retain(|found| found.code != EMPTY);
+    }
+    found
 }
 
 /// Checks again and again: whenever a file is other than before.
@@ -109,8 +122,12 @@ type Seen = (PathBuf, Option<SystemTime>, u64);
 
 fn seen(paths: &[PathBuf]) -> Vec<Seen> {
     let mut found = Vec::new();
+    let with_imports = |entry: Entry| {
+        let imported: Vec<PathBuf> = entry.source.imported().map(|file| PathBuf::from(file.name())).collect();
+        std::iter::once(entry.path).chain(imported)
+    };
     let files = collect(paths)
-        .map_or(paths.to_vec(), |entries| entries.into_iter().map(|entry| entry.path).collect());
+        .map_or(paths.to_vec(), |entries| entries.into_iter().flat_map(with_imports).collect());
     for path in files {
         let data = std::fs::metadata(&path).ok();
         let time = data.as_ref().and_then(|data| data.modified().ok());

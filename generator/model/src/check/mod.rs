@@ -87,6 +87,25 @@ pub fn names(tokens: &[Token]) -> (Tree, Symbols) {
 
 /// Reads and checks a model, and keeps all that was found on the way.
 pub fn analyse(source: &Source) -> Analysis {
+    let Some(expansion) = source.expansion() else { return analysed(source) };
+    let mut diagnostics = expansion.syntax.clone();
+    diagnostics.extend(expansion.mistakes.iter().cloned());
+    if !diagnostics.is_empty() {
+        return Analysis { diagnostics: expansion.explained(diagnostics), ..Analysis::default() };
+    }
+    if source.is_library() {
+        let message = "this is a file of parts, and no mechanism";
+        let error = Diagnostic::new(codes::EMPTY, Span::default(), message);
+        let help = "a model uses it after `import \"..\";`; `hodograph check` and `hodograph fmt` take it as it is";
+        return Analysis { diagnostics: vec![error.help(help)], ..Analysis::default() };
+    }
+    let mut found = analysed(source);
+    found.diagnostics = expansion.explained(found.diagnostics);
+    found
+}
+
+/// The same of a model without parts.
+fn analysed(source: &Source) -> Analysis {
     let tokens = match source.tokens() {
         Ok(tokens) => tokens.into_owned(),
         Err(error) => return Analysis { diagnostics: vec![*error], ..Analysis::default() },

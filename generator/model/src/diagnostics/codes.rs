@@ -103,6 +103,17 @@ codes! {
     START = "E084", "a start in contact that cannot be found";
     SHAPE = "E085", "a shape is not stated correctly";
     PAIR = "E086", "shapes between which no contact is compiled";
+    IMPORT = "E090", "a file cannot be imported";
+    IMPORT_CYCLE = "E091", "files import each other";
+    PART_UNKNOWN = "E092", "no part has this name";
+    PART_CYCLE = "E093", "a part contains itself";
+    ARGUMENT_UNKNOWN = "E094", "a part takes no such argument";
+    ARGUMENT_MISSING = "E095", "a part lacks an argument";
+    ARGUMENT_KIND = "E096", "an argument of another kind is needed";
+    INDEX = "E097", "nothing has this index";
+    COUNT = "E098", "not a whole number";
+    REPETITION = "E099", "too many instances of parts";
+    OUTER_NAME = "E100", "a name that cannot be seen from here";
     UNUSED_PARAMETER = "W001", "a parameter is never used";
     UNUSED_INPUT = "W002", "an input is never used";
     UNUSED_DEFINITION = "W003", "a definition is never used";

@@ -3,6 +3,7 @@
 
 mod mechanics;
 mod names;
+mod parts;
 mod shapes;
 mod silent;
 mod syntax;
@@ -52,13 +53,16 @@ pub fn explanation(code: Code) -> Option<&'static Explanation> {
 }
 
 fn tables() -> impl Iterator<Item = &'static Explanation> {
-    syntax::TABLE
-        .iter()
-        .chain(names::TABLE)
-        .chain(values::TABLE)
-        .chain(mechanics::TABLE)
-        .chain(shapes::TABLE)
-        .chain(silent::TABLE)
+    let tables = [
+        syntax::TABLE,
+        names::TABLE,
+        values::TABLE,
+        mechanics::TABLE,
+        shapes::TABLE,
+        parts::TABLE,
+        silent::TABLE,
+    ];
+    tables.into_iter().flatten()
 }
 
 /// The whole model of an example: its sections take the place of those of [`FRAME`]; a model with a head is

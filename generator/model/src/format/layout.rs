@@ -10,19 +10,17 @@ use crate::syntax::tree::Section;
 /// The text of a model.
 pub fn model(items: &[Item<'_>]) -> String {
     let mut text = Text::default();
-    let mut at = 0;
-    while at < items.len() {
-        if items[at].breaks > 1 && at > 0 {
-            text.blank();
-        }
-        at += if items[at].is_remark() {
-            text.remark(&items[at], 0);
-            1
-        } else {
-            text.statement(&items[at..])
-        };
-    }
+    text.statements(items, 0);
     text.finish()
+}
+
+/// Words that begin a statement whose braces hold statements.
+const BLOCKS: [&str; 2] = ["part", "for"];
+
+/// Whether the word at the beginning of a statement makes it one that holds statements in its braces.
+fn is_block(items: &[Item<'_>]) -> bool {
+    let [word, name, ..] = items else { return false };
+    word.is(TokenKind::Name) && name.is(TokenKind::Name) && BLOCKS.contains(&word.text)
 }
 
 #[derive(Default)]
@@ -85,27 +83,65 @@ impl Text {
         }
     }
 
-    /// `mechanism Name;` or a section, with what follows on its line. The value is the number of items.
-    fn statement(&mut self, items: &[Item<'_>]) -> usize {
+    /// Statements and sections, with the comments between them.
+    fn statements(&mut self, items: &[Item<'_>], indent: usize) {
+        let mut at = 0;
+        while at < items.len() {
+            if items[at].breaks > 1 && at > 0 {
+                self.blank();
+            }
+            at += if items[at].is_remark() {
+                self.remark(&items[at], indent);
+                1
+            } else {
+                self.statement(&items[at..], indent)
+            };
+        }
+    }
+
+    /// `mechanism Name;`, a section, a part or a use, with what follows on its line. The value is the number of
+    /// items.
+    fn statement(&mut self, items: &[Item<'_>], indent: usize) -> usize {
         let (mut depth, mut end) = (0_usize, items.len());
+        let block = is_block(items);
         for (i, item) in items.iter().enumerate() {
+            // the brackets of arguments end nothing
+            let closes = item.is(TokenKind::Close('}'));
             match item.kind {
                 Kind::Token(TokenKind::Open(_)) => depth += 1,
                 Kind::Token(TokenKind::Close(_)) => depth = depth.saturating_sub(1),
                 Kind::Token(TokenKind::Sign(';')) if depth == 0 => {}
                 _ => continue,
             }
-            if depth == 0 {
+            if depth == 0 && (closes || item.is(TokenKind::Sign(';'))) {
                 end = i + 1;
                 break;
             }
         }
         let statement = &items[..end];
         let section = statement.first().and_then(|word| Section::of_word(word.text));
-        self.body(statement, 0, section.is_some_and(declares));
+        match block {
+            true => self.block(statement, indent),
+            false => self.body(statement, indent, section.is_some_and(declares)),
+        }
         let remarks: Vec<&Item<'_>> = items[end..].iter().take_while(|item| behind(item)).collect();
         self.behind(&remarks);
         end + remarks.len()
+    }
+
+    /// A statement whose braces hold statements.
+    fn block(&mut self, items: &[Item<'_>], indent: usize) {
+        let open = items.iter().position(|item| item.is(TokenKind::Open('{')));
+        let Some(open) = open.filter(|_| items.last().is_some_and(|last| last.is(TokenKind::Close('}')))) else {
+            return self.wrapped(items, indent);
+        };
+        let (head, inner) = (&items[..=open], &items[open + 1..items.len() - 1]);
+        match head.iter().any(Item::is_remark) {
+            true => self.as_written(head, indent),
+            false => self.wrapped(head, indent),
+        }
+        self.statements(inner, indent + INDENT);
+        self.push(indent, "}");
     }
 
     /// Tokens that may hold braces: in one line if they were written so and fit, else each entry of the

@@ -115,7 +115,7 @@ fn blank_between(before: &Before<'_>, kind: TokenKind, leads: bool) -> bool {
         (Sign('+' | '-'), _) => !before.leads,
         (Name, Sign('+' | '-')) => true,
         (_, Sign('+' | '-')) => !leads,
-        (Name, Open('(')) => false,
+        (Name | Close(']'), Open('(' | '[')) => false,
         (Name | Number | Close(_) | Bad(_), Name | Number | Open(_) | Bad(_)) => true,
         _ => false,
     }

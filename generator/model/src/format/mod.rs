@@ -15,10 +15,13 @@ mod items;
 mod layout;
 mod line;
 
+use std::borrow::Cow;
+
 use crate::diagnostics::{Diagnostic, Severity};
 use crate::source::{MAX_TOKENS, Source};
 use crate::syntax::lexer;
-use crate::syntax::{self, token::Token};
+use crate::syntax::token::{Token, TokenKind};
+use crate::syntax::{self};
 
 /// Lines are at most this long, in characters, if they can be broken.
 pub const WIDTH: usize = 100;
@@ -42,9 +45,18 @@ pub enum Unformatted {
 ///
 /// [`Unformatted`]
 pub fn format(source: &Source) -> Result<String, Unformatted> {
-    let tokens = source.tokens().map_err(|error| Unformatted::Mistakes(vec![*error]))?;
+    let read = source.tokens().map_err(|error| Unformatted::Mistakes(vec![*error]))?;
     let text = source.text().ok_or(Unformatted::Inline)?;
-    let (_, mut mistakes) = syntax::parse(&tokens);
+    let (tokens, mut mistakes) = match source.expansion() {
+        // its parts stay as they are
+        Some(expansion) => {
+            (Cow::Owned(lexer::tokens(text, MAX_TOKENS)), expansion.explained(expansion.syntax.clone()))
+        }
+        None => {
+            let mistakes = syntax::parse(&read).1;
+            (read, mistakes)
+        }
+    };
     mistakes.retain(|mistake| mistake.severity == Severity::Error);
     if !mistakes.is_empty() {
         return Err(Unformatted::Mistakes(mistakes));
@@ -55,6 +67,26 @@ pub fn format(source: &Source) -> Result<String, Unformatted> {
     let after = items::items(&formatted, &again);
     let same = same_tokens(&tokens, &again) && items::comments(&before).eq(items::comments(&after));
     if same { Ok(formatted) } else { Err(Unformatted::Changed) }
+}
+
+/// The text of a model without parts: what a model with parts stands for, and any other as it is.
+pub fn plain(source: &Source) -> String {
+    if source.expansion().is_none() {
+        return source.text().unwrap_or_default().to_owned();
+    }
+    let mut text = String::new();
+    for token in source.tokens().unwrap_or_default().iter() {
+        match token.kind {
+            TokenKind::Sign(c) | TokenKind::Open(c) | TokenKind::Close(c) => text.push(c),
+            TokenKind::InnerDoc => token.text.lines().for_each(|line| text.push_str(&format!("//!{line}\n"))),
+            TokenKind::OuterDoc => token.text.lines().for_each(|line| text.push_str(&format!("\n///{line}\n"))),
+            TokenKind::Name | TokenKind::Number | TokenKind::Bad(_) => text.push_str(&token.text),
+        }
+        let ends = token.is_sign(';') || token.is_sign(',') || matches!(token.kind, TokenKind::Open('{'));
+        text.push(if ends { '\n' } else { ' ' });
+    }
+    let laid_out = format(&Source::file(source.name(), text.as_str()));
+    laid_out.unwrap_or(text)
 }
 
 fn same_tokens(before: &[Token], after: &[Token]) -> bool {

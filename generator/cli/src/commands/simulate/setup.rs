@@ -4,6 +4,7 @@ use std::path::Path;
 
 use hodograph::Surface;
 use hodograph_generator::files;
+use hodograph_generator::format::plain;
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 
 use crate::animation::{Setup, Value};
@@ -26,6 +27,6 @@ pub fn setup(path: &Path, model: &Mechanism, state: &State, surfaces: &[(usize, 
         surfaces: surfaces.iter().map(of_contact).collect(),
         parameters: model.parameters.iter().zip(&state.parameters).map(value).collect(),
         start: coordinates.chain(model.speeds.iter().zip(&state.speeds)).map(value).collect(),
-        model: files::model(path).text().unwrap_or_default().to_owned(),
+        model: plain(&files::model(path)),
     }
 }

@@ -10,6 +10,14 @@ use super::Lowering;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::dimension::Dimension;
 
+/// The names that the rate of a coordinate may have: `u1` for `q1`, `u_hip` for `q_hip`, and in an instance of a
+/// part, whose names begin with that of the instance, `leg_u1` for `leg_q1`.
+fn speeds_of(coordinate: &str) -> impl Iterator<Item = String> {
+    let begins = |at: &usize| *at == 0 || coordinate[..*at].ends_with('_');
+    let places = coordinate.match_indices('q').map(|(at, _)| at).filter(begins);
+    places.map(|at| format!("{}u{}", &coordinate[..at], &coordinate[at + 1..]))
+}
+
 /// A set of coordinates.
 #[derive(Clone, Default)]
 struct Set(Vec<bool>);
@@ -84,10 +92,14 @@ impl Lowering<'_> {
             if stated.contains(i) || self.unread_quaternions.contains(&i) {
                 continue;
             }
-            let speed = coordinate.name.strip_prefix('q').map(|rest| format!("u{rest}"));
-            match speed.as_deref().and_then(|speed| self.names.get(speed)) {
-                Some(Symbol::Speed(speed)) => defaults.push((i, speed)),
-                _ => missing.push((i, speed)),
+            let named = speeds_of(&coordinate.name)
+                .find_map(|speed| match self.names.get(&speed) {
+                    Some(Symbol::Speed(speed)) => Some(speed),
+                    _ => None,
+                });
+            match named {
+                Some(speed) => defaults.push((i, speed)),
+                None => missing.push((i, speeds_of(&coordinate.name).next())),
             }
         }
         self.without_rate(&missing);
