@@ -58,9 +58,11 @@ impl Diagnostic {
         let renderer = Renderer::plain();
         let (file, span) = source.locate(self.primary.span);
         let primary = file.text().map(|text| within(text, span));
-        let (Some(text), Some(primary)) = (file.text(), primary.filter(|place| self.has_line(file, place))) else {
+        let (Some(text), Some(primary)) = (file.text(), primary.filter(|place| self.has_line(file, place)))
+        else {
             let place = Level::NOTE.message(format!("in {}", self.place(source)));
-            let others = self.related.iter().filter(|label| file.name() != source.locate(label.span).0.name());
+            let others =
+                self.related.iter().filter(|label| file.name() != source.locate(label.span).0.name());
             let notes = others.map(|label| Level::NOTE.message(self.note(label, source)));
             return renderer.render(&[title.element(place).elements(notes).elements(help)]);
         };

@@ -208,7 +208,8 @@ impl Source {
         let (source, span) = self.locate(span);
         if !source.is_inline() {
             let text = source.text().and_then(|text| text.get(span.range())).unwrap_or_default();
-            let short: String = text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(40).collect();
+            let short: String =
+                text.split_whitespace().collect::<Vec<_>>().join(" ").chars().take(40).collect();
             return short;
         }
         let Content::Inline { tokens, .. } = &self.content else { return String::new() };

@@ -126,8 +126,8 @@ fn seen(paths: &[PathBuf]) -> Vec<Seen> {
         let imported: Vec<PathBuf> = entry.source.imported().map(|file| PathBuf::from(file.name())).collect();
         std::iter::once(entry.path).chain(imported)
     };
-    let files = collect(paths)
-        .map_or(paths.to_vec(), |entries| entries.into_iter().flat_map(with_imports).collect());
+    let files =
+        collect(paths).map_or(paths.to_vec(), |entries| entries.into_iter().flat_map(with_imports).collect());
     for path in files {
         let data = std::fs::metadata(&path).ok();
         let time = data.as_ref().and_then(|data| data.modified().ok());

@@ -96,12 +96,13 @@ pub fn analyse(source: &Source) -> Analysis {
     if source.is_library() {
         let message = "this is a file of parts, and no mechanism";
         let error = Diagnostic::new(codes::EMPTY, Span::default(), message);
-        let help = "a model uses it after `import \"..\";`; `hodograph check` and `hodograph fmt` take it as it is";
+        let help =
+            "a model uses it after `import \"..\";`; `hodograph check` and `hodograph fmt` take it as it is";
         return Analysis { diagnostics: vec![error.help(help)], ..Analysis::default() };
     }
-    let mut found = analysed(source);
-    found.diagnostics = expansion.explained(found.diagnostics);
-    found
+    let Analysis { mechanism, diagnostics, .. } = analysed(source);
+    // places of tokens and names are those of the expanded model, which no author has seen
+    Analysis { mechanism, diagnostics: expansion.explained(diagnostics), ..Analysis::default() }
 }
 
 /// The same of a model without parts.

@@ -103,7 +103,10 @@ pub(super) const TABLE: &[Explanation] = &[
         text: "Indices, the ends of ranges and arguments of the kind `count` are whole numbers that are known \
             when the model is read: numbers, counts (`count n = 5;`), the indices of repetitions, and what \
             `+`, `-`, `*` and `/` make of them. Parameters are not: their values come later.",
-        wrong: chain!("use Link as link[1](hinge: O);\n", "for i in 2..l { use Link as link[i](hinge: link[i-1].tip); }\n"),
+        wrong: chain!(
+            "use Link as link[1](hinge: O);\n",
+            "for i in 2..l { use Link as link[i](hinge: link[i-1].tip); }\n"
+        ),
         right: chain!(
             "count n = 3;\n",
             "use Link as link[1](hinge: O);\n",
@@ -115,8 +118,14 @@ pub(super) const TABLE: &[Explanation] = &[
         text: "A mechanism has at most 10000 instances of parts and turns of repetitions, 200 imported files, \
             and 500000 words and signs when its parts are written out. Parts that use others twice double \
             with each level.",
-        wrong: chain!("use Link as link[0](hinge: O);\n", "for i in 1..1000000 { use Link as link[i](hinge: link[i-1].tip); }\n"),
-        right: chain!("use Link as link[0](hinge: O);\n", "for i in 1..2 { use Link as link[i](hinge: link[i-1].tip); }\n"),
+        wrong: chain!(
+            "use Link as link[0](hinge: O);\n",
+            "for i in 1..1000000 { use Link as link[i](hinge: link[i-1].tip); }\n"
+        ),
+        right: chain!(
+            "use Link as link[0](hinge: O);\n",
+            "for i in 1..2 { use Link as link[i](hinge: link[i-1].tip); }\n"
+        ),
     },
     Explanation {
         code: OUTER_NAME,

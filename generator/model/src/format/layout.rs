@@ -132,7 +132,8 @@ impl Text {
     /// A statement whose braces hold statements.
     fn block(&mut self, items: &[Item<'_>], indent: usize) {
         let open = items.iter().position(|item| item.is(TokenKind::Open('{')));
-        let Some(open) = open.filter(|_| items.last().is_some_and(|last| last.is(TokenKind::Close('}')))) else {
+        let Some(open) = open.filter(|_| items.last().is_some_and(|last| last.is(TokenKind::Close('}'))))
+        else {
             return self.wrapped(items, indent);
         };
         let (head, inner) = (&items[..=open], &items[open + 1..items.len() - 1]);
@@ -153,6 +154,9 @@ impl Text {
             return if remarks { self.as_written(items, indent) } else { self.wrapped(items, indent) };
         };
         let close = items.iter().rposition(|item| item.is(TokenKind::Close('}'))).unwrap_or(items.len() - 1);
+        if partner(items, open) != Some(close) {
+            return self.as_written(items, indent);
+        }
         let inner = &items[open + 1..close];
         let one_line = inner.first().is_none_or(|first| first.breaks == 0) && !remarks;
         let line = if remarks { String::new() } else { joined(items) };
@@ -253,6 +257,24 @@ impl Text {
             fresh = false;
         }
     }
+}
+
+/// Where the brace is closed that is opened here.
+fn partner(items: &[Item<'_>], open: usize) -> Option<usize> {
+    let mut depth = 0_usize;
+    for (i, item) in items.iter().enumerate().skip(open) {
+        match item.kind {
+            Kind::Token(TokenKind::Open('{')) => depth += 1,
+            Kind::Token(TokenKind::Close('}')) => {
+                depth -= 1;
+                if depth == 0 {
+                    return Some(i);
+                }
+            }
+            _ => {}
+        }
+    }
+    None
 }
 
 /// Whether a section declares quantities: names with units and values.

@@ -79,7 +79,9 @@ pub fn plain(source: &Source) -> String {
         match token.kind {
             TokenKind::Sign(c) | TokenKind::Open(c) | TokenKind::Close(c) => text.push(c),
             TokenKind::InnerDoc => token.text.lines().for_each(|line| text.push_str(&format!("//!{line}\n"))),
-            TokenKind::OuterDoc => token.text.lines().for_each(|line| text.push_str(&format!("\n///{line}\n"))),
+            TokenKind::OuterDoc => {
+                token.text.lines().for_each(|line| text.push_str(&format!("\n///{line}\n")))
+            }
             TokenKind::Name | TokenKind::Number | TokenKind::Bad(_) => text.push_str(&token.text),
         }
         let ends = token.is_sign(';') || token.is_sign(',') || matches!(token.kind, TokenKind::Open('{'));

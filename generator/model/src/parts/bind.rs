@@ -50,7 +50,9 @@ impl Resolver<'_, '_, '_> {
         for instance in 0..self.instances.list.len() {
             self.bindings.push(HashMap::new());
             values.push(HashMap::new());
-            let Some((part, used)) = self.instances.list[instance].part.zip(self.instances.list[instance].used) else {
+            let Some((part, used)) =
+                self.instances.list[instance].part.zip(self.instances.list[instance].used)
+            else {
                 continue;
             };
             let declared = self.instances.catalogue.parts[part].part;
@@ -126,7 +128,9 @@ impl Resolver<'_, '_, '_> {
         match &argument.kind {
             // a number of the instance already
             ArgumentKind::Count { .. } => {}
-            ArgumentKind::Value { unit, default } => self.quantity(instance, argument, actual, unit, default, model),
+            ArgumentKind::Value { unit, default } => {
+                self.quantity(instance, argument, actual, unit, default, model)
+            }
             ArgumentKind::Point { of } => {
                 if let Some(actual) = actual {
                     self.point(instance, argument, of.as_ref(), actual, used, model);
@@ -183,13 +187,21 @@ impl Resolver<'_, '_, '_> {
                 body = self.named(instance, argument, name, &words, span, &[Kind::Frame, Kind::Body]);
             }
             (Some(_), None) => {
-                let message = format!("the argument `{}` takes a point of a body or frame", argument.name.text);
-                let help = format!("say to what it belongs: `{}: {} of ..`", argument.name.text, shown(point));
+                let message =
+                    format!("the argument `{}` takes a point of a body or frame", argument.name.text);
+                let help =
+                    format!("say to what it belongs: `{}: {} of ..`", argument.name.text, shown(point));
                 self.wrong_argument(parent, actual.span(), message, argument, &help);
             }
             (None, Some(_)) => {
                 let message = format!("the argument `{}` takes a point alone", argument.name.text);
-                self.wrong_argument(parent, actual.span(), message, argument, "remove `of` and what follows it");
+                self.wrong_argument(
+                    parent,
+                    actual.span(),
+                    message,
+                    argument,
+                    "remove `of` and what follows it",
+                );
             }
         }
         let words = self.given_words(instance, point);
@@ -282,7 +294,10 @@ impl Resolver<'_, '_, '_> {
                 }
                 if !is_constant(&value) {
                     let span = span_of(default).unwrap_or(argument.name.span);
-                    let message = format!("the value that `{}` has if none is given must be a constant", argument.name.text);
+                    let message = format!(
+                        "the value that `{}` has if none is given must be a constant",
+                        argument.name.text
+                    );
                     let help = "numbers, `pi`, functions and counts may stand in it";
                     self.instances.report(instance, codes::CONSTANT, span, message, help);
                     return;
@@ -291,12 +306,19 @@ impl Resolver<'_, '_, '_> {
             }
             (None, None) => return,
         };
+        // `+1` is 1
+        let signed = value.len() == 2 && value[0].kind == TokenKind::Sign('+');
+        let value = if signed { value[1..].to_vec() } else { value };
         let is_one = matches!(unit, [only] if only.kind == TokenKind::Number && only.text == "1");
         if is_one && is_constant {
             self.bindings[instance].insert(argument.name.text.clone(), Bound::Number(bracketed(value)));
             return;
         }
-        let name = self.own_name(instance, &argument.name, if is_constant { Kind::Parameter } else { Kind::Definition });
+        let name = self.own_name(
+            instance,
+            &argument.name,
+            if is_constant { Kind::Parameter } else { Kind::Definition },
+        );
         let place = name.place;
         let mut middle = vec![Out { kind: TokenKind::Sign(':'), text: String::new(), place }];
         for token in unit {
@@ -371,7 +393,14 @@ impl Resolver<'_, '_, '_> {
         model.add(entry.section, tokens);
     }
 
-    fn wrong_argument(&mut self, parent: usize, span: Span, message: String, argument: &Argument, help: &str) {
+    fn wrong_argument(
+        &mut self,
+        parent: usize,
+        span: Span,
+        message: String,
+        argument: &Argument,
+        help: &str,
+    ) {
         let span = self.instances.at(span, parent);
         let error = Diagnostic::new(codes::ARGUMENT_KIND, span, message)
             .related(argument.name.span, format!("`{}` is declared here", argument.name.text));

@@ -27,16 +27,19 @@ pub struct Catalogue<'a> {
     pub parts: Vec<Entry<'a>>,
     /// the parts that each file sees
     visible: Vec<HashMap<&'a str, usize>>,
+    /// a file could not be imported, or two parts have one name: what is unknown is no further mistake
+    pub incomplete: bool,
 }
 
 impl<'a> Catalogue<'a> {
     /// The parts of all files.
     pub fn new(files: &'a [Read], mistakes: &mut Vec<Diagnostic>) -> Self {
-        let mut catalogue = Catalogue::default();
+        let mut catalogue = Catalogue { incomplete: !mistakes.is_empty(), ..Catalogue::default() };
         let mut own: Vec<Vec<usize>> = Vec::new();
         for (file, read) in files.iter().enumerate() {
             let first = catalogue.parts.len();
-            let entries = read.outline.parts.iter().map(|part| Entry { part, file, families: Families::new() });
+            let entries =
+                read.outline.parts.iter().map(|part| Entry { part, file, families: Families::new() });
             catalogue.parts.extend(entries);
             own.push((first..catalogue.parts.len()).collect());
         }
@@ -51,6 +54,8 @@ impl<'a> Catalogue<'a> {
                         let place = catalogue.parts[other].part.name.span;
                         let error = Diagnostic::new(codes::DUPLICATE_NAME, name.span, message);
                         mistakes.push(error.related(place, "the other is here").help("choose another name"));
+                        catalogue.incomplete = true;
+                        visible.remove(name.text.as_str());
                     }
                     _ => {
                         visible.insert(&name.text, part);
@@ -74,7 +79,8 @@ impl<'a> Catalogue<'a> {
 
     /// The names of the parts that a file sees, sorted.
     pub fn names(&self, file: usize) -> Vec<&'a str> {
-        let mut names: Vec<&str> = self.visible.get(file).into_iter().flat_map(HashMap::keys).copied().collect();
+        let mut names: Vec<&str> =
+            self.visible.get(file).into_iter().flat_map(HashMap::keys).copied().collect();
         names.sort_unstable();
         names
     }

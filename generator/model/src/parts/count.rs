@@ -177,7 +177,8 @@ mod tests {
 
     #[test]
     fn what_is_no_whole_number_is_refused() {
-        for text in ["", "n/2", "1/0", "0.5", "m", "n n", "(n", "9007199254740993", "n*9007199254740990", "sin(n)"]
+        for text in
+            ["", "n/2", "1/0", "0.5", "m", "n n", "(n", "9007199254740993", "n*9007199254740990", "sin(n)"]
         {
             assert!(value(text).is_err(), "{text}");
         }

@@ -61,7 +61,8 @@ impl Model {
             }
             tokens.extend(stretch.head.iter().cloned());
             tokens.extend(stretch.inner.iter().cloned());
-            if let Some(added) = stretch.section.and_then(|section| self.added.remove(&section).map(|added| (section, added)))
+            if let Some(added) =
+                stretch.section.and_then(|section| self.added.remove(&section).map(|added| (section, added)))
             {
                 let (section, added) = added;
                 let sign = separator(section);

@@ -63,8 +63,13 @@ pub fn read_all(
     places: &mut Places,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Vec<Read> {
-    let mut reading =
-        Reading { files, left: most, all: vec![Read { file: None, outline: root, imports: vec![] }], places, mistakes };
+    let mut reading = Reading {
+        files,
+        left: most,
+        all: vec![Read { file: None, outline: root, imports: vec![] }],
+        places,
+        mistakes,
+    };
     reading.imports_of(0, &mut vec![(0, Span::default())]);
     reading.all
 }
@@ -106,7 +111,7 @@ impl Reading<'_> {
                 self.mistakes.push(Diagnostic::new(codes::REPETITION, import.span, message));
                 return;
             }
-            let Some(outline) = self.outline(&file, import.span) else { continue };
+            let outline = self.outline(&file, import.span).unwrap_or_default();
             let index = self.all.len();
             self.all.push(Read { file: Some(file), outline, imports: vec![] });
             self.all[importing].imports.push(index);

@@ -249,7 +249,14 @@ impl<'a, 'p> Instances<'a, 'p> {
         Some(values)
     }
 
-    fn block(&mut self, instance: usize, block: &'a Block, numbers: Numbers, head: Option<Span>, depth: usize) {
+    fn block(
+        &mut self,
+        instance: usize,
+        block: &'a Block,
+        numbers: Numbers,
+        head: Option<Span>,
+        depth: usize,
+    ) {
         if depth > MOST_DEPTH {
             let span = head.unwrap_or_default();
             let message = format!("parts and repetitions are nested more than {MOST_DEPTH} deep");
@@ -280,7 +287,8 @@ impl<'a, 'p> Instances<'a, 'p> {
                 None => (Name { text: word.token.text.clone(), span: word.token.span }, Vec::new()),
                 Some(path) if path.segments.len() == 1 => {
                     let segment = &path.segments[0];
-                    let Some(values) = self.indices(instance, &segment.name, &segment.indices, numbers) else {
+                    let Some(values) = self.indices(instance, &segment.name, &segment.indices, numbers)
+                    else {
                         continue;
                     };
                     (Name { text: segment.name.text.clone(), span: word.token.span }, values)
@@ -331,7 +339,8 @@ impl<'a, 'p> Instances<'a, 'p> {
             let place = member.span();
             let error = if place == name.span {
                 let message = format!("`{}` is declared anew for each value of the index", name.text);
-                let help = format!("give it the index: `{}[i]` where `i` is the index of the `for`", name.text);
+                let help =
+                    format!("give it the index: `{}[i]` where `i` is the index of the `for`", name.text);
                 Diagnostic::new(codes::DUPLICATE_NAME, name.span, message).help(help)
             } else {
                 taken(&twice, place, other)
@@ -378,6 +387,9 @@ impl<'a, 'p> Instances<'a, 'p> {
     fn instance(&mut self, parent: usize, used: &'a Use, numbers: &Numbers, depth: usize) {
         let file = self.file(parent);
         let Some(part) = self.catalogue.find(file, &used.part.text) else {
+            if self.catalogue.incomplete {
+                return;
+            }
             let names = self.catalogue.names(file);
             let message = format!("there is no part `{}`", used.part.text);
             let help = match suggest::nearest(&used.part.text, names.iter().copied()) {
@@ -478,8 +490,13 @@ impl<'a, 'p> Instances<'a, 'p> {
         let declared = self.catalogue.parts[part].part;
         let template = self.template(&declared.block, Some(declared.name.span), Some(part));
         let quantities: Vec<String> = own_quantities(&template).map(str::to_owned).collect();
-        let known =
-            || declared.arguments.iter().map(|argument| argument.name.text.as_str()).chain(quantities.iter().map(String::as_str));
+        let known = || {
+            declared
+                .arguments
+                .iter()
+                .map(|argument| argument.name.text.as_str())
+                .chain(quantities.iter().map(String::as_str))
+        };
         let mut complete = true;
         for (i, actual) in used.actuals.iter().enumerate() {
             let name = &actual.name;
@@ -516,7 +533,8 @@ impl<'a, 'p> Instances<'a, 'p> {
             let message = format!("this use of `{}` lacks {}", declared.name.text, names.join("; "));
             let mut error = Diagnostic::new(codes::ARGUMENT_MISSING, used.span, message);
             for argument in missing.iter().take(5) {
-                error = error.related(argument.name.span, format!("`{}` is declared here", argument.name.text));
+                error =
+                    error.related(argument.name.span, format!("`{}` is declared here", argument.name.text));
             }
             self.report_once(parent, error);
             complete = false;
@@ -527,9 +545,8 @@ impl<'a, 'p> Instances<'a, 'p> {
 
 /// The quantities of a part that a use may give values to.
 pub fn own_quantities(template: &Template) -> impl Iterator<Item = &str> {
-    let quantity = |kind: Kind| {
-        matches!(kind, Kind::Parameter | Kind::Input | Kind::Coordinate | Kind::Speed)
-    };
+    let quantity =
+        |kind: Kind| matches!(kind, Kind::Parameter | Kind::Input | Kind::Coordinate | Kind::Speed);
     let plain = template.declared().filter(move |(word, kind)| word.path.is_none() && quantity(*kind));
     plain.map(|(word, _)| word.token.text.as_str())
 }

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::Expansion;
-use crate::diagnostics::{Code, Diagnostic, Label, codes};
+use crate::diagnostics::{Code, Diagnostic, Label, Place as Change, codes};
 use crate::span::Span;
 
 /// Uses around a place that are pointed out.
@@ -28,8 +28,11 @@ impl Expansion {
             kept.push(diagnostic);
             counts.push(0);
         }
-        let mut explained: Vec<Diagnostic> =
-            kept.into_iter().zip(counts).map(|(diagnostic, others)| self.of_instance(diagnostic, others)).collect();
+        let mut explained: Vec<Diagnostic> = kept
+            .into_iter()
+            .zip(counts)
+            .map(|(diagnostic, others)| self.of_instance(diagnostic, others))
+            .collect();
         explained.sort_by_key(|d| {
             let place = self.places.find(d.primary.span).unwrap_or_default();
             (place.file, place.span, d.code)
@@ -42,7 +45,9 @@ impl Expansion {
             && let Some(name) = diagnostic.message.split('`').nth(1)
             && let Some(shown) = self.shown.get(name).filter(|shown| *shown != name)
         {
-            let help = format!("`{shown}` is called {name} in generated code, and so is the other: choose another name");
+            let help = format!(
+                "`{shown}` is called {name} in generated code, and so is the other: choose another name"
+            );
             diagnostic.help = Some(help);
         }
         // the last name is that in generated code, which two others become
@@ -56,6 +61,12 @@ impl Expansion {
             label.text = self.written(&label.text);
         }
         let place = self.places.find(diagnostic.primary.span).unwrap_or_default();
+        // what one use would need may be wrong for the others
+        diagnostic.fixes.retain(|fix| {
+            let (Change::Replace(span) | Change::IntoBraces(span)) = fix.place;
+            self.places.find(span).is_some_and(|place| place.site.is_none())
+                && self.shown.get(&fix.text).is_none_or(|shown| *shown == fix.text)
+        });
         for (i, site) in self.places.sites(place).into_iter().take(MOST_USES).enumerate() {
             let more = match others {
                 0 => String::new(),
@@ -74,7 +85,8 @@ impl Expansion {
         if !text.contains('`') {
             return text.to_owned();
         }
-        let quoted = |(i, piece): (usize, &str)| if i % 2 == 1 { self.names(piece) } else { piece.to_owned() };
+        let quoted =
+            |(i, piece): (usize, &str)| if i % 2 == 1 { self.names(piece) } else { piece.to_owned() };
         text.split('`').enumerate().map(quoted).collect::<Vec<String>>().join("`")
     }
 

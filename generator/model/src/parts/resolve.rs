@@ -154,7 +154,8 @@ impl Resolver<'_, '_, '_> {
             ),
             Some(part) => {
                 let part = &self.instances.catalogue.parts[part].part.name.text;
-                let message = format!("the part `{part}` declares no `{name}`, and does not see that of the mechanism");
+                let message =
+                    format!("the part `{part}` declares no `{name}`, and does not see that of the mechanism");
                 let help = format!(
                     "give it to the part as an argument, or, if it is a parameter or an input, declare it in the part as \
                      `shared {name}: ..`"
@@ -171,7 +172,11 @@ impl Resolver<'_, '_, '_> {
         let other = &self.instances.list[other];
         let part = other.part.map_or("", |part| &self.instances.catalogue.parts[part].part.name.text);
         let message = format!("`{}` is an instance of the part `{part}`", word.token.text);
-        let example = other.members.keys().next().map_or("name".to_owned(), |(name, indices)| dotted("", name, indices));
+        let example = other
+            .members
+            .keys()
+            .next()
+            .map_or("name".to_owned(), |(name, indices)| dotted("", name, indices));
         let help = format!("name something that it has, as in `{}.{example}`", word.token.text);
         self.instances.report(instance, codes::WRONG_KIND, word.token.span, message, &help);
         Meaning::Wrong
@@ -182,7 +187,9 @@ impl Resolver<'_, '_, '_> {
         let members = &self.instances.list[instance].members;
         let from = (name.to_owned(), Vec::new());
         let found = members.range(from..).take_while(move |((other, _), _)| other == name);
-        found.filter(|((_, indices), _)| !indices.is_empty()).map(|((name, indices), _)| dotted("", name, indices))
+        found
+            .filter(|((_, indices), _)| !indices.is_empty())
+            .map(|((name, indices), _)| dotted("", name, indices))
     }
 
     fn path(&mut self, instance: usize, numbers: &Numbers, word: &Word, path: &Path) -> Meaning {
@@ -190,7 +197,8 @@ impl Resolver<'_, '_, '_> {
         let mut way = String::new();
         for (i, segment) in path.segments.iter().enumerate() {
             let name = &segment.name.text;
-            let Some(indices) = self.instances.indices(instance, &segment.name, &segment.indices, numbers) else {
+            let Some(indices) = self.instances.indices(instance, &segment.name, &segment.indices, numbers)
+            else {
                 return Meaning::Wrong;
             };
             let key = (name.clone(), indices);
@@ -219,7 +227,14 @@ impl Resolver<'_, '_, '_> {
     }
 
     /// Says that an instance has no such name.
-    fn no_member(&mut self, instance: usize, current: usize, word: &Word, here: &str, key: &(String, Vec<i64>)) {
+    fn no_member(
+        &mut self,
+        instance: usize,
+        current: usize,
+        word: &Word,
+        here: &str,
+        key: &(String, Vec<i64>),
+    ) {
         let span = word.token.span;
         let (name, indices) = key;
         let others: Vec<String> = self.indexed(current, name).collect();
@@ -238,9 +253,8 @@ impl Resolver<'_, '_, '_> {
             Some(part) => format!("the part `{}`", self.instances.catalogue.parts[part].part.name.text),
         };
         let given = match self.instances.list[current].part.filter(|_| current != instance) {
-            Some(part) => {
-                names_of_arguments(self.instances.catalogue.parts[part].part).any(|argument| argument.text == *name)
-            }
+            Some(part) => names_of_arguments(self.instances.catalogue.parts[part].part)
+                .any(|argument| argument.text == *name),
             None => false,
         };
         let names = self.instances.list[current].members.keys().map(|(name, _)| name.as_str());

@@ -90,7 +90,12 @@ impl Template {
 
 /// Reads a block. `head` is the place of what it belongs to; absent for that of a mechanism, which has a head
 /// of its own.
-pub fn template(block: &Block, head: Option<Span>, families: &Families, catalogue: &Catalogue<'_>) -> Template {
+pub fn template(
+    block: &Block,
+    head: Option<Span>,
+    families: &Families,
+    catalogue: &Catalogue<'_>,
+) -> Template {
     let mut template = Template::default();
     for chunk in &block.chunks {
         let (section, head_tokens, inner, close) = match chunk {
@@ -243,7 +248,12 @@ fn words(tokens: &[Token], families: &Families, catalogue: &Catalogue<'_>) -> Ve
 }
 
 /// The path that begins here, and where it ends.
-fn path(tokens: &[Token], start: usize, families: &Families, catalogue: &Catalogue<'_>) -> (Option<Path>, usize) {
+fn path(
+    tokens: &[Token],
+    start: usize,
+    families: &Families,
+    catalogue: &Catalogue<'_>,
+) -> (Option<Path>, usize) {
     let mut families = families.clone();
     let (mut segments, mut at) = (Vec::new(), start);
     while let Some(token) = tokens.get(at).filter(|token| token.kind == TokenKind::Name) {

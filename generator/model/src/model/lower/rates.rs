@@ -92,11 +92,10 @@ impl Lowering<'_> {
             if stated.contains(i) || self.unread_quaternions.contains(&i) {
                 continue;
             }
-            let named = speeds_of(&coordinate.name)
-                .find_map(|speed| match self.names.get(&speed) {
-                    Some(Symbol::Speed(speed)) => Some(speed),
-                    _ => None,
-                });
+            let named = speeds_of(&coordinate.name).find_map(|speed| match self.names.get(&speed) {
+                Some(Symbol::Speed(speed)) => Some(speed),
+                _ => None,
+            });
             match named {
                 Some(speed) => defaults.push((i, speed)),
                 None => missing.push((i, speeds_of(&coordinate.name).next())),
