@@ -603,3 +603,44 @@ fn expanding_is_bounded() {
         assert!(found.contains(&code), "{found:?} {}", &text[..text.len().min(300)]);
     }
 }
+
+/// `mechanism!` names the imported files in its module, so that the compiler builds it anew when they change.
+#[test]
+fn the_macro_follows_imports() {
+    let folder = Folder::new("macro", &[("models/chain.mech", IMPORTING), ("models/parts/link.mech", LINK)]);
+    let expanded = |input: &str| {
+        hodograph_generator::expand::expand(input.parse().unwrap(), &folder.0).to_string().replace(' ', "")
+    };
+    // there is no derivation yet: what stands in for the module follows its files too
+    let module = expanded("\"models/chain.mech\"");
+    assert!(
+        module.contains("\"/models/chain.mech\"") && module.contains("\"/models/parts/link.mech\""),
+        "{module}"
+    );
+    let inline = IMPORTING.replace("parts/link.mech", "models/parts/link.mech");
+    let module = expanded(&inline);
+    assert!(module.contains("\"/models/parts/link.mech\""), "{module}");
+    assert!(module.contains("hasnoderivation") || module.contains("modchain"), "{module}");
+    // also where a mistake in them is the reason that there is none
+    folder.write("models/parts/link.mech", &LINK.replace("length/2*B.y", "length*length*B.y"));
+    for module in [expanded("\"models/chain.mech\""), expanded(&inline)] {
+        assert!(module.contains("\"/models/parts/link.mech\""), "{module}");
+        assert!(module.contains("[E031]"), "{module}");
+    }
+}
+
+#[test]
+fn derivations_go_stale_with_what_is_imported() {
+    use hodograph_generator::artifact::{Loaded, encode, load_text};
+    use hodograph_generator::program::Program;
+    let folder = Folder::new("stale", &[("chain.mech", IMPORTING), ("parts/link.mech", LINK)]);
+    let derivation = encode(&Program::default(), &model_hash(&folder.model("chain.mech")));
+    let is_fresh = || matches!(load_text(&derivation, &folder.model("chain.mech")), Loaded::Fresh(_));
+    assert!(is_fresh());
+    folder.write("parts/link.mech", &format!("/* a comment */ {LINK} // another"));
+    assert!(is_fresh());
+    folder.write("parts/link.mech", &LINK.replace("/12, 0,", "/3, 0,"));
+    assert!(!is_fresh());
+    folder.write("parts/link.mech", LINK);
+    assert!(is_fresh());
+}

@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use hodograph_generator::{artifact, check, files, rendering, source::Source};
+use hodograph_generator::{artifact, check, files, format, rendering, source::Source};
 use hodograph_interpreter::InterpretedMechanism;
 use sha2::{Digest, Sha256};
 
@@ -47,7 +47,18 @@ impl Model {
             files::text(path, artifact::MAX_BYTES)
                 .map_err(|error| format!("cannot read {}: {error}{advice}", path.display()))
         };
-        let model = text(path, "")?;
+        let source = files::model(path);
+        let model = match source.expansion() {
+            None => text(path, "")?,
+            // a cluster has texts and no folders: what the model imports is written out
+            Some(_) => {
+                let found = check::check(&source);
+                if found.mechanism.is_none() {
+                    return Err(rendering::render(&found.diagnostics, &source));
+                }
+                format::plain(&source)
+            }
+        };
         let advice = format!("; `hodograph derive {}` writes it", path.display());
         let derivation = text(&artifact::place::beside(path), &advice)?;
         let model = Model::new(stem, &model, &derivation, false);

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 
 use hodograph_generator::emit::{self, Requests};
 use hodograph_generator::expand;
+use hodograph_generator::format::plain;
 use hodograph_generator::rust_names::snake_case;
 use proc_macro2::TokenStream;
 
 use crate::derivation::{self, Limits};
+use crate::model;
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
@@ -15,7 +17,11 @@ use crate::stop::{Outcome, Stop};
 #[derive(Clone, Debug, clap::Args)]
 pub struct Arguments {
     /// the model file
-    model: PathBuf,
+    #[arg(value_name = "MODEL")]
+    path: PathBuf,
+    /// print the model with its parts and imports written out, instead of the module
+    #[arg(long, conflicts_with_all = ["evaluate", "specialise"])]
+    model: bool,
     /// a method that gives several quantities at once, such as 'control(mass_matrix, forcing)': a name, and
     /// in parentheses the names of the methods whose answers it gives; may be given several times
     #[arg(long, value_name = "SET")]
@@ -35,6 +41,9 @@ pub struct Arguments {
 ///
 /// The model has errors or cannot be derived.
 pub fn run(arguments: &Arguments) -> Outcome {
+    if arguments.model {
+        return output::text(&plain(&model::load(&arguments.path)?.source));
+    }
     let mut requests = Requests::default();
     let words = [("evaluate", &arguments.evaluate), ("specialise", &arguments.specialise)];
     for (word, texts) in words {
@@ -44,7 +53,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             requests.specialised.extend(specialised);
         }
     }
-    output::text(&text(&arguments.model, requests, &arguments.limits)?)
+    output::text(&text(&arguments.path, requests, &arguments.limits)?)
 }
 
 /// The Rust module of a model.

@@ -43,7 +43,7 @@ pub(super) const TABLE: &[Explanation] = &[
         code: PART_UNKNOWN,
         text: "`use` names a part that is neither declared in this file nor in one that it imports. What an \
             imported file imports for itself is not seen: import it here, too.",
-        wrong: chain!("use Lnk as link(hinge: O);\n", "particles { P { point: O, mass: m } }\n"),
+        wrong: chain!("use Lnk as link(hinge: O);\n"),
         right: chain!("use Link as link(hinge: O);\n"),
     },
     Explanation {
@@ -134,7 +134,13 @@ pub(super) const TABLE: &[Explanation] = &[
             of the mechanism are declared in the part as `shared g: m/s^2`, other things are arguments. \
             Outside of its part a name is written with that of the instance, `leg.knee`, and not as it is \
             called in generated code, `leg_knee`.",
-        wrong: chain!("use Link as link(hinge: O);\n", "particles { P { point: link_tip, mass: m } }\n"),
-        right: chain!("use Link as link(hinge: O);\n", "particles { P { point: link.tip, mass: m } }\n"),
+        wrong: chain!(
+            "use Link as link(hinge: O);\n",
+            "contacts { wall { point: link_tip, normal: N.x, gap: l } }\n"
+        ),
+        right: chain!(
+            "use Link as link(hinge: O);\n",
+            "contacts { wall { point: link.tip, normal: N.x, gap: dot(position(link.tip), N.x) } }\n"
+        ),
     },
 ];

@@ -7,8 +7,8 @@
 
 use std::collections::HashMap;
 
+use super::assembly::{Model, separator};
 use super::count::Numbers;
-use super::emit::Model;
 use super::instances::{Member, own_quantities};
 use super::outline::{Actual, Argument, ArgumentKind, Use};
 use super::places::Place;
@@ -381,7 +381,7 @@ impl Resolver<'_, '_, '_> {
 
     fn entry(&mut self, model: &mut Model, entry: Entry) {
         let place = entry.name.place;
-        let separator = super::emit::separator(entry.section);
+        let separator = separator(entry.section);
         let mut tokens = Vec::new();
         if entry.section == Section::Parameters {
             tokens.push(Out { kind: TokenKind::Name, text: "fixed".to_owned(), place });

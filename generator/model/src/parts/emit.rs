@@ -1,100 +1,22 @@
-//! Writes the expanded model: the sections of the mechanism, each with the entries of all instances behind its
-//! own, in the order of the uses.
+//! Writes the blocks of all instances into the model, in the order of the uses.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 
+use super::assembly::{Model, Own, separator};
 use super::bind::{Given, GivenValues};
-use super::places::{Place, Places};
+use super::count::Numbers;
 use super::resolve::{Out, Resolver};
 use super::roles::{Kind, Role};
 use super::template::{Stretch, Word};
 use crate::syntax::token::{Token, TokenKind};
 use crate::syntax::tree::Section;
 
-/// What separates the entries of a section.
-pub fn separator(section: Section) -> char {
-    use Section::*;
-    match section {
-        Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => ',',
-        _ => ';',
-    }
-}
-
-/// A model on its way.
-#[derive(Debug, Default)]
-pub struct Model {
-    /// the entries of instances
-    added: BTreeMap<Section, Vec<Out>>,
-    /// the stretches of the mechanism
-    own: Vec<Own>,
-    /// how many tokens there are
-    length: usize,
-}
-
-/// A stretch of the mechanism.
-#[derive(Debug)]
-struct Own {
-    section: Option<Section>,
-    head: Vec<Out>,
-    inner: Vec<Out>,
-    close: Option<Out>,
-}
-
-impl Model {
-    /// Adds entries of an instance.
-    pub fn add(&mut self, section: Section, tokens: Vec<Out>) {
-        self.length += tokens.len();
-        self.added.entry(section).or_default().extend(tokens);
-    }
-
-    /// The tokens of the model.
-    pub fn tokens(mut self, places: &mut Places) -> Vec<Token> {
-        let mut tokens = Vec::with_capacity(self.length + 100);
-        let own = std::mem::take(&mut self.own);
-        for (i, stretch) in own.iter().enumerate() {
-            if let Some(section) = stretch.section {
-                // sections that the mechanism does not have stand where they belong
-                let later = |other: &Section| own[i..].iter().any(|stretch| stretch.section == Some(*other));
-                let missing: Vec<Section> =
-                    self.added.keys().copied().filter(|other| *other < section && !later(other)).collect();
-                missing.into_iter().for_each(|section| self.whole(section, &mut tokens));
-            }
-            tokens.extend(stretch.head.iter().cloned());
-            tokens.extend(stretch.inner.iter().cloned());
-            if let Some(added) =
-                stretch.section.and_then(|section| self.added.remove(&section).map(|added| (section, added)))
-            {
-                let (section, added) = added;
-                let sign = separator(section);
-                let place = stretch.inner.last().map(|last| (last.place, last.kind == TokenKind::Sign(sign)));
-                if let Some((place, false)) = place {
-                    tokens.push(Out { kind: TokenKind::Sign(sign), text: String::new(), place });
-                }
-                tokens.extend(added);
-            }
-            tokens.extend(stretch.close.iter().cloned());
-        }
-        let left: Vec<Section> = self.added.keys().copied().collect();
-        left.into_iter().for_each(|section| self.whole(section, &mut tokens));
-        let token = |out: Out| Token { kind: out.kind, span: places.add(out.place), text: out.text };
-        tokens.into_iter().map(token).collect()
-    }
-
-    /// A section of entries of instances alone.
-    fn whole(&mut self, section: Section, tokens: &mut Vec<Out>) {
-        let Some(added) = self.added.remove(&section) else { return };
-        let place = added.first().map_or(Place::default(), |first| first.place);
-        let sign = |kind| Out { kind, text: String::new(), place };
-        tokens.push(Out { kind: TokenKind::Name, text: section.word().to_owned(), place });
-        tokens.push(sign(TokenKind::Open('{')));
-        tokens.extend(added);
-        tokens.push(sign(TokenKind::Close('}')));
-    }
-}
-
 impl Resolver<'_, '_, '_> {
-    /// Writes all blocks; false where the model would have more than `most` tokens, with the block at which it
-    /// has.
+    /// Writes all blocks.
+    ///
+    /// # Errors
+    ///
+    /// The model would have more than `most` tokens: the instance at which it has.
     pub fn write(&mut self, values: &GivenValues, most: usize, model: &mut Model) -> Result<(), usize> {
         let runs = self.instances.runs.clone();
         for run in &runs {
@@ -108,12 +30,11 @@ impl Resolver<'_, '_, '_> {
                     };
                     let head = stretch.head.iter().map(|token| out(token, self)).collect();
                     let close = stretch.close.as_ref().map(|token| out(token, self));
-                    model.length += inner.len();
-                    model.own.push(Own { section: stretch.section, head, inner, close });
+                    model.stretch(Own { section: stretch.section, head, inner, close });
                 } else {
                     self.stretch(run.instance, &run.numbers, stretch, &values[run.instance], model);
                 }
-                if model.length > most {
+                if model.length() > most {
                     return Err(run.instance);
                 }
             }
@@ -125,9 +46,9 @@ impl Resolver<'_, '_, '_> {
     fn stretch(
         &mut self,
         instance: usize,
-        numbers: &super::count::Numbers,
+        numbers: &Numbers,
         stretch: &Stretch,
-        given: &std::collections::HashMap<String, Given>,
+        given: &HashMap<String, Given>,
         model: &mut Model,
     ) {
         let Some(section) = stretch.section else { return };

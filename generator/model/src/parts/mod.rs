@@ -9,12 +9,14 @@
 //! instances  each use and each turn of a repetition, and the names that it declares
 //! resolve    what a name of an instance means in the mechanism
 //! bind       what each instance is given
-//! emit       the sections of the expanded model
+//! assembly   the sections of the expanded model
+//! emit       the blocks of all instances, written into these
 //! messages   diagnostics of the expanded model, said of the texts that its author wrote
 //! ```
 //!
 //! Expanding is bounded: instances, files and tokens are counted, and no text is read twice.
 
+mod assembly;
 mod bind;
 mod catalogue;
 mod count;
@@ -36,9 +38,9 @@ use crate::diagnostics::{Diagnostic, codes};
 use crate::span::Span;
 use crate::syntax::token::Token;
 
+use assembly::Model;
 use catalogue::Catalogue;
 use count::Numbers;
-use emit::Model;
 use instances::Instances;
 use resolve::Resolver;
 
