@@ -13,6 +13,7 @@ mod language_page;
 mod mistakes;
 mod mistakes_of_a_cart;
 mod overconstrained;
+mod parts;
 mod robust;
 mod second_road;
 mod slips;

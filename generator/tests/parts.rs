@@ -206,6 +206,58 @@ fn words_of_the_grammar_are_no_names_of_a_part() {
     assert_same(&parts, by_hand);
 }
 
+#[test]
+fn shapes_and_their_contacts_belong_to_parts() {
+    let parts = "mechanism Feet;
+        part Foot(at: point, floor: point, y: 1 = 2) {
+            parameters { m: kg = 1, r: m = 0.1, h: m = 0.02, k: rad/m = 3 }
+            coordinates { x: m = touching(sole_2, 0.3) }
+            speeds { ux: m/s }
+            points { P = at + x*N.z; }
+            bodies { Ball { frame: N, centre: P, mass: m, inertia: [m*r^2, m*r^2, m*r^2] } }
+            shapes {
+                Ends { of: Ball, capsule: [r, y*r], axis: N.x, colour: teal },
+                Ground { at: floor, half_space: N.z },
+                Waves { at: floor - h*N.z, surface: h*sin(k*x)*cos(k*y) },
+                Cube { of: Ball, box: [r, r, r] },
+            }
+            contacts { sole { Ends on Ground, surface: { mu: 0.4 } }, bumps { Cube on Waves } }
+            kinematics { d(x)/dt = ux; }
+        }
+        parameters { l: m = 1 }
+        points { side = O + l*N.x; }
+        use Foot as left(at: O, floor: O);
+        use Foot as right(at: side, floor: side, y: 3);"
+        .replace("kinematics { d(x)/dt = ux; }", "")
+        .replace("contacts {", "kinematics { d(x)/dt = ux; } contacts {");
+    let one = |foot: &str, at: &str, y: &str| -> Vec<String> {
+        [
+            "A_m: kg = 1, A_r: m = 0.1, A_h: m = 0.02, A_k: rad/m = 3,",
+            "A_x: m = touching(A_sole_2, 0.3),",
+            "A_ux: m/s,",
+            "A_P = AT + A_x*N.z;",
+            "A_Ball { frame: N, centre: A_P, mass: A_m, inertia: [A_m*A_r^2, A_m*A_r^2, A_m*A_r^2] },",
+            "A_Ends { of: A_Ball, capsule: [A_r, Y*A_r], axis: N.x, colour: teal },
+             A_Ground { at: AT, half_space: N.z },
+             A_Waves { at: AT - A_h*N.z, surface: A_h*sin(A_k*x)*cos(A_k*y) },
+             A_Cube { of: A_Ball, box: [A_r, A_r, A_r] },",
+            "d(A_x)/dt = A_ux;",
+            "A_sole { A_Ends on A_Ground, surface: { mu: 0.4 } }, A_bumps { A_Cube on A_Waves },",
+        ]
+        .iter()
+        .map(|text| text.replace("AT", at).replace('Y', y).replace("A_", &format!("{foot}_")))
+        .collect()
+    };
+    let (left, right) = (one("left", "O", "2"), one("right", "side", "3"));
+    let words =
+        ["parameters", "coordinates", "speeds", "points", "bodies", "shapes", "kinematics", "contacts"];
+    let own = ["l: m = 1,", "", "", "side = O + l*N.x;", "", "", "", ""];
+    let sections: String = (0..words.len())
+        .map(|i| format!("{} {{ {} {} {} }}\n", words[i], own[i], left[i], right[i]))
+        .collect();
+    assert_same(&parts, &format!("mechanism Feet; {sections}"));
+}
+
 /// A part of one particle whose force names something; the mechanism has `k`, `c`, `P` and `F`.
 fn seen(inside: &str, force: &str) -> Vec<Code> {
     found(

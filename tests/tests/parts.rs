@@ -3,8 +3,8 @@
 
 mod common;
 
-use common::Model;
-use common::random::samples;
+use crate::common::Model;
+use crate::common::random::samples;
 use hodograph_generator::program::{ContactQuantity as C, Quantity as Q};
 
 hodograph::mechanism!("data/parts/chain.mech");
@@ -46,7 +46,7 @@ fn a_quadruped_of_parts_is_the_one_that_is_written_out() {
     let (parts, by_hand) = (model("parts/quadruped"), model("many_contacts/quadruped"));
     assert_eq!(parts.mechanism.coordinates.len(), by_hand.mechanism.coordinates.len());
     let lines = |model: &Model| model.text.lines().filter(|line| !line.trim().is_empty()).count();
-    let leg = std::fs::read_to_string(common::root().join("tests/data/parts/leg.mech")).unwrap();
+    let leg = std::fs::read_to_string(crate::common::root().join("tests/data/parts/leg.mech")).unwrap();
     assert!(lines(&parts) + leg.lines().count() <= 90, "{} {}", lines(&parts), leg.lines().count());
     let names = |model: &Model| -> Vec<String> {
         model.mechanism.parameters.iter().map(|parameter| parameter.name.clone()).collect()

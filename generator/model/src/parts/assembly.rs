@@ -12,7 +12,9 @@ use crate::syntax::tree::Section;
 pub fn separator(section: Section) -> char {
     use Section::*;
     match section {
-        Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts => ',',
+        Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes | Contacts => {
+            ','
+        }
         _ => ';',
     }
 }

@@ -137,6 +137,9 @@ impl Resolver<'_, '_, '_> {
         if predefined(name).is_some() {
             return Meaning::Itself;
         }
+        if let Some(text) = self.one_of_several(instance, name) {
+            return Meaning::Name(text, Kind::Point);
+        }
         let (name, span) = (name.to_owned(), word.token.span);
         let indexed: Vec<String> = self.indexed(instance, &name).take(3).collect();
         if !indexed.is_empty() {
@@ -165,6 +168,16 @@ impl Resolver<'_, '_, '_> {
         };
         self.instances.report(instance, codes::OUTER_NAME, span, message, &help);
         Meaning::Wrong
+    }
+
+    /// The name of one contact of a pair of shapes, which is numbered: `foot_floor_2` of `foot_floor`.
+    fn one_of_several(&self, instance: usize, name: &str) -> Option<String> {
+        let (pair, number) = name.rsplit_once('_')?;
+        number.bytes().all(|digit| digit.is_ascii_digit()).then_some(())?;
+        match self.instances.list[instance].members.get(&(pair.to_owned(), Vec::new())) {
+            Some(Member::Own { text, kind: Kind::Contact, .. }) => Some(format!("{text}_{number}")),
+            _ => None,
+        }
     }
 
     /// An instance where one of its names is needed.
@@ -217,6 +230,11 @@ impl Resolver<'_, '_, '_> {
                     return Meaning::Wrong;
                 }
                 None => {
+                    let numbered =
+                        if last && key.1.is_empty() { self.one_of_several(current, name) } else { None };
+                    if let Some(text) = numbered {
+                        return Meaning::Name(text, Kind::Point);
+                    }
                     self.no_member(instance, current, word, &here, &key);
                     return Meaning::Wrong;
                 }

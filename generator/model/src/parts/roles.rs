@@ -18,6 +18,7 @@ pub enum Kind {
     Frame,
     Point,
     Body,
+    Shape,
     Contact,
 }
 
@@ -33,6 +34,7 @@ impl Kind {
             Kind::Frame => "a frame",
             Kind::Point => "a point",
             Kind::Body => "a body",
+            Kind::Shape => "a shape",
             Kind::Contact => "a contact",
         }
     }
@@ -66,6 +68,7 @@ pub fn roles(tree: &Tree) -> HashMap<u32, Role> {
         velocities,
         bodies,
         particles,
+        shapes,
         loads,
         kinematics,
         constraints,
@@ -105,6 +108,10 @@ pub fn roles(tree: &Tree) -> HashMap<u32, Role> {
     }
     roles.records(bodies, Kind::Body);
     roles.records(particles, Kind::Body);
+    for shape in shapes {
+        roles.declares(&shape.name, Kind::Shape);
+        shape.fields.iter().for_each(|field| roles.dimension(field));
+    }
     roles.records(contacts, Kind::Contact);
     for load in loads {
         load.ends.iter().for_each(|(_, name)| roles.refers(name.span));
@@ -120,10 +127,12 @@ pub fn roles(tree: &Tree) -> HashMap<u32, Role> {
 #[derive(Default)]
 struct Roles {
     found: HashMap<u32, Role>,
+    /// whether `x` and `y` are words here
+    own: bool,
 }
 
 /// Words that a field takes in place of a name.
-const CHOICES: [&str; 5] = ["surface", "law", "gap", "none", "sliding"];
+const CHOICES: [&str; 3] = ["law", "gap", "colour"];
 
 impl Roles {
     fn declares(&mut self, name: &Name, kind: Kind) {
@@ -160,6 +169,16 @@ impl Roles {
         }
     }
 
+    /// A field of a shape. In the height of a surface or a curve `x` and `y` are coordinates of its own.
+    fn dimension(&mut self, field: &Field) {
+        if !["surface", "curve"].contains(&field.name.text.as_str()) {
+            return self.fields(std::slice::from_ref(field));
+        }
+        let mut inner = Roles { own: true, ..Roles::default() };
+        inner.expression(&field.value);
+        self.found.extend(inner.found);
+    }
+
     fn equation(&mut self, equation: &Equation) {
         self.expression(&equation.left);
         self.expression(&equation.right);
@@ -168,6 +187,7 @@ impl Roles {
     fn expression(&mut self, expr: &Expr) {
         match &expr.kind {
             ExprKind::Error | ExprKind::Number(_) => {}
+            ExprKind::Name(name) if self.own && (name == "x" || name == "y") => {}
             ExprKind::Name(_) => self.refers(expr.span),
             ExprKind::Sum(terms) | ExprKind::Product(terms) => {
                 terms.iter().for_each(|(_, term)| self.expression(term));
