@@ -1,3 +1,0 @@
-hodograph::mechanism!("part_dimension.mech");
-
-fn main() {}

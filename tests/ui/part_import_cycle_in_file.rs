@@ -1,3 +1,0 @@
-hodograph::mechanism!("part_import_cycle.mech");
-
-fn main() {}

@@ -1,3 +1,0 @@
-hodograph::mechanism!("part_import_missing.mech");
-
-fn main() {}
