@@ -22,7 +22,15 @@ pub(crate) struct ClosedContacts {
     pub velocity: DVector<f64>,
     /// Free accelerations (3k).
     pub beta: DVector<f64>,
+    /// What rounding may do to these (3k); zero where nobody asked.
+    pub noise: DVector<f64>,
 }
+
+/// The terms of a free acceleration are added with this rounding.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// Bodies that go along side by side have relative accelerations of up to so many times that rounding: normals turn by
+/// that of places over radii.
+const IDLE: f64 = 128.0;
 
 impl ClosedContacts {
     /// Evaluates the contacts; without `accelerate` the free accelerations stay zero.
@@ -49,7 +57,46 @@ impl ClosedContacts {
             mechanism.accelerations(state, &mut u[..state.speeds.len()])?;
             return Self::evaluated(mechanism, state, contacts, false, None);
         }
-        Self::evaluated(mechanism, state, contacts, true, Some(rates))
+        let mut all = Self::evaluated(mechanism, state, contacts, true, Some(&mut *rates))?;
+        all.weigh(mechanism, state.speeds, &rates[state.coordinates.len()..]);
+        Ok(all)
+    }
+
+    /// What rounding does to the free accelerations. They are sums of the partial velocities times the accelerations of the
+    /// speeds, and of those times the speeds with which directions turn.
+    fn weigh(&mut self, mechanism: &dyn Contacts<f64>, speeds: &[f64], accelerations: &[f64]) {
+        let turns: f64 =
+            speeds.iter().enumerate().filter(|(i, _)| is_angular(mechanism, *i)).map(|(_, u)| u.abs()).sum();
+        for (noise, column) in self.noise.iter_mut().zip(self.partials.column_iter()) {
+            let term = |((v, u), a): ((&f64, &f64), &f64)| v.abs() * (a.abs() + turns * u.abs());
+            *noise = ROUNDING * column.iter().zip(speeds).zip(accelerations).map(term).sum::<f64>();
+        }
+    }
+
+    /// The same without the rates.
+    pub fn loaded(
+        mechanism: &dyn Contacts<f64>,
+        state: &State<'_>,
+        contacts: &[usize],
+    ) -> Result<Self, StateError> {
+        let mut rates = vec![0.0; state.coordinates.len() + state.speeds.len()];
+        Self::with_rates(mechanism, state, contacts, &mut rates)
+    }
+
+    /// Whether nothing presses these bodies together or moves them against each other: all free accelerations are
+    /// rounding.
+    pub fn is_idle(&self) -> bool {
+        self.beta.iter().zip(self.noise.iter()).all(|(beta, noise)| beta.abs() <= IDLE * noise)
+    }
+
+    /// The greatest force that changes no acceleration by more than rounding, N.
+    pub fn least_force(&self) -> f64 {
+        let least = |i: usize| {
+            let own = (3 * i..3 * i + 3).map(|row| self.coupled[(row, row)]).sum::<f64>();
+            let noise = (3 * i..3 * i + 3).map(|row| self.noise[row]).fold(0.0, f64::max);
+            if own > 0.0 { IDLE * noise / own } else { 0.0 }
+        };
+        (0..self.len()).map(least).fold(0.0, f64::max)
     }
 
     fn evaluated(
@@ -122,12 +169,13 @@ impl ClosedContacts {
                 coupled[(column, row)] = mean;
             }
         }
-        Ok(Self { contacts: contacts.to_vec(), coupled, partials, response, velocity, beta })
+        let noise = DVector::zeros(3 * k);
+        Ok(Self { contacts: contacts.to_vec(), coupled, partials, response, velocity, beta, noise })
     }
 
     /// The problem of their forces, for these coefficients of friction and directions of slip.
     pub fn problem<'a>(&'a self, mu: &'a [f64], slip: &'a [Option<Vector2<f64>>]) -> Problem<'a> {
-        Problem { w: &self.coupled, beta: &self.beta, mu, slip, noise: None }
+        Problem { w: &self.coupled, beta: &self.beta, mu, slip, noise: Some(&self.noise) }
     }
 
     /// Number of contacts.
@@ -175,6 +223,12 @@ impl ClosedContacts {
         }
         change
     }
+}
+
+/// Whether a speed is an angular one.
+pub(crate) fn is_angular(mechanism: &dyn Contacts<f64>, speed: usize) -> bool {
+    let unit = mechanism.component(Kind::Speed, speed).map_or("", |component| component.unit);
+    unit.contains("rad") || unit.contains("deg")
 }
 
 /// beta of a contact. Of a mechanism that does not give it, it is the derivative of the contact's velocity

@@ -41,6 +41,8 @@ pub(crate) struct Forces {
     pub f: f64,
     /// The place of that contact.
     pub jams: Option<usize>,
+    /// Forces up to this are rounding, N.
+    pub rounding: f64,
 }
 
 impl Forces {
@@ -74,6 +76,18 @@ pub(crate) fn forces(
     guess: Option<&DVector<f64>>,
     wanted: Wanted,
 ) -> Result<Forces, Lacking> {
+    if support.is_idle() {
+        let none = DVector::zeros(3 * holds.len());
+        let rounding = support.least_force();
+        return Ok(Forces {
+            lambda: none.clone(),
+            acceleration: none,
+            unique: true,
+            f: 1.0,
+            jams: None,
+            rounding,
+        });
+    }
     if let [hold] = holds {
         return single(support, *hold, mu[0]);
     }
@@ -96,6 +110,7 @@ pub(crate) fn forces(
         unique: found.unique,
         f: found.f,
         jams: found.jams,
+        rounding: support.least_force(),
     })
 }
 
@@ -115,6 +130,7 @@ fn single(support: &ClosedContacts, hold: Hold, mu: f64) -> Result<Forces, Lacki
         unique: answer.force_is_unique,
         f: answer.margins.f.map_or(1.0, |f| f / matrix.nn),
         jams: answer.margins.f.map(|_| 0),
+        rounding: support.least_force(),
     })
 }
 
@@ -124,7 +140,8 @@ const SLACK: f64 = 2e-12;
 /// What must stay positive while the modes last: per contact lambda_n, and (mu lambda_n)^2 - lambda_tan^2 of
 /// one that sticks (else 1).
 pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 2]> {
-    let size = forces.lambda.amax();
+    // Of contacts that are not pressed all forces are rounding.
+    let slack = (SLACK * forces.lambda.amax()).max(forces.rounding);
     holds
         .iter()
         .enumerate()
@@ -135,10 +152,10 @@ pub(crate) fn margins(forces: &Forces, holds: &[Hold], mu: &[f64]) -> Vec<[f64; 
                 Hold::Stick => {
                     let most = mu[i] * force.x;
                     let over = force.y * force.y + force.z * force.z;
-                    most * most * (1.0 + 2.0 * SLACK) + (SLACK * size).powi(2) - over
+                    most * most * (1.0 + 2.0 * SLACK) + (1.0 + mu[i] * mu[i]) * slack.powi(2) - over
                 }
             };
-            [force.x + SLACK * size, cone]
+            [force.x + slack, cone]
         })
         .collect()
 }
@@ -175,6 +192,7 @@ mod tests {
                 partials: partials.transpose(),
                 response: response.clone(),
                 velocity: DVector::zeros(6),
+                noise: DVector::zeros(6),
             };
             let holds = [Hold::Stick, Hold::Stick];
             let found = forces(&support, &holds, &[0.63; 2], None, Wanted::Centre).unwrap();

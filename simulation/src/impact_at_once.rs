@@ -21,6 +21,16 @@ const HALVINGS: usize = 40;
 /// A gain of energy below this, relative to the energies of the normal impulses, is rounding.
 const ROUNDING: f64 = 1e-12;
 
+/// The implicit step whose limit ends a jam, beside the time of the problem, and by how much more than its free
+/// accelerations such a step changes the velocities.
+const STEP: f64 = 1e-7;
+const LARGE: f64 = 100.0;
+/// At the event of a jam the determinant of the sliding contacts is not yet zero ([`crate::forces::JAM`]): by this part
+/// friction is larger in the impact.
+const MORE: f64 = 2e-5;
+/// The normal impulses may miss the cones by this part.
+const SHORT: f64 = 1e-9;
+
 /// The impulses of contacts that strike at once.
 struct AtOnce {
     impulse: DVector<f64>,
@@ -31,7 +41,36 @@ struct AtOnce {
     scale: f64,
 }
 
+impl AtOnce {
+    fn with(impulse: DVector<f64>, before: DVector<f64>, velocity: DVector<f64>) -> Self {
+        let terms = |i: usize| 0.5 * impulse[i] * (before[i] + velocity[i]);
+        let work = (0..velocity.len()).map(terms).sum();
+        let scale = (0..velocity.len()).map(|i| terms(i).abs()).sum();
+        Self { impulse, velocity, work, scale }
+    }
+}
+
 impl Transition<'_> {
+    /// The impact of contacts that jam together, though none of them would alone; `None` where there is none.
+    pub(crate) fn impact_of_a_jam(
+        &self,
+        contacts: &[usize],
+        speeds: &[f64],
+    ) -> Result<Option<Hit>, SimulationError> {
+        let state = State { speeds, ..self.here() };
+        let support = ClosedContacts::new(self.mechanism, &state, contacts, true)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let mu = contacts.iter().enumerate().map(|(i, &contact)| {
+            let slip = support.slip(i).norm();
+            Ok((1.0 + MORE) * self.friction(contact, slip)?.slips)
+        });
+        let mu = mu.collect::<Result<Vec<f64>, SimulationError>>()?;
+        match impulses_of_a_jam(&support, &mu, STEP * self.front.scales.time) {
+            Some(outcome) => Ok(Some(self.hit_by(contacts, &support, speeds, &outcome, Vec::new())?)),
+            None => Ok(None),
+        }
+    }
+
     /// The impact of these contacts at once; `faded` ones end without restitution.
     pub(crate) fn impact_at_once(
         &self,
@@ -99,6 +138,18 @@ impl Transition<'_> {
             }
             outcome = solve(low)?;
         }
+        self.hit_by(contacts, support, speeds, &outcome, bounces)
+    }
+
+    /// The impact with these impulses.
+    fn hit_by(
+        &self,
+        contacts: &[usize],
+        support: &ClosedContacts,
+        speeds: &[f64],
+        outcome: &AtOnce,
+        bounces: Vec<(usize, f64)>,
+    ) -> Result<Hit, SimulationError> {
         let change = &support.response * &outcome.impulse;
         let after: Vec<f64> =
             speeds.iter().zip(change.iter()).map(|(speed, change)| speed + change).collect();
@@ -126,6 +177,27 @@ impl Transition<'_> {
     }
 }
 
+/// The impulses without restitution that end a jam: the limit of the implicit steps v+ = v- + W p + h beta as h falls to
+/// zero, with friction against the slip that is left. `None` where these steps have finite forces.
+fn impulses_of_a_jam(support: &ClosedContacts, mu: &[f64], h: f64) -> Option<AtOnce> {
+    let k = support.len();
+    let mut velocity = support.velocity.clone();
+    for i in 0..k {
+        // Closed contacts neither part nor approach.
+        velocity[3 * i] = 0.0;
+    }
+    let none: Vec<Option<Vector2<f64>>> = vec![None; k];
+    let stepped = &velocity + h * &support.beta;
+    let problem = Problem { w: &support.coupled, beta: &stepped, mu, slip: &none, noise: None };
+    let modes = contact_problem::solve(&problem, None).ok()?.modes;
+    let problem = Problem { beta: &velocity, ..problem };
+    let impulse =
+        contact_problem::with_modes(&problem, &modes).ok().filter(|found| found.margin >= -SHORT)?.force;
+    let after = &support.coupled * &impulse + &velocity;
+    let change = (&after - &velocity).amax();
+    (change > LARGE * h * support.beta.amax()).then(|| AtOnce::with(impulse, velocity, after))
+}
+
 /// The impulses for these coefficients of restitution.
 fn solve(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Result<AtOnce, contact_problem::Unsolved> {
     let mut wanted = support.velocity.clone();
@@ -136,8 +208,5 @@ fn solve(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Result<AtOnce, cont
     let problem = Problem { w: &support.coupled, beta: &wanted, mu, slip: &none, noise: None };
     let solution = contact_problem::solve(&problem, None)?;
     let velocity = &support.coupled * &solution.force + &support.velocity;
-    let terms = |i: usize| 0.5 * solution.force[i] * (support.velocity[i] + velocity[i]);
-    let work = (0..velocity.len()).map(terms).sum();
-    let scale = (0..velocity.len()).map(|i| terms(i).abs()).sum();
-    Ok(AtOnce { impulse: solution.force, velocity, work, scale })
+    Ok(AtOnce::with(solution.force, support.velocity.clone(), velocity))
 }

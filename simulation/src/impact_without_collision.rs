@@ -1,11 +1,12 @@
 //! Impacts without collision: a sliding contact that no finite force can hold (Painleve's paradox).
 
-use hodograph::{CollisionOutcome, ContactState, Kind, State, Surface};
+use hodograph::{CollisionError, CollisionOutcome, ContactState, ImpactError, Kind, State, Surface};
 use nalgebra::Vector2;
 
 use crate::forces::JAM;
 use crate::impacts::MOST;
 use crate::motion::Failure;
+use crate::phase::Phase;
 use crate::transition::Transition;
 use crate::{CollisionRecord, EventKind, Reason, SimulationError};
 
@@ -21,7 +22,18 @@ impl Transition<'_> {
         let touching = self.touching(Some(contact))?;
         let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
         let before = self.front.y[n..n + p].to_vec();
-        let (outcome, after) = self.without_collision(contact, &before)?;
+        let (outcome, after) = match self.without_collision(contact, &before) {
+            // Alone it would not jam.
+            Err(
+                error @ SimulationError {
+                    reason: Reason::Collision(CollisionError::Impact(ImpactError::NoImpact { .. })),
+                    ..
+                },
+            ) => {
+                return self.jam_together(&before, &was, error);
+            }
+            found => found?,
+        };
         self.front.resting = false;
         self.front.y[n..n + p].copy_from_slice(&after);
         self.front.energy.impacts += outcome.energy_change;
@@ -30,6 +42,25 @@ impl Transition<'_> {
         match self.approaching(&touching, &after, Some(1.0))?.first() {
             Some(&(other, _)) => self.strike(other),
             None => self.part_or_stay(&touching, &after, &was),
+        }
+    }
+
+    /// The closed contacts jam together: an impact of all of them.
+    fn jam_together(
+        &mut self,
+        before: &[f64],
+        was: &[Phase],
+        alone: SimulationError,
+    ) -> Result<(), SimulationError> {
+        let closed: Vec<usize> = (0..was.len()).filter(|&contact| was[contact].is_closed()).collect();
+        let Some(hit) = self.impact_of_a_jam(&closed, before)? else { return Err(alone) };
+        self.front.resting = false;
+        let after = hit.after.clone();
+        self.take_impact(hit, None);
+        let touching = self.touching(None)?;
+        match self.approaching(&touching, &after, Some(1.0))?.first() {
+            Some(&(other, _)) => self.strike(other),
+            None => self.part_or_stay(&touching, &after, was),
         }
     }
 

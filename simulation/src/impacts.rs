@@ -67,7 +67,7 @@ impl Transition<'_> {
     }
 
     /// Takes an impact: speeds, energies, bounces that end, and the event.
-    fn take_impact(&mut self, hit: Hit, spread: Option<f64>) {
+    pub(crate) fn take_impact(&mut self, hit: Hit, spread: Option<f64>) {
         let n = self.mechanism.count(Kind::Coordinate);
         self.front.y[n..n + hit.after.len()].copy_from_slice(&hit.after);
         self.front.energy.impacts += hit.energy_change();

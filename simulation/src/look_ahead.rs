@@ -139,7 +139,7 @@ impl Transition<'_> {
         let forward = slips_forward(closed, &evaluation);
         let margins = margins(forces, &evaluation.holds, &mus(closed));
         let fits = forward && margins.iter().flatten().all(|margin| *margin >= 0.0);
-        let size = forces.lambda.amax();
+        let size = forces.lambda.amax().max(forces.rounding / CLEAR);
         let relative: Vec<f64> =
             margins.iter().flat_map(|[normal, cone]| [normal / size, cone / (size * size)]).collect();
         let violated = relative.iter().any(|margin| *margin < -CLEAR);
@@ -154,7 +154,7 @@ impl Transition<'_> {
         let time = step.t + step.h;
         let inputs = motion.inputs(time, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
-        let support = ClosedContacts::new(self.mechanism, &state, contacts, true)
+        let support = ClosedContacts::loaded(self.mechanism, &state, contacts)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let slips: Vec<Option<Vector2<f64>>> = contacts
             .iter()

@@ -38,6 +38,16 @@ pub(crate) fn choose(
     friction: &[Friction],
     before: &DVector<f64>,
 ) -> Result<Choice, Lacking> {
+    if support.is_idle() {
+        // Nothing presses or parts them: what does not slip goes on without, and so does what slips.
+        let decision =
+            |slip: &Option<Vector2<f64>>| slip.map_or(Decision::Stick, |d| Decision::Slide(d, false));
+        return Ok(Choice {
+            decisions: slips.iter().map(decision).collect(),
+            forces: vec![Vector3::zeros(); slips.len()],
+            selection: vec![Selection::Unknown; slips.len()],
+        });
+    }
     if support.len() == 1 {
         return one(support, slips[0], friction[0], before);
     }
@@ -343,6 +353,7 @@ mod tests {
             partials,
             response,
             velocity: DVector::zeros(3 * k),
+            noise: DVector::zeros(3 * k),
         }
     }
 

@@ -58,6 +58,13 @@ pub(crate) struct Closed {
     pub omega: Option<f64>,
 }
 
+impl Closed {
+    /// Whether the direction of slip matters: a contact without friction slips as it likes.
+    pub fn rubs(&self) -> bool {
+        self.slides.is_some() && self.mu > 0.0
+    }
+}
+
 /// What stays the same during a step.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Modes {

@@ -6,7 +6,7 @@
 
 use hodograph::{Contacts, Kind, State};
 
-use crate::closed_contacts::ClosedContacts;
+use crate::closed_contacts::{ClosedContacts, is_angular};
 
 /// Units of a problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,10 +25,6 @@ const NEAR: f64 = 1e-6;
 impl Scales {
     /// Those of a start state; 1 where nothing tells.
     pub fn of(mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Self {
-        let angular = |speed: usize| {
-            let unit = mechanism.component(Kind::Speed, speed).map_or("", |component| component.unit);
-            unit.contains("rad") || unit.contains("deg")
-        };
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
         let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
         let (mut acceleration, mut speed) = (0.0_f64, 0.0_f64);
@@ -38,7 +34,7 @@ impl Scales {
             gaps = gaps.max(gap.abs());
             for (index, column) in alone.partials.column_iter().enumerate() {
                 // What an angular speed gives to the point is an arm.
-                if angular(index) {
+                if is_angular(mechanism, index) {
                     length = length.max(column.norm());
                 }
             }

@@ -9,9 +9,10 @@
 use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
+use crate::contact_problem::{Mode, is_slow, slip_together, with_modes};
 use crate::forces::{Forces, Hold, Lacking};
 use crate::mode_selection::begin_along;
-use crate::phase::Closed;
+use crate::phase::{Closed, mus};
 
 /// The modes of contacts with the directions that follow from the state: `omega` of those that have settled.
 pub(crate) fn settle_directions(
@@ -28,9 +29,43 @@ pub(crate) fn settle_directions(
     let mut directions = directions(holds);
     let across: Vec<f64> =
         settled.iter().map(|&(i, _)| closed[i].omega.unwrap_or(0.0) * support.slip(i).norm()).collect();
+    if let Some(together) = slow(support, closed, holds, &settled, &across) {
+        holds.copy_from_slice(&together);
+        return Some(());
+    }
     begin_along(&settled, &mut directions, &across, |directions| solve(&with(directions)).ok())?;
     holds.copy_from_slice(&with(&directions));
     Some(())
+}
+
+/// The modes of contacts that slip together, with so little acceleration that differences of it do not tell their
+/// directions; `None` where they have more.
+fn slow(
+    support: &ClosedContacts,
+    closed: &[Closed],
+    holds: &[Hold],
+    settled: &[(usize, usize)],
+    across: &[f64],
+) -> Option<Vec<Hold>> {
+    if settled.len() < 2 {
+        return None;
+    }
+    let mu = mus(closed);
+    let slips: Vec<Option<Vector2<f64>>> = holds.iter().map(Hold::direction).collect();
+    let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
+    let problem = support.problem(&mu, &slips);
+    let open: Vec<usize> = settled.iter().map(|&(place, _)| place).collect();
+    let force = with_modes(&problem, &modes).ok()?.force;
+    if !is_slow(&problem, &modes, &open, &force) {
+        return None;
+    }
+    let begins = open.iter().all(|&place| support.slip(place) == Vector2::zeros());
+    let modes = slip_together(&problem, &modes, &open, (!begins).then_some(across), &force)?;
+    let hold = |mode: &Mode| match mode {
+        Mode::Slide(d) => Hold::Slide(*d),
+        _ => Hold::Stick,
+    };
+    Some(modes.iter().map(hold).collect())
 }
 
 fn directions(holds: &[Hold]) -> Vec<Option<Vector2<f64>>> {

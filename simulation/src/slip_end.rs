@@ -154,6 +154,7 @@ mod tests {
                 partials: DMatrix::identity(3, 3),
                 response: DMatrix::from_column_slice(3, 3, matrix.as_slice()),
                 velocity: DVector::from_vec(vec![0.0, speed * cos, speed * sin]),
+                noise: DVector::zeros(3),
                 beta: DVector::from_vec(vec![
                     -10.346_140_666_985_525,
                     0.503_588_089_344_682_7,
@@ -194,6 +195,7 @@ mod tests {
             partials: DMatrix::identity(3, 3),
             response: coupled,
             velocity: DVector::from_vec(vec![0.0, slip.x, slip.y]),
+            noise: DVector::zeros(3),
             beta: DVector::from_vec(vec![
                 -10.872_127_680_008_283,
                 0.219_501_540_502_147_62,

@@ -49,7 +49,7 @@ impl Transition<'_> {
         let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
         let ending = ENDING * self.front.scales.time;
         for (i, contact) in closed.iter().enumerate() {
-            if contact.slides.is_none() {
+            if !contact.rubs() {
                 continue;
             }
             let left = time_of_slip(&here, i, &self.front.scale);
@@ -201,7 +201,7 @@ impl Transition<'_> {
         here: &Evaluation,
         step: &Step,
     ) -> Result<bool, SimulationError> {
-        if closed.iter().all(|contact| contact.slides.is_none()) {
+        if !closed.iter().any(Closed::rubs) {
             return Ok(true);
         }
         let motion = self.motion(closed);
@@ -209,7 +209,7 @@ impl Transition<'_> {
         let inputs = motion.inputs(step.t + step.h, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &inputs };
         for (place, (contact, hold)) in closed.iter().zip(&here.holds).enumerate() {
-            if let Hold::Slide(d) = hold {
+            if let (Hold::Slide(d), true) = (hold, contact.rubs()) {
                 let velocity = self
                     .mechanism
                     .contact_velocity(contact.contact, &state)

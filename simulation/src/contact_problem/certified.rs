@@ -60,8 +60,7 @@ fn several_contacts<'a>(problem: &Problem<'a>, beta: &'a [f64]) -> SeveralContac
 
 /// beta, zero where it is rounding.
 fn without_noise(problem: &Problem<'_>) -> Vec<f64> {
-    let clean = |(row, &beta): (usize, &f64)| if beta.abs() <= problem.noise(row) { 0.0 } else { beta };
-    problem.beta.iter().enumerate().map(clean).collect()
+    (0..problem.beta.len()).map(|row| problem.pull(row)).collect()
 }
 
 fn unsolved(reason: Unfound<f64>) -> Unsolved {

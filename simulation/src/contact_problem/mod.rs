@@ -16,6 +16,7 @@
 
 mod centre;
 mod certified;
+mod common_slip;
 mod directions;
 mod edge;
 mod enumerate;
@@ -27,7 +28,6 @@ mod problem;
 mod solve;
 mod sparse;
 
-pub(crate) use self::prescribed::{Wanted, found};
 pub use self::{
     certified::certificate,
     directions::MOST_ENUMERATED,
@@ -36,4 +36,9 @@ pub use self::{
     prescribed::{Admissible, Impossible, rest, with_modes, with_modes_near},
     problem::{Mode, Problem, Solution, Solutions, Unsolved},
     solve::solve,
+};
+pub(crate) use self::{
+    common_slip::slip_together,
+    motion::is_slow,
+    prescribed::{Wanted, found},
 };

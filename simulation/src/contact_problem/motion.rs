@@ -8,6 +8,7 @@ use nalgebra::{DMatrix, DVector, Vector2};
 use super::{
     Mode, Problem, Solution,
     certified::with_certificate,
+    common_slip::slip_together,
     prescribed::{Admissible, with_modes_near},
 };
 
@@ -44,6 +45,11 @@ pub(super) fn settle(
     open: &[usize],
     mut force: DVector<f64>,
 ) -> Option<Vec<Mode>> {
+    if is_slow(problem, &modes, open, &force)
+        && let Some(modes) = slip_together(problem, &modes, open, None, &force)
+    {
+        return Some(modes);
+    }
     let mut last = f64::INFINITY;
     for _ in 0..ROUNDS {
         let (turns, centre) = turns(problem, &modes, open, &force)?;
@@ -74,6 +80,19 @@ pub(super) fn settle(
     None
 }
 
+/// Whether contacts slip with so small accelerations that differences of forces do not tell their directions.
+pub(crate) fn is_slow(problem: &Problem<'_>, modes: &[Mode], open: &[usize], force: &DVector<f64>) -> bool {
+    let acceleration = problem.w * force + problem.beta;
+    let along = |&i: &usize| match modes[i] {
+        Mode::Slide(d) => {
+            problem.scale(i) * (d.x * acceleration[3 * i + 1] + d.y * acceleration[3 * i + 2]).abs()
+        }
+        _ => 0.0,
+    };
+    let pulls = (0..3 * modes.len()).map(|row| problem.scale(row / 3) * problem.beta[row].abs());
+    open.iter().map(along).fold(0.0, f64::max) < SLOW * pulls.fold(0.0, f64::max)
+}
+
 /// The angles from the given directions to those of the accelerations under the centre of their forces.
 fn turns(
     problem: &Problem<'_>,
@@ -102,6 +121,8 @@ fn turn(mode: &mut Mode, angle: f64) {
 
 /// Rounds until directions settle, the most contacts for which their changes are found by differences, and the angle of
 /// these.
+/// Accelerations of slip below this part of those without forces are slow.
+const SLOW: f64 = 1e-3;
 const ROUNDS: usize = 60;
 const MOST: usize = 16;
 const DIFFERENCE: f64 = 1e-6;

@@ -111,7 +111,7 @@ pub(crate) fn found(
     let unknowns = Unknowns::new(problem, modes);
     let m = unknowns.list.len();
     let matrix = unknowns.matrix(problem);
-    let right = vector(m, |a| -problem.beta[unknowns.row(a)] / unknowns.rate(a));
+    let right = vector(m, |a| -problem.pull(unknowns.row(a)) / unknowns.rate(a));
     let elimination = Elimination::new(matrix.clone(), m, SINGULAR);
     let mut x = elimination.solve(&right);
     // One refinement.

@@ -58,6 +58,11 @@ impl Problem<'_> {
         self.noise.map_or(0.0, |noise| noise[row])
     }
 
+    /// A component of beta, zero where it is rounding.
+    pub(super) fn pull(&self, row: usize) -> f64 {
+        if self.beta[row].abs() <= self.noise(row) { 0.0 } else { self.beta[row] }
+    }
+
     /// s_i, about tr(W_ii)^(-1/2): lambda = s x and a = v / s have the same laws.
     pub(super) fn scale(&self, i: usize) -> f64 {
         let trace: f64 = (3 * i..3 * i + 3).map(|row| self.w[(row, row)]).sum();
