@@ -17,6 +17,7 @@ mod exact;
 mod examples;
 mod inclines;
 mod many;
+mod mechanisms;
 mod one_contact;
 mod painleve;
 mod settling;
