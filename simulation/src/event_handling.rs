@@ -16,7 +16,10 @@ use crate::transition::Transition;
 use crate::{EventKind, SimulationError};
 
 /// The greatest number of events without progress in time.
-const CROWD: usize = 2000;
+const CROWD: usize = 1000;
+/// So many events must advance the motion by this part of the time of the problem.
+const EVENTS: usize = 500;
+const ADVANCE: f64 = 1e-7;
 
 impl Transition<'_> {
     /// Goes to an event and handles it.
@@ -153,6 +156,15 @@ impl Transition<'_> {
         self.front.crowd += 1;
         if self.front.crowd > CROWD {
             return Err(self.error(None, self.without_end(CROWD)));
+        }
+        let (count, since) = self.front.events;
+        self.front.events = (count + 1, since);
+        if count >= EVENTS {
+            // Events at one time are counted above.
+            if self.front.crowd < EVENTS && self.front.t - since < ADVANCE * self.front.scales.time {
+                return Err(self.error(None, self.without_end(EVENTS)));
+            }
+            self.front.events = (0, self.front.t);
         }
         Ok(())
     }

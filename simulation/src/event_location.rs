@@ -18,8 +18,9 @@ const FEW_TURNS: f64 = 0.5;
 /// Most halvings of a step where a function is not smooth.
 const DEPTH: usize = 24;
 
-/// Most evaluations of the functions in a step.
-const MOST: usize = 20_000;
+/// Most evaluations of the functions in a step, and beside these in each piece of it.
+const MOST: usize = 2000;
+const OF_A_PIECE: usize = 36;
 /// A step in so many halves, at least, before what seems to be rounding is taken for it.
 const HALVED: usize = 3;
 
@@ -169,8 +170,8 @@ pub(crate) fn first_crossing(
         return Ok(None);
     }
     let active: Vec<usize> = (0..functions.count).collect();
-    let mut left = MOST;
     let pieces = (turns.ceil() as usize).max(1);
+    let mut left = MOST + OF_A_PIECE * pieces;
     let degrees = if turns / pieces as f64 <= FEW_TURNS { &DEGREES[..] } else { &DEGREES[1..] };
     for piece in 0..pieces {
         let end = |piece: usize| piece as f64 / pieces as f64;
@@ -383,7 +384,7 @@ mod tests {
         assert!(found == Err(Unresolved) && count < 100, "{count}");
         // As rough as it is large.
         let (_, count) = evaluated(&|x| Some(1.0001 + (1e9 * x).sin()));
-        assert!(count <= MOST, "{count}");
+        assert!(count <= MOST + OF_A_PIECE, "{count}");
     }
 
     /// A force that is zero as long as the contact lasts, exactly or but for rounding, neither crosses nor

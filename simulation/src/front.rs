@@ -49,6 +49,8 @@ pub(crate) struct Front {
     pub energy: EnergyAccount,
     /// events without progress in time
     pub crowd: usize,
+    /// events, and the time of the one from which they are counted, s
+    pub events: (usize, f64),
     /// the contact whose point became undefined: the motion has ended
     pub ended: Option<usize>,
     /// steps since the last event, the time of that event, and the greatest step so far, s
@@ -78,6 +80,7 @@ impl Front {
             greatest: 0.0,
             energy: EnergyAccount::default(),
             crowd: 0,
+            events: (0, state.time),
             ended: None,
             steps: (0, state.time, 0.0),
         }

@@ -1,6 +1,6 @@
 //! Makes one step of the motion: integrates, finds the first event in the step and handles it.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 
 use hodograph::{ContactError, Kind, State};
 use nalgebra::Vector2;
@@ -19,11 +19,18 @@ use crate::{Reason, SimulationError};
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.5;
 
-/// So many steps without an event must advance the motion by this part of the longest step so far, or of
-/// half the time of the problem.
+/// So many steps without an event must advance the motion by this part of the longest step so far, or of half the time of
+/// the problem.
 const STEPS: usize = 3000;
 const LONG: f64 = 0.5;
 const ADVANCE: f64 = 1e-2;
+/// Fewer steps that advance it by next to nothing are enough; steps with so many contacts take twice as long.
+const STUCK: usize = 1200;
+const CONTACTS: usize = 4;
+const NOTHING: f64 = 2e-8;
+
+/// Evaluations of the functions of a step after which it is not halved any more.
+const LOOKS: usize = 30_000;
 
 impl Transition<'_> {
     /// Makes one step.
@@ -97,9 +104,12 @@ impl Transition<'_> {
         let longest = longest.max(h.min(LONG * self.front.scales.time));
         let steps = steps + 1;
         self.front.steps = (steps, since, longest);
-        if steps % STEPS == 0 {
-            let time = self.front.t - since;
-            if time < ADVANCE * longest {
+        let closed = self.front.phases.iter().filter(|phase| phase.is_closed()).count();
+        let time = self.front.t - since;
+        let stuck = steps % (STUCK * CONTACTS / (CONTACTS + closed)).max(1) == 0
+            && time < NOTHING * steps as f64 * longest;
+        if stuck || steps % STEPS == 0 {
+            if stuck || time < ADVANCE * longest {
                 if let Some(contact) = self.singular_here(&self.closed()) {
                     return self.end_at(contact);
                 }
@@ -123,7 +133,12 @@ impl Transition<'_> {
             relative: self.options.relative_tolerance,
             absolute: self.options.absolute_tolerance,
         };
+        let looks = Cell::new(0);
         for _ in 0..80 {
+            if looks.get() > LOOKS {
+                let modes = self.modes_in_words();
+                return Err(self.error(None, Reason::NoProgress { steps: 1, time: most, modes }));
+            }
             let failed = RefCell::new(None);
             let made = {
                 let motion = self.motion(closed);
@@ -156,6 +171,7 @@ impl Transition<'_> {
                     count: watched.len(),
                     noise: &noise,
                     values: &mut |fraction| {
+                        looks.set(looks.get() + 1);
                         let at = &mut |after: f64| step.at(after / h);
                         self.values(closed, &watched, h * fraction, Some(here), at).ok()
                     },
