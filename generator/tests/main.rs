@@ -12,6 +12,7 @@ mod language;
 mod language_page;
 mod mistakes;
 mod mistakes_of_a_cart;
+mod mistakes_of_other_kinds;
 mod overconstrained;
 mod parts;
 mod robust;

@@ -201,11 +201,16 @@ impl ClosedContacts {
 
     /// What rounding may do to the velocity of a contact: the sizes of the terms it is made of.
     pub fn velocity_size(&self, i: usize, speeds: &[f64]) -> f64 {
-        (0..3)
-            .map(|row| {
-                self.partials.column(3 * i + row).iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum::<f64>()
-            })
-            .fold(0.0, f64::max)
+        (0..3).map(|row| self.row_size(3 * i + row, speeds)).fold(0.0, f64::max)
+    }
+
+    /// What rounding may do to the normal velocity of a contact alone, whatever its slip is.
+    pub fn normal_size(&self, i: usize, speeds: &[f64]) -> f64 {
+        self.row_size(3 * i, speeds)
+    }
+
+    fn row_size(&self, row: usize, speeds: &[f64]) -> f64 {
+        self.partials.column(row).iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum()
     }
 
     /// The change of speeds of least kinetic energy that makes the rows of the velocity given zero.

@@ -66,6 +66,21 @@ pub enum Reason {
     Singular,
     /// The gap of a closed contact is not zero, m: its rate is not the normal velocity of the contact.
     Drift(f64),
+    /// A normal velocity cannot be told from the rounding of what it is made of: no one knows whether the
+    /// contact closes or opens.
+    Rounding {
+        /// the normal velocity, m/s
+        velocity: f64,
+        /// the sum of the sizes of its terms, m/s
+        terms: f64,
+    },
+    /// A gap cannot be told from the rounding of what it is made of, m.
+    GapRounding {
+        /// the gap, m
+        gap: f64,
+        /// what rounding may be, m
+        rounding: f64,
+    },
     /// Several contacts were struck together and the option says to stop.
     Together(Vec<String>),
     /// Several contacts were struck together, and the impact is not one that can be solved as the option
@@ -90,6 +105,7 @@ impl Reason {
             Self::NoProgress { .. } => "no_progress",
             Self::Singular => "singular",
             Self::Drift(_) => "drift",
+            Self::Rounding { .. } | Self::GapRounding { .. } => "rounding",
             Self::Together(_) => "struck_together",
             Self::Lzb(_) => "lzb_not_covered",
             Self::Forces(_) => "no_forces",
@@ -133,6 +149,14 @@ impl fmt::Display for SimulationError {
             Reason::Drift(gap) => write!(
                 out,
                 "the contact is closed, but its gap is {gap:e} m: the rate of the gap is not the velocity of the point along the normal (a face that ends, or a gap that does not belong to the normal)"
+            ),
+            Reason::Rounding { velocity, terms } => write!(
+                out,
+                "the normal velocity {velocity:e} m/s is a difference of terms of {terms:e} m/s, whose rounding hides it: slow the bodies down, or choose coordinates in which the motion along the surface is not part of the normal velocity"
+            ),
+            Reason::GapRounding { gap, rounding } => write!(
+                out,
+                "the gap {gap:e} m is made of numbers so large that their rounding may be {rounding:e} m: count coordinates from a place nearer to the contact"
             ),
             Reason::Together(names) => {
                 write!(out, "{} are struck together, and the option is to stop there", names.join(", "))

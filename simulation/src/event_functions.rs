@@ -3,18 +3,22 @@
 
 use hodograph::{Kind, State};
 
-use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{JAM, margins};
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::stepper::Step;
 use crate::transition::Transition;
+use crate::{Reason, SimulationError};
 
 /// A contact that lifts off is apart where its gap is above this part of the length of the problem.
 const LIFTED: f64 = 5e-11;
 /// Coordinates count as no smaller than this part of the length of the problem where rounding is weighed.
 pub(crate) const SIZE: f64 = 5e-3;
+/// A gap that closes may be rounded by this part of the length of the problem.
+const HIDDEN: f64 = 1e-6;
+/// Of normal velocities that are seen, this part is none.
+const FAINT: f64 = 1e-6;
 /// A contact that separates may have this acceleration, relative to those it is the sum of, towards the other
 /// body: it is zero but for rounding.
 const STILL: f64 = 2e-11;
@@ -58,19 +62,17 @@ impl Transition<'_> {
     pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
         let n = self.mechanism.count(Kind::Coordinate);
-        let size =
-            self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
         for (contact, phase) in self.front.phases.iter().enumerate() {
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
             {
                 watched.push(Watched::Gap(contact));
-                let rate = || 4.0 * f64::EPSILON * self.velocity_size(contact);
+                let rate = || self.rounding_of_rate(contact);
                 noise.push(match *leaving {
                     Leaving::Bounced => rate(),
                     Leaving::Lifted { risen, .. } if risen > 0.0 => h * rate(),
                     Leaving::Lifted { .. } => rate(),
-                    Leaving::Apart => 4.0 * f64::EPSILON * self.gap_size(contact, size),
+                    Leaving::Apart => self.rounding_of_gap(contact),
                 });
             }
         }
@@ -95,6 +97,28 @@ impl Transition<'_> {
         (watched, noise)
     }
 
+    /// What rounding may do to a gap, m.
+    fn rounding_of_gap(&self, contact: usize) -> f64 {
+        let n = self.mechanism.count(Kind::Coordinate);
+        let size =
+            self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
+        4.0 * f64::EPSILON * self.gap_size(contact, size)
+    }
+
+    /// A gap that closes must be known: the place of a collision cannot be told where rounding hides the gap.
+    ///
+    /// # Errors
+    ///
+    /// [`Reason::GapRounding`].
+    pub(crate) fn gap_is_known(&self, contact: usize) -> Result<(), SimulationError> {
+        let rounding = self.rounding_of_gap(contact);
+        if rounding <= HIDDEN * self.front.scales.length {
+            return Ok(());
+        }
+        let gap = self.mechanism.gap(contact, &self.here()).ok().flatten().unwrap_or(0.0);
+        Err(self.error(Some(contact), Reason::GapRounding { gap, rounding }))
+    }
+
     /// The sizes of the terms that make up a gap: the greatest coordinate, or, far from the origin, the sum of
     /// the changes of the gap that relative changes of the coordinates make. A particle that is far away along a
     /// floor has a gap that is not rounded for that.
@@ -117,14 +141,19 @@ impl Transition<'_> {
         sum.min(size)
     }
 
-    /// The sizes of the terms that make up the velocity of a contact.
-    fn velocity_size(&self, contact: usize) -> f64 {
+    /// What rounding may do to the mean normal velocity of a contact: 4 eps of the terms of its velocity; of that
+    /// no more than cannot be seen, or than 4 eps of the terms of the normal velocity itself.
+    fn rounding_of_rate(&self, contact: usize) -> f64 {
         let n = self.mechanism.count(Kind::Coordinate);
         let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
-        ClosedContacts::new(self.mechanism, &state, &[contact], false)
-            .map_or(0.0, |support| support.velocity_size(0, speeds).max(support.velocity.amax()))
+        ClosedContacts::new(self.mechanism, &state, &[contact], false).map_or(0.0, |support| {
+            let all = support.velocity_size(0, speeds).max(support.velocity.amax());
+            let normal = support.normal_size(0, speeds).max(support.velocity[0].abs());
+            let [all, normal] = [all, normal].map(|size| 4.0 * f64::EPSILON * size);
+            all.min(normal.max(FAINT * self.front.scales.slow))
+        })
     }
 
     /// The values of what is watched, a time after the front, where all is known; `at` gives the states in between.

@@ -38,6 +38,7 @@ impl Transition<'_> {
         self.crowded(start)?;
         match watched {
             Watched::Gap(contact) => {
+                self.gap_is_known(contact)?;
                 let (_, rate) = self.gap_at(&step, contact)?;
                 if rate >= 0.0 {
                     let leaves = matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. }));

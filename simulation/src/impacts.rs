@@ -20,6 +20,8 @@ use crate::{CollisionRecord, EventKind, ImpactsAtOnce, Reason, SimulationError, 
 const APPROACH: f64 = 1e-12;
 /// Normal velocities below this, relative to the greatest that the motion has energy for, are rounding.
 const ROUNDING: f64 = 1e-15;
+/// What rounding and projections leave of a normal velocity, relative to its own terms.
+const OWN: f64 = 1e-13;
 /// Approaches slower than this, relative to the first, end without restitution.
 const FADED: f64 = 1e-9;
 /// Most impacts at one time.
@@ -108,7 +110,8 @@ impl Transition<'_> {
             let rate = support.velocity[3 * place];
             let size =
                 support.velocity_size(place, speeds).max(support.velocity_size(place, &self.front.scale));
-            if rate > (1e-11 * size).max(self.slowest(&support, place)) {
+            let rounding = (1e-11 * size).max(self.slowest(&support, place));
+            if rate > self.unseen(&support, place, speeds, rounding)? {
                 phases[contact] = Phase::Open(Leaving::Bounced);
             } else {
                 // Slip may have changed in the impact.
@@ -130,6 +133,32 @@ impl Transition<'_> {
     /// kinetic energy so far would give it. A body at rest beside others that move has only rounding.
     fn slowest(&self, support: &ClosedContacts, place: usize) -> f64 {
         ROUNDING * (2.0 * self.front.greatest * support.coupled[(3 * place, 3 * place)]).sqrt()
+    }
+
+    /// What may count as no normal velocity, where it would be less than `rounding`, which is told by all
+    /// velocities: of that no more than can be seen, or than rounding makes of the terms of the normal velocity
+    /// itself. A body that is fast along a floor still strikes it.
+    ///
+    /// # Errors
+    ///
+    /// [`Reason::Rounding`] where a normal velocity that would be seen is less than the rounding of its own terms.
+    pub(crate) fn unseen(
+        &self,
+        support: &ClosedContacts,
+        place: usize,
+        speeds: &[f64],
+        rounding: f64,
+    ) -> Result<f64, SimulationError> {
+        let slow = self.front.scales.slow;
+        if rounding <= slow {
+            return Ok(rounding);
+        }
+        let terms = support.normal_size(place, speeds).max(support.normal_size(place, &self.front.scale));
+        let (rate, own) = (support.velocity[3 * place], OWN * terms);
+        if own > slow && rate.abs() > slow && rate.abs() < own {
+            return Err(self.error(Some(support.contacts[place]), Reason::Rounding { velocity: rate, terms }));
+        }
+        Ok(rounding.min(slow.max(own)))
     }
 
     /// Contacts whose gaps are closed, or close now.
@@ -181,7 +210,8 @@ impl Transition<'_> {
             let closed = self.front.phases[contact].is_closed() || first.is_some();
             let least = first.map_or(0.0, |first| APPROACH * first);
             let least = least.max(if closed { rounding } else { 0.0 });
-            if rate < -least.max(self.slowest(&support, place)) {
+            let rounding = least.max(self.slowest(&support, place));
+            if rate < -self.unseen(&support, place, speeds, rounding)? {
                 list.push((contact, -rate));
             }
         }

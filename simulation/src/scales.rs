@@ -15,10 +15,16 @@ pub(crate) struct Scales {
     pub length: f64,
     /// s
     pub time: f64,
+    /// A normal velocity that is seen, m/s: below it a contact opens by less than 1e-12 of the length. Infinite
+    /// where nothing tells it.
+    pub slow: f64,
 }
 
-/// A gap below this part of the greatest coordinate is closed: its size tells nothing.
+/// A gap below this part of the greatest coordinate is closed: its size tells nothing. Nor does a normal velocity
+/// below this part of its terms.
 const TOUCHES: f64 = 1e-9;
+/// A velocity that is seen, beside the one of a fall through the length: it rises by the square of this.
+const SEEN: f64 = 1e-6;
 /// Points that start this near, m, are meant to touch: the gap is no length of the problem.
 const NEAR: f64 = 1e-6;
 
@@ -27,7 +33,7 @@ impl Scales {
     pub fn of(mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Self {
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
         let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
-        let (mut acceleration, mut speed) = (0.0_f64, 0.0_f64);
+        let (mut acceleration, mut speed, mut approach) = (0.0_f64, 0.0_f64, 0.0_f64);
         for contact in 0..mechanism.count(Kind::Contact) {
             let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
             let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
@@ -40,9 +46,14 @@ impl Scales {
             }
             acceleration = acceleration.max(alone.beta.norm());
             speed = speed.max(alone.velocity.norm());
+            let normal = alone.velocity[0].abs();
+            if normal > TOUCHES * alone.normal_size(0, state.speeds) {
+                approach = approach.max(normal);
+            }
         }
         let known = |value: f64| value.is_finite() && value > 0.0;
-        let fall = speed * speed / acceleration;
+        // What moves along a surface tells the length only where nothing approaches.
+        let fall = if approach > 0.0 { approach } else { speed }.powi(2) / acceleration;
         if gaps > NEAR.max(TOUCHES * place) {
             length = length.max(gaps);
         }
@@ -51,7 +62,12 @@ impl Scales {
         }
         // The faster of falling and going.
         let time = (length / acceleration).sqrt().min(length / speed);
-        Self { length, time: if known(time) { time } else { 1.0 } }
+        let slow = SEEN * (length * acceleration).sqrt().max(approach);
+        Self {
+            length,
+            time: if known(time) { time } else { 1.0 },
+            slow: if known(slow) { slow } else { f64::INFINITY },
+        }
     }
 }
 

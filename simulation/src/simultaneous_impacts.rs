@@ -45,12 +45,14 @@ impl Transition<'_> {
         }
         let m = places.len();
         let coupled = DMatrix::from_fn(m, m, |a, b| support.coupled[(3 * places[a], 3 * places[b])]);
-        let velocity = DVector::from_fn(m, |a, _| {
-            let rate = support.velocity[3 * places[a]];
+        let mut velocity = DVector::zeros(m);
+        for (rate, &place) in velocity.iter_mut().zip(&places) {
             // A contact that lasts has no normal velocity but rounding.
-            let rounding = 1e-13 * support.velocity_size(places[a], &speeds);
-            if rate.abs() <= rounding { 0.0 } else { rate }
-        });
+            let rounding = 1e-13 * support.velocity_size(place, &speeds);
+            let rounding = self.unseen(&support, place, &speeds, rounding)?;
+            let known = support.velocity[3 * place];
+            *rate = if known.abs() <= rounding { 0.0 } else { known };
+        }
         let outcome = lzb::solve(&coupled, &velocity, &stiffness, &restitution).map_err(|fault| {
             let (contact, why) = match fault {
                 Fault::Immobile(a) => (touching[places[a]], "nothing can move along its normal"),

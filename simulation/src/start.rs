@@ -36,6 +36,7 @@ impl Transition<'_> {
             let support = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
             let rate = support.velocity[0];
             let rounding = 1e-9 * support.velocity_size(0, state.speeds);
+            let rounding = self.unseen(&support, 0, state.speeds, rounding)?;
             if rate < -rounding {
                 // One that is a little open yet closes by itself.
                 if gap <= CLOSED * self.front.scales.length {

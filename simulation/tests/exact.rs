@@ -4,7 +4,7 @@
 use crate::common::{Body, Line, Part, collisions, first, names, run, start, surface};
 use ball_on_lift::BallOnLift;
 use bead_on_sphere::BeadOnSphere;
-use hodograph::Law;
+use hodograph::{Law, Mechanism};
 use hodograph_simulation::{ContactPhase, Options};
 use puck_on_incline::PuckOnIncline;
 
@@ -59,6 +59,51 @@ fn slip_does_not_end_where_friction_equals_the_slope() {
         let sum = u[0].hypot(u[1]) - u[0];
         assert!((sum - v0 * (1.0 + phi.cos())).abs() < 1e-9, "{k}: {sum}");
     }
+}
+
+/// A puck that is fast along the floor strikes it on time, and bounces as it would without that.
+#[test]
+fn speeds_along_the_floor_do_not_hide_it() {
+    let mut body = PuckOnIncline::<f64>::default();
+    body.set_parameter_values(&[2.0, G, 0.0]).unwrap();
+    let fall = (2.0 / G).sqrt();
+    for speed in [1e3, 1e7, 1e10, 1e15, 1e16, 1e20] {
+        for mu in [0.0, 0.3] {
+            let options = surface(mu, 0.5, Law::Newton);
+            let mut simulation = start(&body, &[0.0, 0.0, 1.0], &[speed, 0.0, 0.0], options);
+            let events = run(&mut simulation, 1.2);
+            let times = collisions(&events);
+            assert_eq!(times.len(), 3, "{speed:e} {mu}: {:?}", names(&events));
+            for (time, expected) in times.iter().zip([fall, 2.0 * fall, 2.5 * fall]) {
+                assert!((time - expected).abs() < 1e-10, "{speed:e} {mu}: {times:?}");
+            }
+        }
+        // One that begins on the floor strikes it at once.
+        let options = surface(0.0, 0.5, Law::Newton);
+        let mut simulation = start(&body, &[0.0; 3], &[speed, 0.0, -4.4], options);
+        let events = run(&mut simulation, 0.1);
+        assert_eq!(collisions(&events), [0.0], "{speed:e}");
+        assert!((events[0].speeds[2] - 2.2).abs() < 1e-14);
+    }
+}
+
+/// Where rounding of places or speeds hides what a contact does, the motion ends with that error.
+#[test]
+fn what_rounding_hides_is_an_error() {
+    // The floor stands 1e16 m above the origin, where numbers are 2 m apart.
+    let floor = Line { offset: 1e16, ..Line::floor(Part::Point(0.0, 0.0)) };
+    let body = Body::new(1.0, 1.0, &[floor]);
+    let mut simulation = start(&body, &[0.0, 1e16 + 4.0, 0.0], &[0.0; 3], surface(0.2, 0.5, Law::Newton));
+    let error = simulation.advance(20.0).unwrap_err();
+    assert_eq!((error.reason.kind(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
+    assert!(error.to_string().contains("from a place nearer to the contact"), "{error}");
+    // Along a slope the normal velocity is a difference of large numbers.
+    let slope = Line { tilt: 0.7, ..Line::floor(Part::Point(0.0, 0.0)) };
+    let body = Body::new(1.0, 1.0, &[slope]);
+    let u = [1e16 * 0.7_f64.cos(), -1e16 * 0.7_f64.sin(), 0.0];
+    let mut simulation = start(&body, &[0.0, 1.0, 0.0], &u, surface(0.2, 0.5, Law::Newton));
+    let error = simulation.advance(2.0).unwrap_err();
+    assert_eq!((error.reason.kind(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
 }
 
 /// All the bounces of a body that slides: the impulse of friction is mu times the normal one, which is known

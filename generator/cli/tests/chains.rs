@@ -190,3 +190,24 @@ fn definitions_that_are_squared_agree() {
         agrees(&mechanism, &program);
     }
 }
+
+/// A divisor made of values that square one another is not taken for zero: bounds of their terms grow like the squares,
+/// while the values stay near 1.
+#[test]
+fn divisors_of_nested_squares_are_not_taken_for_singular() {
+    let folder = tempfile::tempdir().unwrap();
+    let chain: String = (0..7).map(|i| format!("a{} = 2*a{i}^2 - 1; ", i + 1)).collect();
+    for (count, constraint) in
+        [(5, "(2 + a5)*u2 = u1"), (6, "(2 + a6)*u2 = u1"), (7, "(2 + a7)*u2 = u1 + a6*u1")]
+    {
+        let text = format!(
+            "mechanism Squares; parameters {{ m: kg = 1, l: m = 1 }} coordinates {{ q1: rad = 0.3, q2: rad = 0.4 }} \
+             speeds {{ u1: rad/s }} dependent {{ u2: rad/s }} definitions {{ a0 = cos(q2); {chain} }} \
+             points {{ P = O + l*q1*N.x + l*q2*N.y; }} particles {{ A {{ point: P, mass: m }} }} \
+             kinematics {{ d(q1)/dt = u1; d(q2)/dt = u2; }} constraints {{ {constraint}; }}"
+        );
+        let (m, program) = derived(folder.path(), &text);
+        agrees(&m, &program);
+        println!("{count} squares");
+    }
+}

@@ -178,3 +178,41 @@ fn errors_of_simulate_have_one_form() {
         }
     }
 }
+
+/// Steps so short that their pictures could not be opened are refused at once, with their size; lines may be
+/// as many as someone reads.
+#[test]
+fn pictures_of_too_many_steps_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = ball(folder.path());
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let surface = ["--mu", "0", "--e", "0.5", "--law", "newton", "--step", "1e-9"];
+    for file in [["--html", "b.html"], ["--mcap", "b.mcap"], ["--plot", "b.svg"], ["--format", "table"]] {
+        let file = [file[0].to_owned(), if file[0] == "--format" { file[1].into() } else { place(file[1]) }];
+        let run = hodograph(&[&["simulate", &model, &file[0], &file[1]], &surface[..]].concat(), "");
+        let (code, told) = run.told();
+        assert!(code == 2 && told.contains("1.0e10 steps of") && told.contains("give --step"), "{told}");
+        // What it says is enough.
+        let step = told.split("give --step ").nth(1).unwrap().split(' ').next().unwrap();
+        let short: f64 = step.parse().unwrap();
+        assert!((1e-6..1e-4).contains(&short), "{told}");
+    }
+    let endless = hodograph(
+        &["simulate", &model, "--step", "1e-300", "--mu", "0", "--e", "0.5", "--law", "newton"],
+        "",
+    );
+    assert!(endless.told().0 == 2 && endless.stderr.contains("too short"), "{}", endless.stderr);
+    // Without a picture the lines go on until the reader leaves.
+    let mut child = Command::new(env!("CARGO_BIN_EXE_hodograph"))
+        .args(["simulate", &model])
+        .args(surface)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut begin = [0; 300];
+    child.stdout.take().unwrap().read_exact(&mut begin).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success() && !told.contains("panicked"), "{}: {told}", output.status);
+}

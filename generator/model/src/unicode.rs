@@ -4,6 +4,11 @@
 
 use std::borrow::Cow;
 
+/// Whether a character takes no room of its own, or turns the direction of writing.
+pub fn is_invisible(c: char) -> bool {
+    matches!(c, '\u{ad}' | '\u{200b}'..='\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
+}
+
 /// Letters, each with the Latin one that it looks like.
 const CYRILLIC: &[(char, char)] = &[
     ('а', 'a'),

@@ -265,6 +265,9 @@ impl Course {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Read as _;
+    use std::process::{Command, Stdio};
+
     /// Every number of the paper is reproduced but those that are marked and explained.
     #[test]
     fn the_example_runs() {
@@ -279,5 +282,37 @@ mod tests {
         assert_eq!(drawn.matches("class=\"curve\"").count(), 6, "{drawn}");
         assert_eq!(drawn.matches("class=\"end\"").count(), 18, "{drawn}");
         assert!(!drawn.contains("NaN") && !drawn.contains("inf"), "{drawn}");
+    }
+
+    /// The program itself, in a process of its own: prints when standard input ends.
+    #[test]
+    #[ignore = "run by the test below"]
+    fn prints_when_its_input_ends() {
+        std::io::stdin().read_to_end(&mut Vec::new()).unwrap();
+        super::show().unwrap();
+        super::compare().unwrap();
+    }
+
+    /// Whoever reads a line and leaves, as `head` does, ends the program: without a panic, and with exit code 0.
+    #[test]
+    fn a_reader_that_leaves_ends_the_program() {
+        let mut child = Command::new(std::env::current_exe().unwrap())
+            .args(["--ignored", "--exact", "tests::prints_when_its_input_ends", "--nocapture"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // What the test program says before the first line of ours.
+        let begin = "\nrunning 1 test\n";
+        let mut said = vec![0; begin.len()];
+        let mut output = child.stdout.take().unwrap();
+        output.read_exact(&mut said).unwrap();
+        assert_eq!(String::from_utf8(said).unwrap(), begin);
+        drop(output);
+        drop(child.stdin.take());
+        let left = child.wait_with_output().unwrap();
+        let told = String::from_utf8_lossy(&left.stderr);
+        assert!(left.status.success() && !told.contains("panicked"), "{}: {told}", left.status);
     }
 }

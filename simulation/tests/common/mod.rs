@@ -140,7 +140,13 @@ impl Mechanism<f64> for Body {
             Kind::Contact => &["c0", "c1", "c2", "c3"],
             _ => &[],
         };
-        (index < self.count(kind)).then(|| Component { name: names[index], unit: "1" })
+        let units: &[&str] = match kind {
+            Kind::Coordinate => &["m", "m", "rad"],
+            Kind::Speed => &["m/s", "m/s", "rad/s"],
+            Kind::Input => &["N"],
+            _ => &["1"; 4],
+        };
+        (index < self.count(kind)).then(|| Component { name: names[index], unit: units[index] })
     }
     fn dependent_coordinate(&self, _: usize) -> Option<usize> {
         None

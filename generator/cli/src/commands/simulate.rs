@@ -15,7 +15,7 @@ mod surfaces;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use hodograph::State as Borrowed;
+use hodograph::{Kind as Of, Mechanism as _, State as Borrowed};
 use hodograph_generator::artifact::place;
 use hodograph_interpreter::{InterpretedMechanism, motion};
 use hodograph_simulation::{EventKind, ImpactsAtOnce, Options, Progress, Simulation, SimulationError};
@@ -138,6 +138,8 @@ fn simulated(arguments: &Arguments) -> Outcome {
     }
     let mechanism = machine.interpreted(&state)?;
     arguments.pictures.check_times(state.time, until)?;
+    let format = arguments.format.unwrap_or(if is_read() { Format::Table } else { Format::Json });
+    check_size(&mechanism, until - state.time, step, arguments.pictures.wanted(), format)?;
     let surfaces::Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
     if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
@@ -174,7 +176,6 @@ fn simulated(arguments: &Arguments) -> Outcome {
         compare_orders: arguments.spread,
         ..Options::default()
     };
-    let format = arguments.format.unwrap_or(if is_read() { Format::Table } else { Format::Json });
     let mut lines = Lines::new(&mechanism, format, arguments.pictures.wanted())?;
     let setup = || setup::setup(&arguments.model, &machine.mechanism, &state, &options.surfaces);
     let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state, setup);
@@ -187,6 +188,12 @@ fn simulated(arguments: &Arguments) -> Outcome {
     pictures.save(&arguments.pictures, done.and(told))
 }
 
+/// Most steps: beyond, adding one changes no double.
+const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
+/// Most numbers that are kept of a motion until its end: some 200 MB of text.
+const MOST_NUMBERS: f64 = 2e7;
+/// Bytes of a number in a page or a figure.
+const BYTES: f64 = 10.0;
 /// How long a motion lasts where nothing is said, s.
 const LASTS: f64 = 10.0;
 /// Speeds below count as none, in their units.
@@ -200,6 +207,39 @@ struct Span {
     step: f64,
     /// whether it ends earlier where all is at rest
     at_rest: bool,
+}
+
+/// Refuses so many steps that their pictures or tables, which are kept until the end, would be larger than
+/// anything opens; and more than can be counted.
+fn check_size(
+    mechanism: &InterpretedMechanism,
+    span: f64,
+    step: f64,
+    pictures: bool,
+    format: Format,
+) -> Outcome {
+    let steps = (span / step).ceil() + 1.0;
+    if steps > MOST_STEPS {
+        return Err(Stop::Call(format!(
+            "--step {step:e} is too short: {steps:.1e} steps; give a longer one"
+        )));
+    }
+    let table = if format == Format::Table { 1 + mechanism.count(Of::Coordinate) } else { 0 };
+    let each = if pictures { recording::numbers(mechanism) } else { table };
+    let numbers = steps * each as f64;
+    if numbers <= MOST_NUMBERS {
+        return Ok(());
+    }
+    let least = span / (MOST_NUMBERS / each as f64 - 2.0).max(1.0);
+    // rounded up to two digits
+    let unit = 10_f64.powf(least.log10().floor() - 1.0);
+    let without = if pictures { "leave --html, --plot and --mcap out" } else { "take --format csv" };
+    Err(Stop::Call(format!(
+        "--step {step:e} over {span} s is {steps:.1e} steps of {each} numbers, some {:.1e} MB of text: give --step {:.1e} or more, or an \
+         earlier --until, or {without}",
+        numbers * BYTES * 1e-6,
+        (least / unit).ceil() * unit
+    )))
 }
 
 /// Follows the motion and writes it.

@@ -127,8 +127,11 @@ impl Expr {
         Expr(-&self.0)
     }
 
-    /// Integer power.
+    /// Integer power; the power 0 of everything is 1, as in floating-point arithmetic.
     pub fn pow(&self, n: i32) -> Expr {
+        if n == 0 {
+            return Expr::one();
+        }
         Expr(self.0.pow(Atom::num(n as i64)))
     }
 

@@ -54,6 +54,9 @@ impl Direction {
 /// definitions that square one another there would be no end; a quantity whose bound has more is measured by
 /// itself.
 const MOST_DIGITS: u64 = 1000;
+/// A bound that is a greater number is replaced by the size of the value itself: a small part of the 2^40 by which a
+/// divisor that counts as zero is less than its bound.
+const WIDE: f64 = 65536.0;
 
 /// All symbols of a derivation and what they mean.
 #[derive(Debug, Default)]
@@ -179,7 +182,10 @@ impl Intermediates {
                 Tan => {
                     let sine = self.call(Sin, vec![argument.clone()]);
                     let cosine = self.call(Cos, vec![argument.clone()]);
-                    return sine.div(&cosine);
+                    // At a right angle it stays as it is: `check` refuses it.
+                    if !cosine.is_zero() {
+                        return sine.div(&cosine);
+                    }
                 }
                 Abs | Cosh if negative => return self.call(function, vec![argument.neg()]),
                 Asin | Atan | Sinh | Tanh if negative => {
@@ -342,7 +348,7 @@ impl Intermediates {
         use Function::*;
         let bound = match self.meanings[symbol as usize].clone() {
             Meaning::Named(value) => match self.bound(&value) {
-                bound if digits(&bound) <= MOST_DIGITS => bound,
+                bound if digits(&bound) <= MOST_DIGITS && !is_wide(&bound) => bound,
                 _ => self.call(Abs, vec![Expr::symbol(symbol)]),
             },
             Meaning::Call(Sin | Cos | Sign | Tanh, _) => Expr::one(),
@@ -403,6 +409,15 @@ impl Intermediates {
 fn digits(named: &Expr) -> u64 {
     let number = leading_number(named).0;
     number.numer().bits() + number.denom().bits()
+}
+
+/// Whether a bound is a number so large that it may be far above what it bounds: bounds of values that square one
+/// another grow like the squares, while the values stay near 1. Beside such a bound any divisor would count as zero.
+fn is_wide(bound: &Expr) -> bool {
+    match bound.view() {
+        View::Number(number) => number.to_f64() > WIDE,
+        _ => false,
+    }
 }
 
 /// The opposite of a sum, term by term.

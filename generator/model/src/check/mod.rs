@@ -8,6 +8,7 @@ mod contacts;
 mod counts;
 pub mod coupled;
 mod exact;
+mod finite;
 mod gaps;
 mod independent_constraints;
 mod loads;

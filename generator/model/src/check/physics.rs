@@ -1,19 +1,22 @@
 //! The checks that evaluate the mechanism at several arbitrary states near its initial values. What is wrong
 //! at all of them is a mistake of the model; what is wrong at one may be a singular state, which is none.
 
+use super::exact::{divisors, enclosures};
 use super::states::Seen;
 use super::{
-    bodies, body_points, configuration, contacts, coupled, gaps, independent_constraints, loads, loops,
-    motion, shapes, states, unit_vectors, vector_constraints,
+    bodies, body_points, configuration, contacts, coupled, finite, gaps, independent_constraints, loads,
+    loops, motion, shapes, states, unit_vectors, vector_constraints,
 };
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::Readable;
-use crate::model::mechanism::{
-    Definition, DefinitionId, DefinitionValue, Equation, Mechanism, Point, PointId, Scalar, ShapeId, Vector,
-};
-use crate::numeric::{self, Failure, Level, State, Views};
+use crate::model::mechanism::{Equation, Mechanism, ShapeId};
+use crate::numeric::{self, Failure, State, Views};
 use crate::span::Span;
 
+/// What is said where no part alone is not finite, but masses times lengths are.
+const NOT_FINITE: &str = "masses times lengths are not finite at any state that was tried";
+const IN_RANGE: &str =
+    "give masses, lengths and forces in other units, or check their exponents: numbers end at 1.8e308";
 /// Mechanisms of more parts than this are not looked at: it would take too long.
 pub const MOST_PARTS: usize = 2000;
 
@@ -26,7 +29,7 @@ pub fn physics(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic
                     found in more than 2000 points, frames, definitions, bodies and contacts";
         return vec![Diagnostic::new(codes::UNCHECKED, name, message).help(help)];
     }
-    with_room(|| look(m, readable))
+    with_room(|| look(m, readable, name))
 }
 
 /// The velocity constraints that determine the dependent speeds, where more are stated than are needed.
@@ -54,9 +57,10 @@ pub(super) fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T
     })
 }
 
-fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
+fn look(m: &Mechanism, readable: &Readable, name: Span) -> Vec<Diagnostic> {
     if let Some(rest) = without_unread_contacts(m, readable) {
-        return look(&rest, &Readable { contacts: vec![true; rest.contacts.len()], ..readable.clone() });
+        let readable = Readable { contacts: vec![true; rest.contacts.len()], ..readable.clone() };
+        return look(&rest, &readable, name);
     }
     let arbitrary = states::arbitrary(m);
     let stated = |list: &[State], dependent| -> Vec<State> {
@@ -75,7 +79,7 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     }
     if !readable.is_whole() {
         // how it moves does not depend on what has mass
-        out.extend(motion_alone(&without_unread_bodies(m, readable)));
+        out.extend(motion_alone(&without_unread_bodies(m, readable), name));
         out.extend(unit_vectors::normals(m, &alone));
         return out;
     }
@@ -87,15 +91,35 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
     }
     let closed = Closed::of(m, arbitrary);
     let (seen, failures) = closed.seen(m);
+    // a force that is defined for some values only may be so far from the initial ones
+    let singular = seen.is_empty() && failures.iter().all(|(_, _, failure)| *failure == numeric::SINGULAR);
+    let far = Closed::of(m, if singular { states::far(m) } else { Vec::new() });
+    let (seen, failures) = match far.seen(m).0 {
+        found if found.is_empty() || not_finite(m, &failures, &far).is_some() => (seen, failures),
+        found => (found, Vec::new()),
+    };
     if seen.is_empty() {
-        out.extend(undetermined(m).or_else(|| nowhere(m, &failures)));
+        out.extend(undetermined(m).or_else(|| nowhere(m, &failures, name)));
         out.extend(unit_vectors::normals(m, &alone));
         return out;
     }
     let of_shapes = shapes::shapes(m, alone.last(), &seen);
     if let Some(rest) = without_contacts_of(m, &of_shapes) {
         let readable = Readable { contacts: vec![true; rest.contacts.len()], ..readable.clone() };
-        return of_shapes.into_iter().map(|(_, found)| found).chain(look(&rest, &readable)).collect();
+        return of_shapes.into_iter().map(|(_, found)| found).chain(look(&rest, &readable, name)).collect();
+    }
+    // numbers show such a divisor as rounding
+    if sound && let Some(found) = divisors::vanishing(m) {
+        out.push(found);
+        return out;
+    }
+    let views: Vec<&Views<'_>> = seen.iter().map(|seen| &seen.views).collect();
+    if finite::never_finite(m, &views, &[]).is_some() {
+        let far = Closed::of(m, states::far(m));
+        if let Some(found) = finite::never_finite(m, &views, &far.views(m)) {
+            out.push(found);
+            return out;
+        }
     }
     let met: Vec<State> = seen.iter().map(|seen| seen.state.clone()).collect();
     out.extend(unit_vectors::normals(m, &stated(&met, true)));
@@ -120,6 +144,7 @@ fn look(m: &Mechanism, readable: &Readable) -> Vec<Diagnostic> {
         out.extend(gaps::gaps(m, &seen, &out));
         out.extend(loads::loads(m, &seen));
         out.extend(loops::open_at_the_start(m));
+        out.extend(finite::at_the_start(m));
     }
     out
 }
@@ -146,6 +171,11 @@ impl Closed {
         closed
     }
 
+    /// The views of its states, where they have any.
+    fn views<'m>(&'m self, m: &'m Mechanism) -> Vec<Views<'m>> {
+        self.states.iter().filter_map(|(_, state)| Views::at(m, state).ok()).collect()
+    }
+
     fn seen<'m>(&'m self, m: &'m Mechanism) -> (Vec<Seen<'m>>, Vec<Failed>) {
         let (mut seen, mut failures) = (Vec::new(), self.failures.clone());
         for (i, state) in &self.states {
@@ -160,6 +190,12 @@ impl Closed {
     }
 }
 
+/// What is finite neither at the states that failed nor at others.
+fn not_finite(m: &Mechanism, failures: &[Failed], far: &Closed) -> Option<Diagnostic> {
+    let near: Vec<Views<'_>> = failures.iter().filter_map(|(_, state, _)| Views::at(m, state).ok()).collect();
+    finite::never_finite(m, &near.iter().collect::<Vec<_>>(), &far.views(m))
+}
+
 /// What shows at open loops too, where they cannot be closed: equations that determine too little.
 fn undetermined(m: &Mechanism) -> Option<Diagnostic> {
     let states = states::arbitrary(m).into_iter().enumerate().collect();
@@ -172,10 +208,10 @@ fn undetermined(m: &Mechanism) -> Option<Diagnostic> {
 }
 
 /// What is wrong with the motion of a mechanism of whose bodies and contacts nothing is said.
-fn motion_alone(m: &Mechanism) -> Vec<Diagnostic> {
+fn motion_alone(m: &Mechanism, name: Span) -> Vec<Diagnostic> {
     let closed = Closed::of(m, states::arbitrary(m));
     let (seen, failures) = closed.seen(m);
-    let failed = if seen.is_empty() { nowhere(m, &failures) } else { contradiction(m, &failures) };
+    let failed = if seen.is_empty() { nowhere(m, &failures, name) } else { contradiction(m, &failures) };
     failed.map_or_else(|| of_the_motion(m, &seen), |failed| vec![failed])
 }
 
@@ -239,48 +275,21 @@ fn without_contacts_of(m: &Mechanism, wrong: &[(ShapeId, Diagnostic)]) -> Option
 }
 
 /// What is said where the mechanism has no numbers at any state.
-fn nowhere(m: &Mechanism, failures: &[Failed]) -> Option<Diagnostic> {
+fn nowhere(m: &Mechanism, failures: &[Failed], name: Span) -> Option<Diagnostic> {
     // the first state is the most general one
     if let Some((_, state, failure)) = failures.iter().find(|(_, _, f)| !matches!(f, Failure::NotClosed(_))) {
-        return motion::nowhere(m, state, failure).or_else(|| not_finite(m, failures));
+        return motion::nowhere(m, state, failure).or_else(|| {
+            let singular = *failure == numeric::SINGULAR;
+            let span = m.bodies.first().map_or(name, |body| body.span);
+            let all = || Diagnostic::new(codes::NUMBER_RANGE, span, NOT_FINITE).help(IN_RANGE);
+            not_finite(m, failures, &Closed::of(m, states::far(m))).or_else(|| singular.then(all))
+        });
+    }
+    if let Some(found) = enclosures::unsolvable(m) {
+        return Some(found);
     }
     let message = "the configuration equations have no solution near the values of the model";
     let span = m.configuration.first().map_or(Span::default(), |equation| equation.span);
     let help = "check the lengths, and the guesses of the dependent coordinates; until they fit, what shows in numbers is not looked at";
     Some(Diagnostic::new(codes::NOT_CLOSED, span, message).help(help))
-}
-
-/// The first definition, else the first point, that is not finite at any state.
-fn not_finite(m: &Mechanism, failures: &[Failed]) -> Option<Diagnostic> {
-    let views: Vec<Views<'_>> =
-        failures.iter().filter_map(|(_, state, _)| Views::at(m, state).ok()).collect();
-    if views.is_empty() {
-        return None;
-    }
-    let nowhere = |is_finite: &dyn Fn(&Views<'_>) -> Option<bool>| {
-        views.iter().all(|views| is_finite(views) == Some(false))
-    };
-    let definition = |(i, definition): (usize, &Definition)| {
-        let id = DefinitionId(i);
-        let found = nowhere(&|views| match definition.value {
-            DefinitionValue::Scalar(_) => {
-                Some(views.now.scalar(&Scalar::Definition(id), Level::Motion).ok()?.re.is_finite())
-            }
-            DefinitionValue::Vector(_) => {
-                let value = views.now.vector(&Vector::Definition(id), Level::Motion).ok()?;
-                Some(value.iter().all(|c| c.re.is_finite()))
-            }
-        });
-        found.then(|| (format!("definition `{}`", definition.name), definition.span))
-    };
-    let point = |(i, point): (usize, &Point)| {
-        let found =
-            nowhere(&|views| Some(views.now.velocity(PointId(i)).ok()?.iter().all(|c| c.re.is_finite())));
-        found.then(|| (format!("velocity of point `{}`", point.name), point.span))
-    };
-    let found = m.definitions.iter().enumerate().find_map(definition);
-    let (what, span) = found.or_else(|| m.points.iter().enumerate().find_map(point))?;
-    let message = format!("the {what} is not finite at any state that was tried");
-    let help = "check the values of the parameters, the arguments of sqrt, log, asin and acos, and powers of powers: numbers end at 1.8e308";
-    Some(Diagnostic::new(codes::NUMBER_RANGE, span, message).help(help))
 }

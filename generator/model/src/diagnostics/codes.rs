@@ -96,6 +96,7 @@ codes! {
     NO_INERTIA = "E076", "a degree of freedom without inertia";
     EMPTY_EQUATION = "E077", "an equation that says nothing";
     NOT_KEPT = "E078", "a configuration that the motion does not keep";
+    NO_CONFIGURATION = "E079", "a configuration that has no solution";
     NORMAL = "E080", "the normal is not a unit vector";
     CONTACT_STILL = "E081", "a contact that never moves";
     CONTACT = "E082", "a contact is not stated correctly";
@@ -128,4 +129,5 @@ codes! {
     NO_EFFECT = "W012", "a load that does nothing";
     KEPT_BY_VALUES = "W013", "a configuration that is kept with some values only";
     NO_GAP = "W014", "a contact that no simulation sees";
+    NO_START = "W015", "a start without numbers";
 }

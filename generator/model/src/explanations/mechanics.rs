@@ -258,6 +258,33 @@ pub(super) const TABLE: &[Explanation] = &[
         ),
     },
     Explanation {
+        code: NO_CONFIGURATION,
+        text: "The residual of a configuration equation is bounded over all coordinates and times, with the \
+            parameters of the model, and the bounds do not hold 0: a square is asked to be negative, or a link \
+            to reach farther than it is long. Bounds are wider than need be where terms depend on each other; \
+            where they tell nothing and no solution is found near the initial values, the warning W005 says so.",
+        wrong: Some(
+            "coordinates { q1: rad, dependent q2: rad }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { cos(q2)*u2 = -sin(q1)*u1; }\n\
+            configuration { sin(q2) = cos(q1) + 3; }",
+        ),
+        right: Some(
+            "coordinates { q1: rad = 0.5, dependent q2: rad = 1 }\n\
+            speeds { u1: rad/s }\n\
+            dependent { u2: rad/s }\n\
+            frames { B = N.rotate(z, q1); C = N.rotate(z, q2); }\n\
+            bodies { Rod { frame: B, centre: G, mass: m, inertia: [m*l^2/12, 0, m*l^2/12] }, Gear { frame: C, \
+            centre: O, mass: m, inertia: [m*l^2/9, m*l^2/9, m*l^2/9] } }\n\
+            constraints { cos(q2)*u2 = -sin(q1)*u1; }\n\
+            configuration { sin(q2) = cos(q1); }",
+        ),
+    },
+    Explanation {
         code: NORMAL,
         text: "A normal must have the length 1. `unit(v)` is the unit vector along v.",
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x + N.y } }"),

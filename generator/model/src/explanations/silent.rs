@@ -143,4 +143,18 @@ pub(super) const TABLE: &[Explanation] = &[
         wrong: Some("contacts { tip { point: P of Rod, normal: -N.x } }"),
         right: Some("contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x) } }"),
     },
+    Explanation {
+        code: NO_START,
+        text: "With the initial values something is divided by 0, or is not finite, or the rates are not \
+            determined, although this is not so at other states: `eval` and `simulate` cannot begin there \
+            unless they are given another state.",
+        wrong: Some(
+            "coordinates { q1: rad = 0 }\n\
+            loads { gravity: -g*N.y; torque on Rod: 0.01*m*g*l/q1*N.z; }",
+        ),
+        right: Some(
+            "coordinates { q1: rad = 0.1 }\n\
+            loads { gravity: -g*N.y; torque on Rod: 0.01*m*g*l/q1*N.z; }",
+        ),
+    },
 ];

@@ -144,7 +144,8 @@ pub(super) const TABLE: &[Explanation] = &[
         code: NOT_CLOSED,
         text: "With the values of the model the configuration equations have no solution near the initial \
             values, where dependent coordinates are guesses: a link is too short, or a guess is far away. \
-            Other parameters may close the loop, so it is no error.",
+            Other parameters or guesses may close the loop, so it is no error; where it is certain that no \
+            coordinates satisfy an equation with the values of the model, that is the error E079.",
         wrong: Some(
             "mechanism Slider;\n\
             parameters { m: kg = 1, a: m = 1, b: m = 0.2 }\n\

@@ -256,9 +256,12 @@ pub fn reserved(name: &Name) -> Option<Diagnostic> {
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help("choose another name"));
     }
     if let Some(c) = name.text.chars().find(|c| !c.is_alphanumeric() && *c != '_') {
-        let message = format!("`{c}` cannot stand in a name");
-        let help =
-            if c == '·' { "write `*` for a product" } else { "names are made of letters, digits and `_`" };
+        let message = format!("`{}` cannot stand in a name", c.escape_debug());
+        let help = match c {
+            '·' => "write `*` for a product",
+            c if unicode::is_invisible(c) => "remove this character, which cannot be seen",
+            _ => "names are made of letters, digits and `_`",
+        };
         return Some(Diagnostic::new(codes::RESERVED_NAME, name.span, message).help(help));
     }
     if let Some(c) = unicode::with_two_spellings(&name.text) {

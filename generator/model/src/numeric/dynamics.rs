@@ -10,6 +10,9 @@ fn apply3(m: &[Vector3; 3], v: Vector3) -> Vector3 {
     m.map(|row| dot3(row, v))
 }
 
+/// Mass matrix or forces are not finite.
+pub const SINGULAR: Failure = Failure::Unsupported("a state at which the equations are singular");
+
 /// Everything at a state.
 pub fn evaluate(m: &Mechanism, state: &State) -> Result<Evaluation, Failure> {
     evaluate_views(m, &Views::at(m, state)?)
@@ -48,7 +51,7 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
         out.accelerations.push(accelerations(views.onward.velocity(PointId(i))?));
     }
     let finite = out.mass_matrix.iter().flatten().chain(&out.forcing).all(|v| v.is_finite());
-    if finite { Ok(out) } else { Err(Failure::Unsupported("a state at which the equations are singular")) }
+    if finite { Ok(out) } else { Err(SINGULAR) }
 }
 
 /// Inertia as it is stated: along the axes of its frame, about its point.

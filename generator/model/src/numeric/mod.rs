@@ -18,7 +18,7 @@ mod state;
 pub mod views;
 
 pub use assembly::{assemble, configuration_slopes};
-pub use dynamics::{central_inertia, evaluate, evaluate_views, own_inertia};
+pub use dynamics::{SINGULAR, central_inertia, evaluate, evaluate_views, own_inertia};
 pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};
 pub use loops::held_together;

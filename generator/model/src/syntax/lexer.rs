@@ -58,6 +58,13 @@ impl<'a> Lexer<'a> {
             ')' | ']' | '}' => self.push(TokenKind::Close(first), 1, String::new()),
             '+' | '-' | '*' | '/' | '^' | '=' | '.' | ',' | ';' | ':' | '<' | '>' | '!' | '%' | '&' | '|'
             | '?' | '@' | '#' | '$' | '~' | '\'' => self.push(TokenKind::Sign(first), 1, String::new()),
+            // digits of other scripts, and fractions: one mistake, read as some number
+            c if c.is_numeric() && c != '²' && c != '³' => {
+                let (start, length) = (self.at, self.run(0, |c| c.is_numeric() || c == '.'));
+                self.push(TokenKind::Bad(Bad::Digits), length, rest[..length].to_owned());
+                let span = Span { start: start as u32, end: self.at as u32 };
+                self.tokens.push(Token { kind: TokenKind::Number, text: "1".to_owned(), span });
+            }
             _ => {
                 let start = self.at;
                 self.push(TokenKind::Bad(Bad::Character), first.len_utf8(), first.to_string());
@@ -73,6 +80,10 @@ impl<'a> Lexer<'a> {
             '×' | '·' | '⋅' => &[(TokenKind::Sign('*'), "")],
             '²' => &[(TokenKind::Sign('^'), ""), (TokenKind::Number, "2")],
             '³' => &[(TokenKind::Sign('^'), ""), (TokenKind::Number, "3")],
+            '，' | '、' | '‚' => &[(TokenKind::Sign(','), "")],
+            '；' | '\u{37e}' => &[(TokenKind::Sign(';'), "")],
+            '：' | '∶' => &[(TokenKind::Sign(':'), "")],
+            '＝' => &[(TokenKind::Sign('='), "")],
             _ => &[],
         };
         let span = Span { start: start as u32, end: self.at as u32 };

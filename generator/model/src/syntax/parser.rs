@@ -73,8 +73,21 @@ fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
                 "²" => "write `^2`",
                 "³" => "write `^3`",
                 "−" | "–" => "write the plain minus sign `-`",
+                "，" | "、" | "‚" => "write the plain comma `,`",
+                "；" | "\u{37e}" => "write the plain semicolon `;`",
+                "：" | "∶" => "write the plain colon `:`",
+                "＝" => "write the plain equals sign `=`",
+                "“" | "”" | "„" | "‘" | "’" | "«" | "»" | "`" => "names stand without quotes",
+                _ if shown.chars().all(unicode::is_invisible) => {
+                    "remove this character, which cannot be seen"
+                }
                 _ => "names begin with a letter; comments begin with `//`",
             },
+        ),
+        Bad::Digits => (
+            codes::BAD_NUMBER,
+            format!("`{shown}` is not a plain decimal number"),
+            "numbers are written with the digits 0 to 9; a fraction is a quotient such as `1/2`",
         ),
         Bad::Quoted => {
             (codes::BAD_TOKEN, "a model has no quoted text".to_owned(), "names stand without quotes")
@@ -281,6 +294,9 @@ impl<'a> Parser<'a> {
             // a message says so already
             Some(TokenKind::Bad(_)) => return Lost,
             None => error.label("the model ends here"),
+            Some(TokenKind::Sign('\'')) if what.starts_with("the name") => {
+                error.help("names stand without quotes")
+            }
             Some(TokenKind::Sign('\'')) => error.help("a time derivative is written `d(q1)/dt`"),
             Some(TokenKind::Sign('#' | '%')) if what.starts_with("the name") || what.starts_with("a ") => {
                 error.help("comments begin with `//`")
@@ -289,6 +305,9 @@ impl<'a> Parser<'a> {
             Some(TokenKind::Sign('|')) => error.help("the magnitude is `abs(x)`, of a vector `norm(v)`"),
             Some(TokenKind::Open('{')) if what == "an expression" => {
                 error.help("parts of an expression are grouped by `(` and `)`")
+            }
+            Some(TokenKind::Sign('.')) if what == "an expression" => {
+                error.help("a number has a digit before its point, as `0.5`")
             }
             Some(TokenKind::Sign('=')) if self.before_is('=') => error.help("an equation has one `=`"),
             Some(TokenKind::Sign('<' | '>')) => error.help("there are no inequalities in a model"),

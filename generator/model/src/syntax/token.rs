@@ -28,6 +28,8 @@ pub enum TokenKind {
 pub enum Bad {
     /// a character that means nothing here
     Character,
+    /// digits that are not 0 to 9
+    Digits,
     /// a string or character literal
     Quoted,
     /// a number that is not plainly decimal

@@ -175,6 +175,11 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
 
 fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, format!("there is no unit `{name}`"));
+    // the two letters mu: the sign of micro, and the Greek letter
+    if let Some(rest) = name.strip_prefix(['\u{b5}', '\u{3bc}']).filter(|rest| is_symbol(&format!("u{rest}")))
+    {
+        return error.help(format!("write `u{rest}`: the prefix for a millionth is `u`"));
+    }
     if let Some(found) = unicode::lookalike(name) {
         return error.help(found.advice());
     }

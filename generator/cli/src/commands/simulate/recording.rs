@@ -236,6 +236,18 @@ impl<'m> Recording<'m> {
     }
 }
 
+/// How many numbers a moment is kept as: the time, places, axes, forces with their places, and curves.
+pub fn numbers(mechanism: &InterpretedMechanism) -> usize {
+    let count = |kind| mechanism.count(kind);
+    let model = mechanism.model();
+    1 + 3 * model.points.len()
+        + 9 * model.bodies.len()
+        + 8 * count(Of::Contact)
+        + 3
+        + count(Of::Coordinate)
+        + count(Of::Speed)
+}
+
 /// What is to be said of points that are nowhere at any time, and so are not drawn.
 fn placeless(points: &[Point]) -> Option<String> {
     let nowhere = |point: &&Point| point.places.iter().all(|place| place[0].is_nan());

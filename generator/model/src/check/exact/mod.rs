@@ -9,6 +9,8 @@
 //!
 //! Theory: docs/theory.md, section 16.6.
 
+pub mod divisors;
+pub mod enclosures;
 mod nodes;
 mod values;
 

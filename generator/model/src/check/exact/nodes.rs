@@ -12,6 +12,7 @@ use crate::graph::differentiate::differentiate;
 use crate::graph::{Graph, Input, Node, NodeKind};
 use crate::model::mechanism::*;
 use crate::number::Number;
+use crate::span::Span;
 
 /// Components along N.x, N.y, N.z.
 pub type Triple = [Node; 3];
@@ -25,6 +26,14 @@ const LARGEST: usize = 200_000;
 /// Numbers of more bits are not multiplied out.
 const LONGEST: u64 = 4096;
 
+/// What something is divided by, and where, if that is known.
+pub struct Divisor {
+    /// its value, or its square
+    pub node: Node,
+    /// where it stands
+    pub span: Option<Span>,
+}
+
 /// The nodes that a mechanism was written as so far.
 pub struct Nodes<'m> {
     m: &'m Mechanism,
@@ -32,6 +41,8 @@ pub struct Nodes<'m> {
     pub graph: Graph,
     /// what must be 1 identically: the squares of the lengths of axes
     pub ones: Vec<Node>,
+    /// what may not be 0 identically
+    pub divisors: Vec<Divisor>,
     rates: HashMap<Input, Node>,
     scalars: HashMap<DefinitionId, Node>,
     vectors: HashMap<DefinitionId, Triple>,
@@ -56,6 +67,7 @@ impl<'m> Nodes<'m> {
             m,
             graph,
             ones: Vec::new(),
+            divisors: Vec::new(),
             rates,
             scalars: HashMap::new(),
             vectors: HashMap::new(),
@@ -120,7 +132,8 @@ impl<'m> Nodes<'m> {
         Some(out)
     }
 
-    fn scalar(&mut self, scalar: &Scalar) -> Option<Node> {
+    /// A scalar.
+    pub fn scalar(&mut self, scalar: &Scalar) -> Option<Node> {
         self.nested(|this| this.scalar_at_level(scalar))
     }
 
@@ -163,8 +176,9 @@ impl<'m> Nodes<'m> {
                 }
                 product
             }
-            Scalar::Div(a, b, _) => {
+            Scalar::Div(a, b, span) => {
                 let (a, b) = (self.scalar(a)?, self.scalar(b)?);
+                self.divisors.push(Divisor { node: b, span: Some(*span) });
                 if self.graph.is_zero(b) {
                     return None;
                 }
@@ -174,6 +188,9 @@ impl<'m> Nodes<'m> {
             Scalar::Pow(base, exponent) => {
                 let (base, exponent) = (self.scalar(base)?, self.scalar(exponent)?);
                 let exponent = self.graph.as_number(exponent)?.to_integer()?;
+                if exponent < 0 {
+                    self.divisors.push(Divisor { node: base, span: None });
+                }
                 if exponent < 0 && self.graph.is_zero(base) {
                     return None;
                 }
@@ -188,7 +205,12 @@ impl<'m> Nodes<'m> {
             }
             Scalar::Call(function, arguments) => {
                 let arguments: Option<Vec<Node>> = arguments.iter().map(|a| self.scalar(a)).collect();
-                self.graph.call(*function, arguments?)
+                let arguments = arguments?;
+                if *function == Function::Tan {
+                    let node = self.graph.call(Function::Cos, arguments.clone());
+                    self.divisors.push(Divisor { node, span: None });
+                }
+                self.graph.call(*function, arguments)
             }
             Scalar::Dot(a, b) => {
                 let (a, b) = (self.vector(a)?, self.vector(b)?);
@@ -202,7 +224,8 @@ impl<'m> Nodes<'m> {
         })
     }
 
-    fn vector(&mut self, vector: &Vector) -> Option<Triple> {
+    /// A vector, along N's axes.
+    pub fn vector(&mut self, vector: &Vector) -> Option<Triple> {
         self.nested(|this| this.vector_at_level(vector))
     }
 
@@ -241,9 +264,10 @@ impl<'m> Nodes<'m> {
                 let (a, b) = (self.vector(a)?, self.vector(b)?);
                 self.cross(a, b)
             }
-            Vector::Unit(vector, _) => {
+            Vector::Unit(vector, span) => {
                 let vector = self.vector(vector)?;
                 let square = self.dot(vector, vector);
+                self.divisors.push(Divisor { node: square, span: Some(*span) });
                 if self.graph.is_zero(square) {
                     return None;
                 }

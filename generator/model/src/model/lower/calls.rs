@@ -33,6 +33,9 @@ const SCALAR_FUNCTIONS: &[(&str, Function)] = &[
     ("max", Function::Max),
 ];
 
+/// A tangent above this is one of a right angle that was rounded.
+const POLE: f64 = 1e15;
+
 /// Whether this is the name of a function.
 pub(super) fn is_function(name: &str) -> bool {
     words::look(words::FUNCTIONS, name).is_some()
@@ -226,6 +229,11 @@ impl Lowering<'_> {
             (_, [a]) => reproducible::call(function, *a),
             _ => f64::NAN,
         });
+        if function == Function::Tan && constant.is_some_and(|value: f64| value.abs() > POLE) {
+            let error = Diagnostic::new(codes::ZERO_DIVISOR, span, "`tan` has no value at a right angle");
+            self.report(error.help("it is sin/cos, and this cosine is 0"));
+            return Typed::poison(span);
+        }
         let value = Scalar::Call(function, scalars);
         Typed { constant, provenance, ..Typed::scalar(value, dimension, traits, span) }
     }

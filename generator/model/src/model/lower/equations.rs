@@ -43,6 +43,7 @@ impl Lowering<'_> {
                     self.need_linear(side, what);
                 } else {
                     self.need_free_of_speeds(side, what);
+                    self.need_rate(side, what);
                 }
             }
             let empty = if linear {
