@@ -6,6 +6,7 @@
 
 mod segments;
 mod setup;
+mod shapes;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +14,7 @@ use serde::Serialize;
 
 pub use segments::segments;
 pub use setup::{Setup, Value};
+pub use shapes::{Outline, Place, Shape};
 
 use crate::plot::svg::escaped;
 
@@ -38,6 +40,8 @@ pub struct Animation {
     pub frames: Vec<Frame>,
     /// lines between points, by their places in `points`
     pub segments: Vec<[usize; 2]>,
+    /// shapes of bodies, and grounds
+    pub shapes: Vec<Shape>,
     /// in the order of time
     pub events: Vec<Event>,
     /// forces that last
@@ -60,6 +64,9 @@ pub struct Point {
     pub name: String,
     /// where it is at each moment
     pub places: Vec<[f64; 3]>,
+    /// the place where a shape touches: drawn small, without name and path
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub quiet: bool,
 }
 
 /// A frame.

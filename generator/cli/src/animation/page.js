@@ -49,6 +49,27 @@
   const other = cross(side, up);
   const places = data.points.flatMap((p) => p.places.filter((v) => v && finite(v)));
   const marks = places.concat(data.events.map((e) => e.at).filter((v) => v && finite(v)));
+  // Shapes reach beyond the points: those of some moments count too.
+  const located = (shape, v, m) => {
+    if (shape.frame === null) return v;
+    const f = data.frames[shape.frame], e = f.axes[m], at = data.points[f.at].places[m];
+    return e && at && finite(at) ? at.map((x, i) => x + v[0] * e[0][i] + v[1] * e[1][i] + v[2] * e[2][i]) : null;
+  };
+  const thin = [0, 1, 2].filter((i) => {
+    let low = Infinity, high = -Infinity;
+    for (const v of marks) { if (v[i] < low) low = v[i]; if (v[i] > high) high = v[i]; }
+    return low <= high && data.points.length > 0 && high - low <= 0;
+  });
+  const seldom = Math.max(1, Math.floor(count / 40));
+  data.shapes.filter((s) => !s.ground).forEach((s) => {
+    for (let m = 0; m < count; m += seldom) s.core.forEach((v) => {
+      const at = located(s, v, m);
+      if (!at) return;
+      if (!s.round) marks.push(at);
+      else [0, 1, 2].forEach((i) => [-1, 1].forEach((sign) => marks.push(at.map((x, k) => (k === i ? x + sign * s.round : x)))));
+      }
+    );
+  });
   const spread = (axis) => {
     let low = Infinity, high = -Infinity;
     for (const v of marks) { const x = dot(v, axis); if (x < low) low = x; if (x > high) high = x; }
@@ -62,7 +83,7 @@
   reach = reach || 1;
   // A plane motion is looked at from straight before it.
   const home = () => {
-    const flat = [0, 1, 2].filter((i) => box[i][1] - box[i][0] < 1e-3 * extent);
+    const flat = [0, 1, 2].filter((i) => thin.includes(i) || box[i][1] - box[i][0] < 1e-3 * extent);
     const upAxis = [0, 1, 2].find((i) => Math.abs(up[i]) > 0.99);
     if (flat.length === 1 && flat[0] !== upAxis) {
       const from = [0, 0, 0]; from[flat[0]] = flat[0] === 1 ? -1 : 1;
@@ -100,15 +121,50 @@
   };
 
   // What stands on the stage.
-  const world = make(stage, "g"), trails = make(stage, "g"), lines = make(stage, "g"), arrows = make(stage, "g");
+  const world = make(stage, "g"), solids = make(stage, "g"), trails = make(stage, "g"), lines = make(stage, "g"), arrows = make(stage, "g");
   const dots = make(stage, "g"), names = make(stage, "g");
   const axes = ["x", "y", "z"].map((name) => ({
     name, line: make(world, "path", "world", { fill: "none" }), text: make(world, "text", "number", { "text-anchor": "middle" }),
   }));
   axes.forEach((a) => { a.text.textContent = "N." + a.name; });
+  const shapes = data.shapes.slice().sort((a, b) => b.ground - a.ground).map((s) => {
+    const node = make(solids, "g", s.ground ? "solid ground" : "solid");
+    make(node, "title").textContent = s.name;
+    const body = make(node, "path", "body"), edges = make(node, "path", "edges");
+    body.style.fill = body.style.stroke = edges.style.stroke = s.colour;
+    return { shape: s, node, body, edges };
+  });
+  // The outline of points on the stage: the smallest convex polygon that holds them.
+  const hull = (list) => {
+    const sorted = list.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+    const turns = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    const half = (points) => {
+      const out = [];
+      for (const p of points) {
+        while (out.length > 1 && turns(out[out.length - 2], out[out.length - 1], p) <= 0) out.pop();
+        out.push(p);
+      }
+      return out.slice(0, -1);
+    };
+    return sorted.length < 3 ? sorted : half(sorted).concat(half(sorted.reverse()));
+  };
+  const written = (list, end) => (list.length ? "M" + list.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L") + end : "");
+  const rounds = [...Array(32).keys()].map((k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16)]);
+  const drawShapes = (m, place, scale) => shapes.forEach(({ shape, node, body, edges }) => {
+    const put = (v) => {
+      const a = located(shape, v, m.low), b = located(shape, v, m.next);
+      return a && place(b ? a.map((x, i) => x + (b[i] - x) * m.part) : a);
+    };
+    const core = shape.core.map(put).filter((p) => p);
+    show(node, core.length > 0 || shape.frame === null || !!put([0, 0, 0]));
+    const r = scale * shape.round;
+    const wide = r > 0 ? core.flatMap((p) => rounds.map(([c, s]) => [p[0] + r * c, p[1] + r * s])) : core;
+    body.setAttribute("d", written(hull(wide), "Z"));
+    edges.setAttribute("d", shape.lines.map((line) => written(line.map(put).filter((p) => p), "")).join(""));
+  });
   const segments = data.segments.map(() => make(lines, "line", "segment"));
   const points = data.points.map((p) => {
-    const node = make(dots, "circle", "point", { r: 4 });
+    const node = make(dots, "circle", p.quiet ? "point quiet" : "point", { r: p.quiet ? 2 : 4 });
     make(node, "title").textContent = p.name;
     const text = make(names, "text", "name");
     text.textContent = p.name;
@@ -167,8 +223,9 @@
   const drawTrails = () => {
     const { place } = projector();
     points.forEach((p, i) => {
-      show(p.trail, moving[i] && byId("trails").checked);
-      if (!moving[i]) return;
+      const drawn = moving[i] && !data.points[i].quiet;
+      show(p.trail, drawn && byId("trails").checked);
+      if (!drawn) return;
       let path = "", pen = false, before = [NaN, NaN];
       for (const v of data.points[i].places) {
         if (!v || !finite(v)) { pen = false; continue; }
@@ -196,6 +253,7 @@
   const draw = () => {
     const m = moment(now), { place, scale } = projector();
     const at = data.points.map((p) => { const v = between(p.places, m); return v ? place(v) : null; });
+    drawShapes(m, place, scale);
     data.segments.forEach(([a, b], i) => {
       const shown = at[a] && at[b];
       show(segments[i], !!shown);
@@ -205,7 +263,7 @@
     points.forEach((p, i) => {
       show(p.node, !!at[i]);
       if (at[i]) set(p.node, { cx: at[i][0].toFixed(2), cy: at[i][1].toFixed(2) });
-      show(p.text, !!at[i] && byId("names").checked && label(taken, i, at[i]));
+      show(p.text, !!at[i] && !data.points[i].quiet && byId("names").checked && label(taken, i, at[i]));
     });
     const { right, above } = camera();
     data.frames.forEach((f, i) => [0, 1, 2].forEach((axis) => {

@@ -14,7 +14,7 @@ fn pendulum(moments: usize) -> Animation {
         first.push([a.sin(), -a.cos(), 0.0]);
         second.push([a.sin() + (a + b).sin(), -a.cos() - (a + b).cos(), 0.0]);
     }
-    let point = |name: &str, places| Point { name: name.to_owned(), places };
+    let point = |name: &str, places| Point { name: name.to_owned(), places, quiet: false };
     let series = |panel: &str, name: &str, unit: &str, of: fn(f64) -> f64| Series {
         panel: panel.to_owned(),
         name: name.to_owned(),

@@ -9,6 +9,7 @@ mod pictures;
 mod recording;
 mod rigid;
 mod setup;
+mod solids;
 mod summary;
 mod surfaces;
 

@@ -11,6 +11,7 @@ use nalgebra::Vector3;
 use super::energies::Energies;
 use super::gap::gap;
 use super::rigid;
+use super::solids::{self, Solids};
 use crate::animation::{self, Animation, Force, Frame, Point, Series, Setup, segments};
 use crate::json::state::State;
 
@@ -19,6 +20,8 @@ pub struct Recording<'m> {
     mechanism: &'m InterpretedMechanism,
     shown: Animation,
     energies: Energies,
+    solids: Solids,
+    start: State,
     /// per contact, m and N; empty without a gap
     gaps: Vec<Vec<f64>>,
     pressures: Vec<Vec<f64>>,
@@ -55,19 +58,25 @@ impl<'m> Recording<'m> {
             from.filter(|&from| from != 0 || rigid::turns_about_origin(mechanism, point, state))
         };
         let from: Vec<Option<usize>> = from.into_iter().enumerate().map(hangs).collect();
+        // where shapes touch no line leads: the shape is drawn
+        let quiet = solids::places_of_shapes(model);
+        let from: Vec<Option<usize>> =
+            from.into_iter().zip(&quiet).map(|(from, quiet)| from.filter(|_| !quiet)).collect();
         let bodies: Vec<(usize, Vec<usize>)> = model
             .contacts
             .iter()
+            .filter(|contact| contact.shapes.is_none())
             .filter_map(|contact| {
                 contact.body.map(|body| (model.bodies[body.0].centre.0, vec![contact.point.0]))
             })
             .collect();
-        let shown = Animation {
+        let mut shown = Animation {
             title: model.name.clone(),
             points: model
                 .points
                 .iter()
-                .map(|point| Point { name: point.name.clone(), places: Vec::new() })
+                .zip(quiet)
+                .map(|(point, quiet)| Point { name: point.name.clone(), places: Vec::new(), quiet })
                 .collect(),
             frames: model
                 .bodies
@@ -87,11 +96,14 @@ impl<'m> Recording<'m> {
             setup,
             ..Animation::default()
         };
+        let solids = Solids::of(model, state, &mut shown);
         let none = |kind| vec![Vec::new(); mechanism.count(kind)];
         Recording {
             mechanism,
             shown,
             energies: Energies::default(),
+            solids,
+            start: state.clone(),
             gaps: none(Of::Contact),
             pressures: none(Of::Contact),
             coordinates: none(Of::Coordinate),
@@ -151,6 +163,11 @@ impl<'m> Recording<'m> {
                 shown.axes.push([0, 1, 2].map(|axis| turned.column(axis).into_owned().into()));
             }
         }
+        for ((frame, _), shown) in self.solids.frames.iter().zip(frames) {
+            let turned = mechanism.orientation(frame.0, state).unwrap_or_default();
+            shown.axes.push([0, 1, 2].map(|axis| turned.column(axis).into_owned().into()));
+        }
+        self.solids.moment(mechanism, state);
         for (contact, shown) in self.shown.forces.iter_mut().enumerate() {
             let here = mechanism.contact_state(contact, state);
             let along = force(contact);
@@ -214,6 +231,7 @@ impl<'m> Recording<'m> {
         for (name, values) in energies {
             self.shown.series.push(series("energy", name, "J", values));
         }
+        self.shown.shapes = self.solids.finish(model, &self.start, &self.shown);
         let notes: Vec<String> = note.into_iter().chain(placeless(&self.shown.points)).collect();
         self.shown.notes.clone_from(&notes);
         for (panel, unit, curves) in [("gap", "m", self.gaps), ("normal force", "N", self.pressures)] {

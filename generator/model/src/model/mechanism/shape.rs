@@ -119,7 +119,7 @@ pub struct Anchor {
 /// A height above a plane as a function of the place in it.
 #[derive(Clone, Debug)]
 pub struct Height {
-    /// the height, of [`Height::X`] and [`Height::Y`]
+    /// the height, in which x and y stand for the place; [`Height::value_at`] gives it at one
     pub value: Scalar,
     /// its derivatives
     pub slopes: [Scalar; 2],

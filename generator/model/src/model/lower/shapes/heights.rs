@@ -3,6 +3,7 @@
 use super::algebra::*;
 use crate::arithmetic::Function;
 use crate::model::mechanism::{DefinitionId, Height, Scalar};
+use crate::number::Number;
 use crate::span::Span;
 
 impl Height {
@@ -14,6 +15,15 @@ impl Height {
     pub(super) fn of(value: Scalar, at: Span) -> Option<Height> {
         let [x, y] = Height::PLACES.map(|place| slope(&value, place, at));
         Some(Height { slopes: [x?, y?], value })
+    }
+}
+
+impl Height {
+    /// The height at a place, m: an expression of parameters. `None` if the place is no number.
+    pub fn value_at(&self, place: [f64; 2]) -> Option<Scalar> {
+        let number = |x: f64| num_rational::BigRational::from_float(x).map(|x| Scalar::Number(Number(x)));
+        let [x, y] = place.map(number);
+        Some(self.value.at(&[x?, y?]))
     }
 }
 
