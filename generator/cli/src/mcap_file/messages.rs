@@ -202,7 +202,7 @@ pub struct Sphere {
 /// `foxglove.LinePrimitive`.
 #[derive(Debug, Serialize)]
 pub struct Line {
-    /// 2: a line for each pair of points
+    /// 0: from point to point; 2: a line for each pair of points
     pub r#type: u8,
     /// where its points are counted from
     pub pose: Pose,
@@ -210,7 +210,7 @@ pub struct Line {
     pub thickness: f64,
     /// is the thickness in pixels?
     pub scale_invariant: bool,
-    /// two for each line
+    /// in their order
     pub points: Vec<Xyz>,
     /// of the whole
     pub color: Color,

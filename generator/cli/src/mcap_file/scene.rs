@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use super::messages::{Arrow, Color, Entity, Line, Pose, Sphere, Text, Time, Update, turning, xyz};
 use super::transforms::INERTIAL;
-use crate::animation::{Animation, Event};
+use crate::animation::{Animation, Event, Shape};
 
 const fn color(r: f64, g: f64, b: f64) -> Color {
     Color { r, g, b, a: 1.0 }
@@ -16,8 +16,12 @@ const FORCE: Color = color(0.0, 0.62, 0.45);
 const IMPULSE: Color = color(0.84, 0.37, 0.0);
 /// Size of letters, pixels.
 const LETTERS: f64 = 14.0;
+/// Lines lead from point to point.
+const LINE_STRIP: u8 = 0;
 /// Every pair of points is a line.
 const LINE_LIST: u8 = 2;
+/// How much of what is behind it a ball hides.
+const BALL: f64 = 0.5;
 /// Lengths as parts of the extent of the motion.
 const LONGEST_ARROW: f64 = 0.25;
 const POINT_SIZE: f64 = 1.0 / 60.0;
@@ -84,7 +88,53 @@ impl<'a> Scene<'a> {
                 indices: [],
             }],
         };
-        update(Entity { spheres, lines, ..self.entity(self.shown.times[moment], "mechanism") })
+        let time = self.shown.times[moment];
+        let mechanism = Entity { spheres, lines, ..self.entity(time, "mechanism") };
+        let entities = std::iter::once(mechanism).chain(self.shapes(moment)).collect();
+        Update { deletions: [], entities }
+    }
+
+    /// The shapes: balls as they are, of others the lines on their surfaces.
+    fn shapes(&self, moment: usize) -> Option<Entity> {
+        let (mut spheres, mut lines) = (Vec::new(), Vec::new());
+        for shape in &self.shown.shapes {
+            let Some(place) = self.placed(shape, moment) else { continue };
+            let solid = hexadecimal(&shape.colour);
+            if let ([centre], true) = (&shape.core[..], shape.round > 0.0) {
+                let size = xyz([2.0 * shape.round; 3]);
+                let color = Color { a: BALL, ..solid };
+                spheres.push(Sphere { pose: Pose::at(place(*centre)), size, color });
+            }
+            for line in &shape.lines {
+                lines.push(Line {
+                    r#type: LINE_STRIP,
+                    pose: Pose::at([0.0; 3]),
+                    thickness: 0.5 * LINE_SIZE * self.extent,
+                    scale_invariant: false,
+                    points: line.iter().map(|point| xyz(place(*point))).collect(),
+                    color: solid,
+                    colors: [],
+                    indices: [],
+                });
+            }
+        }
+        let some = !spheres.is_empty() || !lines.is_empty();
+        some.then(|| Entity { spheres, lines, ..self.entity(self.shown.times[moment], "shapes") })
+    }
+
+    /// Places on a shape along N; `None` where its frame is nowhere.
+    fn placed(&self, shape: &Shape, moment: usize) -> Option<impl Fn([f64; 3]) -> [f64; 3] + use<>> {
+        let (at, axes) = match shape.frame {
+            None => ([0.0; 3], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+            Some(frame) => {
+                let frame = &self.shown.frames[frame];
+                (self.shown.points[frame.at].places[moment], *frame.axes.get(moment)?)
+            }
+        };
+        let known = finite(&at) && axes.iter().all(finite);
+        known.then_some(move |v: [f64; 3]| {
+            std::array::from_fn(|i| at[i] + (0..3).map(|axis| v[axis] * axes[axis][i]).sum::<f64>())
+        })
     }
 
     /// The names of the points, above them.
@@ -174,6 +224,15 @@ impl<'a> Scene<'a> {
 
 fn update(entity: Entity) -> Update {
     Update { deletions: [], entities: vec![entity] }
+}
+
+/// The colour of `#rrggbb`.
+fn hexadecimal(text: &str) -> Color {
+    let part = |at: usize| {
+        let digits = text.get(at..at + 2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        f64::from(digits.unwrap_or(128)) / 255.0
+    };
+    color(part(1), part(3), part(5))
 }
 
 fn finite(place: &[f64; 3]) -> bool {
