@@ -17,5 +17,6 @@ mod overconstrained;
 mod parts;
 mod robust;
 mod second_road;
+mod shapes;
 mod slips;
 mod stages;

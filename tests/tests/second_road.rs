@@ -3,7 +3,7 @@
 //! mechanics.
 
 use crate::common::random::{Sample, samples};
-use crate::common::{Model, models};
+use crate::common::{Model, models, models_of_shapes};
 use hodograph::{Kind, Mechanism, State};
 use hodograph_generator::interpret::Array;
 use hodograph_generator::model::mechanism::{LoadKind, Place, PointId};
@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector, Vector3};
 /// Runs a check on every model at random states and reports all that fail.
 fn everywhere(check: impl Fn(&Model, &Sample) -> Result<(), String>) {
     let mut faults = Vec::new();
-    for model in models() {
+    for model in models().into_iter().chain(models_of_shapes()) {
         for (index, sample) in samples(&model, 6).iter().enumerate() {
             if let Err(fault) = check(&model, sample) {
                 faults.push(format!("{} sample {index}: {fault}", model.name));

@@ -34,12 +34,21 @@ pub fn root() -> PathBuf {
 
 /// All shipped models, by name.
 pub fn models() -> Vec<Model> {
-    let folder = root().join("models");
+    models_in("")
+}
+
+/// The models of `models/shapes`, by name.
+pub fn models_of_shapes() -> Vec<Model> {
+    models_in("shapes/")
+}
+
+fn models_in(within: &str) -> Vec<Model> {
+    let folder = root().join("models").join(within);
     let mut names: Vec<String> = std::fs::read_dir(folder)
-        .expect("the folder models")
+        .expect("a folder of models")
         .map(|entry| entry.expect("an entry").path())
         .filter(|path| path.extension().is_some_and(|extension| extension == "mech"))
-        .map(|path| path.file_stem().expect("a stem").to_string_lossy().into_owned())
+        .map(|path| format!("{within}{}", path.file_stem().expect("a stem").to_string_lossy()))
         .collect();
     names.sort();
     names.iter().map(|name| Model::load(name)).collect()

@@ -7,6 +7,7 @@ use quick_xml::events::Event;
 use roxmltree::{Document, Node};
 
 use super::attributes::{Checker, is};
+use super::collision::{self, Collision};
 use super::lines::Lines;
 
 /// A robot description with the places of its elements.
@@ -16,6 +17,7 @@ pub struct Robot {
     /// what it describes
     pub robot: urdf_rs::Robot,
     places: HashMap<(&'static str, usize), Place>,
+    collisions: Vec<Vec<Collision>>,
 }
 
 struct Place {
@@ -27,6 +29,11 @@ impl Robot {
     /// Where the link stands: `robot.urdf:3:1`.
     pub fn link(&self, index: usize) -> &str {
         self.places.get(&("link", index)).map_or(&self.file, |place| &place.at)
+    }
+
+    /// The solids of a link that strike.
+    pub fn collisions(&self, link: usize) -> &[Collision] {
+        self.collisions.get(link).map_or(&[], Vec::as_slice)
     }
 
     /// Where the joint stands.
@@ -67,12 +74,18 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
     }
     let mut checker = Checker::new(file, &lines);
     let mut places = HashMap::new();
+    let mut collisions = Vec::new();
+    let mut geometry = Vec::new();
     let (mut links, mut joints) = (0, 0);
     let mut ignored: BTreeMap<String, (usize, String)> = BTreeMap::new();
     // What is not used is not read either: many files have faults there.
     let mut used = source.as_bytes().to_vec();
-    let mut ignore = |what: String, node: Node| {
-        ignored.entry(what).or_insert_with(|| (0, at(node))).0 += 1;
+    let mut ignore = |of: Option<&str>, node: Node| {
+        if let Some(of) = of {
+            let article = if of.is_empty() { "" } else { " of a " };
+            let what = format!("<{}>{article}{of}", node.tag_name().name());
+            ignored.entry(what).or_insert_with(|| (0, at(node))).0 += 1;
+        }
         used[node.range()].iter_mut().filter(|byte| **byte != b'\n').for_each(|byte| *byte = b' ');
     };
     for node in root.children().filter(Node::is_element) {
@@ -81,8 +94,10 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
                 checker.link(node);
                 let has_inertial = node.children().any(|part| is(&part, "inertial"));
                 for part in node.children().filter(|part| part.is_element() && !is(part, "inertial")) {
-                    ignore(format!("<{}> of a link", part.tag_name().name()), part);
+                    let read_here = is(&part, "collision");
+                    ignore(if read_here { None } else { Some("link") }, part);
                 }
+                collisions.push(collision::read(node, at, &mut geometry));
                 places.insert(("link", links), Place { at: at(node), has_inertial });
                 links += 1;
             }
@@ -90,15 +105,14 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
                 checker.joint(node);
                 let wanted = ["origin", "parent", "child", "axis", "dynamics", "mimic"];
                 for part in node.children().filter(Node::is_element) {
-                    let name = part.tag_name().name();
-                    if !wanted.contains(&name) {
-                        ignore(format!("<{name}> of a joint"), part);
+                    if !wanted.contains(&part.tag_name().name()) {
+                        ignore(Some("joint"), part);
                     }
                 }
                 places.insert(("joint", joints), Place { at: at(node), has_inertial: false });
                 joints += 1;
             }
-            other => ignore(format!("<{other}>"), node),
+            _ => ignore(Some(""), node),
         }
     }
     for (what, (count, first)) in ignored {
@@ -107,6 +121,7 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
             _ => format!("{first}: ignored {what}, {count} times"),
         });
     }
+    notes.append(&mut geometry);
     if !checker.problems.is_empty() {
         return Err(checker.problems);
     }
@@ -115,7 +130,7 @@ pub fn read(source: &str, file: &str, notes: &mut Vec<String>) -> Result<Robot, 
     if robot.links.len() != links || robot.joints.len() != joints {
         return Err(vec![format!("{file}: some links or joints could not be read")]);
     }
-    Ok(Robot { file: file.to_owned(), robot, places })
+    Ok(Robot { file: file.to_owned(), robot, places, collisions })
 }
 
 /// An element has at most so many attributes: the robot description has none with ten, and to compare each

@@ -2,13 +2,14 @@
 //!
 //! ```text
 //! URDF -> document  the XML, places of its elements, what is not used
-//!               and its attributes, checked
+//!               and its attributes, checked, and the geometry of collisions
 //!      -> tree      links and joints as a tree, checked
 //!      -> bodies    links that are fixed to a moving link become part of it
 //!      -> text      the model
 //! ```
 
 mod attributes;
+mod collision;
 mod document;
 mod fixed_links;
 mod lines;

@@ -232,3 +232,44 @@ fn large_and_deep_files_end() {
         + joint("w", "fixed", "arm", "tool", "");
     assert!(refused(&heavy).contains("too large a number"), "{}", refused(&heavy));
 }
+
+/// Boxes, cylinders and spheres of `<collision>` become shapes, of the body that a link is part of; the model
+/// that comes out is accepted. What becomes none is said by name.
+#[test]
+fn collision_geometry_becomes_shapes() {
+    let solid = |origin: &str, geometry: &str| {
+        format!("<collision>{origin}<geometry>{geometry}</geometry></collision>")
+    };
+    let with = |name: &str, more: &str| link(name).replace("</link>", &format!("{more}</link>"));
+    let lying = "<origin xyz=\"0 0 0.5\" rpy=\"1.5707963267948966 0 0\"/>";
+    let arm = [
+        solid(lying, "<cylinder radius=\"0.05\" length=\"1\"/>"),
+        solid("", "<mesh filename=\"arm.stl\"/>"),
+        solid("", "<sphere radius=\"-1\"/>"),
+    ];
+    let tool = solid("<origin xyz=\"0.1 0 0\"/>", "<sphere radius=\"0.02\"/>");
+    let base = solid("", "<box size=\"1 2 0.1\"/>");
+    let body = [
+        format!("<link name=\"base\">{base}</link>\n"),
+        with("arm", &arm.concat()),
+        format!("<link name=\"tool\">{tool}</link>\n"),
+        joint("hip", "revolute", "base", "arm", "").to_owned(),
+        joint("grip", "fixed", "arm", "tool", "<origin xyz=\"0 0 1\"/>").to_owned(),
+    ];
+    let body = body.concat();
+    let (model, notes) = model(&body, &Options::default());
+    has(&model, "base_shape { at: O, box: [a_base_shape, b_base_shape, c_base_shape], axes: N },");
+    has(&model, "arm_shape_axes = arm_axes.rotate(x, pi/2);");
+    has(
+        &model,
+        "arm_shape { of: arm, at: O + sz_arm_shape*arm_axes.z, cylinder: [r_arm_shape, l_arm_shape], axis: arm_shape_axes.z },",
+    );
+    has(&model, "tool_shape { of: arm, at: tool_origin + sx_tool_shape*arm_axes.x, sphere: r_tool_shape },");
+    assert!(notes.contains("ignored <collision> of link `arm`: a mesh is no shape of a model"), "{notes}");
+    assert!(notes.contains("ignored <collision> of link `arm`: `radius` must be positive"), "{notes}");
+    let source = hodograph_generator::source::Source::file("two.mech", model.as_str());
+    let checked = hodograph_generator::check::check(&source);
+    let said = hodograph_generator::rendering::render(&checked.diagnostics, &source);
+    let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{said}\n{model}"));
+    assert_eq!(mechanism.shapes.len(), 3);
+}

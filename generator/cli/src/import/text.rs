@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 
 use super::Options;
+use super::collision::{Collision, Solid};
 use super::document::Robot;
 use super::fixed_links::{Groups, across};
 use super::names::{Names, mechanism};
@@ -21,6 +22,7 @@ struct Sections {
     velocities: Vec<String>,
     bodies: Vec<String>,
     particles: Vec<String>,
+    shapes: Vec<String>,
     loads: Vec<String>,
     contacts: Vec<String>,
 }
@@ -74,6 +76,7 @@ pub fn write(
     for (link, moves) in motions.iter().enumerate() {
         writer.place(link, moves);
         writer.body(link);
+        document.collisions(link).iter().for_each(|collision| writer.shape(link, collision));
     }
     let mut problems = Vec::new();
     for contact in &options.contacts {
@@ -308,6 +311,44 @@ impl Writer<'_> {
         ));
     }
 
+    /// The shape that a solid of a link is.
+    fn shape(&mut self, here: usize, collision: &Collision) {
+        let link = &self.tree.links[here];
+        let group = self.groups.of_link[here];
+        let Called { axes, origin } = self.called[here].clone();
+        let name = self.names.give(&format!("{}_shape", link.name));
+        let at = match self.offset(["sx", "sy", "sz"], &name, &collision.offset, &axes) {
+            None => origin,
+            Some(offset) => format!("{origin} + {offset}"),
+        };
+        let own = match (collision.solid, rotation(&collision.rpy)) {
+            (Solid::Sphere(_), _) | (_, None) => axes.clone(),
+            (_, Some(turn)) => self.frame(&format!("{name}_axes"), &axes, &turn),
+        };
+        let mut length =
+            |letter: &str, value: f64| self.parameter(&format!("{letter}_{name}"), "m", value, "");
+        let solid = match collision.solid {
+            Solid::Sphere(r) => format!("sphere: {}", length("r", r)),
+            Solid::Cylinder([r, l]) => {
+                format!("cylinder: [{}, {}], axis: {own}.z", length("r", r), length("l", l))
+            }
+            Solid::Box([a, b, c]) => {
+                format!("box: [{}, {}, {}], axes: {own}", length("a", a), length("b", b), length("c", c))
+            }
+        };
+        let group = &self.groups.groups[group];
+        let rigid = group.properties.as_ref().is_some_and(|properties| {
+            let i = &properties.inertia;
+            i.iter().any(|&number| number != 0.0)
+        });
+        let of = match &self.bodies[self.groups.of_link[here]] {
+            _ if group.ground => String::new(),
+            Some(body) if rigid => format!("of: {body}, "),
+            _ => format!("of: {axes}, "),
+        };
+        self.out.shapes.push(format!("{name} {{ {of}at: {at}, {solid} }},"));
+    }
+
     fn contact(&mut self, wanted: &str, problems: &mut Vec<String>) {
         let links = &self.tree.links;
         let Some(here) = links.iter().position(|link| link.name == wanted) else {
@@ -387,6 +428,7 @@ impl Writer<'_> {
             ("velocities", out.velocities),
             ("bodies", out.bodies),
             ("particles", out.particles),
+            ("shapes", out.shapes),
             ("loads", out.loads),
             ("contacts", out.contacts),
         ] {

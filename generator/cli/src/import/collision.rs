@@ -1,0 +1,80 @@
+//! Reads the `<collision>` elements of links: boxes, cylinders and spheres; what else there is, is said.
+
+use nalgebra::Vector3;
+use roxmltree::Node;
+
+use super::attributes::is;
+
+/// What a shape of a model can be made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Solid {
+    /// lengths along x, y and z, m
+    Box([f64; 3]),
+    /// radius and length along z, m
+    Cylinder([f64; 2]),
+    /// radius, m
+    Sphere(f64),
+}
+
+/// A solid at a place in its link.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collision {
+    /// what it is
+    pub solid: Solid,
+    /// where its middle is, m
+    pub offset: Vector3<f64>,
+    /// roll, pitch and yaw of its axes, rad
+    pub rpy: Vector3<f64>,
+}
+
+/// The `<collision>` elements of a link that become shapes. Of each of the others a note says why not; `at`
+/// tells where an element stands.
+pub fn read(link: Node, at: impl Fn(Node) -> String, notes: &mut Vec<String>) -> Vec<Collision> {
+    let name = link.attribute("name").unwrap_or_default();
+    let mut out = Vec::new();
+    for element in link.children().filter(|part| is(part, "collision")) {
+        match collision(element) {
+            Ok(found) => out.push(found),
+            Err(why) => notes.push(format!("{}: ignored <collision> of link `{name}`: {why}", at(element))),
+        }
+    }
+    out
+}
+
+fn collision(element: Node) -> Result<Collision, String> {
+    let geometry = element.children().find(|part| is(part, "geometry")).ok_or("it has no <geometry>")?;
+    let shape = geometry.children().find(Node::is_element).ok_or("its <geometry> is empty")?;
+    let origin = element.children().find(|part| is(part, "origin"));
+    let three = |name: &str| match origin.and_then(|origin| origin.attribute(name)) {
+        None => Ok([0.0; 3]),
+        Some(_) => numbers(origin, name),
+    };
+    let (offset, rpy) = (Vector3::from(three("xyz")?), Vector3::from(three("rpy")?));
+    let length = |name: &str| numbers::<1>(Some(shape), name).and_then(|[length]| positive(name, length));
+    let solid = match shape.tag_name().name() {
+        "box" => {
+            let size: [f64; 3] = numbers(Some(shape), "size")?;
+            size.into_iter().try_for_each(|side| positive("size", side).map(|_| ()))?;
+            Solid::Box(size)
+        }
+        "cylinder" => Solid::Cylinder([length("radius")?, length("length")?]),
+        "sphere" => Solid::Sphere(length("radius")?),
+        "mesh" => return Err("a mesh is no shape of a model; state a box, cylinder or sphere".to_owned()),
+        other => return Err(format!("<{other}> is no shape of a model")),
+    };
+    Ok(Collision { solid, offset, rpy })
+}
+
+fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64; N], String> {
+    let text = element.and_then(|element| element.attribute(name));
+    let text = text.ok_or_else(|| format!("it has no attribute `{name}`"))?;
+    let read: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    let read = read.filter(|list| list.iter().all(|number| number.is_finite()));
+    let read: Option<[f64; N]> = read.and_then(|list| list.try_into().ok());
+    let wanted = if N == 1 { "a finite number" } else { "three finite numbers" };
+    read.ok_or_else(|| format!("`{name}=\"{text}\"` is not {wanted}"))
+}
+
+fn positive(name: &str, length: f64) -> Result<f64, String> {
+    if length > 0.0 { Ok(length) } else { Err(format!("`{name}` must be positive")) }
+}
