@@ -272,7 +272,7 @@ fn extent(model: &Model, values: &Evaluator<'_>, shown: &Animation) -> (Vector3<
         low = low.inf(&at);
         high = high.sup(&at);
     }
-    if !(low.x <= high.x) {
+    if low.x > high.x {
         return (Vector3::zeros(), 1.0);
     }
     let size = |shape: &Shape| {
