@@ -1,5 +1,5 @@
-//! Parts, repetitions and imports: what they expand to, what they see, how mistakes in them are said, and that
-//! expanding ends.
+//! Parts, repetitions and imports: what they expand to, what they see, how mistakes in them are said, and
+//! that expanding ends.
 
 use std::path::{Path, PathBuf};
 
@@ -695,4 +695,24 @@ fn derivations_go_stale_with_what_is_imported() {
     assert!(!is_fresh());
     folder.write("parts/link.mech", LINK);
     assert!(is_fresh());
+}
+
+/// An editor shows one text: what is said of a part stands at its use there.
+#[test]
+fn an_analysis_has_the_places_of_the_text_itself() {
+    let folder = Folder::new("editor", &[("chain.mech", IMPORTING), ("parts/link.mech", LINK)]);
+    folder.write("parts/link.mech", &LINK.replace("length/2*B.y", "length*length*B.y"));
+    let source = folder.model("chain.mech");
+    let analysis = hodograph_generator::check::analyse(&source);
+    let [found] = &analysis.diagnostics[..] else { panic!("{:?}", analysis.diagnostics) };
+    assert_eq!(&IMPORTING[found.primary.span.range()], "use Link as link[1](hinge: O, base: N)");
+    let near = IMPORTING.replace("use Link as link[2]", "use Lnk as link[2]");
+    let analysis = hodograph_generator::check::analyse(&Source::file(
+        "",
+        near.replace("import \"parts/link.mech\";", LINK),
+    ));
+    let text = near.replace("import \"parts/link.mech\";", LINK);
+    let [found] = &analysis.diagnostics[..] else { panic!("{:?}", analysis.diagnostics) };
+    assert_eq!((&text[found.primary.span.range()], found.code), ("Lnk", codes::PART_UNKNOWN));
+    assert_eq!(analysis.tokens.len(), hodograph_generator::syntax::lexer::tokens(&text, 10_000).len());
 }

@@ -24,6 +24,7 @@ mod impacts;
 mod inlined;
 mod many_contacts;
 mod mechanisms_by_slices;
+mod parts;
 mod peers;
 mod records;
 mod reference;

@@ -144,8 +144,8 @@ impl Source {
         }
     }
 
-    /// A model among the tokens of a Rust source, each with its line and column where they are known. `name` is
-    /// what messages call it.
+    /// A model among the tokens of a Rust source, each with its line and column where they are known. `name`
+    /// is what messages call it.
     pub fn inline(name: impl Into<String>, tokens: Vec<Token>, locations: Vec<Option<Location>>) -> Source {
         Source::new(name.into(), Content::Inline { tokens, locations })
     }

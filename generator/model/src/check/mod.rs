@@ -21,11 +21,12 @@ mod states;
 mod unit_vectors;
 mod vector_constraints;
 
-use crate::diagnostics::{Diagnostic, Severity, codes};
+use crate::diagnostics::{Diagnostic, Place, Severity, codes};
 use crate::model::{self, mechanism::Mechanism, symbols::Symbols};
-use crate::source::Source;
+use crate::parts::Expansion;
+use crate::source::{MAX_TOKENS, Source};
 use crate::span::Span;
-use crate::syntax::{self, token::Token, tree::Tree};
+use crate::syntax::{self, lexer, token::Token, tree::Tree};
 
 pub use bodies::{Impossible, impossible_bodies};
 pub use unit_vectors::{ROUNDED_QUATERNION, UNIT_QUATERNION};
@@ -71,9 +72,32 @@ impl Analysis {
 
 /// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
 pub fn check(source: &Source) -> Checked {
-    let analysis = analyse(source);
+    if let Some(expansion) = source.expansion() {
+        return expanded(source, expansion);
+    }
+    let analysis = analysed(source);
     let failed = analysis.has_errors();
     Checked { mechanism: analysis.mechanism.filter(|_| !failed), diagnostics: analysis.diagnostics }
+}
+
+/// Checks what the parts of a model expand to.
+fn expanded(source: &Source, expansion: &Expansion) -> Checked {
+    let mut diagnostics = expansion.syntax.clone();
+    diagnostics.extend(expansion.mistakes.iter().cloned());
+    if diagnostics.is_empty() && source.is_library() {
+        let message = "this is a file of parts, and no mechanism";
+        let error = Diagnostic::new(codes::EMPTY, Span::default(), message);
+        let help =
+            "a model uses it after `import \"..\";`; `hodograph check` and `hodograph fmt` take it as it is";
+        diagnostics.push(error.help(help));
+    }
+    if !diagnostics.is_empty() {
+        return Checked { mechanism: None, diagnostics: expansion.explained(diagnostics) };
+    }
+    let analysis = analysed(source);
+    let failed = analysis.has_errors();
+    let diagnostics = expansion.explained(analysis.diagnostics);
+    Checked { mechanism: analysis.mechanism.filter(|_| !failed), diagnostics }
 }
 
 /// The names of a model and their places, without a check of its numbers.
@@ -86,27 +110,27 @@ pub fn names(tokens: &[Token]) -> (Tree, Symbols) {
     (tree, symbols)
 }
 
-/// Reads and checks a model, and keeps all that was found on the way.
+/// Reads and checks a model, and keeps all that was found on the way. Of a model with parts all places are
+/// those of its own text, what is said of a part stands at its use, and only the tokens and the mechanism are
+/// kept.
 pub fn analyse(source: &Source) -> Analysis {
     let Some(expansion) = source.expansion() else { return analysed(source) };
-    let mut diagnostics = expansion.syntax.clone();
-    diagnostics.extend(expansion.mistakes.iter().cloned());
-    if !diagnostics.is_empty() {
-        return Analysis { diagnostics: expansion.explained(diagnostics), ..Analysis::default() };
+    let Checked { mechanism, mut diagnostics } = expanded(source, expansion);
+    for diagnostic in &mut diagnostics {
+        let own = |span: Span| std::ptr::eq(source.locate(span).0, source);
+        diagnostic.related.retain(|label| own(label.span));
+        diagnostic.primary.span = source.in_itself(diagnostic.primary.span);
+        diagnostic.related.iter_mut().for_each(|label| label.span = source.in_itself(label.span));
+        for fix in &mut diagnostic.fixes {
+            let (Place::Replace(span) | Place::IntoBraces(span)) = &mut fix.place;
+            *span = source.in_itself(*span);
+        }
     }
-    if source.is_library() {
-        let message = "this is a file of parts, and no mechanism";
-        let error = Diagnostic::new(codes::EMPTY, Span::default(), message);
-        let help =
-            "a model uses it after `import \"..\";`; `hodograph check` and `hodograph fmt` take it as it is";
-        return Analysis { diagnostics: vec![error.help(help)], ..Analysis::default() };
-    }
-    let Analysis { mechanism, diagnostics, .. } = analysed(source);
-    // places of tokens and names are those of the expanded model, which no author has seen
-    Analysis { mechanism, diagnostics: expansion.explained(diagnostics), ..Analysis::default() }
+    let tokens = source.text().map(|text| lexer::tokens(text, MAX_TOKENS)).unwrap_or_default();
+    Analysis { tokens, mechanism, diagnostics, ..Analysis::default() }
 }
 
-/// The same of a model without parts.
+/// The same of the tokens of a model without parts.
 fn analysed(source: &Source) -> Analysis {
     let tokens = match source.tokens() {
         Ok(tokens) => tokens.into_owned(),

@@ -23,8 +23,9 @@ pub enum Item {
     Velocity(usize),
 }
 
-/// Names may refer to names that refer to names .. to this depth.
-const MAX_CHAIN: usize = 300;
+/// Names may refer to names that refer to names .. to this depth: four for each link of the longest chain of
+/// links.
+const MAX_CHAIN: usize = 1200;
 
 /// All items, each after those it refers to, and those that take part in a cycle.
 pub struct Order {

@@ -16,9 +16,9 @@ use crate::syntax::tree::Tree;
 pub use lower::{Lowered, lower};
 pub use readable::Readable;
 
-/// Most speeds that a mechanism may have, dependent ones included: the factorised mass matrix grows with
-/// their cube.
-pub const MOST_SPEEDS: usize = 64;
+/// Most speeds that a mechanism may have, dependent ones included. Nothing overflows beyond; but programs of the
+/// mass matrix grow with the square of their number, and checks in numbers take time with its cube.
+pub const MOST_SPEEDS: usize = 256;
 /// Most coordinates: a quaternion for each speed.
 pub const MOST_COORDINATES: usize = 4 * MOST_SPEEDS;
 

@@ -1,5 +1,5 @@
-//! The expanded model on its way: the sections of the mechanism, each with the entries of all instances behind its
-//! own.
+//! The expanded model on its way: the sections of the mechanism, each with the entries of all instances
+//! behind its own.
 
 use std::collections::BTreeMap;
 

@@ -2,8 +2,8 @@
 //!
 //! A name that is given takes the place of the argument. An expression becomes an entry of the model of its
 //! own: a point or a frame for an argument of that kind, a definition for a quantity. A constant becomes a
-//! `fixed` parameter, since it is counted in the unit of the argument; where that is 1 it stands in the place of
-//! the argument.
+//! `fixed` parameter, since it is counted in the unit of the argument; where that is 1 it stands in the place
+//! of the argument.
 
 use std::collections::HashMap;
 

@@ -1,5 +1,5 @@
-//! Reads the files that a mechanism imports, each once, and those that these import. This crate opens no files:
-//! who reads models says how.
+//! Reads the files that a mechanism imports, each once, and those that these import. This crate opens no
+//! files: who reads models says how.
 
 use super::outline::Outline;
 use super::places::{Place, Places};

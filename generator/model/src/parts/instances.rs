@@ -12,7 +12,6 @@ use super::roles::Kind;
 use super::template::{Shared, Template, template};
 use crate::diagnostics::{Code, Diagnostic, codes};
 use crate::span::Span;
-use crate::suggest;
 use crate::syntax::tree::Name;
 
 /// A mechanism has at most this many instances and turns of repetitions.
@@ -104,8 +103,10 @@ pub struct Instances<'a, 'p> {
     templates: HashMap<*const Block, Rc<Template>>,
     /// places of which something was said that is the same for all instances
     said: HashSet<Span>,
-    turns: usize,
-    full: bool,
+    /// instances and turns of repetitions so far
+    pub turns: usize,
+    /// there are too many
+    pub full: bool,
 }
 
 impl<'a, 'p> Instances<'a, 'p> {
@@ -207,7 +208,7 @@ impl<'a, 'p> Instances<'a, 'p> {
     }
 
     /// As [`Instances::report`], but once for all instances.
-    fn report_once(&mut self, instance: usize, error: Diagnostic) {
+    pub fn report_once(&mut self, instance: usize, error: Diagnostic) {
         if self.said.insert(error.primary.span) {
             let span = self.at(error.primary.span, instance);
             let mut error = error;
@@ -249,7 +250,8 @@ impl<'a, 'p> Instances<'a, 'p> {
         Some(values)
     }
 
-    fn block(
+    /// Adds a block, and all that it uses. `head` is the place of what it belongs to.
+    pub fn block(
         &mut self,
         instance: usize,
         block: &'a Block,
@@ -320,7 +322,7 @@ impl<'a, 'p> Instances<'a, 'p> {
     }
 
     /// Whether these can be indices; says so where they cannot.
-    fn is_index(&mut self, instance: usize, name: &Name, indices: &[i64]) -> bool {
+    pub fn is_index(&mut self, instance: usize, name: &Name, indices: &[i64]) -> bool {
         let Some(index) = indices.iter().find(|index| **index < 0) else { return true };
         let message = format!("`{}[{index}]` has an index below 0", name.text);
         self.report(instance, codes::INDEX, name.span, message, "indices begin with 0");
@@ -328,7 +330,7 @@ impl<'a, 'p> Instances<'a, 'p> {
     }
 
     /// Says so if a name is taken in its part.
-    fn free(&mut self, instance: usize, name: &Name, indices: &[i64], shared: &[Shared]) {
+    pub fn free(&mut self, instance: usize, name: &Name, indices: &[i64], shared: &[Shared]) {
         let taken = |message: &str, place: Span, help: &str| {
             let error = Diagnostic::new(codes::DUPLICATE_NAME, name.span, message);
             error.related(place, "first declared here").help(help)
@@ -383,164 +385,6 @@ impl<'a, 'p> Instances<'a, 'p> {
             }
         }
     }
-
-    fn instance(&mut self, parent: usize, used: &'a Use, numbers: &Numbers, depth: usize) {
-        let file = self.file(parent);
-        let Some(part) = self.catalogue.find(file, &used.part.text) else {
-            if self.catalogue.incomplete {
-                return;
-            }
-            let names = self.catalogue.names(file);
-            let message = format!("there is no part `{}`", used.part.text);
-            let help = match suggest::nearest(&used.part.text, names.iter().copied()) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None if names.is_empty() => "state it, `part Leg(..) { .. }`, or import its file".to_owned(),
-                None => format!("the parts known here are {}", names.join(", ")),
-            };
-            let error = Diagnostic::new(codes::PART_UNKNOWN, used.part.span, message).help(help);
-            self.report_once(parent, error);
-            return;
-        };
-        if self.contains_itself(parent, part, used) {
-            return;
-        }
-        self.turns += 1;
-        if self.turns > MOST_INSTANCES {
-            let message = format!("a mechanism has at most {MOST_INSTANCES} instances of parts");
-            let help = "parts that use others twice or more double with each level";
-            self.report(parent, codes::REPETITION, used.span, message, help);
-            self.full = true;
-            return;
-        }
-        let Some(indices) = self.indices(parent, &used.name, &used.indices, numbers) else { return };
-        if !self.is_index(parent, &used.name, &indices) {
-            return;
-        }
-        self.free(parent, &used.name, &indices, &[]);
-        let declared = self.catalogue.parts[part].part;
-        let place = self.places.within(used.span, self.list[parent].site);
-        let site = self.places.add_site(declared.name.text.clone(), place);
-        let text = joined(&self.list[parent].text, &used.name.text, &indices);
-        let shown = dotted(&self.list[parent].shown, &used.name.text, &indices);
-        let instance = self.list.len();
-        self.list.push(Instance {
-            part: Some(part),
-            parent,
-            used: Some(used),
-            site: Some(site),
-            text,
-            shown,
-            numbers: Numbers::new(),
-            outer: numbers.clone(),
-            members: BTreeMap::new(),
-        });
-        let member = Member::Instance(instance, used.name.span);
-        self.list[parent].members.entry((used.name.text.clone(), indices)).or_insert(member);
-        let counts = self.counts(parent, declared, used, numbers);
-        let complete = self.arguments(parent, part, used);
-        let (Some(counts), true) = (counts, complete) else { return };
-        self.list[instance].numbers.clone_from(&counts);
-        self.block(instance, &declared.block, counts, Some(declared.name.span), depth + 1);
-    }
-
-    /// Whether a part would contain itself; says so.
-    fn contains_itself(&mut self, parent: usize, part: usize, used: &Use) -> bool {
-        let mut next = parent;
-        while let Some(other) = self.list[next].part {
-            if other == part {
-                let message = format!("the part `{}` contains itself", used.part.text);
-                let error = Diagnostic::new(codes::PART_CYCLE, used.span, message);
-                let help = "a part is made of other parts; what is repeated is stated by `for`";
-                self.report_once(parent, error.help(help));
-                return true;
-            }
-            next = self.list[next].parent;
-        }
-        false
-    }
-
-    /// The counts that a use gives.
-    fn counts(&mut self, parent: usize, part: &Part, used: &Use, numbers: &Numbers) -> Option<Numbers> {
-        let (mut counts, mut complete) = (Numbers::new(), true);
-        for argument in &part.arguments {
-            let ArgumentKind::Count { default } = &argument.kind else { continue };
-            let actual = used.actuals.iter().find(|actual| actual.name.text == argument.name.text);
-            let value = match (actual, default) {
-                (Some(actual), _) => self.number(parent, &actual.tokens, numbers, actual.span()),
-                (None, Some(default)) => match evaluate(default, &counts, argument.name.span) {
-                    Ok(value) => Some(value),
-                    Err(error) => {
-                        self.report_once(parent, *error);
-                        None
-                    }
-                },
-                // it is missing, which is said elsewhere
-                (None, None) => None,
-            };
-            match value {
-                Some(value) => counts.push((argument.name.text.clone(), value)),
-                None => complete = false,
-            }
-        }
-        complete.then_some(counts)
-    }
-
-    /// Whether a use gives what its part needs and nothing else; says so where it does not.
-    fn arguments(&mut self, parent: usize, part: usize, used: &'a Use) -> bool {
-        let declared = self.catalogue.parts[part].part;
-        let template = self.template(&declared.block, Some(declared.name.span), Some(part));
-        let quantities: Vec<String> = own_quantities(&template).map(str::to_owned).collect();
-        let known = || {
-            declared
-                .arguments
-                .iter()
-                .map(|argument| argument.name.text.as_str())
-                .chain(quantities.iter().map(String::as_str))
-        };
-        let mut complete = true;
-        for (i, actual) in used.actuals.iter().enumerate() {
-            let name = &actual.name;
-            if let Some(first) = used.actuals[..i].iter().find(|first| first.name.text == name.text) {
-                let message = format!("the argument `{}` is given twice", name.text);
-                let error = Diagnostic::new(codes::ARGUMENT_UNKNOWN, name.span, message);
-                self.report_once(parent, error.related(first.name.span, "first here").help("remove one"));
-                complete = false;
-            } else if !known().any(|known| known == name.text) {
-                let message = format!("the part `{}` has no argument `{}`", declared.name.text, name.text);
-                let error = Diagnostic::new(codes::ARGUMENT_UNKNOWN, name.span, message)
-                    .related(declared.name.span, format!("`{}` is declared here", declared.name.text));
-                let all: Vec<String> = known().map(|name| format!("`{name}`")).collect();
-                let error = match suggest::nearest(&name.text, known()) {
-                    Some(near) => error.help(format!("did you mean `{near}`?")),
-                    None if all.is_empty() => error.help("it takes no arguments"),
-                    None => error.help(format!("its arguments and own quantities are {}", all.join(", "))),
-                };
-                self.report_once(parent, error);
-                complete = false;
-            }
-        }
-        let given = |name: &str| used.actuals.iter().any(|actual| actual.name.text == name);
-        let missing: Vec<_> = declared
-            .arguments
-            .iter()
-            .filter(|argument| argument.kind.is_required() && !given(&argument.name.text))
-            .collect();
-        if !missing.is_empty() {
-            let names: Vec<String> = missing
-                .iter()
-                .map(|argument| format!("`{}`, {}", argument.name.text, argument.kind.describe()))
-                .collect();
-            let message = format!("this use of `{}` lacks {}", declared.name.text, names.join("; "));
-            let mut error = Diagnostic::new(codes::ARGUMENT_MISSING, used.span, message);
-            for argument in missing.iter().take(5) {
-                error =
-                    error.related(argument.name.span, format!("`{}` is declared here", argument.name.text));
-            }
-            self.report_once(parent, error);
-            complete = false;
-        }
-        complete
-    }
 }
 
 /// The quantities of a part that a use may give values to.
@@ -563,7 +407,7 @@ pub fn names_of_arguments(part: &Part) -> impl Iterator<Item = &Name> {
 }
 
 /// A name of the expanded model: `front_left_knee`, `link_3_tip`.
-fn joined(before: &str, name: &str, indices: &[i64]) -> String {
+pub fn joined(before: &str, name: &str, indices: &[i64]) -> String {
     let mut text = if before.is_empty() { name.to_owned() } else { format!("{before}_{name}") };
     indices.iter().for_each(|index| text.push_str(&format!("_{index}")));
     text

@@ -1,7 +1,8 @@
-//! Says the mistakes of an expanded model of the texts that its author wrote: names as they are written there,
-//! the uses through which a part came into the model, and what all instances of a part have in common once.
+//! Says the mistakes of an expanded model of the texts that its author wrote: names as they are written
+//! there, the uses through which a part came into the model, and what all instances of a part have in common
+//! once.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::Expansion;
 use crate::diagnostics::{Code, Diagnostic, Label, Place as Change, codes};
@@ -61,10 +62,16 @@ impl Expansion {
             label.text = self.written(&label.text);
         }
         let place = self.places.find(diagnostic.primary.span).unwrap_or_default();
+        // instances have their places in common
+        let mut said = HashSet::new();
+        diagnostic.related.retain(|label| {
+            let place = self.places.find(label.span).unwrap_or_default();
+            said.insert((place.file, place.span, label.text.clone()))
+        });
         // what one use would need may be wrong for the others
         diagnostic.fixes.retain(|fix| {
             let (Change::Replace(span) | Change::IntoBraces(span)) = fix.place;
-            self.places.find(span).is_some_and(|place| place.site.is_none())
+            self.places.find(span).is_some_and(|place| place.site.is_none() && place.file == 0)
                 && self.shown.get(&fix.text).is_none_or(|shown| *shown == fix.text)
         });
         for (i, site) in self.places.sites(place).into_iter().take(MOST_USES).enumerate() {

@@ -1,5 +1,5 @@
-//! Parts: pieces of mechanisms that are used several times, in one file or in files that are imported. They are
-//! expanded here, to the tokens of a model without parts; no later stage knows of them.
+//! Parts: pieces of mechanisms that are used several times, in one file or in files that are imported. They
+//! are expanded here, to the tokens of a model without parts; no later stage knows of them.
 //!
 //! ```text
 //! reader     tokens of a file -> outline: imports, counts, parts, uses, repetitions, sections
@@ -7,6 +7,7 @@
 //! catalogue  the parts that each file sees
 //! template   sections -> words, each with what it is: a name that is declared, a reference, or neither (roles)
 //! instances  each use and each turn of a repetition, and the names that it declares
+//! uses       whether a use can be, and what it gives
 //! resolve    what a name of an instance means in the mechanism
 //! bind       what each instance is given
 //! assembly   the sections of the expanded model
@@ -31,6 +32,7 @@ mod resolve;
 mod roles;
 mod template;
 mod text;
+mod uses;
 
 use std::collections::HashMap;
 

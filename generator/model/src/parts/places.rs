@@ -1,5 +1,5 @@
-//! Where the tokens of an expanded model come from: a file, a place in it, and the chain of uses that put them
-//! there.
+//! Where the tokens of an expanded model come from: a file, a place in it, and the chain of uses that put
+//! them there.
 //!
 //! A span of the expanded model counts entries of one list. The tokens of each file that is read take
 //! consecutive entries, and so do the tokens of the expanded model; a span of several entries is the place

@@ -1,5 +1,5 @@
-//! Reads the outline of a file: imports, counts, parts, uses and repetitions, and the tokens of sections. What it
-//! cannot read in a mechanism it leaves to the parser of models.
+//! Reads the outline of a file: imports, counts, parts, uses and repetitions, and the tokens of sections.
+//! What it cannot read in a mechanism it leaves to the parser of models.
 
 use super::outline::*;
 use crate::diagnostics::{Diagnostic, codes};

@@ -1,5 +1,5 @@
-//! What the names in an instance of a part mean in the mechanism. A name means what the part declares, what was
-//! given to it, what it shares with the mechanism, or what is predefined, and nothing else.
+//! What the names in an instance of a part mean in the mechanism. A name means what the part declares, what
+//! was given to it, what it shares with the mechanism, or what is predefined, and nothing else.
 
 use std::collections::HashMap;
 

@@ -1,5 +1,5 @@
-//! The sections of a part as words, each with what it is: a name that is declared, a name that is referred to,
-//! or neither. The parser of models reads them once, however often the part is used.
+//! The sections of a part as words, each with what it is: a name that is declared, a name that is referred
+//! to, or neither. The parser of models reads them once, however often the part is used.
 
 use std::collections::HashMap;
 

@@ -1,0 +1,3 @@
+hodograph::mechanism!("part_dimension.mech");
+
+fn main() {}

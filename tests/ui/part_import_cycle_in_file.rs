@@ -1,0 +1,3 @@
+hodograph::mechanism!("part_import_cycle.mech");
+
+fn main() {}

@@ -1,0 +1,3 @@
+hodograph::mechanism!("part_import_missing.mech");
+
+fn main() {}
