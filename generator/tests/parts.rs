@@ -558,7 +558,7 @@ fn nested(random: &mut Random) -> String {
 fn random_nesting_ends_in_a_model_or_in_messages() {
     let mut random = Random(7);
     let (mut sound, mut instances) = (0, 0);
-    for _ in 0..400 {
+    for _ in 0..200 {
         let text = nested(&mut random);
         let source = source(&text);
         let checked = check(&source);
@@ -572,7 +572,7 @@ fn random_nesting_ends_in_a_model_or_in_messages() {
         }
         assert!(!said.contains("P0_"), "{said}");
     }
-    assert!(sound > 40 && instances > 200, "{sound} {instances}");
+    assert!(sound > 20 && instances > 100, "{sound} {instances}");
 }
 
 #[test]
@@ -587,7 +587,7 @@ fn mutated_parts_end_in_a_model_or_in_messages() {
     let words: Vec<&str> =
         model.split_inclusive([' ', '(', ')', '[', ']', ';', ',', ':', '{', '}', '.']).collect();
     let mut random = Random(11);
-    for _ in 0..600 {
+    for _ in 0..300 {
         let mut words = words.clone();
         for _ in 0..1 + random.below(3) {
             let (at, other) = (random.below(words.len()), random.below(words.len()));

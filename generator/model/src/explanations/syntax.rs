@@ -125,7 +125,7 @@ pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: TOO_DEEP,
         text: "Brackets, signs and exponents are nested at most 64 deep, and names refer to other names in \
-            chains of at most 1200. Give parts of an expression a name under `definitions`.",
+            chains of at most 600. Give parts of an expression a name under `definitions`.",
         wrong: Some(
             "points { G = O - \
             ((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((((l))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))))/2*B.y; \

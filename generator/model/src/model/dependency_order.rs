@@ -25,7 +25,7 @@ pub enum Item {
 
 /// Names may refer to names that refer to names .. to this depth: four for each link of the longest chain of
 /// links.
-const MAX_CHAIN: usize = 1200;
+const MAX_CHAIN: usize = 600;
 
 /// All items, each after those it refers to, and those that take part in a cycle.
 pub struct Order {

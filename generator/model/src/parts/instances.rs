@@ -105,17 +105,21 @@ pub struct Instances<'a, 'p> {
     said: HashSet<Span>,
     /// instances and turns of repetitions so far
     pub turns: usize,
+    /// how many words they write so far, and may write
+    length: usize,
+    most: usize,
     /// there are too many
     pub full: bool,
 }
 
 impl<'a, 'p> Instances<'a, 'p> {
-    /// All instances of a mechanism with these counts.
+    /// All instances of a mechanism with these counts, which write at most so many words.
     pub fn new(
         block: &'a Block,
         numbers: Numbers,
         catalogue: &'a Catalogue<'a>,
         places: &'p mut Places,
+        most: usize,
     ) -> Self {
         let mechanism = Instance {
             part: None,
@@ -140,6 +144,8 @@ impl<'a, 'p> Instances<'a, 'p> {
             templates: HashMap::new(),
             said: HashSet::new(),
             turns: 0,
+            length: 0,
+            most,
             full: false,
         };
         instances.block(0, block, numbers, None, 0);
@@ -268,6 +274,14 @@ impl<'a, 'p> Instances<'a, 'p> {
         }
         let part = self.list[instance].part;
         let template = self.template(block, head, part);
+        self.length += template.stretches.iter().map(|stretch| stretch.words.len()).sum::<usize>();
+        if self.length > self.most {
+            let span = head.unwrap_or_default();
+            let message = format!("the model has more than {} words and signs with this", self.most);
+            self.report(instance, codes::REPETITION, span, message, "");
+            self.full = true;
+            return;
+        }
         self.declare(instance, &template, &numbers);
         let is_mechanism = instance == 0 && head.is_none();
         self.runs.push(Run { instance, template, numbers: numbers.clone(), is_mechanism });

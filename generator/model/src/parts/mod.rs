@@ -87,7 +87,7 @@ pub fn expand(tokens: &[Token], files: &dyn Files, most: usize) -> Option<Expans
     let catalogue = Catalogue::new(&read, &mut mistakes);
     let numbers = counts(&read[0].outline.counts, &mut mistakes);
     let block = &read[0].outline.block;
-    let mut instances = Instances::new(block, numbers, &catalogue, &mut places);
+    let mut instances = Instances::new(block, numbers, &catalogue, &mut places, most);
     syntax.extend(instances.syntax());
     mistakes.append(&mut instances.mistakes);
     let mut model = Model::default();

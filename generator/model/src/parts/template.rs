@@ -1,6 +1,7 @@
 //! The sections of a part as words, each with what it is: a name that is declared, a name that is referred
 //! to, or neither. The parser of models reads them once, however often the part is used.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use super::catalogue::{Catalogue, Families};
@@ -254,7 +255,7 @@ fn path(
     families: &Families,
     catalogue: &Catalogue<'_>,
 ) -> (Option<Path>, usize) {
-    let mut families = families.clone();
+    let mut families = Cow::Borrowed(families);
     let (mut segments, mut at) = (Vec::new(), start);
     while let Some(token) = tokens.get(at).filter(|token| token.kind == TokenKind::Name) {
         at += 1;
@@ -271,7 +272,7 @@ fn path(
         if !goes_on {
             break;
         }
-        families = catalogue.families_of(parts);
+        families = Cow::Owned(catalogue.families_of(parts));
         at += 1;
     }
     let plain = segments.len() == 1 && segments[0].indices.is_empty();

@@ -5,7 +5,7 @@
 //! its factor); constraints are linear in the speeds and kinematical equations linear in rates and speeds;
 //! normals and gaps are free of speeds; nothing that is differentiated depends on inputs. `kinematics` holds
 //! the stated equations and, last, `d(q..)/dt = u..` for the coordinates of whose rates nothing else speaks;
-//! what declared velocities imply is not repeated there. Names refer to names in chains of at most 1200,
+//! what declared velocities imply is not repeated there. Names refer to names in chains of at most 600,
 //! and expressions are nested a few hundred deep at most, so recursion over them is safe.
 
 mod expression;
