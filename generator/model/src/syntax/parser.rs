@@ -122,6 +122,8 @@ fn readable(token: &Token, diagnostics: &mut Vec<Diagnostic>) -> bool {
 /// brackets around each token.
 fn balanced(tokens: &[&Token]) -> Result<Vec<u32>, Box<Diagnostic>> {
     let mut open: Vec<(char, Span)> = Vec::new();
+    // how many of them are those of a part or a repetition, in which sections stand
+    let mut blocks = 0;
     let mut nesting = Vec::with_capacity(tokens.len());
     // the last place at which, judging by the names of sections, a brace should already have been closed
     let mut suspect = None;
@@ -129,8 +131,11 @@ fn balanced(tokens: &[&Token]) -> Result<Vec<u32>, Box<Diagnostic>> {
         let closes = usize::from(matches!(token.kind, TokenKind::Close(_)));
         nesting.push(open.len().saturating_sub(closes) as u32);
         match token.kind {
-            TokenKind::Open(c) => open.push((c, token.span)),
-            TokenKind::Name if suspect.is_none() && !open.is_empty() => {
+            TokenKind::Open(c) => {
+                blocks += usize::from(c == '{' && blocks == open.len() && opens_block(&tokens[..i]));
+                open.push((c, token.span));
+            }
+            TokenKind::Name if suspect.is_none() && open.len() > blocks => {
                 let opens = tokens.get(i + 1).is_some_and(|next| next.kind == TokenKind::Open('{'));
                 if opens && Section::of_word(&token.text).is_some() {
                     suspect = open.last().map(|&(c, span)| (c, span, token.span));
@@ -142,7 +147,9 @@ fn balanced(tokens: &[&Token]) -> Result<Vec<u32>, Box<Diagnostic>> {
                     ']' => '[',
                     _ => '{',
                 };
-                match open.pop() {
+                let closed = open.pop();
+                blocks = blocks.min(open.len());
+                match closed {
                     Some((o, _)) if o == partner => {}
                     Some((o, span)) => {
                         let message = format!("`{c}` does not close `{o}`");
@@ -174,6 +181,16 @@ fn balanced(tokens: &[&Token]) -> Result<Vec<u32>, Box<Diagnostic>> {
         }
         (_, None) => Ok(nesting),
     }
+}
+
+/// Whether the statement that these tokens end with begins a part or a repetition.
+fn opens_block(tokens: &[&Token]) -> bool {
+    let ends = |token: &&Token| {
+        token.is_sign(';') || matches!(token.kind, TokenKind::Open('{') | TokenKind::Close('}'))
+    };
+    let start = tokens.iter().rposition(ends).map_or(0, |end| end + 1);
+    let first = tokens[start..].iter().find(|token| token.kind != TokenKind::OuterDoc);
+    first.is_some_and(|word| word.is_word("part") || word.is_word("for"))
 }
 
 fn closing(open: char) -> char {
