@@ -80,6 +80,10 @@ pub unsafe fn evaluate<F: Function>(
             }
         }
     }
+    // A function may not read all of its inputs: a state that is not finite has no answer nevertheless.
+    if inputs.iter().any(|number| !number.is_finite()) {
+        return FAILED;
+    }
     // The functions do not panic; if one did, nothing would leave this one but its error code.
     let (given, wanted) = (&*inputs, AssertUnwindSafe(&mut *outputs));
     let answered = catch_unwind(move || {
@@ -164,6 +168,32 @@ mod tests {
     fn errors_panics_and_numbers_that_are_none_give_the_error_code_and_no_result() {
         for b in [-9.0, 1000.0, f64::NAN, f64::INFINITY] {
             assert_eq!(called(Some(&[1.0, 2.0]), Some(&[b]), true), (FAILED, [7.0, 7.0]));
+        }
+    }
+
+    struct Unread;
+
+    impl Function for Unread {
+        fn layout() -> Layout {
+            Layout::of_vectors(&[("a", 1)], &[("one", 1)])
+        }
+
+        fn evaluate(_: &[f64], outputs: &mut [f64]) -> Result<(), StateError> {
+            outputs[0] = 1.0;
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn inputs_that_are_not_read_must_be_finite_too() {
+        for (a, expected) in [(2.0, (0, 1.0)), (f64::NAN, (FAILED, 7.0)), (f64::INFINITY, (FAILED, 7.0))] {
+            let (mut lent, mut one) = ([0.0; 2], 7.0);
+            let (arg, res) = ([&raw const a], [&raw mut one]);
+            // SAFETY: a pointer each, to one number, and two numbers of work.
+            let code = unsafe {
+                evaluate::<Unread>(&Unread::layout(), arg.as_ptr(), res.as_ptr(), lent.as_mut_ptr())
+            };
+            assert_eq!((code, one), expected);
         }
     }
 

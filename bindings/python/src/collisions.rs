@@ -142,9 +142,9 @@ pub fn collide<'py>(
     raises: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let surfaces = Surfaces::new(py, mu, e, law)?;
-    let timeless = states.without_time();
-    if let Some(&row) = timeless.first().filter(|_| raises) {
-        return Err(states.error(py, mechanism, &StateError::NotFinite, row, timeless.len()));
+    let wrong = states.not_finite();
+    if let Some(&row) = wrong.first().filter(|_| raises) {
+        return Err(states.error(py, mechanism, &StateError::NotFinite, row, wrong.len()));
     }
     let collisions = mechanism
         .collisions(contact)
@@ -171,6 +171,8 @@ pub fn collide<'py>(
         let mut answers = Answers::default();
         let mut first: Option<(usize, Struck)> = None;
         let mut answer = |row: usize, struck: Result<(CollisionOutcome<f64>, &[f64]), Struck>| match struck {
+            // The model may not read what is not finite; such a state has no collision nevertheless.
+            Ok(_) if wrong.binary_search(&row).is_ok() => answers.none(width, "not_finite"),
             Ok((outcome, speeds)) => {
                 write(&mut answers.numbers, &outcome, speeds);
                 answers.paths.push(number_of_path(outcome.impact.path));

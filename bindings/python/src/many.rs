@@ -3,7 +3,7 @@
 use std::sync::PoisonError;
 use std::time::Duration;
 
-use hodograph::{Kind, Mechanism as _, State};
+use hodograph::{Kind, Mechanism as _, State, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::motion as defaults;
 use hodograph_simulation::{
@@ -17,7 +17,7 @@ use crate::arguments::{Rows, array, column, common};
 use crate::errors;
 use crate::laws::Raised;
 use crate::machines::Machines;
-use crate::motion::{Choices, given, own};
+use crate::motion::{Choices, given, own, warn_of_no_gap};
 use crate::states::States;
 
 /// Numbers that may differ from row to row: mu, e, mu_static, mu_impact.
@@ -75,10 +75,21 @@ pub fn simulate<'py>(
     let row_of = |(numbers, width, many): &(Vec<f64>, usize, usize), row: usize| {
         numbers.get(row * many * width..(row * many + 1) * width).unwrap_or(&[]).to_vec()
     };
+    let never_closed: Vec<usize> = (0..mechanism.count(Kind::Contact))
+        .filter(|&contact| {
+            mechanism.model().contacts.get(contact).is_some_and(|contact| contact.gap.is_none())
+        })
+        .collect();
+    warn_of_no_gap(py, mechanism, &never_closed)?;
+    let not_finite = states.not_finite();
     let case = |row: usize| -> Result<Case<Box<InterpretedMechanism>>, SimulationError> {
         let start = time.as_ref().map_or(0.0, |time| row_of(time, row)[0]);
         let wrong =
             |message: String| SimulationError { time: start, contact: None, reason: Reason::Option(message) };
+        if not_finite.binary_search(&row).is_ok() {
+            let reason = Reason::State(StateError::NotFinite);
+            return Err(SimulationError { time: start, contact: None, reason });
+        }
         let number = |name: &str| {
             let found = numbers.iter().find(|(other, ..)| *other == name);
             found.and_then(|(_, numbers, many)| numbers.get(row * many).copied())

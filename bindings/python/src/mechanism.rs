@@ -144,7 +144,6 @@ impl Mechanism {
             }
             (rows, machines) => rows.or(machines.as_ref().map(|machines| machines.rows)),
         };
-        let q = without_times(q, time.as_ref(), rows);
         Ok(States { q, u, inputs, time, accelerations, tangent, rows })
     }
 }
@@ -155,18 +154,6 @@ fn blank(numbers: &mut [f64], rows: usize, which: &[usize]) {
     for &row in which {
         numbers[row * width..(row + 1) * width].fill(f64::NAN);
     }
-}
-
-/// The coordinates, with numbers that are none in the rows whose time is none: a state without a time has no
-/// answer, also where the model does not use the time.
-fn without_times<'py>(q: Rows<'py>, time: Option<&Rows<'py>>, rows: Option<usize>) -> Rows<'py> {
-    let Some(time) = time.filter(|time| time.slice().iter().any(|time| !time.is_finite())) else { return q };
-    let of = |row: usize| {
-        let known = time.row(row).iter().all(|time| time.is_finite());
-        q.row(row).iter().map(move |&number| if known { number } else { f64::NAN })
-    };
-    let numbers = (0..rows.unwrap_or(1)).flat_map(of).collect();
-    Rows::of(numbers, rows, q.width)
 }
 
 #[pymethods]
@@ -271,9 +258,9 @@ impl Mechanism {
         let routine = self.routine(py, quantity)?;
         let states = self.states(py, [q, u, inputs, time, accelerations, tangent])?;
         let raises = raises(py, errors)?;
-        let timeless = states.without_time();
-        if let Some(&row) = timeless.first().filter(|_| raises) {
-            return Err(states.error(py, &self.inner, &StateError::NotFinite, row, timeless.len()));
+        let wrong = states.not_finite();
+        if let Some(&row) = wrong.first().filter(|_| raises) {
+            return Err(states.error(py, &self.inner, &StateError::NotFinite, row, wrong.len()));
         }
         let Some(rows) = states.rows else {
             let none: &[f64] = &[];
@@ -289,7 +276,7 @@ impl Mechanism {
                 tangent: &tangent,
             };
             let mut numbers = vec![f64::NAN; routine.one.len()];
-            if !timeless.is_empty() {
+            if !wrong.is_empty() {
                 return array(py, None, &routine.shape, numbers);
             }
             let outcome = routine.one.evaluate(&arguments, |index, number| numbers[index] = number);
@@ -303,7 +290,7 @@ impl Mechanism {
         let table = states.table();
         if let Some(machines) = &self.machines {
             let (mut numbers, refused) = py.detach(|| machines.evaluate(&self.inner, &routine.one, &table));
-            blank(&mut numbers, rows, &timeless);
+            blank(&mut numbers, rows, &wrong);
             return match refused.first() {
                 Some((row, Refused::Parameters(error))) if raises => {
                     Err(parameter_error(py, error, (*row, rows, refused.len())))
@@ -321,7 +308,7 @@ impl Mechanism {
             let count = failures.iter().filter(|failure| failure.is_some()).count();
             return Err(states.error(py, &self.inner, &self.inner.state_error(*failed), row, count));
         }
-        blank(&mut numbers, rows, &timeless);
+        blank(&mut numbers, rows, &wrong);
         array(py, Some(rows), &routine.shape, numbers)
     }
 

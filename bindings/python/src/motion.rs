@@ -1,6 +1,8 @@
 //! Motion with impacts and contact that lasts.
 
+use std::ffi::CStr;
 use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
 
 use hodograph::{Kind, Mechanism as _, State};
 use hodograph_interpreter::InterpretedMechanism;
@@ -9,6 +11,7 @@ use hodograph_simulation::{
     ContactLaw, Drive, Event, EventKind, InputFunction, Options, Progress, Simulation, SimulationError,
 };
 use numpy::PyArray1;
+use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -17,6 +20,9 @@ use crate::errors;
 use crate::laws::{self, GivenParts, Raised, keep};
 use crate::states::States;
 
+/// How often Python is asked for signals: after this time, at times this part of the motion apart, and at events.
+const LOOK: Duration = Duration::from_millis(50);
+const LOOKS: f64 = 1000.0;
 /// A motion has at most this many states.
 const MOST: f64 = 1e7;
 
@@ -49,11 +55,20 @@ pub struct Choices {
     period: Option<f64>,
 }
 
+/// A motion as far as it was followed, and why no further.
+#[derive(Default)]
 struct Found {
+    ended: Option<Ended>,
     times: Vec<f64>,
     coordinates: Vec<f64>,
     speeds: Vec<f64>,
     events: Vec<Event>,
+}
+
+enum Ended {
+    Error(SimulationError),
+    /// Python was told to stop, as by Ctrl-C
+    Interrupted(PyErr),
 }
 
 /// A function of Python as a function that writes inputs; where it raises, they are not numbers, which ends
@@ -90,6 +105,17 @@ pub fn given(py: Python<'_>, (mu, e, law): &Given) -> PyResult<GivenSurface> {
     given.check().map_err(|error| errors::argument(py, "surface", error.kind(), &error.to_string()))
 }
 
+/// Warns of contacts that a motion never sees close, as the command line tool does.
+pub fn warn_of_no_gap(py: Python<'_>, mechanism: &InterpretedMechanism, contacts: &[usize]) -> PyResult<()> {
+    for &contact in contacts {
+        let name = mechanism.component(Kind::Contact, contact).map_or("", |component| component.name);
+        let message = format!("contact {name} has no gap in the model: it is never seen to close\0");
+        let message = CStr::from_bytes_until_nul(message.as_bytes()).unwrap_or_default();
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), message, 2)?;
+    }
+    Ok(())
+}
+
 type Own = (Vec<(usize, GivenSurface)>, Vec<(usize, ContactLaw)>);
 
 /// The surfaces of contacts that have one of their own, and the laws of all contacts.
@@ -111,31 +137,65 @@ pub fn own(
     Ok((surfaces, laws))
 }
 
+/// Follows a motion to its end, or to an error, or until Python is told to stop.
 fn follow(
     mechanism: &InterpretedMechanism,
     state: &State<'_>,
     (until, step): (f64, f64),
     options: Options,
-) -> Result<Found, SimulationError> {
-    let mut simulation = Simulation::new(mechanism, state, options)?;
-    let mut found = Found { times: vec![], coordinates: vec![], speeds: vec![], events: vec![] };
+) -> Found {
+    let mut found = Found::default();
+    let mut simulation = match Simulation::new(mechanism, state, options) {
+        Ok(simulation) => simulation,
+        Err(error) => return Found { ended: Some(Ended::Error(error)), ..found },
+    };
+    let mut looked = Instant::now();
     let count = ((until - state.time) / step).ceil() as usize;
+    let piece = (until - state.time) / LOOKS;
     for index in 0..=count {
         let time = (state.time + step * index as f64).min(until);
-        let mut ended = false;
-        while !ended && let Progress::Event(event) = simulation.advance(time)? {
-            // The motion may have an end of its own.
-            ended = matches!(event.kind, EventKind::Singular);
-            found.events.push(event);
+        let mut reached = false;
+        while !reached && found.ended.is_none() {
+            // To look at a time in between changes nothing of the motion.
+            let next = if piece > 0.0 { (simulation.time() + piece).min(time) } else { time };
+            match simulation.advance(next) {
+                Ok(Progress::Event(event)) => {
+                    // The motion may have an end of its own.
+                    let ends = matches!(event.kind, EventKind::Singular);
+                    found.events.push(event);
+                    if ends {
+                        found.state(&simulation);
+                        return found;
+                    }
+                }
+                Ok(Progress::Reached) => reached = next >= time,
+                Err(error) => found.ended = Some(Ended::Error(error)),
+            }
+            if looked.elapsed() > LOOK {
+                looked = Instant::now();
+                if let Err(told) = Python::attach(|py| py.check_signals()) {
+                    found.ended = Some(Ended::Interrupted(told));
+                }
+            }
         }
-        found.times.push(simulation.time());
-        found.coordinates.extend_from_slice(simulation.coordinates());
-        found.speeds.extend_from_slice(simulation.speeds());
-        if ended {
+        if found.ended.is_some() {
+            // As far as it was followed: the end of the last step, or the time looked at.
+            if simulation.time() > found.times.last().copied().unwrap_or(f64::NEG_INFINITY) {
+                found.state(&simulation);
+            }
             break;
         }
+        found.state(&simulation);
     }
-    Ok(found)
+    found
+}
+
+impl Found {
+    fn state(&mut self, simulation: &Simulation<'_>) {
+        self.times.push(simulation.time());
+        self.coordinates.extend_from_slice(simulation.coordinates());
+        self.speeds.extend_from_slice(simulation.speeds());
+    }
 }
 
 /// Follows a motion.
@@ -168,7 +228,10 @@ pub fn simulate<'py>(
     let raised = Raised::default();
     let (own, laws) = own(py, mechanism, &choices, &raised)?;
     let surfaces = match defaults::surfaces(mechanism, &state, given(py, &choices.surface)?, &own) {
-        Ok(surfaces) => surfaces.of_contacts,
+        Ok(surfaces) => {
+            warn_of_no_gap(py, mechanism, &surfaces.without_gap)?;
+            surfaces.of_contacts
+        }
         Err(error) => return wrong("mu", &format!("{error}: give mu, e and law, or `surfaces`")),
     };
     let tolerance = choices.tolerance.unwrap_or(Options::default().relative_tolerance);
@@ -194,18 +257,40 @@ pub fn simulate<'py>(
             },
         };
     }
-    let followed = py.detach(|| follow(mechanism, &state, (until, step), options));
-    if let Some(error) = raised.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        return Err(error);
+    let mut found = py.detach(|| follow(mechanism, &state, (until, step), options));
+    let raised = raised.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let error = match (raised, found.ended.take()) {
+        (Some(error), _) | (None, Some(Ended::Interrupted(error))) => Some(error),
+        (None, Some(Ended::Error(error))) => {
+            let place = match &error.contact {
+                Some(contact) => format!("{contact}, time {} s", error.time),
+                None => format!("time {} s", error.time),
+            };
+            let (message, kind) = (error.to_string(), error.reason.kind());
+            Some(errors::error(py, "SimulationError", &message, kind, Some(place), Some(error.time)))
+        }
+        (None, None) => None,
+    };
+    let begun = !found.times.is_empty();
+    let told = tell(py, mechanism, found)?;
+    match error {
+        None => Ok(told),
+        Some(error) => {
+            if begun {
+                // What was made is not lost; an exception that takes no attribute goes without.
+                let _ = error.value(py).setattr("_motion", told);
+            }
+            Err(error)
+        }
     }
-    let found = followed.map_err(|error| {
-        let place = match &error.contact {
-            Some(contact) => format!("{contact}, time {} s", error.time),
-            None => format!("time {} s", error.time),
-        };
-        let (message, kind) = (error.to_string(), error.reason.kind());
-        errors::error(py, "SimulationError", &message, kind, Some(place), Some(error.time))
-    })?;
+}
+
+/// The motion by columns, and its events.
+fn tell<'py>(
+    py: Python<'py>,
+    mechanism: &InterpretedMechanism,
+    found: Found,
+) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let rows = Some(found.times.len());
     let [n, p] = [Kind::Coordinate, Kind::Speed].map(|kind| mechanism.count(kind));

@@ -36,11 +36,17 @@ impl States<'_> {
         }
     }
 
-    /// The rows without a time: the model may not use it, but a state without a time is none.
-    pub fn without_time(&self) -> Vec<usize> {
-        let Some(time) = &self.time else { return Vec::new() };
-        let known = |row: &usize| time.row(*row).iter().all(|time| time.is_finite());
-        (0..self.rows.unwrap_or(1)).filter(|row| !known(row)).collect()
+    /// The rows that hold what is no finite number: the model may not read it, but such a state is none.
+    pub fn not_finite(&self) -> Vec<usize> {
+        let given = [Some(&self.q), Some(&self.u), Some(&self.inputs)].into_iter().flatten();
+        let given = given.chain(&self.time).chain(&self.accelerations).chain(&self.tangent);
+        let finite = |numbers: &[f64]| numbers.iter().all(|number| number.is_finite());
+        let wrong: Vec<&Rows<'_>> = given.filter(|table| !finite(table.slice())).collect();
+        if wrong.is_empty() {
+            return Vec::new();
+        }
+        let holds = |row: &usize| wrong.iter().any(|table| !finite(table.row(*row)));
+        (0..self.rows.unwrap_or(1)).filter(holds).collect()
     }
 
     /// The exception of a row; `count` rows have none.
@@ -63,6 +69,11 @@ impl States<'_> {
             columns.iter().enumerate().map(move |(index, column)| (kind, name, index, column.get(row)))
         })
         .find(|(.., number)| !number.is_finite());
+        let other = [("accelerations", &self.accelerations), ("tangent", &self.tangent)];
+        let other = other.into_iter().find_map(|(name, given)| {
+            let number = given.as_ref()?.row(row).iter().find(|number| !number.is_finite())?;
+            Some((name, *number))
+        });
         let (mut message, mut number) = (failure.to_string(), None);
         let mut place = self.rows.map(|_| format!("row {row}"));
         let time = table.time.as_ref().map(|time| time.get(row)).filter(|time| !time.is_finite());
@@ -75,6 +86,10 @@ impl States<'_> {
             message = format!("`{argument}` holds {value} for {name}: expected a finite number");
             number = Some(value);
             place = Some(place.map_or(name.clone(), |row| format!("{row}, {name}")));
+        } else if let Some((name, value)) = other {
+            message = format!("`{name}` holds {value}: expected a finite number");
+            number = Some(value);
+            place = Some(place.map_or(name.to_owned(), |row| format!("{row}, {name}")));
         }
         if let Some(rows) = self.rows {
             message = format!(

@@ -1,6 +1,9 @@
 """What Python users see: names, shapes, tables, errors, pictures."""
 
+import os
+import signal
 import threading
+import time as clock
 from pathlib import Path
 
 import hodograph
@@ -505,3 +508,71 @@ def test_simulate_many():
         raise KeyboardInterrupt
     with pytest.raises(KeyboardInterrupt):
         m.simulate_many(60.0, u=np.tile(u, (40, 1)), mu=0.4, e=0.4, law="poisson", progress=stop)
+
+
+def test_states_that_are_not_finite_are_refused_also_where_they_are_not_read():
+    m = model("two_sleds")
+    n, p = len(m.coordinates), len(m.speeds)
+    calls = {
+        "accelerations": m.accelerations, "mass_matrix": m.mass_matrix, "kinetic_energy": m.kinetic_energy,
+        "position": lambda **state: m.position("P", **state) if "P" in m.points else m.position(m.points[1], **state),
+        "collide": lambda **state: m.collide("BcAc", mu=0.6, e=0.8, law="stronge", **state),
+    }
+    for name, call in calls.items():
+        for argument, width in (("q", n), ("u", p)):
+            for index in range(width):
+                for bad in (np.nan, np.inf):
+                    numbers = np.ones(width)
+                    numbers[index] = bad
+                    with pytest.raises(hodograph.HodographError, match=f"`{argument}` holds"):
+                        call(**{argument: numbers})
+                    rows = np.ones((3, width))
+                    rows[1, index] = bad
+                    with pytest.raises(hodograph.HodographError, match="row 1"):
+                        call(**{argument: rows})
+        rows = np.tile([q.value for q in m.coordinates], (3, 1))
+        rows[1, -1] = np.nan
+        found = call(q=rows, errors="nan")
+        found = found.impulse if name == "collide" else found
+        assert np.isnan(found[1]).all() and np.isfinite(found[[0, 2]]).all(), name
+    with pytest.raises(hodograph.StateError, match="`accelerations` holds"):
+        m.inverse_dynamics(np.full(p, np.nan))
+
+
+def test_motion_up_to_an_error_or_an_interrupt_is_kept():
+    class Wrong(Exception):
+        pass
+    arm = model("puma_560")
+    rest = dict(mu=0.0, e=0.0, law="poisson")
+    def stops(time, q, u):
+        if time > 0.05:
+            raise Wrong("late")
+        return np.zeros(6)
+    with pytest.raises(Wrong, match="late") as caught:
+        arm.simulate(0.1, 0.01, **rest, control=stops, period=0.01)
+    assert 0.04 <= caught.value.motion.time[-1] <= 0.06
+    whole = arm.simulate(0.04, 0.01, **rest, control=lambda *_: np.zeros(6), period=0.01)
+    np.testing.assert_array_equal(caught.value.motion.q[:5], whole.q)
+    # one that never began has none
+    with pytest.raises(hodograph.SimulationError) as caught:
+        model("planar_double_pendulum").simulate(1.0, 0.1, q=np.full(2, np.nan), mu=0.1, e=0.5, law="newton")
+    assert caught.value.motion is None
+
+
+def test_control_c_ends_a_motion():
+    m = model("planar_double_pendulum")
+    timer = threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT))
+    begin = clock.monotonic()
+    timer.start()
+    with pytest.raises(KeyboardInterrupt) as caught:
+        # hours, if it were followed to its end
+        m.simulate(1e6, 1e5, mu=0.3, e=0.99, law="stronge", tolerance=1e-12)
+    assert clock.monotonic() - begin < 30.0
+    assert caught.value.motion.time[0] == 0.0 and len(caught.value.motion.time) >= 1
+
+
+def test_contacts_without_gap_are_told():
+    with pytest.warns(UserWarning, match="contact BcAc has no gap in the model: it is never seen to close"):
+        model("two_sleds").simulate(0.01, 0.01)
+    with pytest.warns(UserWarning, match="never seen to close"):
+        model("two_sleds").simulate_many(0.01)

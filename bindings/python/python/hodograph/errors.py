@@ -47,4 +47,6 @@ class ImpactError(HodographError, ArithmeticError):
 
 
 class SimulationError(HodographError, ArithmeticError):
-    """A motion cannot be followed; ``number`` is the time, s."""
+    """A motion cannot be followed; ``number`` is the time, s. ``motion``: the :class:`hodograph.Simulation` up to there, None where it never began."""
+
+    motion = None

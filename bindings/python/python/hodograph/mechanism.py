@@ -286,7 +286,8 @@ class Mechanism(_native.Mechanism):
         the speed of slip; ``restitution``: e by the speed of approach, as 'threshold(SPEED)', 'power(SPEED, EXPONENT)', 'loss(SPEED, EXPONENT)', pairs
         (speed, e), or a function; also in ``surfaces``. What is left out is that of the model.
         ``control``: a function of time, q (n,) and u (p,) that gives the inputs (w,): with ``period`` (s) at these times and held in between, otherwise
-        continuously (it must be smooth then). What it raises ends the motion. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
+        continuously (it must be smooth then). What it raises ends the motion, as Ctrl-C does; an exception that ends a motion under way has the attribute
+        ``motion``, the :class:`Simulation` up to there. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
         """
         number = lambda value, name: None if value is None else float(_number(value, name))
         if period is not None and control is None:
@@ -295,9 +296,14 @@ class Mechanism(_native.Mechanism):
             **self._surfaces(surfaces, mu=mu, e=e, law=law, mu_static=mu_static, mu_impact=mu_impact, sliding=sliding, restitution=restitution),
             "tolerance": number(tolerance, "tolerance"), "max_step": number(max_step, "max_step"), "control": control, "period": number(period, "period"),
         }  # fmt: skip
-        found = self._simulate((q, u, inputs, time), float(_number(until, "until")), number(step, "step"), choices)
         names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
-        return Simulation(found, *names)
+        try:
+            return Simulation(self._simulate((q, u, inputs, time), float(_number(until, "until")), number(step, "step"), choices), *names)
+        except BaseException as error:
+            made = error.__dict__.pop("_motion", None)
+            if made is not None:
+                error.motion = Simulation(made, *names)
+            raise
 
     def _surfaces(self, own, **all):
         """What is given of the surfaces of all contacts, and of those that have one of their own."""
