@@ -19,6 +19,7 @@ mod inclines;
 mod many;
 mod mechanisms;
 mod one_contact;
+mod one_pass;
 mod painleve;
 mod settling;
 mod several;

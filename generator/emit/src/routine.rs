@@ -81,7 +81,7 @@ impl Emitter<'_> {
     }
 
     /// The values that a method computes: what depends on parameters alone is only fetched.
-    fn needed(&self, results: &[Value], guards: &[&Guard]) -> BTreeSet<Value> {
+    pub fn needed(&self, results: &[Value], guards: &[&Guard]) -> BTreeSet<Value> {
         let mut needed = BTreeSet::new();
         let mut stack: Vec<Value> = results.to_vec();
         for guard in guards.iter().filter(|guard| self.guard_stage(guard) > Stage::Parameter) {

@@ -1,6 +1,7 @@
 //! Emits the implementation of the traits `Mechanism` and `Contacts`: it converts slices to the arguments of
 //! the type's own methods, and their results to slices.
 
+mod closed_contacts;
 mod contacts;
 mod description;
 mod geometry;
@@ -17,10 +18,19 @@ use hodograph_program::program::Quantity;
 impl Emitter<'_> {
     /// Both implementations, with the names and units that they tell.
     pub fn traits(&self) -> TokenStream {
+        let krate = self.krate;
         let description = self.description();
         let mechanism = self.mechanism_trait();
-        let contacts = self.contacts_trait();
-        quote! { #description #mechanism #contacts }
+        let (in_one_pass, routines) = self.closed_in_one_pass().unzip();
+        let contacts = self.contacts_trait(in_one_pass);
+        let name = &self.name;
+        let routines = routines.map(|routines| {
+            quote! {
+                /// Parts of `Contacts::closed_contacts`.
+                impl<T: #krate::Scalar> #name<T> { #routines }
+            }
+        });
+        quote! { #description #mechanism #contacts #routines }
     }
 
     fn mechanism_trait(&self) -> TokenStream {

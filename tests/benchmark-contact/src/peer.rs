@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::{Value, json};
 
-use crate::Failure;
+use hodograph_benchmark_contact::Failure;
 
 /// The program that others are compared with.
 const MUJOCO: &str = "mujoco==4.0.0";

@@ -34,7 +34,7 @@ impl Emitter<'_> {
     }
 
     /// The implementation; without contacts there is none of any number.
-    pub(super) fn contacts_trait(&self) -> TokenStream {
+    pub(super) fn contacts_trait(&self, in_one_pass: Option<TokenStream>) -> TokenStream {
         let (krate, name) = (self.krate, &self.name);
         let vector = quote!(#krate::nalgebra::Vector3<T>);
         let state =
@@ -152,6 +152,7 @@ impl Emitter<'_> {
                 ) -> #outcome {
                     #force
                 }
+                #in_one_pass
                 #laws
             }
         }
@@ -197,7 +198,7 @@ impl Emitter<'_> {
     }
 
     /// An arm for every contact.
-    fn by_contact(&self, body: impl Fn(usize) -> TokenStream) -> TokenStream {
+    pub(super) fn by_contact(&self, body: impl Fn(usize) -> TokenStream) -> TokenStream {
         let arms = (0..self.mechanism.contacts.len()).map(|contact| (contact, body(contact)));
         self.by_number("contact", "Contact", arms.collect())
     }
