@@ -10,5 +10,6 @@ mod sections;
 pub mod token;
 pub mod tree;
 pub mod units;
+pub mod visit;
 
 pub use parser::{MAX_DEPTH, parse};

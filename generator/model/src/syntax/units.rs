@@ -1,7 +1,7 @@
 //! Units: dimension and SI factor of expressions such as `kg*m^2` or `mm`.
 
 use super::tree::{Expr, ExprKind};
-use crate::diagnostics::{Diagnostic, codes};
+use crate::diagnostics::{Diagnostic, Place, codes};
 use crate::dimension::{Dimension, Exponent};
 use crate::number::Number;
 use crate::unicode;
@@ -81,7 +81,8 @@ const PREFIXES: &[(&str, i32)] = &[
     ("T", 12),
 ];
 
-fn symbol(name: &str) -> Option<Unit> {
+/// The unit of a symbol, perhaps with a prefix.
+pub fn of_symbol(name: &str) -> Option<Unit> {
     let unit = |&(text, [m, kg, s], [n, d], pi_power, _): &Symbol, exponent: i32| Unit {
         dimension: Dimension::of(m, kg, s),
         number: Number(Number::ratio(n, d).0 * Number::integer(10).0.pow(exponent)),
@@ -105,7 +106,7 @@ pub fn symbols() -> impl Iterator<Item = (&'static str, Dimension)> {
 
 /// Whether it is the symbol of a unit, perhaps with a prefix.
 pub fn is_symbol(name: &str) -> bool {
-    symbol(name).is_some()
+    of_symbol(name).is_some()
 }
 
 /// Reads a unit.
@@ -124,9 +125,9 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
             pi_power: 0,
             text: "1".to_owned(),
         }),
-        ExprKind::Name(name) => symbol(name).ok_or_else(|| Some(Box::new(unknown(name, expr)))),
+        ExprKind::Name(name) => of_symbol(name).ok_or_else(|| Some(Box::new(unknown(name, expr)))),
         ExprKind::Power(base, exponent) => {
-            let mut unit = read(base)?;
+            let mut unit = part(base)?;
             let (negative, exponent) = match &exponent.kind {
                 ExprKind::Neg(inner) => (true, &**inner),
                 _ => (false, &**exponent),
@@ -147,7 +148,7 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
         ExprKind::Product(factors) if factors.len() <= 12 => {
             let mut product: Option<Unit> = None;
             for (divides, factor) in factors {
-                let unit = read(factor)?;
+                let unit = part(factor)?;
                 let compound = matches!(factor.kind, ExprKind::Product(_));
                 let text = if compound { format!("({})", unit.text) } else { unit.text.clone() };
                 product = Some(match product {
@@ -173,6 +174,16 @@ pub fn read(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
     }
 }
 
+/// Reads a part of a unit. What is to be written for it there may need parentheses, and is not offered.
+fn part(expr: &Expr) -> Result<Unit, Option<Box<Diagnostic>>> {
+    read(expr).map_err(|error| {
+        error.map(|mut error| {
+            error.fixes.retain(|fix| !fix.text.contains(['*', '/', '^']));
+            error
+        })
+    })
+}
+
 fn unknown(name: &str, expr: &Expr) -> Diagnostic {
     let error = Diagnostic::new(codes::UNKNOWN_UNIT, expr.span, format!("there is no unit `{name}`"));
     // the two letters mu: the sign of micro, and the Greek letter
@@ -184,11 +195,12 @@ fn unknown(name: &str, expr: &Expr) -> Diagnostic {
         return error.help(found.advice());
     }
     if let Some(right) = vocabulary::unit(name) {
-        return error.help(format!("write `{right}`"));
+        return error.fix(Place::Replace(expr.span), right).help(format!("write `{right}`"));
     }
     let digits = name.trim_start_matches(|c: char| !c.is_ascii_digit());
     if let Some(base) = name.strip_suffix(digits).filter(|base| !digits.is_empty() && is_symbol(base)) {
-        return error.help(format!("write `{base}^{digits}`"));
+        let right = format!("{base}^{digits}");
+        return error.help(format!("write `{right}`")).fix(Place::Replace(expr.span), right);
     }
     if let Some(advice) = vocabulary::unit_advice(name) {
         return error.help(advice);

@@ -1,0 +1,32 @@
+//! What an editor asks of a model, as functions of its text: no files, no threads, no protocol. The language
+//! server and a page in a browser use the same functions; both say in their own way what these answer.
+//!
+//! ```
+//! use hodograph_language::Document;
+//!
+//! let model = "mechanism A;\nparameters { m: kg = 2 }\nspeeds { u: m/s }\n";
+//! let document = Document::new(model);
+//! let help = document.hover(model.find("m: kg").unwrap() as u32).unwrap();
+//! assert!(help.text.contains("a parameter"));
+//! assert_eq!(document.findings()[0].code, "E014");
+//! ```
+//!
+//! Places are byte offsets of the text; [`text`] converts them to lines and to the units of an editor.
+
+pub mod colours;
+pub mod completion;
+mod context;
+pub mod document;
+mod expected;
+pub mod findings;
+pub mod fixes;
+pub mod hints;
+pub mod hover;
+pub mod layout;
+pub mod navigate;
+pub mod outline;
+mod statements;
+pub mod text;
+
+pub use document::Document;
+pub use hodograph_model::span::Span;
