@@ -18,6 +18,7 @@ mod import;
 mod inline;
 mod interrupt;
 mod json;
+mod lsp;
 mod mcap_file;
 mod model;
 mod output;
@@ -30,7 +31,8 @@ mod table;
 
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
-    export as export_library, fmt, import as import_urdf, new, plot as draw, simulate, solve,
+    export as export_library, fmt, import as import_urdf, lsp as language_server, new, plot as draw,
+    simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -49,6 +51,7 @@ enum Command {
     New(new::Arguments),
     Check(check::Arguments),
     Fmt(fmt::Arguments),
+    Lsp(language_server::Arguments),
     Simulate(Box<simulate::Arguments>),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
@@ -82,6 +85,7 @@ fn main() -> ExitCode {
         Command::Collide(arguments) => collide::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::Lsp(arguments) => language_server::run(&arguments),
         Command::Derive(arguments) => derive::run(&arguments),
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

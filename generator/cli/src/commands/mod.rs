@@ -12,6 +12,7 @@ pub mod explain;
 pub mod export;
 pub mod fmt;
 pub mod import;
+pub mod lsp;
 pub mod new;
 pub mod plot;
 pub mod simulate;

@@ -1,0 +1,23 @@
+//! `hodograph lsp`: the language server.
+
+use crate::lsp;
+use crate::stop::Outcome;
+
+/// Serve an editor: the Language Server Protocol on standard input and output
+///
+/// Editors start it. docs/editors.md says how to set them up.
+#[derive(Clone, Debug, clap::Args)]
+pub struct Arguments {
+    /// said by editors; there is no other way
+    #[arg(long, hide = true)]
+    stdio: bool,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// As [`lsp::serve`].
+pub fn run(_: &Arguments) -> Outcome {
+    lsp::serve()
+}
