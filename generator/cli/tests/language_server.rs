@@ -95,7 +95,7 @@ fn all_that_is_offered_is_answered() {
     );
     let colours = client.request("textDocument/semanticTokens/full", document.clone());
     let data = colours["result"]["data"].as_array().unwrap();
-    assert!(data.len() > 500 && data.len() % 5 == 0);
+    assert!(data.len() > 500 && data.len().is_multiple_of(5));
     let options =
         json!({ "textDocument": { "uri": URI }, "options": { "tabSize": 4, "insertSpaces": true } });
     assert_eq!(client.request("textDocument/formatting", options)["result"], json!([]));
@@ -312,7 +312,7 @@ fn random_edits(count: usize, between: usize, seed: u64) {
             let [line, character] = position(&text, bound_of(&text, random.below(text.len() + 1)));
             assert!(client.ask(&method, line, character, json!({}))["error"].is_null());
         }
-        if version as usize % between == 0 {
+        if (version as usize).is_multiple_of(between) {
             let found = client.diagnostics(version);
             let source = hodograph_generator::source::Source::file("", text.as_str());
             let checked = hodograph_generator::check::check(&source).diagnostics;
