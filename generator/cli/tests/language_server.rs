@@ -1,10 +1,8 @@
 //! The language server, through its protocol.
 
-mod client;
-
 use std::path::Path;
 
-use client::{Client, URI};
+use crate::client::{Client, URI};
 use serde_json::{Value, json};
 
 fn model(name: &str) -> String {
@@ -362,7 +360,7 @@ fn random_edits_end_where_check_does() {
     random_edits(400, 20, 1);
 }
 
-/// `cargo test --release -p hodograph-cli --no-default-features --test language_server -- --ignored --nocapture edits`
+/// `cargo test --release -p hodograph-cli --no-default-features --test all -- --ignored --nocapture random_edits`
 #[test]
 #[ignore = "a hundred thousand edits take minutes"]
 fn a_hundred_thousand_random_edits() {

@@ -29,6 +29,7 @@ pub enum Kind {
     Frame,
     Point,
     Body,
+    Shape,
     Contact,
     Given,
 }
@@ -163,6 +164,7 @@ fn of_symbol(symbol: Symbol) -> Kind {
         Symbol::Frame(_) => Kind::Frame,
         Symbol::Point(_) => Kind::Point,
         Symbol::Body(_) => Kind::Body,
+        Symbol::Shape(_) => Kind::Shape,
         Symbol::Contact(_) => Kind::Contact,
     }
 }

@@ -106,7 +106,12 @@ impl Document {
             Context::Words(list) => list.iter().map(|text| plain(text)).collect(),
             Context::Fields(list) => {
                 let field = |text: &&str| proposal(words::look(words::FIELDS, text), text, Proposed::Field);
-                list.iter().map(field).collect()
+                let mut out: Vec<Proposal> = list.iter().map(field).collect();
+                // `Foot on Floor`
+                if list.contains(&"normal") {
+                    out.extend(self.expression(Kinds::SHAPES, false, &[], Expected::default()));
+                }
+                out
             }
             Context::Loads => from_table(words::LOAD_FORMS, Proposed::Word),
             Context::Laws(list) => from_table(list, Proposed::Word),
@@ -246,6 +251,7 @@ fn of_kind(symbol: Symbol, kinds: Kinds, numbers: bool) -> bool {
         Symbol::Frame(_) => kinds.frames,
         Symbol::Point(_) => kinds.points,
         Symbol::Body(_) => kinds.bodies,
+        Symbol::Shape(_) => kinds.shapes,
         Symbol::Contact(_) => kinds.contacts,
         Symbol::Broken => false,
     }

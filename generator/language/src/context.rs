@@ -1,5 +1,6 @@
 //! What could be written at a place, by the tokens before it: also where the text is not finished.
 
+use hodograph_model::model::mechanism::Kind;
 use hodograph_model::syntax::token::{Token, TokenKind};
 use hodograph_model::syntax::tree::Section;
 use hodograph_model::words;
@@ -23,6 +24,8 @@ pub struct Kinds {
     pub points: bool,
     /// bodies
     pub bodies: bool,
+    /// shapes
+    pub shapes: bool,
     /// contacts
     pub contacts: bool,
 }
@@ -38,6 +41,7 @@ impl Kinds {
         frames: false,
         points: false,
         bodies: false,
+        shapes: false,
         contacts: false,
     };
     const NONE: Kinds = Kinds {
@@ -51,6 +55,8 @@ impl Kinds {
     const FRAMES: Kinds = Kinds { frames: true, ..Kinds::NONE };
     const POINTS: Kinds = Kinds { points: true, ..Kinds::NONE };
     const BODIES: Kinds = Kinds { bodies: true, ..Kinds::NONE };
+    /// shapes alone
+    pub const SHAPES: Kinds = Kinds { shapes: true, ..Kinds::NONE };
     const CONTACTS: Kinds = Kinds { contacts: true, ..Kinds::NONE };
     const FRAMES_AND_BODIES: Kinds = Kinds { bodies: true, ..Kinds::FRAMES };
     const STARTS: Kinds = Kinds { parameters: true, coordinates: true, speeds: true, ..Kinds::NONE };
@@ -158,7 +164,9 @@ pub fn separator(tokens: &[Token]) -> char {
         open.first().and_then(|level| Section::of_word(&tokens.get(level.at.checked_sub(1)?)?.text));
     use Section::*;
     match section {
-        Some(Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Contacts) => ',',
+        Some(
+            Parameters | Inputs | Coordinates | Speeds | Dependent | Bodies | Particles | Shapes | Contacts,
+        ) => ',',
         _ if braces > 1 => ',',
         _ => ';',
     }
@@ -215,9 +223,12 @@ fn arguments(tokens: &[Token], open: &[Level]) -> Option<Context> {
 }
 
 /// The fields of the record that is open.
-fn record(section: Section, tokens: &[Token], brace: &Level, depth: usize) -> &'static [&'static str] {
-    match section {
-        Section::Bodies => &words::BODY,
+fn record(section: Section, tokens: &[Token], brace: &Level, depth: usize) -> Vec<&'static str> {
+    let known: &[&str] = match section {
+        Section::Shapes => {
+            return words::SHAPE.into_iter().chain(Kind::ALL.map(|kind| kind.word())).collect();
+        }
+        Section::Bodies => return words::BODY.into_iter().chain(["shape"]).collect(),
         Section::Particles => &words::PARTICLE,
         Section::Contacts if depth > 2 => &words::SURFACE,
         Section::Contacts => &words::CONTACT,
@@ -230,7 +241,8 @@ fn record(section: Section, tokens: &[Token], brace: &Level, depth: usize) -> &'
             }
         }
         _ => &[],
-    }
+    };
+    known.to_vec()
 }
 
 fn expression(kinds: Kinds) -> Context {
@@ -238,15 +250,20 @@ fn expression(kinds: Kinds) -> Context {
 }
 
 /// A field of a record, or its value.
-fn field(section: Section, statement: &[Token], known: &'static [&'static str], before: &[Token]) -> Context {
+fn field(section: Section, statement: &[Token], known: Vec<&'static str>, before: &[Token]) -> Context {
+    let names = |kinds, words: Vec<&'static str>| Context::Expression { kinds, functions: false, words };
     let Some(colon) = statement.iter().position(|token| token.is_sign(':')) else {
-        let there = |field: &&&str| {
+        // the shapes of a pair stand in place of a field
+        if section == Section::Contacts && !statement.is_empty() {
+            let on = statement.len() > 1;
+            return if on { names(Kinds::SHAPES, Vec::new()) } else { Context::Words(vec!["on", "in"]) };
+        }
+        let there = |field: &&str| {
             let given = |pair: &[Token]| pair[0].is_word(field) && pair[1].is_sign(':');
             !before.windows(2).any(given)
         };
-        return Context::Fields(known.iter().filter(there).copied().collect());
+        return Context::Fields(known.into_iter().filter(there).collect());
     };
-    let names = |kinds, words: Vec<&'static str>| Context::Expression { kinds, functions: false, words };
     let last = statement.last().map_or("", |token| token.text.as_str());
     let name = colon.checked_sub(1).map_or("", |i| statement[i].text.as_str());
     let begins = statement.len() == colon + 1;
@@ -254,7 +271,10 @@ fn field(section: Section, statement: &[Token], known: &'static [&'static str], 
         (_, "of") => names(Kinds::BODIES, Vec::new()),
         ("inertia", "in") => names(Kinds::FRAMES, Vec::new()),
         (_, "about") => names(Kinds::POINTS, Vec::new()),
-        ("frame", _) => names(Kinds::FRAMES, Vec::new()),
+        ("shape", _) => names(Kinds::SHAPES, Vec::new()),
+        ("of", _) => names(Kinds::FRAMES_AND_BODIES, Vec::new()),
+        ("at", _) => expression(Kinds { points: true, ..Kinds::VALUES }),
+        ("frame" | "axes", _) => names(Kinds::FRAMES, Vec::new()),
         ("centre" | "point", _) if begins => names(Kinds::POINTS, Vec::new()),
         ("point", _) => Context::Words(vec!["of"]),
         ("against", _) if begins => {

@@ -39,6 +39,12 @@ impl Document {
         if declared.place.is_none() {
             return Err(format!("`{}` is given: it is declared in no model", declared.name));
         }
+        if self.text.at(span) != declared.name {
+            return Err(format!(
+                "`{}` follows from the name of a pair of shapes: change that",
+                declared.name
+            ));
+        }
         if declared.symbol == Symbol::Broken || self.symbols().ambiguous.contains(&declared.name) {
             return Err(format!(
                 "it is not clear which `{}` is meant: correct the mistakes first",

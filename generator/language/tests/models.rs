@@ -283,7 +283,12 @@ fn words_are_completed_where_they_belong() {
     );
     assert_eq!(labels("mechanism A;\nframes { B = N.rotate(|"), ["x", "y", "z"]);
     assert_eq!(labels("mechanism A;\npoints { P = O + N.|"), ["x", "y", "z", "vec"]);
-    assert_eq!(labels("mechanism A;\nbodies { B { frame: N, | } }"), ["centre", "mass", "inertia"]);
+    assert_eq!(labels("mechanism A;\nbodies { B { frame: N, | } }"), ["centre", "mass", "inertia", "shape"]);
+    let shapes = "mechanism A;\nshapes { Ball { sphere: 1 }, Floor { plane: N.z } }\n";
+    assert_eq!(labels(&format!("{shapes}contacts {{ c {{ Ball on |"))[..2], ["Ball", "Floor"]);
+    assert_eq!(labels(&format!("{shapes}contacts {{ c {{ Ball |")), ["on", "in"]);
+    assert_eq!(labels("mechanism A;\nshapes { Ball { |")[..3], ["of", "at", "axis"]);
+    assert_eq!(labels("mechanism A;\nshapes { Ball { of: |"), ["N"]);
     assert_eq!(labels("mechanism A;\nloads { |"), ["gravity", "force", "torque", "spring", "torsion"]);
     assert_eq!(labels("mechanism A;\nloads { spring O to O: { |"), ["stiffness", "length", "damping"]);
     assert_eq!(labels("mechanism A;\ncontacts { c { surface: { law: |"), ["newton", "poisson", "stronge"]);

@@ -76,7 +76,7 @@ pub fn colour(kind: Kind, declares: bool) -> (u32, u32) {
         Kind::Frame => (10, 0),
         Kind::Given => (10, 8),
         Kind::Point => (6, 0),
-        Kind::Body => (11, 0),
+        Kind::Body | Kind::Shape => (11, 0),
         Kind::Contact => (12, 0),
     };
     (kind, more | u32::from(declares))
@@ -90,7 +90,7 @@ pub fn symbol(symbol: Option<Symbol>) -> lsp::SymbolKind {
         Some(Symbol::Definition(_)) => lsp::SymbolKind::Function,
         Some(Symbol::Frame(_)) => lsp::SymbolKind::Class,
         Some(Symbol::Point(_)) => lsp::SymbolKind::EnumMember,
-        Some(Symbol::Body(_)) => lsp::SymbolKind::Struct,
+        Some(Symbol::Body(_) | Symbol::Shape(_)) => lsp::SymbolKind::Struct,
         Some(Symbol::Contact(_)) => lsp::SymbolKind::Event,
         Some(_) => lsp::SymbolKind::Variable,
     }
@@ -107,7 +107,7 @@ pub fn proposed(kind: Proposed) -> lsp::CompletionItemKind {
         Proposed::Name(Symbol::Parameter(_) | Symbol::Pi) => lsp::CompletionItemKind::Constant,
         Proposed::Name(Symbol::Frame(_)) => lsp::CompletionItemKind::Class,
         Proposed::Name(Symbol::Point(_)) => lsp::CompletionItemKind::EnumMember,
-        Proposed::Name(Symbol::Body(_)) => lsp::CompletionItemKind::Struct,
+        Proposed::Name(Symbol::Body(_) | Symbol::Shape(_)) => lsp::CompletionItemKind::Struct,
         Proposed::Name(Symbol::Contact(_)) => lsp::CompletionItemKind::Event,
         Proposed::Name(_) => lsp::CompletionItemKind::Variable,
     }

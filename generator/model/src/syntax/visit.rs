@@ -28,7 +28,7 @@ pub fn roots(tree: &Tree) -> Vec<Root<'_>> {
     out.extend(tree.angular_velocities.iter().map(|stated| alone(&stated.value)));
     out.extend(tree.points.iter().map(|point| alone(&point.value)));
     out.extend(tree.velocities.iter().map(|stated| alone(&stated.value)));
-    for record in tree.bodies.iter().chain(&tree.particles).chain(&tree.contacts) {
+    for record in tree.bodies.iter().chain(&tree.particles).chain(&tree.shapes).chain(&tree.contacts) {
         fields(&record.fields, &mut out);
     }
     for load in &tree.loads {
