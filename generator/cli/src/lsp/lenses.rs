@@ -70,7 +70,7 @@ impl Derivations {
         let state = match self.model(&place::beside(path)) {
             None => "derive",
             Some(None) => "derivation is damaged: derive again",
-            Some(Some(model)) if model == artifact::model_hash(&source).to_string() => "derivation is fresh",
+            Some(Some(model)) if artifact::model_hash(&source) == model => "derivation is fresh",
             Some(Some(_)) => "derivation is stale: derive again",
         };
         vec![lens(state, jobs::DERIVE), lens("equations", jobs::EQUATIONS), lens("simulate", jobs::SIMULATE)]

@@ -99,7 +99,7 @@ mod tests {
     fn after_nonsense_the_next_message_is_read() {
         let message = "Content-Length: 33\r\n\r\n{\"jsonrpc\":\"2.0\",\"method\":\"exit\"}";
         let exit = Ok("exit".to_owned());
-        assert_eq!(all(message.as_bytes()), [exit.clone()]);
+        assert_eq!(all(message.as_bytes()), std::slice::from_ref(&exit));
         for nonsense in [
             "hello\r\n\r\n",
             "Content-Length: x\r\n",
