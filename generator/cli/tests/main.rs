@@ -22,6 +22,7 @@ mod inputs;
 mod language_server;
 mod mechanisms;
 mod motion;
+mod neovim;
 mod own_crate;
 mod pages;
 mod paper;

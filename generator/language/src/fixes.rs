@@ -30,6 +30,10 @@ impl Document {
     /// The changes that are offered for mistakes within a place.
     pub fn fixes(&self, within: Span) -> Vec<Action> {
         let mut out = Vec::new();
+        // their places are those of the expanded model
+        if self.has_parts() {
+            return out;
+        }
         for (finding, mistake) in self.analysis.diagnostics.iter().enumerate() {
             let place = mistake.primary.span;
             if place.end < within.start || within.end < place.start {

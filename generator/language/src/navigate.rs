@@ -34,6 +34,11 @@ impl Document {
     ///
     /// Why it cannot.
     pub fn renameable(&self, offset: u32) -> Result<(String, Span), String> {
+        if self.has_parts() {
+            return Err(
+                "names of models with parts are not changed here: one name of a part is many".to_owned()
+            );
+        }
         let nothing = || "no name of the model stands here".to_owned();
         let (declared, span) = self.symbols().at(offset).ok_or_else(nothing)?;
         if declared.place.is_none() {

@@ -169,11 +169,17 @@ fn a_name_that_is_taken_or_none_is_refused() {
 fn findings_are_those_of_check() {
     for (path, text) in models().into_iter().chain(mistaken()) {
         let found = Document::new(text.as_str()).findings();
-        let checked = check(&Source::file(&path, text.as_str())).diagnostics;
+        let source = Source::file(&path, text.as_str());
+        let checked = check(&source).diagnostics;
         assert_eq!(found.len(), checked.len(), "{path}");
         for (finding, diagnostic) in found.iter().zip(&checked) {
-            assert_eq!((finding.span, finding.code), (diagnostic.primary.span, diagnostic.code.0), "{path}");
-            assert_eq!(finding.related.len(), diagnostic.related.len());
+            // of what stands in a part, or in another file, the place in this text
+            let place = source.in_itself(diagnostic.primary.span);
+            assert_eq!((finding.span, finding.code), (place, diagnostic.code.0), "{path}");
+            // places in other files are left out
+            let related =
+                diagnostic.related.iter().filter(|label| std::ptr::eq(source.locate(label.span).0, &source));
+            assert_eq!(finding.related.len(), related.count());
             let says =
                 |text: &Option<String>| text.as_ref().is_none_or(|text| finding.message.contains(text));
             assert!(finding.message.starts_with(&diagnostic.message) && says(&diagnostic.help));
@@ -433,4 +439,23 @@ fn nothing_stops_at_any_place_of_any_text() {
             document.text().offset(document.text().position(offset, Encoding::Utf16), Encoding::Utf16);
         }
     }
+}
+
+#[test]
+fn models_with_parts_have_their_mistakes_and_names_at_their_places() {
+    let text = "mechanism Chain;\n\npart Link(hinge: point, length: m = 0.5) {\n    parameters { shared m: kg }\n    coordinates { q: rad = 0.1 }\n    speeds { u: rad/s }\n    frames { B = N.rotate(z, q); }\n    points { tip = hinge - length*B.y; }\n    particles { Bob { point: tip, mass: m } }\n}\n\nparameters { m: kg = 1, g: m/s^2 = 9.81 }\nloads { gravity: -g*N.y; }\nuse Link as a(hinge: O);\nuse Link as b(hinge: a.tip);\n";
+    let document = Document::new(text);
+    assert_eq!(document.findings(), []);
+    let declared = text.find("q: rad").unwrap();
+    let found = document.definition(text.find("q); }").unwrap() as u32).unwrap();
+    assert_eq!(found.start as usize, declared);
+    assert!(document.hover(text.find("tip, mass").unwrap() as u32).unwrap().text.contains("a point"));
+    assert!(document.rename(declared as u32, "angle").unwrap_err().contains("with parts"));
+    let mistaken = text.replace("rotate(z, q)", "rotate(z, qq)");
+    let found = Document::new(mistaken.as_str()).findings();
+    assert_eq!(found[0].code, "E020");
+    assert_eq!(&mistaken[found[0].span.range()], "qq");
+    // a file of parts is right as it is
+    let library = text.split("\n\n").nth(1).unwrap();
+    assert_eq!(Document::new(library).findings(), []);
 }

@@ -7,7 +7,6 @@ use std::time::SystemTime;
 use gen_lsp_types as lsp;
 use hodograph_generator::artifact::{self, place};
 use hodograph_generator::files;
-use hodograph_generator::source::Source;
 use hodograph_language::Document;
 
 use super::convert::Places;
@@ -66,11 +65,11 @@ impl Derivations {
         if document.analysis().has_errors() {
             return Vec::new();
         }
-        let source = Source::file("", document.text().as_str());
+        let source = document.source();
         let state = match self.model(&place::beside(path)) {
             None => "derive",
             Some(None) => "derivation is damaged: derive again",
-            Some(Some(model)) if artifact::model_hash(&source) == model => "derivation is fresh",
+            Some(Some(model)) if artifact::model_hash(source) == model => "derivation is fresh",
             Some(Some(_)) => "derivation is stale: derive again",
         };
         vec![lens(state, jobs::DERIVE), lens("equations", jobs::EQUATIONS), lens("simulate", jobs::SIMULATE)]

@@ -5,6 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use gen_lsp_types as lsp;
+use hodograph_generator::files::Beside;
+use hodograph_generator::source::Source;
 use hodograph_language::Document;
 use hodograph_language::text::{Edit, Encoding, Text};
 use lsp_server::{ErrorCode, Message, Notification, Request, RequestId};
@@ -33,18 +35,26 @@ enum Phase {
 struct Open {
     text: Text,
     version: i32,
+    /// its file, beside which imported files are
+    path: Option<PathBuf>,
     /// what is known of this text; nothing until it is asked for
     document: Option<Document>,
     published: bool,
 }
 
 impl Open {
-    fn new(text: String, version: i32) -> Open {
-        Open { text: Text::new(text), version, document: None, published: false }
+    fn new(text: String, version: i32, path: Option<PathBuf>) -> Open {
+        Open { text: Text::new(text), version, path, document: None, published: false }
     }
 
     fn document(&mut self) -> &Document {
-        self.document.get_or_insert_with(|| Document::new(self.text.as_str()))
+        self.document.get_or_insert_with(|| {
+            let Some(path) = &self.path else { return Document::new(self.text.as_str()) };
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let files = Beside { path: path.clone(), name: name.clone() };
+            let source = Source::file(name, self.text.as_str()).importing(&files);
+            Document::read(self.text.as_str(), source)
+        })
     }
 }
 
@@ -218,7 +228,8 @@ impl Session {
             }
             return Ok(());
         }
-        self.documents.insert(uri.0, Open::new(text, version));
+        let path = uri::path(&uri.0);
+        self.documents.insert(uri.0, Open::new(text, version, path));
         Ok(())
     }
 

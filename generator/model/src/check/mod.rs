@@ -72,16 +72,16 @@ impl Analysis {
 
 /// Reads and checks a model. Reports all mistakes at once; never fails otherwise.
 pub fn check(source: &Source) -> Checked {
-    if let Some(expansion) = source.expansion() {
-        return expanded(source, expansion);
-    }
-    let analysis = analysed(source);
+    let analysis = match source.expansion() {
+        Some(expansion) => expanded(source, expansion),
+        None => analysed(source),
+    };
     let failed = analysis.has_errors();
     Checked { mechanism: analysis.mechanism.filter(|_| !failed), diagnostics: analysis.diagnostics }
 }
 
 /// Checks what the parts of a model expand to.
-fn expanded(source: &Source, expansion: &Expansion) -> Checked {
+fn expanded(source: &Source, expansion: &Expansion) -> Analysis {
     let mut diagnostics = expansion.syntax.clone();
     diagnostics.extend(expansion.mistakes.iter().cloned());
     if diagnostics.is_empty() && source.is_library() {
@@ -92,12 +92,17 @@ fn expanded(source: &Source, expansion: &Expansion) -> Checked {
         diagnostics.push(error.help(help));
     }
     if !diagnostics.is_empty() {
-        return Checked { mechanism: None, diagnostics: expansion.explained(diagnostics) };
+        return Analysis { diagnostics: expansion.explained(diagnostics), ..Analysis::default() };
     }
-    let analysis = analysed(source);
-    let failed = analysis.has_errors();
-    let diagnostics = expansion.explained(analysis.diagnostics);
-    Checked { mechanism: analysis.mechanism.filter(|_| !failed), diagnostics }
+    let Analysis { mechanism, diagnostics, symbols, .. } = analysed(source);
+    let failed = diagnostics.iter().any(|d| d.severity == Severity::Error);
+    // names of imported files stand in other texts
+    let symbols = symbols.placed(|span| {
+        let place = expansion.places.find(span)?;
+        (place.file == 0).then_some(place.span)
+    });
+    let mechanism = mechanism.filter(|_| !failed);
+    Analysis { mechanism, symbols, diagnostics: expansion.explained(diagnostics), ..Analysis::default() }
 }
 
 /// The names of a model and their places, without a check of its numbers.
@@ -111,11 +116,11 @@ pub fn names(tokens: &[Token]) -> (Tree, Symbols) {
 }
 
 /// Reads and checks a model, and keeps all that was found on the way. Of a model with parts all places are
-/// those of its own text, what is said of a part stands at its use, and only the tokens and the mechanism are
-/// kept.
+/// those of its own text, what is said of a part stands at its use, and only the tokens, the names and the
+/// mechanism are kept.
 pub fn analyse(source: &Source) -> Analysis {
     let Some(expansion) = source.expansion() else { return analysed(source) };
-    let Checked { mechanism, mut diagnostics } = expanded(source, expansion);
+    let Analysis { mechanism, symbols, mut diagnostics, .. } = expanded(source, expansion);
     for diagnostic in &mut diagnostics {
         let own = |span: Span| std::ptr::eq(source.locate(span).0, source);
         diagnostic.related.retain(|label| own(label.span));
@@ -127,7 +132,7 @@ pub fn analyse(source: &Source) -> Analysis {
         }
     }
     let tokens = source.text().map(|text| lexer::tokens(text, MAX_TOKENS)).unwrap_or_default();
-    Analysis { tokens, mechanism, diagnostics, ..Analysis::default() }
+    Analysis { tokens, symbols, mechanism, diagnostics, ..Analysis::default() }
 }
 
 /// The same of the tokens of a model without parts.

@@ -75,6 +75,19 @@ pub struct Wanted {
 }
 
 impl Symbols {
+    /// The same at other places: what has none is left out.
+    pub fn placed(self, place: impl Fn(Span) -> Option<Span>) -> Symbols {
+        let mut places = Places::default();
+        for found in self.uses {
+            places.uses.extend(place(found.place).map(|place| Use { place, ..found }));
+        }
+        for value in self.values {
+            places.values.extend(place(value.place).map(|place| Value { place, ..value }));
+        }
+        let moved = |declared: Declared| Declared { place: declared.place.and_then(&place), ..declared };
+        places.table(self.declared.into_iter().map(moved).collect(), self.ambiguous)
+    }
+
     /// The declaration of a symbol.
     pub fn of(&self, symbol: Symbol) -> Option<&Declared> {
         self.by_symbol.get(&symbol).map(|i| &self.declared[*i])

@@ -1,0 +1,1 @@
+../../../tree-sitter-hodograph/queries/highlights.scm
