@@ -79,7 +79,8 @@ fn a_model_is_edited_in_neovim() {
         "mistakes 0".to_owned(),
         "hover length of the crank".to_owned(),
         format!("renamed {declared}"),
-        format!("clash {}", line("l1/2*A.x")),
+        // the name is as it was, at its next place too
+        format!("clash {}", line("N.y) + l1/2")),
         format!("formatted {declared}"),
     ];
     assert_eq!(report.lines().collect::<Vec<_>>(), expected, "{report}");
