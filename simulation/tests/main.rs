@@ -30,3 +30,4 @@ mod table;
 mod tosses;
 mod tumbling;
 mod units;
+mod woodpecker;
