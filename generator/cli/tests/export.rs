@@ -100,6 +100,79 @@ fn a_program_in_c_gets_the_answers_of_the_tool() {
     assert_eq!(again[0], again[1]);
 }
 
+/// The program of a library's README prints its number, and two mechanisms are in one program: as shared libraries,
+/// and as objects of which only the functions of the headers are seen from outside.
+#[test]
+fn several_mechanisms_are_in_one_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let names = ["two_sleds", "spherical_pendulum"];
+    let models = names.map(|name| root().join(format!("models/{name}.mech")));
+    let exported = models.each_ref().map(|model| export(model, folder.path(), &[]));
+    let built = exported.each_ref().map(|exported| build(exported).join("debug"))[0].clone();
+    let energies = models.each_ref().map(|model| {
+        let found = hodograph(&["eval", model.to_str().unwrap()], "").line();
+        found["kinetic_energy"].as_f64().unwrap()
+    });
+    // The first block of C in the README.
+    let readme = std::fs::read_to_string(exported[0].join("README.md")).unwrap();
+    let program = readme.split("```c\n").nth(1).unwrap().split("```").next().unwrap();
+    std::fs::write(exported[0].join("main.c"), program).unwrap();
+    let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-I", "include"];
+    let mut cc = Command::new("cc");
+    cc.args(flags).args(["-o", "main", "main.c"]).arg(built.join("libtwo_sleds.a"));
+    output(cc.args(["-lm", "-lpthread", "-ldl"]), &exported[0]);
+    let said = output(&mut Command::new(exported[0].join("main")), &exported[0]);
+    let said = String::from_utf8(said.stdout).unwrap();
+    let energy = said.trim().strip_prefix("kinetic energy ").unwrap().strip_suffix(" J").unwrap();
+    assert!((energy.parse::<f64>().unwrap() / energies[0] - 1.0).abs() < 1e-5, "{said}");
+    // Both at once.
+    let part = |name: &str| {
+        let upper = name.to_uppercase();
+        format!(
+            "    {{\n        {name}_parameters parameters;\n        {name}_coordinates q;\n        {name}_speeds u;\n        {name} mechanism;\n        double energy;\n\n\
+             if ({name}_default_parameters(&parameters) != {upper}_OK || {name}_new(&parameters, &mechanism) != {upper}_OK)\n            return 1;\n\
+             if ({name}_default_coordinates(&q) != {upper}_OK || {name}_default_speeds(&u) != {upper}_OK)\n            return 2;\n\
+             if ({name}_kinetic_energy(&mechanism, &q, &u, &energy) != {upper}_OK)\n            return 3;\n        printf(\"%.17g\\n\", energy);\n    }}\n"
+        )
+    };
+    let includes: String = names.iter().map(|name| format!("#include \"{name}.h\"\n")).collect();
+    let both = format!(
+        "#include <stdio.h>\n{includes}\nint main(void)\n{{\n{}{}    return 0;\n}}\n",
+        part(names[0]),
+        part(names[1])
+    );
+    std::fs::write(folder.path().join("both.c"), both).unwrap();
+    let prints_both = |link: &[String]| {
+        let mut cc = Command::new("cc");
+        cc.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "both", "both.c"]);
+        for exported in &exported {
+            cc.arg("-I").arg(exported.join("include"));
+        }
+        output(cc.args(link).args(["-lm", "-lpthread", "-ldl"]), folder.path());
+        let said = output(&mut Command::new(folder.path().join("both")), folder.path());
+        let said = String::from_utf8(said.stdout).unwrap();
+        let numbers: Vec<f64> = said.lines().map(|line| line.parse().unwrap()).collect();
+        assert_eq!(numbers, energies);
+    };
+    let place = built.display().to_string();
+    let shared = names.iter().map(|name| format!("-l:lib{name}.so"));
+    let shared: Vec<String> =
+        [format!("-L{place}"), format!("-Wl,-rpath,{place}")].into_iter().chain(shared).collect();
+    prints_both(&shared);
+    let objects = names.map(|name| {
+        let object = folder.path().join(format!("{name}.o")).display().to_string();
+        let library = built.join(format!("lib{name}.a")).display().to_string();
+        output(Command::new("ld").args(["-r", "-o", &object, "--whole-archive", &library]), folder.path());
+        let kept = format!("{name}_*");
+        output(
+            Command::new("objcopy").args(["--wildcard", "--keep-global-symbol", &kept, &object]),
+            folder.path(),
+        );
+        object
+    });
+    prints_both(&objects);
+}
+
 #[test]
 fn every_header_is_c_and_cpp() {
     let folder = tempfile::tempdir().unwrap();
@@ -140,6 +213,8 @@ fn every_header_is_c_and_cpp() {
         ("c", "gnu99", true),
         ("c", "gnu11", true),
         ("c", "gnu17", true),
+        ("c", "c90", false),
+        ("c++", "c++98", false),
         ("c++", "c++11", false),
         ("c++", "gnu++20", true),
     ] {

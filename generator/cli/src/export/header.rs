@@ -84,11 +84,12 @@ pub fn header(module: &Module, scalar: &str) -> String {
 
 /// An enum whose constants count from zero.
 fn constants<'a>(upper: &str, what: &str, rows: impl Iterator<Item = (&'a str, &'a str)>) -> String {
-    let mut out = format!("enum {}_{what} {{\n", upper.to_lowercase());
-    for (value, (name, docs)) in rows.enumerate() {
-        let _ = write!(out, "    /** {docs} */\n    {upper}_{name} = {value},\n");
-    }
-    out + "};\n"
+    // Without a comma after the last: C90 and C++98 know none there.
+    let rows: Vec<String> = rows
+        .enumerate()
+        .map(|(value, (name, docs))| format!("    /** {docs} */\n    {upper}_{name} = {value}"))
+        .collect();
+    format!("enum {}_{what} {{\n{}\n}};\n", upper.to_lowercase(), rows.join(",\n"))
 }
 
 fn structure(module: &Module, scalar: &str, record: &Record) -> String {

@@ -89,7 +89,7 @@ pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<Fil
     let name = &module.name;
     Some(vec![
         ("Cargo.toml".to_owned(), manifest(&module, dependency)),
-        ("README.md".to_owned(), readme(&module)),
+        ("README.md".to_owned(), readme(&module, c)),
         (format!("include/{name}.h"), header::header(&module, c)),
         ("src/lib.rs".to_owned(), library::library(&module, rust)),
         ("src/mechanism.rs".to_owned(), expanded.to_owned()),
@@ -98,26 +98,61 @@ pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<Fil
 
 fn manifest(module: &module::Module, dependency: &str) -> String {
     format!(
-        "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\npublish = false\n\n[lib]\ncrate-type = [\"staticlib\"]\n\n\
+        "[package]\nname = \"{}\"\nversion = \"0.1.0\"\nedition = \"2024\"\npublish = false\n\n[lib]\ncrate-type = [\"staticlib\", \"cdylib\"]\n\n\
          [features]\ndefault = [\"std\"]\n# Off for microcontrollers: `--no-default-features`.\nstd = [\"hodograph/std\"]\n\n\
          [dependencies]\nhodograph = {dependency}\n\n[profile.release]\npanic = \"abort\"\nlto = \"fat\"\ncodegen-units = 1\n\n[workspace]\n",
         module.name
     )
 }
 
-fn readme(module: &module::Module) -> String {
+fn readme(module: &module::Module, scalar: &str) -> String {
     let name = &module.name;
+    let has = |name: &str| {
+        module.records.iter().any(|record| record.name == name && record.stated && !record.fields.is_empty())
+    };
+    let upper = name.to_uppercase();
+    // A program that prints numbers: only of what this mechanism has.
+    let (mut declared, mut filled) = (format!("    {name} mechanism;\n"), String::new());
+    let default =
+        |what: &str| format!("    if ({name}_default_{what}(&{what}) != {upper}_OK)\n        return 1;\n");
+    for (record, what) in [("Parameters", "parameters"), ("Coordinates", "coordinates"), ("Speeds", "speeds")]
+    {
+        if has(record) {
+            declared += &format!("    {name}_{what} {what};\n");
+            filled += &default(what);
+        }
+    }
+    let made = if has("Parameters") { "&parameters, " } else { "" };
+    let energy = module.routines.iter().find(|routine| routine.name == "kinetic_energy");
+    let arguments: Vec<&str> = energy.map_or(Vec::new(), |routine| {
+        let of = |form: &module::Form| match form {
+            module::Form::Record(record) if record == "Coordinates" => "&coordinates, ",
+            module::Form::Record(record) if record == "Speeds" => "&speeds, ",
+            _ => "",
+        };
+        routine.arguments.iter().map(|(_, form)| of(form)).collect()
+    });
+    let program = match energy {
+        Some(_) if arguments.iter().all(|argument| !argument.is_empty()) => format!(
+            "    if ({name}_kinetic_energy(&mechanism, {}&energy) != {upper}_OK)\n        return 3;\n    printf(\"kinetic energy %g J\\n\", (double)energy);\n",
+            arguments.concat()
+        ),
+        _ => String::new(),
+    };
     format!(
-        "# {0} for C\n\n{1}\n\n```sh\ncargo build --release                                    # target/release/lib{name}.a\n\
+        "# {0} for C\n\n{1}\n\n```sh\ncargo build --release                                    # target/release/lib{name}.a and lib{name}.so\n\
          cargo build --release --no-default-features --target thumbv7em-none-eabihf    # for a Cortex-M4F or M7\n\
          cc -I include main.c target/release/lib{name}.a -lm -o main\n```\n\n\
          The library and `include/{name}.h` are all that a team without cargo needs: whoever has cargo builds the library once per target, and both files are\n\
-         handed on. They need nothing at run time but, on a desktop, the C library.\n\n\
-         ```c\n#include \"{name}.h\"\n\n{name} mechanism;\n{name}_coordinates q;\n{name}_speeds u, rates;\n```\n\n\
-         Every call answers a status; the answer is written only where the status is `{2}_OK`. Nothing is allocated, and there is no hidden state.\n",
-        module.mechanism,
-        module.docs,
-        name.to_uppercase(),
+         handed on. They need nothing at run time but, on a desktop, the C library. A `main.c` that prints a number:\n\n\
+         ```c\n#include <stdio.h>\n#include \"{name}.h\"\n\nint main(void)\n{{\n{declared}    {2} energy = 0;\n\n{filled}    if ({name}_new({made}&mechanism) != {upper}_OK)\n        return 2;\n{program}    return 0;\n}}\n```\n\n\
+         Every call answers a status; the answer is written only where the status is `{upper}_OK`. Nothing is allocated, and there is no hidden state.\n\n\
+         ## Several mechanisms in one program\n\n\
+         Each static library holds the Rust runtime, so a program links one of them. Shared libraries keep theirs to themselves: link as many as you like,\n\n\
+         ```sh\ncc -I include main.c -L target/release -l{name} -Wl,-rpath,$PWD/target/release -lm -o main\n```\n\n\
+         or, where there are no shared libraries, make one object of each static library, of which only the functions of the header can be seen from outside:\n\n\
+         ```sh\nld -r -o {name}.o --whole-archive lib{name}.a\nobjcopy --wildcard --keep-global-symbol '{name}_*' {name}.o\n```\n",
+        module.mechanism, module.docs, scalar,
     )
 }
 
