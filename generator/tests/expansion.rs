@@ -99,7 +99,7 @@ fn expands_in_a_process_of_its_own() {
 #[test]
 fn nothing_is_printed_on_standard_output() {
     let output = Command::new(std::env::current_exe().expect("this program"))
-        .args(["--exact", "expands_in_a_process_of_its_own", "--nocapture", "--test-threads=1"])
+        .args(["--exact", "expansion::expands_in_a_process_of_its_own", "--nocapture", "--test-threads=1"])
         .env(CHILD, "1")
         .output()
         .expect("it runs");
@@ -108,5 +108,8 @@ fn nothing_is_printed_on_standard_output() {
     let beyond: Vec<&str> =
         said.lines().filter(|line| !line.is_empty() && !line.starts_with("running 1 test")).collect();
     // the harness names the test before it runs it
-    assert!(beyond.iter().all(|line| *line == "test expands_in_a_process_of_its_own ... "), "{said}");
+    assert!(
+        beyond.iter().all(|line| *line == "test expansion::expands_in_a_process_of_its_own ... "),
+        "{said}"
+    );
 }

@@ -68,6 +68,11 @@ fn compare(m: &Mechanism, program: &Program, state: &State, expected: &Evaluatio
     };
     hold("mass matrix".into(), &get(Quantity::MassMatrix), &expected.mass_matrix.concat(), 0.0);
     hold("forcing".into(), &get(Quantity::Forcing), &expected.forcing, 1e-9);
+    hold("kinetic energy".into(), &get(Quantity::KineticEnergy), &[expected.kinetic_energy], 0.0);
+    if program.output(Quantity::PotentialEnergy).is_some() {
+        let stored = expected.potential_energy.expect("heights that the derivation knows");
+        hold("potential energy".into(), &get(Quantity::PotentialEnergy), &[stored], 1e-3);
+    }
     if !m.coordinates.is_empty() {
         hold("rates".into(), &get(Quantity::CoordinateRates), &expected.rates, 0.0);
     }

@@ -2,6 +2,7 @@
 
 pub mod emitted;
 pub mod random;
+pub mod rates;
 
 use std::path::{Path, PathBuf};
 

@@ -28,6 +28,8 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
         speeds: views.speeds.clone(),
         kinetic_energy: 0.0,
         power: 0.0,
+        potential_energy: Some(0.0),
+        conservative_power: 0.0,
         contacts: Vec::new(),
         positions: Vec::new(),
         velocities: Vec::new(),
@@ -140,6 +142,12 @@ fn add_torque(
     Ok(())
 }
 
+/// Adds what is stored where a force or a torque has a potential: the energy, and the power that it gives.
+fn add_stored(energy: Option<f64>, power: f64, out: &mut Evaluation) {
+    out.potential_energy = out.potential_energy.zip(energy).map(|(sum, energy)| sum + energy);
+    out.conservative_power += power;
+}
+
 fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluation) -> Result<(), Failure> {
     let now = &views.now;
     let level = Level::Motion;
@@ -148,7 +156,13 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
             let g = values(now.vector(vector, level)?);
             for body in &m.bodies {
                 let mass = now.scalar(&body.mass, level)?.re;
-                add_force(views, body.centre, g.map(|c| mass * c), out)?;
+                let weight = g.map(|c| mass * c);
+                add_force(views, body.centre, weight, out)?;
+                let height = match now.root(body.centre) == PointId::O {
+                    true => Some(-dot3(values(now.position(body.centre)?), weight)),
+                    false => None,
+                };
+                add_stored(height, dot3(values(now.velocity(body.centre)?), weight), out);
             }
         }
         LoadKind::Force { on, from, force } => {
@@ -172,7 +186,9 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
                 return Err(Failure::DivisionByZero(m.points[a.0].span));
             }
             let [k, rest, c] = [stiffness, length, damping].map(|s| now.scalar(s, level));
-            let tension = k?.re * (distance.re - rest?.re) + c?.re * distance.e1;
+            let (k, stretch) = (k?.re, distance.re - rest?.re);
+            add_stored(Some(0.5 * k * stretch * stretch), -k * stretch * distance.e1, out);
+            let tension = k * stretch + c?.re * distance.e1;
             let pull = values(line).map(|c| tension * c / distance.re);
             add_force(views, *a, pull, out)?;
             add_force(views, *b, pull.map(|c| -c), out)?;
@@ -181,7 +197,9 @@ fn add_load(m: &Mechanism, views: &Views<'_>, load: &LoadKind, out: &mut Evaluat
             let axis = values(now.vector(axis, level)?);
             let angle = now.scalar(angle, Level::Geometry)?;
             let [rest, k, c] = [rest, stiffness, damping].map(|s| now.scalar(s, level));
-            let size = -(k?.re * (angle.re - rest?.re) + c?.re * angle.e1);
+            let (k, stretch) = (k?.re, angle.re - rest?.re);
+            add_stored(Some(0.5 * k * stretch * stretch), -k * stretch * angle.e1, out);
+            let size = -(k * stretch + c?.re * angle.e1);
             let torque = axis.map(|c| size * c);
             add_torque(views, *on, torque, out)?;
             if let Some(from) = from {

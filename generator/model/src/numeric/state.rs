@@ -57,6 +57,11 @@ pub struct Evaluation {
     pub kinetic_energy: f64,
     /// power of all loads, W
     pub power: f64,
+    /// potential energy of gravity and springs, J, zero with every mass centre at O; `None` where a height is not
+    /// known
+    pub potential_energy: Option<f64>,
+    /// power of the loads that this energy feeds: gravity, and springs without their dampers, W
+    pub conservative_power: f64,
     /// contacts, in the order of the file
     pub contacts: Vec<ContactEvaluation>,
     /// positions of points from O, where known

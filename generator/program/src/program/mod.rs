@@ -29,6 +29,6 @@ pub use hodograph_model::graph::{self, differentiate};
 pub use inputs::Inputs;
 pub use output::{Guard, Output, VANISHING};
 pub use quantity::{ContactQuantity, PointQuantity, Quantity, Structure};
-pub(crate) use semantics::operate;
+pub use semantics::operate;
 pub use slice::Slice;
 pub use straight_line::Program;
