@@ -7,6 +7,8 @@ mod cascades;
 mod diagnostics;
 mod errors_page;
 mod expansion;
+#[path = "../../tests/tests/common/expectations.rs"]
+mod expectations;
 mod kept_configurations;
 mod language;
 mod language_page;

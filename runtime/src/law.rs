@@ -1,5 +1,8 @@
 //! The laws (hypotheses) of restitution.
 
+use core::fmt;
+use core::str::FromStr;
+
 /// The hypothesis of restitution: what the coefficient e means, and so where the collision ends (section 4 of
 /// the paper).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,5 +44,60 @@ impl Law {
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|law| law.name() == name)
+    }
+}
+
+/// The name, as [`Law::from_str`] reads it.
+impl fmt::Display for Law {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.pad(self.name())
+    }
+}
+
+/// ```
+/// use hodograph::Law;
+/// assert_eq!("stronge".parse(), Ok(Law::Stronge));
+/// assert_eq!(Law::Poisson.to_string().parse(), Ok(Law::Poisson));
+/// let refused = "hertz".parse::<Law>().unwrap_err();
+/// assert_eq!(refused.to_string(), "this is none of newton, poisson, stronge");
+/// ```
+impl FromStr for Law {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        Self::named(name).ok_or(UnknownName { names: &["newton", "poisson", "stronge"] })
+    }
+}
+
+/// A text that is none of the names that it may be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub struct UnknownName {
+    /// The names.
+    pub names: &'static [&'static str],
+}
+
+impl fmt::Display for UnknownName {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str("this is none of ")?;
+        for (index, name) in self.names.iter().enumerate() {
+            out.write_str(if index > 0 { ", " } else { "" })?;
+            out.write_str(name)?;
+        }
+        Ok(())
+    }
+}
+
+impl core::error::Error for UnknownName {}
+
+#[cfg(test)]
+mod tests {
+    use super::Law;
+
+    #[test]
+    fn a_refusal_lists_every_name() {
+        let names = "hertz".parse::<Law>().unwrap_err().names;
+        assert!(names.iter().copied().eq(Law::ALL.iter().map(|law| law.name())));
     }
 }

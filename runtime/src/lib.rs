@@ -91,7 +91,7 @@ pub use crate::{
     error::{ImpactError, Violation},
     hodograph::{Hodograph, snapshot_at},
     impact::{Impact, Path, energy_gained},
-    law::Law,
+    law::{Law, UnknownName},
     mechanism::{
         ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, Component, ContactOutcome,
         ContactState, Contacts, Kind, Mechanism, ParameterError, State, StateError,

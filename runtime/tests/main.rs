@@ -9,6 +9,8 @@ mod common;
 mod contact;
 mod derivative;
 mod energy;
+#[path = "../../tests/tests/common/expectations.rs"]
+mod expectations;
 mod extremes;
 mod hodograph;
 mod hostile;

@@ -165,4 +165,13 @@ impl fmt::Display for SimulationError {
     }
 }
 
-impl std::error::Error for SimulationError {}
+impl std::error::Error for SimulationError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match &self.reason {
+            Reason::State(error) => Some(error),
+            Reason::Collision(error) => Some(error),
+            Reason::Contact(error) => Some(error),
+            _ => None,
+        }
+    }
+}

@@ -102,7 +102,7 @@ fn the_figure_of_the_readme_is_fresh() {
     let path = root().join("docs/two_sleds_hodograph.svg");
     let model = crate::common::model("two_sleds");
     let drawn = hodograph(&["plot", &model, "--mu", "0.6,1.1,1.6", "--e", "0.8"], "").stdout;
-    if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
+    if crate::expectations::are_written_anew() {
         std::fs::write(&path, &drawn).unwrap();
     }
     let kept = std::fs::read_to_string(&path).unwrap();
@@ -132,7 +132,7 @@ fn examples_run_as_shown() {
                 "{command}\n{}",
                 String::from_utf8_lossy(&output.stderr)
             );
-            if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
+            if crate::expectations::are_written_anew() {
                 renew(page, &shown, &stdout);
                 continue;
             }

@@ -13,6 +13,8 @@ mod contact_laws;
 mod contacts;
 mod docs;
 mod drawn;
+#[path = "../../../tests/tests/common/expectations.rs"]
+mod expectations;
 mod export;
 mod files;
 mod first_minutes;

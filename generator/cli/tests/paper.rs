@@ -150,7 +150,7 @@ fn figures_are_fresh() {
         let drawn = run(call);
         assert_eq!(drawn.code, 0, "{}", drawn.stderr);
         let path = root().join("docs").join(image);
-        if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
+        if crate::expectations::are_written_anew() {
             std::fs::write(&path, &drawn.stdout).unwrap();
         }
         let kept = std::fs::read_to_string(&path).unwrap_or_default();

@@ -31,7 +31,14 @@ impl fmt::Display for Error {
     }
 }
 
-impl std::error::Error for Error {}
+impl std::error::Error for Error {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Error::Parameters(error) => Some(error),
+            Error::Model(_) | Error::Derivation(_) | Error::NoValue(_) => None,
+        }
+    }
+}
 
 impl From<ParameterError> for Error {
     fn from(error: ParameterError) -> Self {

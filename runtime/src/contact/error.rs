@@ -70,7 +70,14 @@ impl<T: fmt::Debug + fmt::Display> fmt::Display for ContactError<T> {
     }
 }
 
-impl<T: fmt::Debug + fmt::Display> core::error::Error for ContactError<T> {}
+impl<T: fmt::Debug + fmt::Display + 'static> core::error::Error for ContactError<T> {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Input(error) => Some(error),
+            _ => None,
+        }
+    }
+}
 
 impl<T> From<ImpactError<T>> for ContactError<T> {
     fn from(error: ImpactError<T>) -> Self {

@@ -26,10 +26,13 @@ mod select;
 mod stick;
 mod tangential;
 
+use core::fmt;
+use core::str::FromStr;
+
 use nalgebra::{Vector2, Vector3};
 
 pub use self::error::ContactError;
-use crate::{ReducedMatrix, Scalar};
+use crate::{ReducedMatrix, Scalar, UnknownName};
 
 /// What a closed contact does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -56,6 +59,32 @@ impl ContactMode {
             Self::Stick => "stick",
             Self::BeginSlip => "begin_slip",
         }
+    }
+
+    /// Every mode, in the order of the variants.
+    pub const ALL: &'static [Self] = &[Self::Separate, Self::Slide, Self::Stick, Self::BeginSlip];
+}
+
+/// The name, as [`ContactMode::from_str`] reads it.
+impl fmt::Display for ContactMode {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.pad(self.name())
+    }
+}
+
+/// ```
+/// use hodograph::ContactMode;
+/// for mode in ContactMode::ALL {
+///     assert_eq!(mode.to_string().parse(), Ok(*mode));
+/// }
+/// assert!("roll".parse::<ContactMode>().is_err());
+/// ```
+impl FromStr for ContactMode {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, UnknownName> {
+        let names = &["separate", "slide", "stick", "begin_slip"];
+        Self::ALL.iter().copied().find(|mode| mode.name() == name).ok_or(UnknownName { names })
     }
 }
 

@@ -187,7 +187,14 @@ impl<T: fmt::Debug + fmt::Display> fmt::Display for CollisionError<T> {
     }
 }
 
-impl<T: fmt::Debug + fmt::Display> core::error::Error for CollisionError<T> {}
+impl<T: fmt::Debug + fmt::Display + 'static> core::error::Error for CollisionError<T> {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::State(error) => Some(error),
+            Self::Impact(error) => Some(error),
+        }
+    }
+}
 
 impl<T> From<StateError> for CollisionError<T> {
     fn from(error: StateError) -> Self {
@@ -232,7 +239,14 @@ impl<T: fmt::Debug + fmt::Display> fmt::Display for ClosedContactError<T> {
     }
 }
 
-impl<T: fmt::Debug + fmt::Display> core::error::Error for ClosedContactError<T> {}
+impl<T: fmt::Debug + fmt::Display + 'static> core::error::Error for ClosedContactError<T> {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::State(error) => Some(error),
+            Self::Contact(error) => Some(error),
+        }
+    }
+}
 
 impl<T> From<StateError> for ClosedContactError<T> {
     fn from(error: StateError) -> Self {

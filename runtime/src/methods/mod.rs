@@ -113,4 +113,11 @@ impl fmt::Display for MethodError {
     }
 }
 
-impl core::error::Error for MethodError {}
+impl core::error::Error for MethodError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Impact(error) => Some(error),
+            Self::Unfinished { .. } | Self::BadOption { .. } => None,
+        }
+    }
+}

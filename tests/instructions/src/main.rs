@@ -3,6 +3,9 @@
 //!
 //! With the argument `specialised` it prints what collisions that are one routine bring, as a table of a document.
 
+#[path = "../../tests/common/expectations.rs"]
+mod expectations;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -40,7 +43,7 @@ fn run() -> Result<bool, String> {
     let (counted, in_part) = count()?;
     let stored = std::fs::read_to_string(&table).map_err(|error| format!("{}: {error}", table.display()))?;
     let stored: Counts = stored.lines().filter_map(entry).collect();
-    if std::env::var_os("HODOGRAPH_UPDATE").is_some() {
+    if expectations::are_written_anew() {
         // What could not be counted keeps the count that it had.
         let is_in_part = |name: &str| in_part.iter().any(|subject| name.split("::").next() == Some(subject));
         let mut all: Counts = stored.into_iter().filter(|(name, _)| is_in_part(name)).collect();

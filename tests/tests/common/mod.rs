@@ -1,6 +1,7 @@
 //! The shipped models with their derivations, and the reference data.
 
 pub mod emitted;
+pub mod expectations;
 pub mod random;
 pub mod rates;
 
