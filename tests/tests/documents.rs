@@ -1,4 +1,7 @@
-//! The models that the documents show are accepted as they stand.
+//! What documents say of the repository holds: the models that they show are accepted as they stand, workspaces
+//! are named, and `unsafe` stands nowhere else.
+
+use std::path::{Path, PathBuf};
 
 use crate::common::root;
 use hodograph_generator::check::check;
@@ -42,4 +45,67 @@ fn shown_models_are_accepted() {
         }
     }
     assert!(count >= 3, "{count} models");
+}
+
+/// All files of the repository with these names or extensions, but what is built.
+fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        if path.is_dir() {
+            if name != "target" && !name.starts_with('.') {
+                files(&path, wanted, found);
+            }
+        } else if wanted(&name) {
+            found.push(path);
+        }
+    }
+}
+
+/// The folders of the files in which a text stands, from the root.
+fn folders_with(wanted: &dyn Fn(&str) -> bool, holds: impl Fn(&str) -> bool) -> Vec<String> {
+    let mut paths = Vec::new();
+    files(&root(), wanted, &mut paths);
+    let mut folders: Vec<String> = paths
+        .iter()
+        .filter(|path| std::fs::read_to_string(path).is_ok_and(|text| holds(&text)))
+        .map(|path| {
+            let folder = path.strip_prefix(root()).expect("in the repository").parent().expect("a folder");
+            folder.to_string_lossy().replace('\\', "/")
+        })
+        .collect();
+    folders.sort();
+    folders.dedup();
+    folders
+}
+
+#[test]
+fn workspaces_are_named() {
+    let page = std::fs::read_to_string(root().join("ARCHITECTURE.md")).expect("ARCHITECTURE.md");
+    let workspaces = folders_with(&|name| name == "Cargo.toml", |text| text.contains("\n[workspace]"));
+    assert!(workspaces.len() > 10, "{workspaces:?}");
+    for folder in workspaces.iter().filter(|folder| !folder.is_empty()) {
+        let named = [format!("`{folder}`"), format!("`{folder}/`")];
+        assert!(named.iter().any(|name| page.contains(name)), "ARCHITECTURE.md does not name {folder}");
+    }
+}
+
+/// Files with code that is `unsafe`; those of the tool hold it as text, for the crates that it writes.
+#[test]
+fn unsafe_code_stands_where_the_architecture_says() {
+    let holds = |text: &str| {
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
+        // Put together, so that this file holds none.
+        let words = ["{", "fn", "impl", "extern"].map(|word| format!("{} {word}", "unsafe"));
+        code.into_iter().any(|line| words.iter().any(|word| line.contains(word)))
+    };
+    let found = folders_with(&|name| name.ends_with(".rs"), holds);
+    let expected = [
+        "bindings/casadi/src",
+        "generator/cli/src/export",
+        "tests/benchmark/src/times",
+        "tests/firmware/src",
+        "tests/freestanding/src",
+    ];
+    assert_eq!(found, expected);
 }

@@ -12,19 +12,6 @@ use hodograph::{
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use hodograph_interpreter::InterpretedMechanism;
 
-const KINDS: [Kind; 10] = [
-    Kind::Parameter,
-    Kind::Coordinate,
-    Kind::DependentCoordinate,
-    Kind::Speed,
-    Kind::DependentSpeed,
-    Kind::Input,
-    Kind::Point,
-    Kind::Frame,
-    Kind::Contact,
-    Kind::Quantity,
-];
-
 /// A module, and the interpreter at the same parameters.
 fn both(module: &dyn Emitted, model: &Model, at: &Inputs) -> [Box<dyn Contacts>; 2] {
     let interpreted =
@@ -189,7 +176,7 @@ fn names_units_and_initial_values_are_those_of_the_model() {
         let machines = both(&**module, &model, &initial);
         for m in &machines {
             assert_eq!(m.name(), model.mechanism.name);
-            for kind in KINDS {
+            for &kind in Kind::ALL {
                 assert_eq!(m.component(kind, m.count(kind)), None);
                 for index in 0..m.count(kind) {
                     let component = m.component(kind, index).expect("a component");

@@ -33,8 +33,23 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Every kind, in the order of the variants.
+    pub const ALL: &'static [Self] = &[
+        Self::Parameter,
+        Self::Coordinate,
+        Self::DependentCoordinate,
+        Self::Speed,
+        Self::DependentSpeed,
+        Self::Input,
+        Self::Point,
+        Self::Frame,
+        Self::Contact,
+        Self::Quantity,
+    ];
+
     /// The English noun for one of the kind, for messages.
     pub const fn noun(self) -> &'static str {
+        // Whoever is sent here by the compiler for a new kind: it also belongs into `ALL`, just above.
         match self {
             Self::Parameter => "parameter",
             Self::Coordinate => "coordinate",
