@@ -103,6 +103,7 @@ fn unsafe_code_stands_where_the_architecture_says() {
     let expected = [
         "bindings/casadi/src",
         "generator/cli/src/export",
+        "generator/editors/acceptance/src",
         "tests/benchmark/src/times",
         "tests/firmware/src",
         "tests/freestanding/src",
