@@ -51,9 +51,8 @@ fn move_by(force: &Three) -> Three {
         for i in 0..3 {
             if i != j {
                 let factor = rows[i][j] / rows[j][j];
-                for k in j..4 {
-                    rows[i][k] -= factor * rows[j][k];
-                }
+                let pivot = rows[j];
+                rows[i].iter_mut().zip(&pivot).for_each(|(entry, pivot)| *entry -= factor * pivot);
             }
         }
     }
