@@ -31,10 +31,7 @@ pub fn at_the_start(m: &Mechanism) -> Option<Diagnostic> {
     }
     let views = Views::at(m, &state);
     let failure = match &views {
-        Ok(views) => match numeric::evaluate_views(m, views) {
-            Ok(_) => None,
-            Err(failure) => Some(failure),
-        },
+        Ok(views) => numeric::evaluate_views(m, views).err(),
         Err(failure) => Some(failure.clone()),
     };
     let found = match (&views, &failure) {

@@ -77,7 +77,7 @@ fn power([low, high]: Bounds, exponent: i32) -> Bounds {
         // What divides is not 0, but may be near it.
         return match power([low, high], exponent.saturating_neg()) {
             [a, b] if a > 0.0 => [1.0 / b, 1.0 / a],
-            [a, _] if a == 0.0 => [0.0, f64::INFINITY],
+            [0.0, _] => [0.0, f64::INFINITY],
             _ => ANY,
         };
     }
