@@ -294,3 +294,38 @@ fn recordings_are_read_in_python() {
     }
     assert_eq!(topics, messages(&path));
 }
+
+/// Shapes are in the scene: the ball goes with its centre, the bowl stays about O; the lines of the ball are great
+/// circles about where it is.
+#[test]
+fn shapes_move_with_their_bodies() {
+    let path = std::env::temp_dir().join(format!("hodograph-shapes-{}.mcap", std::process::id()));
+    let run = simulate("models/shapes/ball_in_bowl.mech", &["--until", "0.3"], &path);
+    let lines = run.lines();
+    let topics = messages(&path);
+    fs::remove_file(&path).unwrap();
+    let scenes = &topics["/mechanism"];
+    assert!(scenes.len() > 10);
+    for (_, scene) in scenes {
+        let shapes =
+            scene["entities"].as_array().unwrap().iter().find(|entity| entity["id"] == "shapes").unwrap();
+        let [ball, bowl] = &shapes["spheres"].as_array().unwrap()[..] else { panic!("{shapes}") };
+        near(xyz(&bowl["pose"]["position"]), [0.0; 3], 1e-12);
+        assert!(
+            (number(&bowl["size"]["x"]) - 1.6).abs() < 1e-12
+                && (number(&ball["size"]["x"]) - 0.2).abs() < 1e-12
+        );
+        let centre = xyz(&ball["pose"]["position"]);
+        let seconds = number(&shapes["timestamp"]["sec"]) + 1e-9 * number(&shapes["timestamp"]["nsec"]);
+        let close = |line: &&Value| (number(&line["t"]) - seconds).abs() < 1e-9;
+        let line = lines.iter().find(close).unwrap_or_else(|| panic!("no line at {seconds}"));
+        near(centre, ["x", "y", "z"].map(|name| number(&line["q"][name])), 1e-9);
+        for line in shapes["lines"].as_array().unwrap().iter().take(2) {
+            for point in line["points"].as_array().unwrap() {
+                let p = xyz(point);
+                let away = (0..3).map(|i| (p[i] - centre[i]).powi(2)).sum::<f64>().sqrt();
+                assert!((away - 0.1).abs() < 1e-9, "{away}");
+            }
+        }
+    }
+}
