@@ -38,10 +38,10 @@ impl Scales {
             let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
             let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
             gaps = gaps.max(gap.abs());
-            for (index, column) in alone.partials.column_iter().enumerate() {
+            for (index, row) in alone.partials.row_iter().enumerate() {
                 // What an angular speed gives to the point is an arm.
                 if is_angular(mechanism, index) {
-                    length = length.max(column.norm());
+                    length = length.max(row.norm());
                 }
             }
             acceleration = acceleration.max(alone.beta.norm());
@@ -85,5 +85,14 @@ mod tests {
         let scales = Scales::of(&rod, &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] });
         assert!(scales.length >= 1.0 && scales.length < 4.0, "{scales:?}");
         assert!((0.2..0.8).contains(&scales.time), "{scales:?}");
+    }
+    #[test]
+    fn a_rod_on_the_floor_has_the_length_of_its_arm() {
+        let rod = SlenderRod5dof::<f64>::default();
+        let (l, tilt) = (0.5, 0.6_f64);
+        let q: [f64; 5] = Coordinates { z: l * tilt.sin(), q5: tilt, ..Coordinates::default() }.into();
+        let u: [f64; 5] = Speeds { u1: 0.0, u2: 0.0, u3: -1e-3, u4: 0.0, u5: 0.0 }.into();
+        let scales = Scales::of(&rod, &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] });
+        assert!((scales.length - l).abs() < 1e-9, "{scales:?}");
     }
 }
