@@ -3,7 +3,7 @@
 #![cfg(feature = "std")]
 
 #[path = "../examples/energy.rs"]
-mod energy;
+mod energy_example;
 #[path = "../examples/summation.rs"]
 mod summation;
 
@@ -15,7 +15,7 @@ const PAGE: &str = include_str!("../../docs/paper.md");
 /// the page is in simulation/tests/energy_under_poisson.rs.
 #[test]
 fn no_gain_is_found_under_poissons_hypothesis() {
-    let found = energy::search(200);
+    let found = energy_example::search(200);
     assert!(found.solved > 10_000);
     assert!(found.work <= 64.0 * f64::EPSILON, "{found:?}");
     assert!(found.quotient > 0.9 && found.quotient <= 1.0, "{found:?}");
@@ -24,7 +24,7 @@ fn no_gain_is_found_under_poissons_hypothesis() {
 #[test]
 fn lossless_collisions_gain_nothing() {
     for &law in Law::ALL {
-        let (positive, gain, most) = energy::lossless(3000, law);
+        let (positive, gain, most) = energy_example::lossless(3000, law);
         // Newton's law gives v_n2 itself, which leaves no rounding.
         assert!((positive > 0 || law == Law::Newton) && gain == 0, "{law:?} {positive} {gain}");
         // docs/theory.md, 18.8, says 36 of a million.
