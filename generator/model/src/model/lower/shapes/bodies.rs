@@ -132,8 +132,20 @@ impl Lowering<'_> {
         // of a ball the components are the same along all axes, and a frame made by `spin` has none
         let axes = if self.frames[properties.frame.0].no_axes { FrameId::N } else { properties.frame };
         let by = total([shape.at.by.clone(), properties.centre]);
-        let left_out = !record.fields.iter().any(|field| field.name.text == "centre");
-        if left_out {
+        let stated = record.fields.iter().find(|field| field.name.text == "centre");
+        if let Some(centre) = stated {
+            // elsewhere, mass and inertia of the shape would be put at a point that is not its centre
+            let coincides = matches!(by, Vector::Zero) && shape.at.point == self.out.bodies[i].centre;
+            if !coincides {
+                let message = format!("the mass centre of `{}` follows from its shape", record.name.text);
+                let error = Diagnostic::new(codes::SHAPE, centre.value.span, message);
+                let error = error.related(shape.at_span, format!("`{text}` is placed here"));
+                self.report(error.help(format!(
+                    "leave `centre` out and state `at` of `{text}`, or name the point at which the centre of `{text}` is placed"
+                )));
+                return None;
+            }
+        } else {
             let at = Anchor { point: shape.at.point, by: by.clone() };
             self.out.bodies[i].centre = match by {
                 Vector::Zero => at.point,
