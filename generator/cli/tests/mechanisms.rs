@@ -45,7 +45,10 @@ fn they_agree_with_lagranges_equations() {
         }
     }
     let derived = hodograph(&["derive", folder.path().to_str().unwrap()], "");
-    assert_eq!((derived.code, derived.stderr.contains("warning")), (0, false), "{}", derived.stderr);
+    assert_eq!(derived.code, 0, "{}", derived.stderr);
+    // The ends of the spring of `colliding_pendula` coincide with the initial values: a true warning.
+    let warnings: Vec<_> = derived.stderr.lines().filter(|line| line.starts_with("warning[")).collect();
+    assert!(matches!(warnings[..], [told] if told.starts_with("warning[W015]")), "{}", derived.stderr);
     let mut compared = 0;
     let mut faults = Vec::new();
     for expected in &expectations {

@@ -83,7 +83,7 @@ fn what_the_model_states_is_taken_and_told() {
 
 #[test]
 fn a_code_that_does_not_exist_is_named() {
-    for (code, says) in [("E99", "there is no code E99"), ("W4711", "there is no code W4711")] {
+    for (code, says) in [("E987", "there is no code E987"), ("W4711", "there is no code W4711")] {
         let run = hodograph(&["explain", code], "");
         assert_eq!(run.code, 2);
         assert!(run.stderr.contains(says), "{}", run.stderr);
