@@ -565,11 +565,17 @@ def test_motion_up_to_an_error_or_an_interrupt_is_kept():
 def test_control_c_ends_a_motion():
     m = model("planar_double_pendulum")
     timer = threading.Timer(1.0, lambda: os.kill(os.getpid(), signal.SIGINT))
+    # A shell that starts tests in the background has them ignore Ctrl-C.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
     begin = clock.monotonic()
     timer.start()
-    with pytest.raises(KeyboardInterrupt) as caught:
-        # hours, if it were followed to its end
-        m.simulate(1e6, 1e5, mu=0.3, e=0.99, law="stronge", tolerance=1e-12)
+    try:
+        with pytest.raises(KeyboardInterrupt) as caught:
+            # hours, if it were followed to its end
+            m.simulate(1e6, 1e5, mu=0.3, e=0.99, law="stronge", tolerance=1e-12)
+    finally:
+        timer.cancel()
+        signal.signal(signal.SIGINT, before)
     assert clock.monotonic() - begin < 30.0
     assert caught.value.motion.time[0] == 0.0 and len(caught.value.motion.time) >= 1
 
