@@ -16,7 +16,7 @@ use datafusion::physical_plan::ExecutionPlan;
 use datafusion_proto::logical_plan::LogicalExtensionCodec;
 use datafusion_proto::physical_plan::{PhysicalExtensionCodec, PhysicalProtoConverterExtension};
 
-use crate::functions::{ModelFunction, Routine};
+use crate::functions::{ModelFunction, Routine, of_model};
 use crate::models::{Model, shipped};
 use crate::rows::{Range, RowsExec, RowsTable};
 
@@ -39,14 +39,9 @@ fn decode_range(buf: &[u8]) -> Option<(Range, bool)> {
     Some((Range { first: i64::from_le_bytes(*first), end: i64::from_le_bytes(*end) }, *column != 0))
 }
 
-fn model_function(function: &ScalarUDF) -> Option<&ModelFunction> {
-    let any: &dyn std::any::Any = function.inner().as_ref();
-    any.downcast_ref()
-}
-
 /// A model function as bytes; other functions are found by their names.
 fn encode_function(function: &ScalarUDF, buf: &mut Vec<u8>) {
-    let Some(function) = model_function(function) else { return };
+    let Some(function) = of_model(function) else { return };
     let model = &function.model;
     buf.push(if model.shipped { SHIPPED } else { OWN });
     buf.extend(model.digest());

@@ -13,6 +13,7 @@ use datafusion::sql::parser::{DFParser, Statement};
 use futures::StreamExt;
 
 use crate::failure::Failure;
+use crate::functions::check_contacts;
 use crate::output::{self, Digest, Sink};
 use crate::parts::{Parts, row_by_row};
 use crate::progress::{Progress, peak_memory};
@@ -84,6 +85,7 @@ impl Open {
         for statement in statements {
             let plan = context.state().statement_to_plan(statement).await?;
             tables.verify_plan(&plan)?;
+            check_contacts(&plan)?;
             context.execute_logical_plan(plan).await?;
         }
         rows.calls.store(0, Ordering::Relaxed);
@@ -100,6 +102,7 @@ impl Open {
                 error.strip_backtrace()
             ))
         })?;
+        check_contacts(&plan)?;
         Ok(plan)
     }
 

@@ -142,6 +142,43 @@ fn mistakes_are_told_with_their_cause() {
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
 }
 
+/// A contact that no row can have is a mistake of the query, not an answer of its rows.
+#[test]
+fn a_contact_that_is_none_is_refused_when_planning() {
+    let home = tempfile::tempdir().unwrap();
+    let wanted =
+        "chaplygin_sleigh_collide needs the field `contact`: the model has the contacts post, slanted";
+    let short = ["run", "--model", "chaplygin_sleigh", "--sample", "1e4"];
+    let said = fails(home.path(), &short, 2);
+    assert!(said.contains(wanted), "{said}");
+    let call = "chaplygin_sleigh_collide(named_struct('mu', 0.5, 'e', 0.5, 'law', 'newton'))";
+    let said = fails(home.path(), &["run", "--sql", &format!("SELECT {call} AS c FROM rows(10)")], 2);
+    assert!(said.contains(wanted), "{said}");
+
+    let wanted = "chaplygin_sleigh_collide has no contact `wall`; the model has post, slanted";
+    let said = fails(home.path(), &[&short[..], &["--set", "contact=wall"]].concat(), 2);
+    assert!(said.contains(wanted), "{said}");
+    let call = call.replace("'newton'", "'newton', 'contact', 'wall'");
+    let places = [
+        format!("SELECT {call} AS c FROM rows(10)"),
+        format!(
+            "SELECT i FROM rows(10) WHERE i < (SELECT count(*) FROM rows(9) WHERE {call}['kind'] = 'ok')"
+        ),
+        format!("CREATE VIEW hits AS SELECT {call} AS c FROM rows(10); SELECT c FROM hits"),
+        format!("CREATE TABLE hits AS SELECT {call} AS c FROM rows(10); SELECT c FROM hits"),
+    ];
+    for sql in &places {
+        let said = fails(home.path(), &["run", "--sql", sql], 2);
+        assert!(said.contains(wanted), "{sql}: {said}");
+    }
+    let said = fails(home.path(), &["run", "--in-process", "--sql", &places[0]], 2);
+    assert!(said.contains(wanted), "{said}");
+    // the same calls with a contact of the model are answered
+    let shown = succeeds(home.path(), &[&short[..], &["--set", "contact=slanted"]].concat());
+    assert!(shown.contains("digest of the answer"), "{shown}");
+    succeeds(home.path(), &["run", "--sql", &places[0].replace("wall", "post")]);
+}
+
 /// A disk that is full, as a limit on the size of files.
 #[cfg(unix)]
 #[test]

@@ -24,13 +24,13 @@ use datafusion::logical_expr::{AggregateUDF, ScalarUDF};
 
 pub use answers::{OK, path_name};
 pub use hash::hash_rows;
-pub use model::{ModelFunction, Routine};
+pub use model::{ModelFunction, Routine, check_contacts, of_model};
 
 use crate::models::Model;
 
 /// The kind of a row whose law has no such name.
 pub const UNKNOWN_LAW: &str = "unknown_law";
-/// The kind of a row whose contact has no such name, or that names none of several.
+/// The kind of a row whose contact, which comes with the row, has no such name.
 pub const UNKNOWN_CONTACT: &str = "unknown_contact";
 
 fn is_number(given: &DataType) -> bool {

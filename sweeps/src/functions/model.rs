@@ -6,9 +6,11 @@ use std::sync::{Arc, OnceLock};
 
 use datafusion::arrow::array::Array;
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields};
+use datafusion::common::tree_node::{TreeNode, TreeNodeRecursion};
 use datafusion::common::{Result, exec_datafusion_err, plan_datafusion_err, plan_err};
 use datafusion::logical_expr::{
-    ColumnarValue, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility,
+    ColumnarValue, Expr, LogicalPlan, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDF, ScalarUDFImpl,
+    Signature, Volatility,
 };
 use hodograph::{CollisionError, CollisionOutcome, Contacts, Kind, Law, Mechanism, Surface};
 use hodograph_generator::program::Quantity;
@@ -172,11 +174,79 @@ impl ModelFunction {
         }
         let places =
             places::resolve(&self.name, self.mechanism()?, &self.prepared()?.known, self.collides(), given)?;
-        if self.collides() && self.prepared()?.contacts.is_empty() {
+        let contacts = &self.prepared()?.contacts;
+        if self.collides() && contacts.is_empty() {
             return plan_err!("{}: the model has no contacts", self.name);
+        }
+        if self.collides() && contacts.len() > 1 && !places.contains(&Place::Contact) {
+            return plan_err!(
+                "{} needs the field `contact`: the model has the contacts {}",
+                self.name,
+                contacts.join(", ")
+            );
         }
         Ok(places)
     }
+
+    /// Looks at the arguments of a call for a contact that is known when the query is planned: a name that stands
+    /// in the query must be one of the model. Names that come with the rows are answered row by row.
+    ///
+    /// # Errors
+    ///
+    /// A name that the model does not have.
+    pub fn check_contact(&self, arguments: &[Expr]) -> Result<()> {
+        let [Expr::ScalarFunction(made)] = arguments else { return Ok(()) };
+        if !self.collides() || made.func.name() != "named_struct" {
+            return Ok(());
+        }
+        for pair in made.args.chunks_exact(2) {
+            let [Some("contact"), Some(contact)] = [literal(&pair[0]), literal(&pair[1])] else { continue };
+            let contacts = &self.prepared()?.contacts;
+            if !contacts.iter().any(|known| known == contact) {
+                return plan_err!(
+                    "{} has no contact `{contact}`; the model has {}",
+                    self.name,
+                    contacts.join(", ")
+                );
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The text of an expression that is one.
+fn literal(expression: &Expr) -> Option<&str> {
+    match expression {
+        Expr::Literal(value, _) => value.try_as_str().flatten(),
+        _ => None,
+    }
+}
+
+/// Refuses a plan that names a contact which its model does not have.
+///
+/// # Errors
+///
+/// Such a name, and what is wrong with a model.
+pub fn check_contacts(plan: &LogicalPlan) -> Result<()> {
+    plan.apply_with_subqueries(|node| {
+        node.apply_expressions(|expression| {
+            expression.apply(|part| {
+                if let Expr::ScalarFunction(call) = part
+                    && let Some(function) = of_model(&call.func)
+                {
+                    function.check_contact(&call.args)?;
+                }
+                Ok(TreeNodeRecursion::Continue)
+            })
+        })
+    })?;
+    Ok(())
+}
+
+/// The function of a model, where it is one.
+pub fn of_model(function: &ScalarUDF) -> Option<&ModelFunction> {
+    let any: &dyn std::any::Any = function.inner().as_ref();
+    any.downcast_ref()
 }
 
 impl Prepared {
