@@ -16,6 +16,7 @@ use crate::failure::Failure;
 use crate::functions;
 use crate::models::shipped;
 use crate::session;
+use crate::stdout;
 
 /// Seconds between the signs of life of an executor.
 pub const HEARTBEAT: u64 = 2;
@@ -55,7 +56,8 @@ pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
     drop(tokio::net::TcpListener::bind(given.listen).await.map_err(|error| failed(error.to_string()))?);
     let cluster =
         BallistaCluster::new_from_config(&config).await.map_err(|error| failed(error.to_string()))?;
-    println!("scheduler listens at {}", given.listen);
+    // nobody need read it
+    let _ = stdout::line(format_args!("scheduler listens at {}", given.listen));
     start_server(cluster, given.listen, Arc::new(config)).await.map_err(|error| failed(error.to_string()))
 }
 
@@ -112,7 +114,11 @@ pub async fn executor(given: &Executor) -> Result<(), Failure> {
         override_physical_codec: Some(Arc::new(Physical::default())),
         ..Default::default()
     };
-    println!("executor at {} works for the scheduler at {}", given.listen, given.scheduler);
+    // nobody need read it
+    let _ = stdout::line(format_args!(
+        "executor at {} works for the scheduler at {}",
+        given.listen, given.scheduler
+    ));
     start_executor_process(Arc::new(config)).await.map_err(|error| {
         Failure::Engine(format!("the executor of the scheduler at {} stopped: {error}", given.scheduler))
     })

@@ -11,6 +11,8 @@ pub enum Failure {
     Input(String),
     /// the engine, a file or the network failed: status 1
     Engine(String),
+    /// whoever reads the output has enough: status 0
+    ReaderGone,
 }
 
 impl Failure {
@@ -19,6 +21,7 @@ impl Failure {
         match self {
             Self::Input(_) => 2,
             Self::Engine(_) => 1,
+            Self::ReaderGone => 0,
         }
     }
 
@@ -32,6 +35,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Input(message) | Self::Engine(message) => out.write_str(message),
+            Self::ReaderGone => out.write_str("the output is read no further"),
         }
     }
 }

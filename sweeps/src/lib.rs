@@ -2,8 +2,8 @@
 //! mechanisms as functions of its columns.
 //!
 //! `docs/sweeps.md` describes the tool `hodograph-sweep`; the files of this package each know one thing, in
-//! the order in which they build on each other: `failure`, `models`, `functions`, `rows`, `codec`, `session`,
-//! `cluster`, `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
+//! the order in which they build on each other: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`,
+//! `session`, `cluster`, `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
 
 pub mod arguments;
 pub mod cluster;
@@ -19,3 +19,4 @@ pub mod rows;
 pub mod run;
 pub mod session;
 pub mod short;
+pub mod stdout;

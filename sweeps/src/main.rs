@@ -1,20 +1,22 @@
 //! The command `hodograph-sweep`.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use clap::Parser;
 use hodograph_sweeps::arguments::{Arguments, Command, cores};
 use hodograph_sweeps::failure::Failure;
-use hodograph_sweeps::{cluster, describe, output, run};
+use hodograph_sweeps::{cluster, describe, output, run, stdout};
 
 /// Deep plans are deep recursions.
 const STACK: usize = 16 << 20;
 
 fn main() -> ExitCode {
     match act(Arguments::parse().command) {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) | Err(Failure::ReaderGone) => ExitCode::SUCCESS,
         Err(failure) => {
-            eprintln!("error: {failure}");
+            // the status says it too, where nobody reads
+            let _ = writeln!(std::io::stderr(), "error: {failure}");
             ExitCode::from(failure.status())
         }
     }
@@ -30,15 +32,9 @@ fn act(command: Command) -> Result<(), Failure> {
     match command {
         Command::Run(given) => match given.sweep()? {
             Ok(sweep) => runtime(sweep.setup.cores)?.block_on(run::run(&sweep)),
-            Err(sql) => {
-                println!("{sql}");
-                Ok(())
-            }
+            Err(sql) => stdout::line(sql),
         },
-        Command::Functions { model, name } => {
-            println!("{}", describe::functions(&model, name.as_deref())?);
-            Ok(())
-        }
+        Command::Functions { model, name } => stdout::line(describe::functions(&model, name.as_deref())?),
         Command::Verify { files } => verify(&files),
         Command::Scheduler { listen, host, patience } => {
             let host = host.unwrap_or_else(|| listen.ip().to_string());
@@ -62,7 +58,13 @@ fn verify(files: &[std::path::PathBuf]) -> Result<(), Failure> {
     for file in files {
         let (stated, found) = output::digests(file)?;
         match stated {
-            Some(stated) if stated == found => println!("{}: {found}, as stated", file.display()),
+            Some(stated) if stated == found => {
+                match stdout::line(format_args!("{}: {found}, as stated", file.display())) {
+                    // the status speaks of all files, also where nobody reads
+                    Ok(()) | Err(Failure::ReaderGone) => {}
+                    Err(failure) => return Err(failure),
+                }
+            }
             Some(stated) => {
                 return Err(Failure::Engine(format!(
                     "{}: the file states {stated}, its rows have {found}",

@@ -1,5 +1,6 @@
 //! Runs a query: plans it, streams its rows into a file or a summary, in parts where that is asked for.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -19,6 +20,7 @@ use crate::parts::{Parts, row_by_row};
 use crate::progress::{Progress, peak_memory};
 use crate::rows::{COUNTED, RowsFunction};
 use crate::session::{Engine, Setup};
+use crate::stdout;
 
 /// So many rows of the answer are shown.
 const SHOWN: usize = 40;
@@ -59,9 +61,9 @@ impl Summary {
     fn show(&self) -> Result<(), Failure> {
         let flat = self.batches.iter().map(output::flat).collect::<Result<Vec<_>, _>>()?;
         let table = pretty_format_batches(&flat).map_err(|error| Failure::Engine(error.to_string()))?;
-        println!("{table}");
+        stdout::line(table)?;
         if self.rows > SHOWN {
-            println!("and {} more rows", self.rows - SHOWN);
+            stdout::line(format_args!("and {} more rows", self.rows - SHOWN))?;
         }
         Ok(())
     }
@@ -165,8 +167,7 @@ pub async fn run(sweep: &Sweep) -> Result<(), Failure> {
         }
     };
     summary.show()?;
-    report(sweep, digest, rows, started.elapsed().as_secs_f64());
-    Ok(())
+    report(sweep, digest, rows, started.elapsed().as_secs_f64())
 }
 
 fn check(sweep: &Sweep) -> Result<(), Failure> {
@@ -183,22 +184,23 @@ fn check(sweep: &Sweep) -> Result<(), Failure> {
     }
 }
 
-fn report(sweep: &Sweep, digest: Digest, rows: u64, seconds: f64) {
+fn report(sweep: &Sweep, digest: Digest, rows: u64, seconds: f64) -> Result<(), Failure> {
     if rows > 0 {
         let rate = rows as f64 / seconds;
         let cores = match sweep.setup.engine {
             Engine::Cluster(_) => String::new(),
             _ => format!(", {:.3e} rows/s and core", rate / sweep.setup.cores as f64),
         };
-        println!("{:.3e} rows in {seconds:.1} s: {rate:.3e} rows/s{cores}", rows as f64);
+        stdout::line(format_args!("{:.3e} rows in {seconds:.1} s: {rate:.3e} rows/s{cores}", rows as f64))?;
     }
     if let Some(megabytes) = peak_memory() {
-        println!("at most {megabytes:.0} MB of memory");
+        stdout::line(format_args!("at most {megabytes:.0} MB of memory"))?;
     }
-    println!("digest of the answer: {digest}");
+    stdout::line(format_args!("digest of the answer: {digest}"))?;
     if let Some(out) = &sweep.out {
-        println!("written to {}", out.display());
+        stdout::line(format_args!("written to {}", out.display()))?;
     }
+    Ok(())
 }
 
 /// Runs the parts that are not there yet, then makes the answer of all of them.
@@ -236,7 +238,8 @@ async fn in_parts(
             continue;
         }
         if skipped > told && !sweep.quiet {
-            eprintln!("{skipped} rows were done before");
+            // a report that cannot be written is no reason to stop
+            let _ = writeln!(std::io::stderr(), "{skipped} rows were done before");
             told = skipped;
         }
         open.rows.see(Some((index, count)));

@@ -142,6 +142,34 @@ fn mistakes_are_told_with_their_cause() {
     assert_eq!(fs::read_dir(home.path()).unwrap().count(), 0);
 }
 
+/// Whoever reads the output may stop, as `head` does: no panic, and no error.
+#[test]
+fn output_that_nobody_reads_ends_in_silence() {
+    let home = tempfile::tempdir().unwrap();
+    let query = ["run", "--quiet", "--sql", "SELECT i FROM rows(3)"];
+    succeeds(home.path(), &[&query[..], &["--out", "a.parquet"]].concat());
+    let commands: [&[&str]; 4] = [
+        &["run", "--model", "two_sleds", "--sample", "10", "--show-sql"],
+        &["functions"],
+        &["verify", "a.parquet"],
+        &query,
+    ];
+    for arguments in commands {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let output = tool().args(arguments).current_dir(home.path()).stdout(writer).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!((output.status.code(), said.as_str()), (Some(0), ""), "{arguments:?}");
+    }
+    // the status of verify speaks of all files, read or not
+    fs::write(home.path().join("b.parquet"), "damaged").unwrap();
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let verify = ["verify", "a.parquet", "b.parquet"];
+    let output = tool().args(verify).current_dir(home.path()).stdout(writer).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+}
+
 /// A contact that no row can have is a mistake of the query, not an answer of its rows.
 #[test]
 fn a_contact_that_is_none_is_refused_when_planning() {
