@@ -39,7 +39,7 @@ fn names(given: &Fields, approach: bool) -> Result<()> {
     let needed = NEEDED.iter().take(if approach { 6 } else { 9 });
     for name in needed {
         let found = given.iter().find(|field| field.name() == name);
-        if !found.is_some_and(|field| *field.data_type() == DataType::Float64) {
+        if found.is_none_or(|field| *field.data_type() != DataType::Float64) {
             return plan_err!(
                 "energy_gained takes the answer of a collision, as energy_gained(two_sleds_collide(..)) or energy_gained(solve(..), vn, vt, vs); \
                  what is given has no number `{name}`"
