@@ -188,8 +188,8 @@ impl ModelFunction {
         Ok(places)
     }
 
-    /// Looks at the arguments of a call for a contact that is known when the query is planned: a name that stands
-    /// in the query must be one of the model. Names that come with the rows are answered row by row.
+    /// Looks at the arguments of a call for a contact that is known when the query is planned: a name that
+    /// stands in the query must be one of the model. Names that come with the rows are answered row by row.
     ///
     /// # Errors
     ///
