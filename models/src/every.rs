@@ -6,11 +6,11 @@
 /// `every_mechanism!(mine, f64;)` becomes `mine! { f64; "arm_7dof" arm_7dof Arm7dof, .. }`.
 #[cfg_attr(feature = "all", doc = "```")]
 #[cfg_attr(not(feature = "all"), doc = "```ignore")]
-/// use hodograph::{Kind, Mechanism};
+/// use hodograph::{ComponentKind, Mechanism};
 ///
 /// macro_rules! speeds {
 ///     ($($feature:literal $module:ident $mechanism:ident,)*) => {
-///         [$(($feature, hodograph_models::$module::$mechanism::<f64>::default().count(Kind::Speed))),*]
+///         [$(($feature, hodograph_models::$module::$mechanism::<f64>::default().count(ComponentKind::Speed))),*]
 ///     };
 /// }
 ///

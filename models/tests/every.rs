@@ -1,14 +1,14 @@
 //! The list of `every_mechanism!` names every model file, and each module of it exists.
 #![cfg(feature = "all")]
 
-use hodograph::{Kind, Mechanism};
+use hodograph::{ComponentKind, Mechanism};
 
 macro_rules! listed {
     ($($feature:literal $module:ident $mechanism:ident,)*) => {
         [$((
             $feature,
             stringify!($module),
-            hodograph_models::$module::$mechanism::<f64>::default().count(Kind::Speed),
+            hodograph_models::$module::$mechanism::<f64>::default().count(ComponentKind::Speed),
         )),*]
     };
 }

@@ -93,8 +93,8 @@ pub use crate::{
     impact::{Impact, Path, energy_gained},
     law::{Law, UnknownName},
     mechanism::{
-        ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, Component, ContactOutcome,
-        ContactState, Contacts, Kind, Mechanism, ParameterError, State, StateError,
+        ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, Component, ComponentKind,
+        ContactOutcome, ContactState, Contacts, Mechanism, ParameterError, State, StateError,
     },
     phases::{Motion, Phases, Snapshot},
     phi_bar::{invariant_directions, phi_bar},

@@ -13,7 +13,7 @@ pub(crate) mod slices;
 
 pub use closed::ContactOutcome;
 pub use contacts::{ClosedContacts, CollisionOutcome, ContactState, Contacts};
-pub use description::{Component, Kind};
+pub use description::{Component, ComponentKind};
 pub use error::{ClosedContactError, CollisionError, ParameterError, StateError};
 
 use nalgebra::{Matrix3, Vector3};
@@ -47,12 +47,12 @@ pub struct State<'a, T = f64> {
 /// call the methods of the trait, use the mechanism as `&dyn Mechanism` or in a generic function:
 ///
 /// ```
-/// use hodograph::{Kind, Mechanism, State, StateError};
+/// use hodograph::{ComponentKind, Mechanism, State, StateError};
 ///
 /// /// One step of Euler's method, whatever the mechanism.
 /// fn step(mechanism: &dyn Mechanism, t: f64, dt: f64, q: &mut [f64], u: &mut [f64]) -> Result<(), StateError> {
 ///     let (mut q_rates, mut u_rates) = (vec![0.0; q.len()], vec![0.0; u.len()]);
-///     let inputs = vec![0.0; mechanism.count(Kind::Input)];
+///     let inputs = vec![0.0; mechanism.count(ComponentKind::Input)];
 ///     let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
 ///     mechanism.coordinate_rates(&state, &mut q_rates)?;
 ///     mechanism.accelerations(&state, &mut u_rates)?;
@@ -70,11 +70,11 @@ pub trait Mechanism<T: Scalar = f64> {
     /// The name of the mechanism in the model.
     fn name(&self) -> &str;
     /// How many of a kind it has.
-    fn count(&self, kind: Kind) -> usize;
+    fn count(&self, kind: ComponentKind) -> usize;
     /// Name and unit of one of a kind; `None` past the last.
-    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>>;
+    fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>>;
     /// The number of the one with this name, as the model spells it; `None` if there is none.
-    fn index(&self, kind: Kind, name: &str) -> Option<usize> {
+    fn index(&self, kind: ComponentKind, name: &str) -> Option<usize> {
         (0..self.count(kind))
             .find(|&index| self.component(kind, index).is_some_and(|found| found.name == name))
     }
@@ -82,7 +82,7 @@ pub trait Mechanism<T: Scalar = f64> {
     /// The configuration equations of closed loops determine dependent coordinates.
     fn dependent_coordinate(&self, index: usize) -> Option<usize>;
 
-    /// The parameters in use, in the order of [`Kind::Parameter`].
+    /// The parameters in use, in the order of [`ComponentKind::Parameter`].
     fn parameter_values(&self, parameters: &mut [T]) -> Result<(), StateError>;
     /// Changes the parameters. Where they are refused, the mechanism stays as it is.
     fn set_parameter_values(&mut self, parameters: &[T]) -> Result<(), ParameterError>;
@@ -138,18 +138,18 @@ pub trait Mechanism<T: Scalar = f64> {
         jacobian: &mut [T],
     ) -> Result<(), StateError>;
 
-    /// Rows and columns of a quantity of [`Kind::Quantity`]; `None` past the last.
+    /// Rows and columns of a quantity of [`ComponentKind::Quantity`]; `None` past the last.
     fn quantity_shape(&self, quantity: usize) -> Option<(usize, usize)> {
         let _ = quantity;
         None
     }
-    /// Computes a quantity of [`Kind::Quantity`], by rows; [`Mechanism::component`] has its name and unit. Where
+    /// Computes a quantity of [`ComponentKind::Quantity`], by rows; [`Mechanism::component`] has its name and unit. Where
     /// all positions are known these are `momentum`, `angular_momentum` (about O), `central_angular_momentum`
     /// (about the mass centre), `mass_centre_position` and `mass_centre_velocity`, along N.x, N.y, N.z. A
     /// mechanism lacks those that its model does not determine.
     fn quantity(&self, quantity: usize, state: &State<'_, T>, values: &mut [T]) -> Result<(), StateError> {
         let _ = (state, values);
-        Err(StateError::Missing { kind: Kind::Quantity, index: quantity })
+        Err(StateError::Missing { kind: ComponentKind::Quantity, index: quantity })
     }
     /// Angular momentum of all bodies about a point of the model, along N.x, N.y, N.z, kg m^2/s: that about O
     /// less r x P, with the position r of the point and the momentum P. Point 0 is O. The velocity of the point
@@ -161,7 +161,7 @@ pub trait Mechanism<T: Scalar = f64> {
     fn angular_momentum_about(&self, point: usize, state: &State<'_, T>) -> Result<Vector3<T>, StateError> {
         let named = |name: &str| {
             let undefined = StateError::Undefined { what: "angular momentum about this point" };
-            let index = self.index(Kind::Quantity, name).ok_or(undefined)?;
+            let index = self.index(ComponentKind::Quantity, name).ok_or(undefined)?;
             let mut values = [T::zero(); 3];
             self.quantity(index, state, &mut values)?;
             Ok(Vector3::from(values))
@@ -182,10 +182,7 @@ pub trait Mechanism<T: Scalar = f64> {
         point: usize,
         state: &State<'_, T>,
         accelerations: &[T],
-    ) -> Result<Vector3<T>, StateError> {
-        let _ = (point, state, accelerations);
-        Err(StateError::Undefined { what: "acceleration of this point" })
-    }
+    ) -> Result<Vector3<T>, StateError>;
     /// Partial velocities of a point (3 x `p`) along N.x, N.y, N.z (rows) for the independent speeds
     /// (columns).
     fn jacobian(&self, point: usize, state: &State<'_, T>, jacobian: &mut [T]) -> Result<(), StateError>;

@@ -42,13 +42,13 @@ impl<T> Surface<T> {
     /// # let matrix = ReducedMatrix::new(0.22510385, -0.10936656, 0.12575887, 0.23598633, 0.11584858, 0.27021211);
     /// # let approach = Vector3::new(-0.946108022, 1.06306701, 0.0);
     /// let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge };
-    /// assert_eq!(solve(&matrix, &approach, &surface.within(16))?, solve(&matrix, &approach, &surface)?);
-    /// let stopped = solve(&matrix, &approach, &surface.within(1));
+    /// assert_eq!(solve(&matrix, &approach, &surface.with_budget(16))?, solve(&matrix, &approach, &surface)?);
+    /// let stopped = solve(&matrix, &approach, &surface.with_budget(1));
     /// assert!(matches!(stopped, Err(ImpactError::BudgetExceeded { quadratures: 1, .. })));
     /// # Ok::<(), ImpactError<f64>>(())
     /// ```
     #[inline]
-    pub const fn within(self, quadratures: u32) -> Budgeted<T>
+    pub const fn with_budget(self, quadratures: u32) -> Budgeted<T>
     where
         T: Copy,
     {

@@ -26,7 +26,7 @@ fn contact(random: &mut Random) -> (ReducedMatrix<f64>, Vector3<f64>, Surface<f6
 /// one, and that smaller ones are refused.
 fn least<T: Scalar>(solve: impl Fn(&Budgeted<T>) -> Answer<T>, free: &Answer<T>, surface: Surface<T>) -> u32 {
     let bits = |answer: &Answer<T>| format!("{answer:?}");
-    let exceeds = |quadratures: u32| match solve(&surface.within(quadratures)) {
+    let exceeds = |quadratures: u32| match solve(&surface.with_budget(quadratures)) {
         Err(ImpactError::BudgetExceeded { quadratures: made, normal_velocity }) => {
             assert_eq!(made, quadratures);
             assert!(normal_velocity.is_finite(), "{surface:?}");
@@ -88,7 +88,7 @@ fn the_velocity_reached_lies_on_the_way() {
     let (matrix, approach, surface) = crate::common::two_sleds(0.6, Law::Stronge);
     let mut last = approach.x;
     for quadratures in 0.. {
-        match solve(&matrix, &approach, &surface.within(quadratures)) {
+        match solve(&matrix, &approach, &surface.with_budget(quadratures)) {
             Err(ImpactError::BudgetExceeded { normal_velocity, .. }) => {
                 assert!(normal_velocity >= last, "{normal_velocity} after {last}");
                 last = normal_velocity;
@@ -107,7 +107,7 @@ fn closed_forms_need_no_quadrature() {
     let matrix = ReducedMatrix::new(1.0, 0.3, 0.0, 2.0, 0.0, 1.0);
     let approach = Vector3::new(-1.0, 0.5, 0.0);
     let surface = Surface { mu: 0.3, e: 0.5, law: Law::Stronge };
-    let hit = solve_structured::<Planar, f64>(&matrix, &approach, &surface.within(0));
+    let hit = solve_structured::<Planar, f64>(&matrix, &approach, &surface.with_budget(0));
     assert_eq!(hit, solve_structured::<Planar, f64>(&matrix, &approach, &surface));
     assert!(hit.is_ok());
 }
@@ -115,12 +115,12 @@ fn closed_forms_need_no_quadrature() {
 #[test]
 fn the_error_says_what_to_do_and_other_mistakes_come_first() {
     let (matrix, approach, surface) = crate::common::two_sleds(0.6, Law::Stronge);
-    let error = solve(&matrix, &approach, &surface.within(1)).unwrap_err();
+    let error = solve(&matrix, &approach, &surface.with_budget(1)).unwrap_err();
     assert_eq!(error.kind(), "budget_exceeded");
     let text = error.to_string();
     assert!(text.contains("budget of 1 ") && text.contains("allow more"), "{text}");
     let surface = Surface { mu: -1.0, ..surface };
-    let error = solve(&matrix, &approach, &surface.within(0)).unwrap_err();
+    let error = solve(&matrix, &approach, &surface.with_budget(0)).unwrap_err();
     assert_eq!(error.kind(), "negative_friction");
 }
 
@@ -131,8 +131,8 @@ fn a_reference_to_a_surface_is_a_surface() {
     assert_eq!(by_reference.quadratures(), u32::MAX);
     assert_eq!(solve(&matrix, &approach, &&surface), solve(&matrix, &approach, &surface));
     assert_eq!(
-        solve(&matrix, &approach, &&surface.within(2)).is_ok(),
-        solve(&matrix, &approach, &surface.within(2)).is_ok()
+        solve(&matrix, &approach, &&surface.with_budget(2)).is_ok(),
+        solve(&matrix, &approach, &surface.with_budget(2)).is_ok()
     );
 }
 

@@ -372,7 +372,7 @@ fn planar_contacts_are_recognised_from_their_numbers() {
         let m = ReducedMatrix { ns: 0.0, ts: 0.0, ss: 0.0, ..full };
         let v = Vector3::new(-1.0, if index % 2 == 0 { 1.0 } else { -1.0 } * random.within(0.1, 2.0), 0.0);
         let surface = Surface { mu: random.within(0.05, 2.0), e: random.within(0.0, 1.0), law: Law::Poisson };
-        let hit = solve(&m, &v, &surface.within(0)).unwrap();
+        let hit = solve(&m, &v, &surface.with_budget(0)).unwrap();
         let closed = solve_structured::<Planar, f64>(&m, &v, &surface).unwrap();
         assert_eq!(hit, closed);
         assert!(!hit.sensitivity.unstable_direction);
@@ -391,7 +391,7 @@ fn planar_contacts_are_recognised_from_their_numbers() {
         let turned = m.turned(cos, sin);
         let w = Vector3::new(v.x, v.y * cos, -v.y * sin);
         let other = solve(&turned, &w, &surface).unwrap();
-        straight += usize::from(solve(&turned, &w, &surface.within(0)).is_ok());
+        straight += usize::from(solve(&turned, &w, &surface.with_budget(0)).is_ok());
         assert!(!other.sensitivity.unstable_direction, "{turned:?}");
         assert!((other.velocity.x - hit.velocity.x).abs() < 1e-10);
         let mobile = ReducedMatrix { ss: 0.1 * m.tt, ..m };

@@ -104,7 +104,7 @@ fn within_every_budget() {
     let mut exceeded = 0;
     for (m, v, surface) in contacts(1000) {
         for budget in [0, 1, 2, 5] {
-            let surface = surface.within(budget);
+            let surface = surface.with_budget(budget);
             let answer = solve(&m, &v, &surface);
             same(&inlined::<General, f64>(&m, &v, &surface), &answer);
             exceeded += u32::from(matches!(answer, Err(ImpactError::BudgetExceeded { .. })));

@@ -5,7 +5,7 @@
 mod story;
 
 use biped::Biped;
-use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
 use hodograph_simulation::{Options, Simulation};
 use story::{Start, Told};
 
@@ -30,7 +30,7 @@ pub fn tell_until(until: f64) -> Told {
     let mut start = Start::of(&biped)?;
     // The toes point down, and the left leg is stretched a little more.
     let mut set = |name: &str, value: f64| {
-        if let Some(place) = Mechanism::index(&biped, Kind::Coordinate, name) {
+        if let Some(place) = Mechanism::index(&biped, ComponentKind::Coordinate, name) {
             start.coordinates[place] = value;
         }
     };
@@ -71,7 +71,7 @@ fn pressures(biped: &dyn Contacts<f64>, simulation: &Simulation<'_>) -> String {
     let parts: Vec<String> = forces
         .iter()
         .filter_map(|(contact, force)| {
-            let name = biped.component(Kind::Contact, *contact)?.name;
+            let name = biped.component(ComponentKind::Contact, *contact)?.name;
             Some(format!("{name} ({:.2} N)", force.x))
         })
         .collect();
@@ -86,7 +86,7 @@ fn draw(biped: &dyn Contacts<f64>, simulation: &Simulation<'_>, story: &mut stor
     for (limb, colour) in LIMBS.iter().zip(["#555", "#37a", "#c73"]) {
         let points: Vec<[f64; 2]> = limb
             .iter()
-            .filter_map(|name| biped.index(Kind::Point, name))
+            .filter_map(|name| biped.index(ComponentKind::Point, name))
             .filter_map(|point| biped.position(point, &state).ok())
             .map(|place| [place.x + shift, place.z])
             .collect();

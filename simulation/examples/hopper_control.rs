@@ -6,7 +6,7 @@ mod story;
 
 use std::sync::Arc;
 
-use hodograph::{Kind, Law, Mechanism, State, Surface};
+use hodograph::{ComponentKind, Law, Mechanism, State, Surface};
 use hodograph_simulation::{Drive, EventKind, Options};
 use hopper::Hopper;
 use story::{Start, Told};
@@ -80,7 +80,7 @@ pub fn tell() -> Told {
     };
     let points: Vec<usize> = ["B1", "B2", "H", "F"]
         .iter()
-        .filter_map(|name| Mechanism::index(&hopper, Kind::Point, name))
+        .filter_map(|name| Mechanism::index(&hopper, ComponentKind::Point, name))
         .collect();
     let mut trail = Vec::new();
     let mut story = story::follow(&hopper, &start, options, (20.0, 0.02), |simulation, story| {

@@ -4,7 +4,7 @@
 
 mod story;
 
-use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface, contact_mode};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface, contact_mode};
 use hodograph_simulation::Options;
 use nalgebra::Vector2;
 use painleve_rod::PainleveRod;
@@ -40,7 +40,7 @@ pub fn tell() -> Told {
     let options =
         Options { surface: Some(Surface { mu: MU, e: 0.5, law: Law::Poisson }), ..Options::default() };
     let ends: Vec<usize> =
-        ["P", "Q"].iter().filter_map(|name| Mechanism::index(&rod, Kind::Point, name)).collect();
+        ["P", "Q"].iter().filter_map(|name| Mechanism::index(&rod, ComponentKind::Point, name)).collect();
     let mut story = story::follow(&rod, &start, options, (3.0, 0.04), |simulation, story| {
         let (q, u) = (simulation.coordinates(), simulation.speeds());
         let state = State { time: simulation.time(), coordinates: q, speeds: u, inputs: &[] };

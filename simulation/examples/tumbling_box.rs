@@ -25,8 +25,9 @@ pub fn tell() -> Told {
     let start = Start::of(&body)?;
     let surface = Surface { mu: 0.4, e: 0.4, law: Law::Stronge };
     let options = Options { surface: Some(surface), ..Options::default() };
-    let corners: Vec<usize> =
-        (1..=8).filter_map(|k| Mechanism::index(&body, hodograph::Kind::Point, &format!("P{k}"))).collect();
+    let corners: Vec<usize> = (1..=8)
+        .filter_map(|k| Mechanism::index(&body, hodograph::ComponentKind::Point, &format!("P{k}")))
+        .collect();
     let mut story = story::follow(&body, &start, options, (20.0, 0.08), |simulation, story| {
         let state = hodograph::State {
             time: simulation.time(),

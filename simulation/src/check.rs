@@ -1,9 +1,9 @@
 //! Checks options, surfaces and start state before a motion begins.
 
-use hodograph::{Contacts, Kind, State, Surface};
+use hodograph::{ComponentKind, Contacts, State, Surface};
 
 use crate::pair::Pair;
-use crate::{ContactLaw, Drive, Options, Reason, SimulationError};
+use crate::{ContactLaw, Drive, ErrorKind, Options, SimulationError};
 
 /// Below this the roundings of a step exceed what is asked for, and no step is short enough.
 const LEAST_TOLERANCE: f64 = 1e-16;
@@ -15,8 +15,8 @@ pub(crate) fn check(
     options: &Options,
 ) -> Result<Vec<Option<Pair>>, SimulationError> {
     let error =
-        |contact: Option<usize>, reason: Reason| SimulationError::new(mechanism, state.time, contact, reason);
-    let bad = |message: String| Err(error(None, Reason::Option(message)));
+        |contact: Option<usize>, kind: ErrorKind| SimulationError::new(mechanism, state.time, contact, kind);
+    let bad = |message: String| Err(error(None, ErrorKind::BadOption(message)));
     for (what, value) in [
         ("the relative tolerance", options.relative_tolerance),
         ("the absolute tolerance", options.absolute_tolerance),
@@ -42,9 +42,9 @@ pub(crate) fn check(
         return bad(format!("the sampling time is {period}: it must be positive"));
     }
     for (kind, have) in [
-        (Kind::Coordinate, state.coordinates.len()),
-        (Kind::Speed, state.speeds.len()),
-        (Kind::Input, state.inputs.len()),
+        (ComponentKind::Coordinate, state.coordinates.len()),
+        (ComponentKind::Speed, state.speeds.len()),
+        (ComponentKind::Input, state.inputs.len()),
     ] {
         let count = mechanism.count(kind);
         if have != count {
@@ -55,7 +55,7 @@ pub(crate) fn check(
     if let Some(value) = numbers.iter().find(|value| !value.is_finite()) {
         return bad(format!("a number of the start state is {value}: it must be finite"));
     }
-    let count = mechanism.count(Kind::Contact);
+    let count = mechanism.count(ComponentKind::Contact);
     for (contact, surface) in &options.surfaces {
         if *contact >= count {
             return bad(format!(
@@ -63,7 +63,7 @@ pub(crate) fn check(
             ));
         }
         if let Some(message) = wrong(surface) {
-            return Err(error(Some(*contact), Reason::Option(message)));
+            return Err(error(Some(*contact), ErrorKind::BadOption(message)));
         }
     }
     if let Some(surface) = &options.surface
@@ -82,14 +82,14 @@ pub(crate) fn check(
         }
         if !(stiffness.is_finite() && stiffness > 0.0) {
             let message = format!("its stiffness is {stiffness}: it must be finite and positive");
-            return Err(error(Some(contact), Reason::Option(message)));
+            return Err(error(Some(contact), ErrorKind::BadOption(message)));
         }
     }
     let mut surfaces: Vec<Option<Pair>> = vec![None; count];
     for (contact, slot) in surfaces.iter_mut().enumerate() {
         let gap = mechanism
             .gap(contact, state)
-            .map_err(|error| SimulationError::new(mechanism, state.time, None, Reason::State(error)))?;
+            .map_err(|error| SimulationError::new(mechanism, state.time, None, ErrorKind::State(error)))?;
         // A contact without a gap cannot be seen to close.
         if gap.is_none() {
             continue;
@@ -99,7 +99,7 @@ pub(crate) fn check(
         let Some(surface) = given.or_else(|| mechanism.surface(contact)) else {
             return Err(error(
                 Some(contact),
-                Reason::Option(
+                ErrorKind::BadOption(
                     "no surface is given for it, and the model states none: it needs mu, e and a law"
                         .to_owned(),
                 ),
@@ -109,10 +109,10 @@ pub(crate) fn check(
         let law = match own.map(|(_, law)| law).or(options.law.as_ref()) {
             Some(law) => law.clone(),
             None => ContactLaw::stated(&mechanism.stated_law(contact))
-                .map_err(|message| error(Some(contact), Reason::Option(message)))?,
+                .map_err(|message| error(Some(contact), ErrorKind::BadOption(message)))?,
         };
         let pair = Pair { surface, law };
-        pair.check().map_err(|message| error(Some(contact), Reason::Option(message)))?;
+        pair.check().map_err(|message| error(Some(contact), ErrorKind::BadOption(message)))?;
         *slot = Some(pair);
     }
     Ok(surfaces)

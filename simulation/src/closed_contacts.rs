@@ -1,7 +1,7 @@
 //! Evaluates all closed contacts of a mechanism in a state together: the matrix W, the free accelerations
 //! beta and the velocities.
 
-use hodograph::{Contacts, Kind, ReducedMatrix, State, StateError};
+use hodograph::{ComponentKind, Contacts, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
 use crate::contact_problem::Problem;
@@ -106,7 +106,7 @@ impl ClosedContacts {
         accelerate: bool,
         rates: Option<&mut [f64]>,
     ) -> Result<Self, StateError> {
-        let (k, p) = (contacts.len(), mechanism.count(Kind::Speed));
+        let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
         let mut partials = DMatrix::zeros(p, 3 * k);
         let mut response = DMatrix::zeros(p, 3 * k);
         let mut velocity = DVector::zeros(3 * k);
@@ -232,7 +232,7 @@ impl ClosedContacts {
 
 /// Whether a speed is an angular one.
 pub(crate) fn is_angular(mechanism: &dyn Contacts<f64>, speed: usize) -> bool {
-    let unit = mechanism.component(Kind::Speed, speed).map_or("", |component| component.unit);
+    let unit = mechanism.component(ComponentKind::Speed, speed).map_or("", |component| component.unit);
     unit.contains("rad") || unit.contains("deg")
 }
 

@@ -1,6 +1,6 @@
 //! Takes the end of a step as the new front, and projects states onto the constraints.
 
-use hodograph::Kind;
+use hodograph::ComponentKind;
 
 use crate::drift;
 use crate::event_functions::SIZE;
@@ -8,7 +8,7 @@ use crate::motion::{Failure, Motion};
 use crate::phase::{Closed, Modes};
 use crate::stepper::{self, Step};
 use crate::transition::Transition;
-use crate::{Reason, SimulationError};
+use crate::{ErrorKind, SimulationError};
 
 /// Speeds below this part of the greatest so far are zero.
 const NOTHING: f64 = 1e-100;
@@ -23,7 +23,7 @@ impl Transition<'_> {
         step.corrected(&self.front.y);
         self.arm(step)?;
         self.step = Some((step.clone(), modes));
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         for (scale, speed) in self.front.scale.iter_mut().zip(&self.front.y[n..]) {
             *scale = scale.max(speed.abs());
         }
@@ -38,7 +38,7 @@ impl Transition<'_> {
         let mut y = std::mem::take(&mut self.front.y);
         let modes = self.modes();
         let done = self.project_onto_constraints(&modes, self.front.t, &mut y);
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         for (speed, scale) in y[n..].iter_mut().zip(&self.front.scale) {
             // Repeated corrections of a speed that is zero leave numbers so small that their squares underflow.
             if speed.abs() < NOTHING * scale {
@@ -55,8 +55,8 @@ impl Transition<'_> {
             // Not even the last bit of a quaternion's length changes.
             return Ok(());
         }
-        let n = self.mechanism.count(Kind::Coordinate);
-        let p = self.mechanism.count(Kind::Speed);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        let p = self.mechanism.count(ComponentKind::Speed);
         let closed: Vec<(usize, bool)> =
             modes.closed.iter().map(|closed| (closed.contact, closed.slides.is_none())).collect();
         let mut q = y[..n].to_vec();
@@ -72,7 +72,7 @@ impl Transition<'_> {
             Ok(left)
         })();
         if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
-            return Err(self.error(Some(left.contact), Reason::Drift(left.gap)));
+            return Err(self.error(Some(left.contact), ErrorKind::Drift(left.gap)));
         }
         y[..n].copy_from_slice(&q);
         y[n..n + p].copy_from_slice(&u);

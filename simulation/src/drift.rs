@@ -1,7 +1,7 @@
 //! Corrects the drift of the integration after each step: lengths of quaternions, closed loops, gaps and
 //! velocities of closed contacts.
 
-use hodograph::{Contacts, Kind, State, StateError};
+use hodograph::{ComponentKind, Contacts, State, StateError};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::{ClosedContacts, least_squares};
@@ -18,7 +18,7 @@ pub(crate) fn close_loops(
     inputs: &[f64],
 ) -> Result<(), StateError> {
     mechanism.normalise(coordinates)?;
-    let count = mechanism.count(Kind::DependentCoordinate);
+    let count = mechanism.count(ComponentKind::DependentCoordinate);
     if count == 0 {
         return Ok(());
     }

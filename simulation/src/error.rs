@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use hodograph::{CollisionError, ContactError, Contacts, Kind, StateError};
+use hodograph::{CollisionError, ComponentKind, ContactError, Contacts, StateError};
 
 /// Why a simulation cannot continue, with time and contact.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct SimulationError {
     /// name of the contact, if it is about one
     pub contact: Option<String>,
     /// what is wrong
-    pub reason: Reason,
+    pub kind: ErrorKind,
 }
 
 impl SimulationError {
@@ -21,17 +21,17 @@ impl SimulationError {
         mechanism: &dyn Contacts<f64>,
         time: f64,
         contact: Option<usize>,
-        reason: Reason,
+        kind: ErrorKind,
     ) -> Self {
-        let name = |index| mechanism.component(Kind::Contact, index);
-        Self { time, contact: contact.and_then(name).map(|component| component.name.to_owned()), reason }
+        let name = |index| mechanism.component(ComponentKind::Contact, index);
+        Self { time, contact: contact.and_then(name).map(|component| component.name.to_owned()), kind }
     }
 }
 
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub enum Reason {
+pub enum ErrorKind {
     /// The mechanism has no equations of motion there.
     State(StateError),
     /// A collision has no outcome.
@@ -41,9 +41,9 @@ pub enum Reason {
     /// A contact begins with a negative gap, m.
     Overlap(f64),
     /// An option or a surface is impossible.
-    Option(String),
+    BadOption(String),
     /// A controller or a function of inputs gave a number that is not finite, or has the wrong length.
-    Input(String),
+    BadInput(String),
     /// The integrator's steps became too small.
     Stalled,
     /// So many events followed each other without progress in time.
@@ -82,33 +82,33 @@ pub enum Reason {
         rounding: f64,
     },
     /// Several contacts were struck together and the option says to stop.
-    Together(Vec<String>),
+    StruckTogether(Vec<String>),
     /// Several contacts were struck together, and the impact is not one that can be solved as the option
     /// says: why, and what to do.
-    Lzb(String),
+    LzbNotCovered(String),
     /// The forces at several contacts could not be found.
-    Forces(String),
+    NoForces(String),
 }
 
-impl Reason {
+impl ErrorKind {
     /// A stable lower-case name.
-    pub fn kind(&self) -> &'static str {
+    pub fn name(&self) -> &'static str {
         match self {
             Self::State(error) => error.kind(),
             Self::Collision(error) => error.kind(),
             Self::Contact(error) => error.kind(),
             Self::Overlap(_) => "overlap",
-            Self::Option(_) => "bad_option",
-            Self::Input(_) => "bad_input",
+            Self::BadOption(_) => "bad_option",
+            Self::BadInput(_) => "bad_input",
             Self::Stalled => "stalled",
             Self::EventsWithoutEnd { .. } => "events_without_end",
             Self::NoProgress { .. } => "no_progress",
             Self::Singular => "singular",
             Self::Drift(_) => "drift",
             Self::Rounding { .. } | Self::GapRounding { .. } => "rounding",
-            Self::Together(_) => "struck_together",
-            Self::Lzb(_) => "lzb_not_covered",
-            Self::Forces(_) => "no_forces",
+            Self::StruckTogether(_) => "struck_together",
+            Self::LzbNotCovered(_) => "lzb_not_covered",
+            Self::NoForces(_) => "no_forces",
         }
     }
 }
@@ -120,45 +120,45 @@ impl fmt::Display for SimulationError {
             write!(out, ", contact {contact}")?;
         }
         write!(out, ": ")?;
-        match &self.reason {
-            Reason::State(error) => error.fmt(out),
-            Reason::Collision(error) => error.fmt(out),
-            Reason::Contact(error) => error.fmt(out),
-            Reason::Overlap(gap) => {
+        match &self.kind {
+            ErrorKind::State(error) => error.fmt(out),
+            ErrorKind::Collision(error) => error.fmt(out),
+            ErrorKind::Contact(error) => error.fmt(out),
+            ErrorKind::Overlap(gap) => {
                 write!(out, "the negative gap {gap}: start where the bodies are apart, or touch")
             }
-            Reason::Option(message)
-            | Reason::Input(message)
-            | Reason::Forces(message)
-            | Reason::Lzb(message) => out.write_str(message),
-            Reason::Stalled => write!(
+            ErrorKind::BadOption(message)
+            | ErrorKind::BadInput(message)
+            | ErrorKind::NoForces(message)
+            | ErrorKind::LzbNotCovered(message) => out.write_str(message),
+            ErrorKind::Stalled => write!(
                 out,
                 "the steps of the integration became too small: the motion is singular or too stiff there"
             ),
-            Reason::EventsWithoutEnd { count, modes } => {
+            ErrorKind::EventsWithoutEnd { count, modes } => {
                 write!(out, "{count} events followed each other without progress in time; closed: {modes}")
             }
-            Reason::NoProgress { steps, time, modes } => write!(
+            ErrorKind::NoProgress { steps, time, modes } => write!(
                 out,
                 "{steps} steps of the integration advanced the motion by no more than {time:e} s; closed: {modes}; the model may be singular there"
             ),
-            Reason::Singular => write!(
+            ErrorKind::Singular => write!(
                 out,
                 "the motion ended: the coordinates no longer determine the point at which the bodies touch, such as the lowest point of a disc that lies flat; give the points of the face contacts of their own if it is to go on"
             ),
-            Reason::Drift(gap) => write!(
+            ErrorKind::Drift(gap) => write!(
                 out,
                 "the contact is closed, but its gap is {gap:e} m: the rate of the gap is not the velocity of the point along the normal (a face that ends, or a gap that does not belong to the normal)"
             ),
-            Reason::Rounding { velocity, terms } => write!(
+            ErrorKind::Rounding { velocity, terms } => write!(
                 out,
                 "the normal velocity {velocity:e} m/s is a difference of terms of {terms:e} m/s, whose rounding hides it: slow the bodies down, or choose coordinates in which the motion along the surface is not part of the normal velocity"
             ),
-            Reason::GapRounding { gap, rounding } => write!(
+            ErrorKind::GapRounding { gap, rounding } => write!(
                 out,
                 "the gap {gap:e} m is made of numbers so large that their rounding may be {rounding:e} m: count coordinates from a place nearer to the contact"
             ),
-            Reason::Together(names) => {
+            ErrorKind::StruckTogether(names) => {
                 write!(out, "{} are struck together, and the option is to stop there", names.join(", "))
             }
         }
@@ -167,10 +167,10 @@ impl fmt::Display for SimulationError {
 
 impl std::error::Error for SimulationError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match &self.reason {
-            Reason::State(error) => Some(error),
-            Reason::Collision(error) => Some(error),
-            Reason::Contact(error) => Some(error),
+        match &self.kind {
+            ErrorKind::State(error) => Some(error),
+            ErrorKind::Collision(error) => Some(error),
+            ErrorKind::Contact(error) => Some(error),
             _ => None,
         }
     }

@@ -1,7 +1,7 @@
 //! The functions of a step whose zeros are events: gaps, normal forces, cones of friction, functions of the
 //! user.
 
-use hodograph::{Kind, State};
+use hodograph::{ComponentKind, State};
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{JAM, margins};
@@ -9,7 +9,7 @@ use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::stepper::Step;
 use crate::transition::Transition;
-use crate::{Reason, SimulationError};
+use crate::{ErrorKind, SimulationError};
 
 /// A contact that lifts off is apart where its gap is above this part of the length of the problem.
 const LIFTED: f64 = 5e-11;
@@ -61,7 +61,7 @@ impl Transition<'_> {
     /// What must be watched over the next time `h`, and what rounding may do to it.
     pub(crate) fn watched(&self, closed: &[Closed], h: f64) -> (Vec<Watched>, Vec<f64>) {
         let (mut watched, mut noise) = (Vec::new(), Vec::new());
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         for (contact, phase) in self.front.phases.iter().enumerate() {
             if let Phase::Open(leaving) = phase
                 && self.surfaces[contact].is_some()
@@ -88,7 +88,7 @@ impl Transition<'_> {
             watched.push(Watched::Jam);
             noise.push(0.0);
         }
-        let (q, u) = (&self.front.y[..n], &self.front.y[n..n + self.mechanism.count(Kind::Speed)]);
+        let (q, u) = (&self.front.y[..n], &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)]);
         for (index, function) in self.options.events.iter().enumerate() {
             let value = function(self.front.t, q, u);
             watched.push(Watched::User(index, if value < 0.0 { -1.0 } else { 1.0 }));
@@ -99,7 +99,7 @@ impl Transition<'_> {
 
     /// What rounding may do to a gap, m.
     fn rounding_of_gap(&self, contact: usize) -> f64 {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let size =
             self.front.y[..n].iter().fold(SIZE * self.front.scales.length, |size, q| size.max(q.abs()));
         4.0 * f64::EPSILON * self.gap_size(contact, size)
@@ -109,14 +109,14 @@ impl Transition<'_> {
     ///
     /// # Errors
     ///
-    /// [`Reason::GapRounding`].
+    /// [`ErrorKind::GapRounding`].
     pub(crate) fn gap_is_known(&self, contact: usize) -> Result<(), SimulationError> {
         let rounding = self.rounding_of_gap(contact);
         if rounding <= HIDDEN * self.front.scales.length {
             return Ok(());
         }
         let gap = self.mechanism.gap(contact, &self.here()).ok().flatten().unwrap_or(0.0);
-        Err(self.error(Some(contact), Reason::GapRounding { gap, rounding }))
+        Err(self.error(Some(contact), ErrorKind::GapRounding { gap, rounding }))
     }
 
     /// The sizes of the terms that make up a gap: the greatest coordinate, or, far from the origin, the sum of
@@ -144,8 +144,8 @@ impl Transition<'_> {
     /// What rounding may do to the mean normal velocity of a contact: 4 eps of the terms of its velocity; of that
     /// no more than cannot be seen, or than 4 eps of the terms of the normal velocity itself.
     fn rounding_of_rate(&self, contact: usize) -> f64 {
-        let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         ClosedContacts::new(self.mechanism, &state, &[contact], false).map_or(0.0, |support| {
@@ -228,9 +228,9 @@ impl Transition<'_> {
     /// By how much angles turn in a step at most, beside what nine points show. `None` for a step that would be
     /// looked at in too many pieces.
     pub(crate) fn turns(&self, closed: &[Closed], step: &Step) -> Option<f64> {
-        let (n, motion) = (self.mechanism.count(Kind::Coordinate), self.motion(closed));
+        let (n, motion) = (self.mechanism.count(ComponentKind::Coordinate), self.motion(closed));
         let angular: Vec<f64> = (0..n)
-            .map(|index| match self.mechanism.component(Kind::Coordinate, index).map(|c| c.unit) {
+            .map(|index| match self.mechanism.component(ComponentKind::Coordinate, index).map(|c| c.unit) {
                 Some("rad" | "deg") => 1.0,
                 // A quaternion turns by half the angle.
                 Some("1" | "") => 2.0,
@@ -332,8 +332,8 @@ impl Transition<'_> {
         if lifted.is_empty() {
             return Ok(());
         }
-        let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
         let inputs =
             self.motion(&[]).inputs(self.front.t, &self.front.y).map_err(|failure| self.failure(failure))?;
         let state = State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &inputs };

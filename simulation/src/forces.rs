@@ -62,8 +62,8 @@ impl Forces {
 pub(crate) enum Lacking {
     /// The contact with this place among the closed ones has none.
     Contact(usize, ContactError<f64>),
-    /// Together they have none.
-    Together,
+    /// No forces of all contacts fit their modes.
+    Common,
 }
 
 /// Forces under which sticking contacts do not accelerate and sliding ones do not part. Where many forces give
@@ -94,9 +94,9 @@ pub(crate) fn forces(
     let slips: Vec<Option<Vector2<f64>>> = holds.iter().map(Hold::direction).collect();
     let modes: Vec<Mode> = slips.iter().map(|slip| slip.map_or(Mode::Stick, Mode::Slide)).collect();
     let problem = support.problem(mu, &slips);
-    let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Together)?;
+    let found = contact_problem::found(&problem, &modes, guess, wanted).map_err(|_| Lacking::Common)?;
     if !found.force.iter().all(|value| value.is_finite()) {
-        return Err(Lacking::Together);
+        return Err(Lacking::Common);
     }
     if let Some(contact) = found.jams
         && found.f <= 0.0

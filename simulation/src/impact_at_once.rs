@@ -14,7 +14,7 @@ use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
-use crate::{Reason, Share, SimulationError};
+use crate::{ErrorKind, Share, SimulationError};
 
 /// Halvings of the share of restitution that does not gain energy.
 const HALVINGS: usize = 40;
@@ -122,7 +122,9 @@ impl Transition<'_> {
             solve(support, &mu, &e).map_err(|unsolved| {
                 self.error(
                     Some(contacts[0]),
-                    Reason::Forces(format!("the contacts that strike at once have no impulses: {unsolved}")),
+                    ErrorKind::NoForces(format!(
+                        "the contacts that strike at once have no impulses: {unsolved}"
+                    )),
                 )
             })
         };

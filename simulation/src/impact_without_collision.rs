@@ -1,6 +1,6 @@
 //! Impacts without collision: a sliding contact that no finite force can hold (Painleve's paradox).
 
-use hodograph::{CollisionError, CollisionOutcome, ContactState, ImpactError, Kind, State, Surface};
+use hodograph::{CollisionError, CollisionOutcome, ComponentKind, ContactState, ImpactError, State, Surface};
 use nalgebra::Vector2;
 
 use crate::forces::JAM;
@@ -8,7 +8,7 @@ use crate::impacts::MOST;
 use crate::motion::Failure;
 use crate::phase::Phase;
 use crate::transition::Transition;
-use crate::{CollisionRecord, EventKind, Reason, SimulationError};
+use crate::{CollisionRecord, ErrorKind, EventKind, SimulationError};
 
 impl Transition<'_> {
     /// A sliding contact that no finite force holds suffers an impact with zero speed of approach. Then contacts
@@ -20,13 +20,14 @@ impl Transition<'_> {
             return Err(self.error(Some(contact), self.without_end(MOST)));
         }
         let touching = self.touching(Some(contact))?;
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let before = self.front.y[n..n + p].to_vec();
         let (outcome, after) = match self.without_collision(contact, &before) {
             // Alone it would not jam.
             Err(
                 error @ SimulationError {
-                    reason: Reason::Collision(CollisionError::Impact(ImpactError::NoImpact { .. })),
+                    kind: ErrorKind::Collision(CollisionError::Impact(ImpactError::NoImpact { .. })),
                     ..
                 },
             ) => {
@@ -70,7 +71,7 @@ impl Transition<'_> {
         contact: usize,
         speeds: &[f64],
     ) -> Result<(CollisionOutcome<f64>, Vec<f64>), SimulationError> {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
@@ -84,7 +85,7 @@ impl Transition<'_> {
         let outcome = self
             .mechanism
             .impact_without_collision(contact, &state, &surface, &mut after)
-            .map_err(|error| self.error(Some(contact), Reason::Collision(error)))?;
+            .map_err(|error| self.error(Some(contact), ErrorKind::Collision(error)))?;
         Ok((outcome, after))
     }
 }

@@ -3,7 +3,7 @@
 //! Contacts that approach at one time strike at once; those that these impulses press together strike next,
 //! until nothing approaches (docs/theory.md, section 17.13).
 
-use hodograph::{Kind, State};
+use hodograph::{ComponentKind, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::ClosedContacts;
@@ -13,7 +13,7 @@ use crate::pair::Pair;
 use crate::phase::{Leaving, Phase};
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
-use crate::{CollisionRecord, EventKind, ImpactsAtOnce, Reason, SimulationError, SimultaneousCollision};
+use crate::{CollisionRecord, ErrorKind, EventKind, ImpactsAtOnce, SimulationError, SimultaneousCollision};
 
 /// Touching contacts approach where their normal velocity, relative to the first approach, is below minus
 /// this.
@@ -44,10 +44,10 @@ impl Transition<'_> {
         if self.options.together == ImpactsAtOnce::Stop {
             let approaching = self.approaching(&touching, &speeds, None)?;
             if approaching.len() > 1 {
-                let name = |contact: &usize| self.mechanism.component(Kind::Contact, *contact);
+                let name = |contact: &usize| self.mechanism.component(ComponentKind::Contact, *contact);
                 let names = approaching.iter().filter_map(|(contact, _)| name(contact));
                 let names = names.map(|component| component.name.to_owned()).collect();
-                return Err(self.error(Some(first), Reason::Together(names)));
+                return Err(self.error(Some(first), ErrorKind::StruckTogether(names)));
             }
         }
         if self.settles_into_contact(first)? {
@@ -70,7 +70,7 @@ impl Transition<'_> {
 
     /// Takes an impact: speeds, energies, bounces that end, and the event.
     pub(crate) fn take_impact(&mut self, hit: Hit, spread: Option<f64>) {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         self.front.y[n..n + hit.after.len()].copy_from_slice(&hit.after);
         self.front.energy.impacts += hit.energy_change();
         for &(contact, time) in &hit.bounces {
@@ -99,7 +99,7 @@ impl Transition<'_> {
         speeds: &[f64],
         was: &[Phase],
     ) -> Result<(), SimulationError> {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
@@ -141,7 +141,7 @@ impl Transition<'_> {
     ///
     /// # Errors
     ///
-    /// [`Reason::Rounding`] where a normal velocity that would be seen is less than the rounding of its own terms.
+    /// [`ErrorKind::Rounding`] where a normal velocity that would be seen is less than the rounding of its own terms.
     pub(crate) fn unseen(
         &self,
         support: &ClosedContacts,
@@ -156,14 +156,17 @@ impl Transition<'_> {
         let terms = support.normal_size(place, speeds).max(support.normal_size(place, &self.front.scale));
         let (rate, own) = (support.velocity[3 * place], OWN * terms);
         if own > slow && rate.abs() > slow && rate.abs() < own {
-            return Err(self.error(Some(support.contacts[place]), Reason::Rounding { velocity: rate, terms }));
+            return Err(
+                self.error(Some(support.contacts[place]), ErrorKind::Rounding { velocity: rate, terms })
+            );
         }
         Ok(rounding.min(slow.max(own)))
     }
 
     /// Contacts whose gaps are closed, or close now.
     pub(crate) fn touching(&self, first: Option<usize>) -> Result<Vec<usize>, SimulationError> {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let state = State {
             time: self.front.t,
             coordinates: &self.front.y[..n],
@@ -198,7 +201,7 @@ impl Transition<'_> {
         speeds: &[f64],
         first: Option<f64>,
     ) -> Result<Vec<(usize, f64)>, SimulationError> {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
@@ -266,7 +269,7 @@ impl Transition<'_> {
             };
             let hit = match hit {
                 // Impulses of several at once that cannot be proven are not taken: the fastest strikes alone.
-                Err(SimulationError { reason: Reason::Forces(_), .. }) => {
+                Err(SimulationError { kind: ErrorKind::NoForces(_), .. }) => {
                     let fastest = approaching.iter().max_by(|a, b| a.1.total_cmp(&b.1));
                     let alone = fastest.map_or(next[0], |(contact, _)| *contact);
                     self.hit(&[alone], &speeds, faded)?

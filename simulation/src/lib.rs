@@ -77,7 +77,7 @@ pub use crate::{
     contact_law::{ContactLaw, Restitution, Sliding, SpeedFunction},
     drive::{Controller, Drive, InputFunction},
     energy::EnergyAccount,
-    error::{Reason, SimulationError},
+    error::{ErrorKind, SimulationError},
     event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
     given_law::GivenLaw,
     many::{Batch, Case, Outcome, Watch, digest, simulate_many},

@@ -8,7 +8,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 use hodograph::{Contacts, State};
 
-use crate::{ContactPhase, EnergyAccount, EventKind, Options, Progress, Reason, Simulation, SimulationError};
+use crate::{
+    ContactPhase, EnergyAccount, ErrorKind, EventKind, Options, Progress, Simulation, SimulationError,
+};
 
 /// One motion of many: a mechanism with its parameters, a state, and what the motion is to be like.
 #[derive(Clone, Debug)]
@@ -58,7 +60,7 @@ impl Outcome {
     /// A stable lower-case name: `rest`, `moving`, or the kind of the error.
     pub fn kind(&self) -> &'static str {
         match (&self.error, self.rest) {
-            (Some(error), _) => error.reason.kind(),
+            (Some(error), _) => error.kind.name(),
             (None, Some(_)) => "rest",
             (None, None) => "moving",
         }
@@ -224,7 +226,7 @@ where
     let lasts = case.until - case.time;
     if !(lasts >= 0.0 && lasts.is_finite()) {
         let message = format!("until is {}: it must be finite, and not before the start", case.until);
-        return Some(failed(SimulationError::new(mechanism, case.time, None, Reason::Option(message))));
+        return Some(failed(SimulationError::new(mechanism, case.time, None, ErrorKind::BadOption(message))));
     }
     let mut options = case.options.clone();
     // The last step ends with the motion: coordinates, contacts and energies are those of one time.

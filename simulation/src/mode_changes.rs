@@ -1,6 +1,6 @@
 //! Decides the modes of closed contacts at events, and records the events that follow.
 
-use hodograph::{ContactError, ContactMode, Kind, Selection, State};
+use hodograph::{ComponentKind, ContactError, ContactMode, Selection, State};
 use nalgebra::{DVector, Vector2, Vector3};
 
 use crate::closed_contacts::ClosedContacts;
@@ -10,7 +10,7 @@ use crate::motion::{Failure, NO_SLIP};
 use crate::pair::Friction;
 use crate::phase::{Leaving, Phase, mus};
 use crate::transition::Transition;
-use crate::{EventKind, Reason, SimulationError};
+use crate::{ErrorKind, EventKind, SimulationError};
 
 /// The first step of a slip that begins, beside the time of the problem.
 pub(crate) const FIRST: f64 = 5e-7;
@@ -53,7 +53,7 @@ impl Transition<'_> {
                 let forces = evaluation.forces.as_ref();
                 Ok(forces.is_none_or(|forces| hold_good(forces, &evaluation.holds, &mus(&closed))))
             }
-            Err(Failure::Contact(..) | Failure::Together) => Ok(false),
+            Err(Failure::Contact(..) | Failure::NoForces) => Ok(false),
             Err(failure) => Err(self.failure(failure)),
         }
     }
@@ -77,7 +77,7 @@ impl Transition<'_> {
         let front = self.front.clone();
         let events = self.events.len();
         let decided = self.decide_where(&[contact], &was, Held::No);
-        if let Err(SimulationError { reason: Reason::Forces(_), .. }) = &decided {
+        if let Err(SimulationError { kind: ErrorKind::NoForces(_), .. }) = &decided {
             // On the edge neither sticking nor slipping fits: it begins to slip.
             self.front = front;
             self.events.truncate(events);
@@ -156,7 +156,8 @@ impl Transition<'_> {
             self.front.phases[contact] = slip.map_or(Phase::Stick, Phase::Slide);
         }
         self.correct()?;
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let inputs =
             self.motion(&[]).inputs(self.front.t, &self.front.y).map_err(|failure| self.failure(failure))?;
         let state = State {
@@ -193,9 +194,9 @@ impl Transition<'_> {
                 ContactError::ImpactWithoutCollision { .. } | ContactError::Jam { .. },
             ) => self.impact_without_collision(candidates[place]),
             Lacking::Contact(place, error) => {
-                Err(self.error(Some(candidates[place]), Reason::Contact(error)))
+                Err(self.error(Some(candidates[place]), ErrorKind::Contact(error)))
             }
-            Lacking::Together => Err(self.failure(Failure::Together)),
+            Lacking::Common => Err(self.failure(Failure::NoForces)),
         }
     }
 
@@ -225,7 +226,8 @@ impl Transition<'_> {
         &self,
         candidates: &[usize],
     ) -> Result<Vec<Option<Vector2<f64>>>, SimulationError> {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let speeds = &self.front.y[n..n + p];
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
@@ -321,7 +323,8 @@ impl Transition<'_> {
         if !self.front.chatter.is_empty() {
             return Ok(());
         }
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let state = State {
             time: self.front.t,
             coordinates: &self.front.y[..n],

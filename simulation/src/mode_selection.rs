@@ -132,7 +132,7 @@ fn choose_with(
             let free_acceleration = support.beta[3 * contact];
             Lacking::Contact(contact, ContactError::Jam { free_acceleration })
         }
-        _ => Lacking::Together,
+        _ => Lacking::Common,
     })?;
     // Among many forces for this motion, those in the middle.
     match contact_problem::with_modes(problem, &solution.modes) {

@@ -1,7 +1,7 @@
 //! The right-hand side of the integration: the rates of the state while the modes of all contacts stay the
 //! same.
 
-use hodograph::{ContactError, Contacts, Kind, State, StateError};
+use hodograph::{ComponentKind, ContactError, Contacts, State, StateError};
 use nalgebra::{DVector, Vector2};
 
 use crate::Drive;
@@ -23,7 +23,8 @@ pub(crate) const DIRECTION: f64 = 1e-10;
 pub(crate) enum Failure {
     State(StateError),
     Contact(usize, ContactError<f64>),
-    Together,
+    /// No forces of all closed contacts fit their modes.
+    NoForces,
     /// A function of the surfaces of a contact fails.
     Law(usize, String),
     Input(String),
@@ -71,7 +72,8 @@ pub(crate) const WORKS: usize = 2;
 impl Motion<'_> {
     /// Coordinates and speeds.
     pub fn split<'y>(&self, y: &'y [f64]) -> (&'y [f64], &'y [f64]) {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         (&y[..n], &y[n..n + p])
     }
 
@@ -90,7 +92,8 @@ impl Motion<'_> {
 
     /// What is said of an input that is no number.
     pub fn bad_input(&self, index: usize, value: f64) -> String {
-        let name = self.mechanism.component(Kind::Input, index).map_or("?", |component| component.name);
+        let name =
+            self.mechanism.component(ComponentKind::Input, index).map_or("?", |component| component.name);
         format!("the input {name} is {value}: what drives the mechanism must give finite numbers")
     }
 
@@ -157,7 +160,7 @@ impl Motion<'_> {
             let mu = self.mus(&support, &holds)?;
             let lacking = |lacking| match lacking {
                 Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
-                Lacking::Together => Failure::Together,
+                Lacking::Common => Failure::NoForces,
             };
             let solve = |holds: &[Hold]| forces(&support, holds, &mu, None, Wanted::Motion);
             settle_directions(&support, self.closed, &mut holds, &solve);

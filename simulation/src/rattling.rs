@@ -8,7 +8,7 @@
 //! apply the impulses p0 and continue in contact. For one contact it is the rule of docs/theory.md,
 //! section 17.7.
 
-use hodograph::Kind;
+use hodograph::ComponentKind;
 
 use crate::SimulationError;
 use crate::closed_contacts::ClosedContacts;
@@ -77,7 +77,8 @@ impl Transition<'_> {
     /// Makes contacts stay; whether they do, and would not have risen above the tolerance.
     fn lie(&mut self, near: &[usize]) -> Result<bool, SimulationError> {
         let was = self.front.phases.clone();
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let support = self.support(near, false)?;
         let rates: Vec<f64> = (0..near.len()).map(|i| support.velocity[3 * i]).collect();
         let kinetic = self.kinetic()?;

@@ -4,7 +4,7 @@
 //! arms of contacts, the time that in which their free accelerations or their velocities cover it
 //! (docs/theory.md, section 18.14).
 
-use hodograph::{Contacts, Kind, State};
+use hodograph::{ComponentKind, Contacts, State};
 
 use crate::closed_contacts::{ClosedContacts, is_angular};
 
@@ -34,7 +34,7 @@ impl Scales {
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
         let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
         let (mut acceleration, mut speed, mut approach) = (0.0_f64, 0.0_f64, 0.0_f64);
-        for contact in 0..mechanism.count(Kind::Contact) {
+        for contact in 0..mechanism.count(ComponentKind::Contact) {
             let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
             let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
             gaps = gaps.max(gap.abs());

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use hodograph::{Contacts, Kind, State};
+use hodograph::{ComponentKind, Contacts, State};
 use nalgebra::Vector3;
 
 use crate::check::check;
@@ -13,7 +13,7 @@ use crate::phase::{ContactPhase, Modes, Phase};
 use crate::scales::Scales;
 use crate::stepper::Step;
 use crate::transition::Transition;
-use crate::{Drive, EnergyAccount, Event, EventKind, Options, Reason, SimulationError};
+use crate::{Drive, EnergyAccount, ErrorKind, Event, EventKind, Options, SimulationError};
 
 /// A simulation of a mechanism's motion, advanced on demand. Clones continue independently, with the same
 /// results.
@@ -141,7 +141,7 @@ impl<'m> Simulation<'m> {
     /// Makes one step, with the inputs of the controller if its sampling time has come.
     fn proceed(&mut self) -> Result<(), SimulationError> {
         if let Some(contact) = self.front.ended {
-            return Err(self.transition().error(Some(contact), Reason::Singular));
+            return Err(self.transition().error(Some(contact), ErrorKind::Singular));
         }
         if let Some(inputs) = self.sampled_inputs()? {
             self.take(|transition| transition.change_inputs(inputs))?;
@@ -155,7 +155,8 @@ impl<'m> Simulation<'m> {
         if front.next_sample.is_none_or(|due| due > front.t) {
             return Ok(None);
         }
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let Drive::Sampled { period, controller } = &mut self.options.drive else { return Ok(None) };
         let mut inputs = front.held.clone();
         controller.control(front.t, &front.y[..n], &front.y[n..n + p], &mut inputs);
@@ -164,7 +165,7 @@ impl<'m> Simulation<'m> {
         if let Some(bad) = inputs.iter().position(|value| !value.is_finite()) {
             let transition = self.transition();
             let message = transition.motion(&[]).bad_input(bad, inputs[bad]);
-            return Err(transition.error(None, Reason::Input(message)));
+            return Err(transition.error(None, ErrorKind::BadInput(message)));
         }
         Ok(Some(inputs))
     }
@@ -175,13 +176,14 @@ impl<'m> Simulation<'m> {
     ///
     /// The simulation cannot continue; the error has the reason, the time and the contact. Earlier states and
     /// events remain available: advance to an earlier time. A motion that ends by itself does so with the
-    /// event [`crate::EventKind::Singular`], and has no later state: [`Reason::Singular`]. A time that is not finite is refused, and
+    /// event [`crate::EventKind::Singular`], and has no later state: [`ErrorKind::Singular`]. A time that is not finite is refused, and
     /// nothing changes.
     pub fn advance(&mut self, until: f64) -> Result<Progress, SimulationError> {
         if until.is_nan() || until == f64::INFINITY {
-            return Err(self
-                .transition()
-                .error(None, Reason::Option(format!("the time asked for is {until}: it must be finite"))));
+            return Err(self.transition().error(
+                None,
+                ErrorKind::BadOption(format!("the time asked for is {until}: it must be finite")),
+            ));
         }
         loop {
             if self.queue.front().is_some_and(|event| event.time <= until)
@@ -251,7 +253,7 @@ impl<'m> Simulation<'m> {
             self.view = (time.min(self.front.t), state);
         }
         // Integration lets quaternions drift.
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let _ = self.mechanism.normalise(&mut self.view.1[..n]);
     }
 
@@ -262,13 +264,13 @@ impl<'m> Simulation<'m> {
 
     /// Coordinates at [`Simulation::time`].
     pub fn coordinates(&self) -> &[f64] {
-        &self.view.1[..self.mechanism.count(Kind::Coordinate)]
+        &self.view.1[..self.mechanism.count(ComponentKind::Coordinate)]
     }
 
     /// Independent speeds at [`Simulation::time`].
     pub fn speeds(&self) -> &[f64] {
-        let n = self.mechanism.count(Kind::Coordinate);
-        &self.view.1[n..n + self.mechanism.count(Kind::Speed)]
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        &self.view.1[n..n + self.mechanism.count(ComponentKind::Speed)]
     }
 
     /// The inputs at the end of the last step.

@@ -1,6 +1,6 @@
 //! Lets contacts that are struck together answer all at once, by their stiffnesses.
 
-use hodograph::{Kind, Law, State};
+use hodograph::{ComponentKind, Law, State};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::ClosedContacts;
@@ -8,7 +8,7 @@ use crate::contact_law::Restitution;
 use crate::lzb::{self, Fault};
 use crate::motion::Failure;
 use crate::transition::Transition;
-use crate::{EventKind, Reason, Share, SimulationError, SimultaneousCollision};
+use crate::{ErrorKind, EventKind, Share, SimulationError, SimultaneousCollision};
 
 /// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not
 /// touch each other.
@@ -22,7 +22,8 @@ impl Transition<'_> {
         touching: &[usize],
         first: usize,
     ) -> Result<Option<Vec<f64>>, SimulationError> {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         let speeds = self.front.y[n..n + p].to_vec();
         let state = State {
             time: self.front.t,
@@ -61,7 +62,7 @@ impl Transition<'_> {
             let message = format!(
                 "the contacts struck together have no outcome after Liu, Zhao and Brogliato: {why}; let them answer one after the other (sequential)"
             );
-            self.error(Some(contact), Reason::Lzb(message))
+            self.error(Some(contact), ErrorKind::LzbNotCovered(message))
         })?;
         let mut after = speeds.clone();
         let mut shares = Vec::with_capacity(m);
@@ -90,7 +91,7 @@ impl Transition<'_> {
 
     /// The energetic coefficient of restitution of a contact without friction.
     fn energetic(&self, contact: usize) -> Result<f64, SimulationError> {
-        let refused = |message: String| Err(self.error(Some(contact), Reason::Lzb(message)));
+        let refused = |message: String| Err(self.error(Some(contact), ErrorKind::LzbNotCovered(message)));
         let Some(pair) = self.pair(contact) else {
             return refused("the contact has no surface".to_owned());
         };

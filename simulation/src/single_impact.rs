@@ -1,11 +1,11 @@
 //! One of the impacts at a time: of one contact by the exact solver, or of several at once.
 
-use hodograph::{CollisionError, CollisionOutcome, Kind, State, Surface};
+use hodograph::{CollisionError, CollisionOutcome, ComponentKind, State, Surface};
 
 use crate::closed_contacts::{ClosedContacts, free_acceleration};
 use crate::motion::Failure;
 use crate::transition::Transition;
-use crate::{Reason, Share, SimulationError};
+use crate::{ErrorKind, Share, SimulationError};
 
 /// An impact, with the speeds before and after.
 pub(crate) struct Hit {
@@ -65,13 +65,13 @@ impl Transition<'_> {
 
     /// The impact of one contact.
     fn single(&self, contact: usize, speeds: &[f64], faded: bool) -> Result<Hit, SimulationError> {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
         let velocity = self.mechanism.contact_velocity(contact, &state);
         let velocity = velocity.map_err(|error| self.failure(Failure::State(error)))?;
         let surface = self.surface_in_impact(contact, -velocity.x)?;
-        let fault = |error: CollisionError<f64>| self.error(Some(contact), Reason::Collision(error));
+        let fault = |error: CollisionError<f64>| self.error(Some(contact), ErrorKind::Collision(error));
         let solve = |surface: &Surface<f64>, bounces: Vec<(usize, f64)>| {
             let mut after = speeds.to_vec();
             let outcome = self.mechanism.collide(contact, &state, surface, &mut after).map_err(fault)?;
@@ -113,13 +113,13 @@ impl Transition<'_> {
     ) -> Result<Surface<f64>, SimulationError> {
         let pair = self.pair(contact).ok_or("the contact has no surface".to_owned());
         pair.and_then(|pair| pair.in_impact(approach))
-            .map_err(|message| self.error(Some(contact), Reason::Option(message)))
+            .map_err(|message| self.error(Some(contact), ErrorKind::BadOption(message)))
     }
 
     /// The normal acceleration of a contact without its own force, while the others that last keep their
     /// modes.
     fn pull(&self, contact: usize, speeds: &[f64]) -> Result<f64, SimulationError> {
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let mut y = self.front.y.clone();
         y[n..n + speeds.len()].copy_from_slice(speeds);
         let inputs = self.motion(&[]).inputs(self.front.t, &y).map_err(|failure| self.failure(failure))?;

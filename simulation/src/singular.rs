@@ -4,7 +4,7 @@
 //! its rim ever faster before, or changes sides at once. A motion of a single contact ends there: what would
 //! follow is the impact of a whole face (docs/theory.md, section 17.16).
 
-use hodograph::{Kind, State, StateError};
+use hodograph::{ComponentKind, State, StateError};
 
 use crate::motion::{Failure, Motion};
 use crate::phase::Closed;
@@ -55,7 +55,7 @@ impl Transition<'_> {
         before: Option<&[f64]>,
     ) -> Result<f64, StateError> {
         let (q, u) = motion.split(y);
-        let p = self.mechanism.count(Kind::Speed);
+        let p = self.mechanism.count(ComponentKind::Speed);
         let partials = |q: &[f64]| {
             let mut numbers = vec![0.0; 3 * p];
             let state = State { time: t, coordinates: q, speeds: u, inputs: &self.front.held };
@@ -115,7 +115,7 @@ impl Transition<'_> {
         self.front.t = step.t + step.h;
         self.front.y.copy_from_slice(&step.end);
         self.step = Some((step.clone(), modes));
-        let n = self.mechanism.count(Kind::Coordinate);
+        let n = self.mechanism.count(ComponentKind::Coordinate);
         let mut q = self.front.y[..n].to_vec();
         self.mechanism.normalise(&mut q).map_err(|error| self.failure(Failure::State(error)))?;
         self.front.y[..n].copy_from_slice(&q);

@@ -4,7 +4,7 @@ use crate::closed_contacts::ClosedContacts;
 use crate::motion::Failure;
 use crate::phase::{Leaving, Phase};
 use crate::transition::Transition;
-use crate::{Reason, SimulationError};
+use crate::{ErrorKind, SimulationError};
 
 /// Bodies overlap where a gap is below minus this part of the length of the problem at the start;
 /// contacts below it touch.
@@ -28,7 +28,7 @@ impl Transition<'_> {
             let fault = |error| self.failure(Failure::State(error));
             let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
             if gap < -overlap {
-                return Err(self.error(Some(contact), Reason::Overlap(gap)));
+                return Err(self.error(Some(contact), ErrorKind::Overlap(gap)));
             }
             if gap > overlap {
                 continue;

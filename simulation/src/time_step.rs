@@ -2,7 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 
-use hodograph::{ContactError, Kind, State};
+use hodograph::{ComponentKind, ContactError, State};
 use nalgebra::Vector2;
 
 use crate::event_functions::Watched;
@@ -14,7 +14,7 @@ use crate::settled_slip::settled;
 use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
 use crate::transition::Transition;
-use crate::{Reason, SimulationError};
+use crate::{ErrorKind, SimulationError};
 
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.5;
@@ -52,8 +52,8 @@ impl Transition<'_> {
         if let Some(limit) = self.limit() {
             most = most.min(limit - self.front.t);
         }
-        let n = self.mechanism.count(Kind::Coordinate);
-        let speeds = &self.front.y[n..n + self.mechanism.count(Kind::Speed)];
+        let n = self.mechanism.count(ComponentKind::Coordinate);
+        let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
         let ending = ENDING * self.front.scales.time;
         for (i, contact) in closed.iter().enumerate() {
             if !contact.rubs() {
@@ -114,7 +114,7 @@ impl Transition<'_> {
                     return self.end_at(contact);
                 }
                 let modes = self.modes_in_words();
-                return Err(self.error(None, Reason::NoProgress { steps, time, modes }));
+                return Err(self.error(None, ErrorKind::NoProgress { steps, time, modes }));
             }
             self.front.steps = (0, self.front.t, longest);
         }
@@ -137,7 +137,7 @@ impl Transition<'_> {
         for _ in 0..80 {
             if looks.get() > LOOKS {
                 let modes = self.modes_in_words();
-                return Err(self.error(None, Reason::NoProgress { steps: 1, time: most, modes }));
+                return Err(self.error(None, ErrorKind::NoProgress { steps: 1, time: most, modes }));
             }
             let failed = RefCell::new(None);
             let made = {
@@ -192,7 +192,7 @@ impl Transition<'_> {
             let found = found.map(|crossing| (watched[crossing.function], crossing));
             return Ok(Some((step, found)));
         }
-        Err(self.error(None, Reason::Stalled))
+        Err(self.error(None, ErrorKind::Stalled))
     }
 
     /// Handles an integration that cannot continue.
@@ -205,7 +205,7 @@ impl Transition<'_> {
             Some(failure) => Err(self.failure(failure)),
             None => match self.singular_here(&self.closed()) {
                 Some(contact) => self.end_at(contact),
-                None => Err(self.error(None, Reason::Stalled)),
+                None => Err(self.error(None, ErrorKind::Stalled)),
             },
         }
     }

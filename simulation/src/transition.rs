@@ -3,14 +3,14 @@
 //! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] makes one from its
 //! front, and takes its front and its events only when all of it has succeeded.
 
-use hodograph::{Contacts, Kind, State};
+use hodograph::{ComponentKind, Contacts, State};
 
 use crate::front::Front;
 use crate::motion::{Failure, Motion};
 use crate::pair::{Friction, Pair};
 use crate::phase::{Closed, Modes, Phase};
 use crate::stepper::Step;
-use crate::{Event, EventKind, Options, Reason, SimulationError};
+use crate::{ErrorKind, Event, EventKind, Options, SimulationError};
 
 /// A front that is being changed, and what happens to it.
 pub(crate) struct Transition<'s> {
@@ -36,7 +36,8 @@ impl Transition<'_> {
 
     /// The state of another front.
     pub(crate) fn here_of<'f>(&self, front: &'f Front) -> State<'f> {
-        let (n, p) = (self.mechanism.count(Kind::Coordinate), self.mechanism.count(Kind::Speed));
+        let (n, p) =
+            (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
         State { time: front.t, coordinates: &front.y[..n], speeds: &front.y[n..n + p], inputs: &front.held }
     }
 
@@ -82,7 +83,7 @@ impl Transition<'_> {
     /// The coefficients of friction of a contact at a speed of slip, 0 without slip.
     pub(crate) fn friction(&self, contact: usize, slip: f64) -> Result<Friction, SimulationError> {
         let found = self.pair(contact).map_or(Ok(Friction::NONE), |pair| pair.friction(slip));
-        found.map_err(|message| self.error(Some(contact), Reason::Option(message)))
+        found.map_err(|message| self.error(Some(contact), ErrorKind::BadOption(message)))
     }
 
     /// The coefficient of a contact that sticks, or of one whose slip is small.
@@ -107,7 +108,7 @@ impl Transition<'_> {
     /// The closed contacts and what they do, in words.
     pub(crate) fn modes_in_words(&self) -> String {
         let name = |contact: usize| {
-            self.mechanism.component(Kind::Contact, contact).map_or("?", |component| component.name)
+            self.mechanism.component(ComponentKind::Contact, contact).map_or("?", |component| component.name)
         };
         let modes: Vec<String> = self
             .closed()
@@ -121,28 +122,28 @@ impl Transition<'_> {
     }
 
     /// Why the motion ends where so many events follow each other without progress.
-    pub(crate) fn without_end(&self, count: usize) -> Reason {
-        Reason::EventsWithoutEnd { count, modes: self.modes_in_words() }
+    pub(crate) fn without_end(&self, count: usize) -> ErrorKind {
+        ErrorKind::EventsWithoutEnd { count, modes: self.modes_in_words() }
     }
 
     /// An error here and now.
-    pub(crate) fn error(&self, contact: Option<usize>, reason: Reason) -> SimulationError {
-        SimulationError::new(self.mechanism, self.front.t, contact, reason)
+    pub(crate) fn error(&self, contact: Option<usize>, kind: ErrorKind) -> SimulationError {
+        SimulationError::new(self.mechanism, self.front.t, contact, kind)
     }
 
     pub(crate) fn failure(&self, failure: Failure) -> SimulationError {
         match failure {
-            Failure::State(error) => self.error(None, Reason::State(error)),
-            Failure::Contact(contact, error) => self.error(Some(contact), Reason::Contact(error)),
-            Failure::Together => self.error(
+            Failure::State(error) => self.error(None, ErrorKind::State(error)),
+            Failure::Contact(contact, error) => self.error(Some(contact), ErrorKind::Contact(error)),
+            Failure::NoForces => self.error(
                 None,
-                Reason::Forces(
+                ErrorKind::NoForces(
                     "the contacts that are closed have no forces under which they keep their modes"
                         .to_owned(),
                 ),
             ),
-            Failure::Law(contact, message) => self.error(Some(contact), Reason::Option(message)),
-            Failure::Input(message) => self.error(None, Reason::Input(message)),
+            Failure::Law(contact, message) => self.error(Some(contact), ErrorKind::BadOption(message)),
+            Failure::Input(message) => self.error(None, ErrorKind::BadInput(message)),
         }
     }
 }

@@ -7,7 +7,7 @@
 use crate::common::names;
 use crate::common::random::{Random, starts};
 use biped::Biped;
-use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
 use hodograph_simulation::{Event, ImpactsAtOnce, Options, Progress, Simulation};
 
 hodograph::mechanism!("models/biped.mech");
@@ -16,11 +16,12 @@ hodograph::mechanism!("models/biped.mech");
 fn land(biped: &dyn Contacts<f64>, seed: u64) -> Result<usize, String> {
     let mut random = Random(seed + 1);
     let count = |kind| biped.count(kind);
-    let (mut q, mut u) = (vec![0.0; count(Kind::Coordinate)], vec![0.0; count(Kind::Speed)]);
-    let mut inputs = vec![0.0; count(Kind::Input)];
+    let (mut q, mut u) =
+        (vec![0.0; count(ComponentKind::Coordinate)], vec![0.0; count(ComponentKind::Speed)]);
+    let mut inputs = vec![0.0; count(ComponentKind::Input)];
     biped.initial_state(&mut q, &mut u, &mut inputs).unwrap();
     for name in ["qh1", "qh2", "qk1", "qk2", "qa1", "qa2"] {
-        q[Mechanism::index(biped, Kind::Coordinate, name).unwrap()] += random.between(-0.35, 0.35);
+        q[Mechanism::index(biped, ComponentKind::Coordinate, name).unwrap()] += random.between(-0.35, 0.35);
     }
     u.iter_mut().for_each(|u| *u += random.between(-0.3, 0.3));
     let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
@@ -50,7 +51,7 @@ fn land(biped: &dyn Contacts<f64>, seed: u64) -> Result<usize, String> {
     }
     let (q, u) = (simulation.coordinates(), simulation.speeds());
     let state = State { time: simulation.time(), coordinates: q, speeds: u, inputs: &inputs };
-    for contact in 0..count(Kind::Contact) {
+    for contact in 0..count(ComponentKind::Contact) {
         let gap = biped.gap(contact, &state).unwrap().unwrap();
         assert!(gap > -1e-9, "{seed}: gap {gap:e}");
     }

@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use crate::common::random::Random;
 use crate::many::{Ended, Start, follow, model, name, surface, with_parameters};
-use hodograph::{Contacts, Kind, Law, Mechanism};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 
@@ -142,8 +142,8 @@ fn speeds(
     linear: f64,
     angular: f64,
 ) {
-    for index in 0..mechanism.count(Kind::Speed) {
-        let turns = mechanism.component(Kind::Speed, index).is_some_and(|c| c.unit.contains("rad"));
+    for index in 0..mechanism.count(ComponentKind::Speed) {
+        let turns = mechanism.component(ComponentKind::Speed, index).is_some_and(|c| c.unit.contains("rad"));
         let most = if turns { angular } else { linear };
         start.speeds[index] += random.between(-most, most);
     }
@@ -262,10 +262,10 @@ fn toss(m: &InterpretedMechanism, start: &mut Start, random: &mut Random) {
         start.set(m, name, if place < 4 { value / length } else { *value });
     }
     let state = start.state();
-    let gaps = (0..m.count(Kind::Contact)).map(|contact| m.gap(contact, &state).unwrap().unwrap());
+    let gaps = (0..m.count(ComponentKind::Contact)).map(|contact| m.gap(contact, &state).unwrap().unwrap());
     let lowest = gaps.fold(f64::INFINITY, f64::min);
     if lowest < 1e-3 {
-        start.coordinates[m.index(Kind::Coordinate, "z").unwrap()] += 1e-3 - lowest;
+        start.coordinates[m.index(ComponentKind::Coordinate, "z").unwrap()] += 1e-3 - lowest;
     }
 }
 
@@ -341,6 +341,10 @@ fn the_models_have_contacts() {
     ]
     .map(model);
     for mechanism in &families {
-        assert!(mechanism.count(Kind::Contact) >= 3, "{}", name(mechanism, Kind::Contact, 0));
+        assert!(
+            mechanism.count(ComponentKind::Contact) >= 3,
+            "{}",
+            name(mechanism, ComponentKind::Contact, 0)
+        );
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::many::{Start, follow, model, surface};
 use hodograph::Law;
-use hodograph_simulation::{EventKind, Reason, Simulation};
+use hodograph_simulation::{ErrorKind, EventKind, Simulation};
 
 const G: f64 = 9.81;
 const RADIUS: f64 = 0.05;
@@ -57,7 +57,7 @@ fn a_motion_that_has_ended_says_so() {
     assert!(matches!(last.kind, EventKind::Singular), "{last:?}");
     assert_eq!((last.contact, simulation.time()), (Some(0), last.time));
     let error = simulation.advance(1.0).unwrap_err();
-    assert_eq!((error.reason, error.contact.as_deref()), (Reason::Singular, Some("rim")));
+    assert_eq!((error.kind, error.contact.as_deref()), (ErrorKind::Singular, Some("rim")));
     assert!(simulation.advance(0.5 * last.time).is_ok());
     assert!(simulation.coordinates()[2] > 0.0);
 }

@@ -20,7 +20,7 @@ fn times_asked_for_are_checked() {
     assert_eq!((simulation.time(), simulation.coordinates()[1]), (0.0, 1.0));
     for bad in [f64::NAN, f64::INFINITY] {
         let error = simulation.advance(bad).unwrap_err();
-        assert_eq!(error.reason.kind(), "bad_option");
+        assert_eq!(error.kind.name(), "bad_option");
         assert!(error.to_string().contains("must be finite"), "{error}");
     }
     // Refused questions change nothing.
@@ -52,7 +52,7 @@ fn starts_that_touch() {
     }
     let state = State { time: 0.0, coordinates: &[0.0, -1e-6, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
     let error = Simulation::new(&body, &state, surface(0.3, 0.5, Law::Newton)).unwrap_err();
-    assert_eq!((error.reason.kind(), error.contact.as_deref()), ("overlap", Some("c0")));
+    assert_eq!((error.kind.name(), error.contact.as_deref()), ("overlap", Some("c0")));
 }
 
 /// Without weight nothing presses: a body that touches stays or slides on without force, and one that is
@@ -210,7 +210,7 @@ fn surfaces_at_their_limits() {
         let surface = Surface { mu, e, law: Law::Newton };
         let options = Options { surface: Some(surface), ..Options::default() };
         let body: &dyn Contacts<f64> = &body;
-        assert_eq!(Simulation::new(body, &state, options).unwrap_err().reason.kind(), "bad_option");
+        assert_eq!(Simulation::new(body, &state, options).unwrap_err().kind.name(), "bad_option");
     }
 }
 
@@ -236,7 +236,7 @@ fn pushes_whose_times_are_told_are_not_stepped_over() {
     let state = State { time: 0.0, coordinates: &[0.0, 1.0, 0.0], speeds: &[0.0; 3], inputs: &[0.0] };
     for bad in [&[1.0, 1.0][..], &[2.0, 1.0], &[f64::NAN], &[0.0, f64::INFINITY]] {
         let error = Simulation::new(&body, &state, options(bad)).unwrap_err();
-        assert_eq!(error.reason.kind(), "bad_option", "{bad:?}");
+        assert_eq!(error.kind.name(), "bad_option", "{bad:?}");
         assert!(error.to_string().contains("finite and rise"), "{error}");
     }
 }

@@ -95,7 +95,7 @@ fn what_rounding_hides_is_an_error() {
     let body = Body::new(1.0, 1.0, &[floor]);
     let mut simulation = start(&body, &[0.0, 1e16 + 4.0, 0.0], &[0.0; 3], surface(0.2, 0.5, Law::Newton));
     let error = simulation.advance(20.0).unwrap_err();
-    assert_eq!((error.reason.kind(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
+    assert_eq!((error.kind.name(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
     assert!(error.to_string().contains("from a place nearer to the contact"), "{error}");
     // Along a slope the normal velocity is a difference of large numbers.
     let slope = Line { tilt: 0.7, ..Line::floor(Part::Point(0.0, 0.0)) };
@@ -103,7 +103,7 @@ fn what_rounding_hides_is_an_error() {
     let u = [1e16 * 0.7_f64.cos(), -1e16 * 0.7_f64.sin(), 0.0];
     let mut simulation = start(&body, &[0.0, 1.0, 0.0], &u, surface(0.2, 0.5, Law::Newton));
     let error = simulation.advance(2.0).unwrap_err();
-    assert_eq!((error.reason.kind(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
+    assert_eq!((error.kind.name(), error.contact.as_deref()), ("rounding", Some("c0")), "{error}");
 }
 
 /// All the bounces of a body that slides: the impulse of friction is mu times the normal one, which is known

@@ -1,7 +1,7 @@
 //! Bodies at the edge of friction: a thousandth of a billionth decides whether they stick or slide.
 
 use crate::many::{Ended, Start, follow, model, surface};
-use hodograph::{Kind, Law, Mechanism};
+use hodograph::{ComponentKind, Law, Mechanism};
 
 const G: f64 = 9.81;
 /// tan of the angle of the incline in the model
@@ -30,7 +30,7 @@ fn moves(end: &Ended, index: usize, wanted: f64, rounding: f64, what: &str) {
 #[test]
 fn a_box_on_four_corners_sticks_or_slides() {
     let mechanism = model("box_on_incline");
-    let down = mechanism.index(Kind::Speed, "ux").unwrap();
+    let down = mechanism.index(ComponentKind::Speed, "ux").unwrap();
     for (k, excess) in EXCESS.into_iter().enumerate() {
         for turn in [0.0, 0.37 * (k + 1) as f64] {
             let mut start = Start::of(&mechanism);
@@ -47,7 +47,7 @@ fn a_box_on_four_corners_sticks_or_slides() {
 #[test]
 fn a_crate_on_two_feet_sticks_or_slides() {
     let mechanism = model("crate");
-    let along = mechanism.index(Kind::Speed, "u1").unwrap();
+    let along = mechanism.index(ComponentKind::Speed, "u1").unwrap();
     for excess in EXCESS {
         let mut start = Start::of(&mechanism);
         start.set(&mechanism, "push", 2.0 * G * (TAN - excess));

@@ -1,7 +1,7 @@
 //! Mechanisms with several contacts whose motions statics or a closed form knows.
 
 use crate::many::{Ended, Start, follow, model, surface, with_parameters};
-use hodograph::{Kind, Law, Mechanism, Surface};
+use hodograph::{ComponentKind, Law, Mechanism, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Options, Simulation};
 
@@ -17,11 +17,11 @@ fn run(mechanism: &InterpretedMechanism, changes: &[(&str, f64)], (mu, e): (f64,
 }
 
 fn coordinate(mechanism: &InterpretedMechanism, end: &Ended, name: &str) -> f64 {
-    end.coordinates[mechanism.index(Kind::Coordinate, name).unwrap()]
+    end.coordinates[mechanism.index(ComponentKind::Coordinate, name).unwrap()]
 }
 
 fn speed(mechanism: &InterpretedMechanism, end: &Ended, name: &str) -> f64 {
-    end.speeds[mechanism.index(Kind::Speed, name).unwrap()]
+    end.speeds[mechanism.index(ComponentKind::Speed, name).unwrap()]
 }
 
 fn near(value: f64, wanted: f64, within: f64) {
@@ -117,7 +117,7 @@ fn cylinders_in_a_trough_press_as_statics_says() {
         _ => 0.5 * G / rise.sin(),
     };
     for (contact, force) in forces {
-        let name = trough.component(Kind::Contact, contact).unwrap().name;
+        let name = trough.component(ComponentKind::Contact, contact).unwrap().name;
         near(force.x, wanted(name), 1e-13);
     }
 }
@@ -204,7 +204,7 @@ fn a_car_brakes() {
     }
     let mu = 0.5;
     let smooth = Surface { mu: 0.0, e: 0.0, law: Law::Poisson };
-    let rear = |name: &str| (car.index(Kind::Contact, name).unwrap(), smooth);
+    let rear = |name: &str| (car.index(ComponentKind::Contact, name).unwrap(), smooth);
     let options = Options { surfaces: vec![rear("w2"), rear("w3")], ..surface(mu, 0.0, Law::Poisson) };
     let end = follow(&car, &Start::of(&car), options, 1.0);
     assert!(end.error.is_none());

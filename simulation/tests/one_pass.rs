@@ -1,6 +1,6 @@
 //! What forces of closed contacts follow from, by generated modules in one pass and by their single methods.
 
-use hodograph::{ClosedContacts, Contacts, Kind, State, StateError};
+use hodograph::{ClosedContacts, ComponentKind, Contacts, State, StateError};
 
 use crate::{bipeds, bodies, table, tosses, tumbling};
 
@@ -9,7 +9,7 @@ use crate::{bipeds, bodies, table, tosses, tumbling};
 type Numbers = [Vec<f64>; 6];
 
 fn room(mechanism: &dyn Contacts<f64>, k: usize) -> Numbers {
-    let (n, p) = (mechanism.count(Kind::Coordinate), mechanism.count(Kind::Speed));
+    let (n, p) = (mechanism.count(ComponentKind::Coordinate), mechanism.count(ComponentKind::Speed));
     [n, p, 3 * p * k, 3 * p * k, 3 * k, 3 * k].map(|count| vec![0.0; count])
 }
 
@@ -37,7 +37,7 @@ fn one_by_one(
     contacts: &[usize],
     state: &State<'_>,
 ) -> Result<Numbers, StateError> {
-    let p = mechanism.count(Kind::Speed);
+    let p = mechanism.count(ComponentKind::Speed);
     let mut numbers = room(mechanism, contacts.len());
     let [q, u, partial, response, velocity, free] = &mut numbers;
     mechanism.coordinate_rates(state, q)?;
@@ -55,10 +55,11 @@ fn one_by_one(
 /// Both have the same bits, of any contacts in any order.
 fn check(mechanism: &dyn Contacts<f64>) {
     let count = |kind| mechanism.count(kind);
-    let (mut q, mut u) = (vec![0.0; count(Kind::Coordinate)], vec![0.0; count(Kind::Speed)]);
-    let mut inputs = vec![0.0; count(Kind::Input)];
+    let (mut q, mut u) =
+        (vec![0.0; count(ComponentKind::Coordinate)], vec![0.0; count(ComponentKind::Speed)]);
+    let mut inputs = vec![0.0; count(ComponentKind::Input)];
     mechanism.initial_state(&mut q, &mut u, &mut inputs).unwrap();
-    let all: Vec<usize> = (0..count(Kind::Contact)).rev().collect();
+    let all: Vec<usize> = (0..count(ComponentKind::Contact)).rev().collect();
     for turn in 0..5 {
         q.iter_mut().enumerate().for_each(|(i, q)| *q += 0.02 * (1.7 * i as f64 + f64::from(turn)).sin());
         u.iter_mut().enumerate().for_each(|(i, u)| *u += 0.3 * (1.3 * i as f64 + f64::from(turn)).cos());
@@ -99,12 +100,13 @@ fn one_pass_has_the_bits_of_the_single_methods() {
     let mut checked = 0;
     for mechanism in shipped() {
         let count = |kind| mechanism.count(kind);
-        let (mut q, mut u) = (vec![0.0; count(Kind::Coordinate)], vec![0.0; count(Kind::Speed)]);
-        let mut inputs = vec![0.0; count(Kind::Input)];
+        let (mut q, mut u) =
+            (vec![0.0; count(ComponentKind::Coordinate)], vec![0.0; count(ComponentKind::Speed)]);
+        let mut inputs = vec![0.0; count(ComponentKind::Input)];
         mechanism.initial_state(&mut q, &mut u, &mut inputs).unwrap();
         let state = State { time: 0.4, coordinates: &q, speeds: &u, inputs: &inputs };
-        let all: Vec<usize> = (0..count(Kind::Contact)).collect();
-        if count(Kind::DependentCoordinate) == 0
+        let all: Vec<usize> = (0..count(ComponentKind::Contact)).collect();
+        if count(ComponentKind::DependentCoordinate) == 0
             && !all.is_empty()
             && one_by_one(&*mechanism, &all, &state).is_ok()
         {

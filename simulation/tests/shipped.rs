@@ -5,8 +5,8 @@
 
 use crate::common::names;
 use crate::common::random::{Random, starts};
-use hodograph::{CollisionError, Contacts, ImpactError, Kind, Law, State, StateError, Surface};
-use hodograph_simulation::{Event, Options, Progress, Reason, Simulation, SimulationError};
+use hodograph::{CollisionError, ComponentKind, Contacts, ImpactError, Law, State, StateError, Surface};
+use hodograph_simulation::{ErrorKind, Event, Options, Progress, Simulation, SimulationError};
 
 /// What became of the starts of a model.
 #[derive(Debug, Default)]
@@ -32,8 +32,9 @@ enum End {
 /// A start at which all contacts that have a gap are open.
 fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<f64>) {
     let count = |kind| model.count(kind);
-    let (mut q, mut u) = (vec![0.0; count(Kind::Coordinate)], vec![0.0; count(Kind::Speed)]);
-    let mut inputs = vec![0.0; count(Kind::Input)];
+    let (mut q, mut u) =
+        (vec![0.0; count(ComponentKind::Coordinate)], vec![0.0; count(ComponentKind::Speed)]);
+    let mut inputs = vec![0.0; count(ComponentKind::Input)];
     model.initial_state(&mut q, &mut u, &mut inputs).unwrap();
     let (middle, rates) = (q, u);
     for _ in 0..10_000 {
@@ -44,7 +45,7 @@ fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<
         }
         let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
         let open = |contact| !matches!(model.gap(contact, &state), Ok(Some(gap)) if gap < 1e-3);
-        if (0..count(Kind::Contact)).all(open) && model.kinetic_energy(&state).is_ok() {
+        if (0..count(ComponentKind::Contact)).all(open) && model.kinetic_energy(&state).is_ok() {
             return (q, u);
         }
     }
@@ -62,7 +63,7 @@ fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> End {
     let law = Law::ALL[random.place(Law::ALL.len())];
     let surface = Surface { mu: random.between(0.0, 1.2), e: random.between(0.0, 0.9), law };
     let options = Options { surface: Some(surface), ..Options::default() };
-    let inputs = vec![0.0; model.count(Kind::Input)];
+    let inputs = vec![0.0; model.count(ComponentKind::Input)];
     let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
     let mut simulation = Simulation::new(model, &state, options).unwrap();
     let mut seen: Vec<Event> = Vec::new();
@@ -79,12 +80,12 @@ fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> End {
                 Ok(Progress::Event(event)) => seen.push(event),
                 Ok(Progress::Reached) => break,
                 // The angles of the model have poles, as its text says.
-                Err(SimulationError { reason: Reason::State(StateError::Singular { .. }), .. }) => {
+                Err(SimulationError { kind: ErrorKind::State(StateError::Singular { .. }), .. }) => {
                     *events += seen.len();
                     return End::Pole;
                 }
                 Err(SimulationError {
-                    reason: Reason::Collision(CollisionError::Impact(ImpactError::Wedged { .. })),
+                    kind: ErrorKind::Collision(CollisionError::Impact(ImpactError::Wedged { .. })),
                     ..
                 }) if model.name() == "BallOnTurntable" && surface.mu >= 1.0 => {
                     *events += seen.len();
@@ -102,7 +103,7 @@ fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> End {
             speeds: simulation.speeds(),
             inputs: &inputs,
         };
-        for contact in 0..model.count(Kind::Contact) {
+        for contact in 0..model.count(ComponentKind::Contact) {
             if let Some(gap) = model.gap(contact, &state).unwrap() {
                 assert!(
                     gap > -1e-10,

@@ -5,7 +5,7 @@
 
 use crate::common::random::{Random, starts};
 use crate::common::{names, start};
-use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
 use hodograph_simulation::{Event, EventKind, Options, Progress};
 use tumbling_box::TumblingBox;
 
@@ -110,7 +110,7 @@ fn tumble(seed: u64) -> Result<Figures, String> {
     // On a face: four corners at the ground, the mass centre half a side above it.
     let state =
         State { time: rest, coordinates: simulation.coordinates(), speeds: simulation.speeds(), inputs: &[] };
-    let gaps: Vec<f64> = (0..Mechanism::count(&body, Kind::Contact))
+    let gaps: Vec<f64> = (0..Mechanism::count(&body, ComponentKind::Contact))
         .map(|contact| Contacts::gap(&body, contact, &state).unwrap().unwrap())
         .collect();
     let down = gaps.iter().filter(|gap| gap.abs() < 1e-9).count();

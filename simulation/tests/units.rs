@@ -1,7 +1,7 @@
 //! The same motion in millimetres, grams and milliseconds has the same events.
 
 use crate::many::{Ended, Start, follow, model, surface, with_parameters};
-use hodograph::{Kind, Law, Mechanism};
+use hodograph::{ComponentKind, Law, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 
@@ -15,7 +15,7 @@ fn factor(unit: &str) -> f64 {
     }
 }
 
-fn factors(mechanism: &InterpretedMechanism, kind: Kind) -> Vec<f64> {
+fn factors(mechanism: &InterpretedMechanism, kind: ComponentKind) -> Vec<f64> {
     (0..mechanism.count(kind)).map(|i| factor(mechanism.component(kind, i).unwrap().unit)).collect()
 }
 
@@ -26,9 +26,9 @@ fn both(name: &str, change: &[(&str, f64)], mu: f64, until: f64) -> [Ended; 2] {
     for (name, value) in change {
         start.set(&mechanism, name, *value);
     }
-    let parameters: Vec<(String, f64)> = (0..mechanism.count(Kind::Parameter))
+    let parameters: Vec<(String, f64)> = (0..mechanism.count(ComponentKind::Parameter))
         .map(|i| {
-            let component = mechanism.component(Kind::Parameter, i).unwrap();
+            let component = mechanism.component(ComponentKind::Parameter, i).unwrap();
             (component.name.to_owned(), mechanism.all_parameters()[i] * factor(component.unit))
         })
         .collect();
@@ -39,9 +39,9 @@ fn both(name: &str, change: &[(&str, f64)], mu: f64, until: f64) -> [Ended; 2] {
         values.iter().zip(factors(&mechanism, kind)).map(|(value, factor)| value * factor).collect()
     };
     let there = Start {
-        coordinates: scaled(&start.coordinates, Kind::Coordinate),
-        speeds: scaled(&start.speeds, Kind::Speed),
-        inputs: scaled(&start.inputs, Kind::Input),
+        coordinates: scaled(&start.coordinates, ComponentKind::Coordinate),
+        speeds: scaled(&start.speeds, ComponentKind::Speed),
+        inputs: scaled(&start.inputs, ComponentKind::Input),
     };
     let options = |absolute| Options { absolute_tolerance: absolute, ..surface(mu, 0.0, Law::Poisson) };
     [

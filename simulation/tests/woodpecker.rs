@@ -1,7 +1,7 @@
 //! The woodpecker toy beside time stepping: its period depends on the law of friction in impacts.
 
 use crate::many::{Start, follow, model, surface};
-use hodograph::{Kind, Law, Mechanism, Surface};
+use hodograph::{ComponentKind, Law, Mechanism, Surface};
 use hodograph_simulation::{EventKind, Options};
 
 /// Masses, lengths, stiffness and gravity of the model, in its units.
@@ -128,7 +128,7 @@ fn its_period_is_that_of_time_stepping_with_the_same_friction() {
     assert!((moreau - 0.146).abs() < 1e-3, "{moreau}");
     let during = period(&time_stepping(Friction::During, 1e-5, 1.5));
     let mechanism = model("woodpecker");
-    let index = |name: &str| mechanism.index(Kind::Contact, name).unwrap();
+    let index = |name: &str| mechanism.index(ComponentKind::Contact, name).unwrap();
     let beak = Surface { mu: MU, e: BEAK, law: Law::Newton };
     let options = Options { surfaces: vec![(index("beak"), beak)], ..surface(MU, 0.0, Law::Newton) };
     let end = follow(&mechanism, &Start::of(&mechanism), options, 1.7);

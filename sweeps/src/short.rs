@@ -204,10 +204,10 @@ impl Short<'_> {
 
     /// Where nothing is drawn by name: every independent speed that is not given otherwise, from -1 to 1.
     fn free_speeds(&self) -> Result<Vec<Draw>, Failure> {
-        use hodograph::{Kind, Mechanism};
+        use hodograph::{ComponentKind, Mechanism};
         let mechanism = self.model.mechanism().map_err(Failure::Input)?;
-        let names = (0..Mechanism::count(mechanism, Kind::Speed)).filter_map(|index| {
-            Mechanism::component(mechanism, Kind::Speed, index).map(|speed| speed.name.to_owned())
+        let names = (0..Mechanism::count(mechanism, ComponentKind::Speed)).filter_map(|index| {
+            Mechanism::component(mechanism, ComponentKind::Speed, index).map(|speed| speed.name.to_owned())
         });
         let given = |name: &String| {
             self.vary.iter().any(|vary| vary.name == *name) || self.set.iter().any(|set| set.name == *name)

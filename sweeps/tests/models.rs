@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 use datafusion::arrow::array::{AsArray, RecordBatch, StructArray};
 use datafusion::arrow::datatypes::{Float64Type, Int32Type};
-use hodograph::{Contacts, Kind, Law, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, State, Surface};
 use hodograph_sweeps::models::shipped;
 use sql::query;
 
@@ -35,15 +35,15 @@ impl Given {
     /// independent.
     fn new(mechanism: &dyn Contacts) -> Self {
         let count = |kind| mechanism.count(kind);
-        let names = [Kind::Coordinate, Kind::Speed].map(|kind| {
+        let names = [ComponentKind::Coordinate, ComponentKind::Speed].map(|kind| {
             (0..count(kind))
                 .map(|index| mechanism.component(kind, index).unwrap().name.to_owned())
                 .collect::<Vec<_>>()
         });
         let (mut q, mut u, mut inputs) = (
-            vec![0.0; count(Kind::Coordinate)],
-            vec![0.0; count(Kind::Speed)],
-            vec![0.0; count(Kind::Input)],
+            vec![0.0; count(ComponentKind::Coordinate)],
+            vec![0.0; count(ComponentKind::Speed)],
+            vec![0.0; count(ComponentKind::Input)],
         );
         mechanism.initial_state(&mut q, &mut u, &mut inputs).unwrap();
         let free = mechanism.dependent_coordinate(0).is_none();
@@ -103,8 +103,8 @@ fn every_shipped_model_is_compared() {
 async fn collisions_have_the_bits_of_generated_code() {
     for (model, mechanism) in generated() {
         let given = Given::new(mechanism.as_ref());
-        for contact in 0..mechanism.count(Kind::Contact) {
-            let name = mechanism.component(Kind::Contact, contact).unwrap().name;
+        for contact in 0..mechanism.count(ComponentKind::Contact) {
+            let name = mechanism.component(ComponentKind::Contact, contact).unwrap().name;
             let sql = format!(
                 "SELECT *, {model}_collide(named_struct({}, 'mu', mu, 'e', 0.7, 'law', law, 'contact', '{name}')) AS answer
                  FROM (SELECT 1.5 * uniform(i, 0, 3) AS mu, CASE i % 3 WHEN 0 THEN 'newton' WHEN 1 THEN 'poisson' ELSE 'stronge' END AS law{}
@@ -113,11 +113,11 @@ async fn collisions_have_the_bits_of_generated_code() {
             );
             let found = query(&sql).await;
             let answers = found.column_by_name("answer").unwrap().as_struct();
-            let (mut solved, mut speeds) = (0, vec![0.0; mechanism.count(Kind::Speed)]);
-            let mut inputs = vec![0.0; mechanism.count(Kind::Input)];
+            let (mut solved, mut speeds) = (0, vec![0.0; mechanism.count(ComponentKind::Speed)]);
+            let mut inputs = vec![0.0; mechanism.count(ComponentKind::Input)];
             mechanism
                 .initial_state(
-                    &mut vec![0.0; mechanism.count(Kind::Coordinate)],
+                    &mut vec![0.0; mechanism.count(ComponentKind::Coordinate)],
                     &mut speeds.clone(),
                     &mut inputs,
                 )
@@ -165,10 +165,14 @@ async fn accelerations_and_energy_have_the_bits_of_generated_code() {
         );
         let found = query(&sql).await;
         let [rates, energy] = ["rates", "energy"].map(|name| found.column_by_name(name).unwrap().as_struct());
-        let mut wanted = vec![0.0; mechanism.count(Kind::Speed)];
-        let mut inputs = vec![0.0; mechanism.count(Kind::Input)];
+        let mut wanted = vec![0.0; mechanism.count(ComponentKind::Speed)];
+        let mut inputs = vec![0.0; mechanism.count(ComponentKind::Input)];
         mechanism
-            .initial_state(&mut vec![0.0; mechanism.count(Kind::Coordinate)], &mut wanted, &mut inputs)
+            .initial_state(
+                &mut vec![0.0; mechanism.count(ComponentKind::Coordinate)],
+                &mut wanted,
+                &mut inputs,
+            )
             .unwrap();
         for row in 0..ROWS {
             let [q, u] = given.states(&found, row);

@@ -4,7 +4,7 @@ mod sql;
 
 use datafusion::arrow::array::{Array, AsArray};
 use datafusion::arrow::datatypes::Int64Type;
-use hodograph::{Kind, Law, Mechanism, Surface};
+use hodograph::{ComponentKind, Law, Mechanism, Surface};
 use hodograph_models::free_box_corner::FreeBoxCorner;
 use hodograph_simulation::{Batch, Case, ContactLaw, Options, simulate_many};
 use sql::{numbers, query, texts};
@@ -26,7 +26,8 @@ async fn motions_have_the_bits_of_the_simulation() {
     let collisions = found.column(6).as_primitive::<Int64Type>();
     let machine = FreeBoxCorner::<f64>::default();
     let count = |kind| vec![0.0; machine.count(kind)];
-    let (mut q, mut u, mut inputs) = (count(Kind::Coordinate), count(Kind::Speed), count(Kind::Input));
+    let (mut q, mut u, mut inputs) =
+        (count(ComponentKind::Coordinate), count(ComponentKind::Speed), count(ComponentKind::Input));
     machine.initial_state(&mut q, &mut u, &mut inputs).unwrap();
     for row in 1..10 {
         let with = |law: Option<ContactLaw>| {

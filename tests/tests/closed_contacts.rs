@@ -9,8 +9,8 @@ use crate::common::emitted::emitted;
 use crate::common::random::{Random, Sample, samples};
 use hodograph::nalgebra::{DMatrix, DVector, Vector3};
 use hodograph::{
-    ClosedContactError, CollisionError, ContactError, ContactMode, ContactOutcome, Contacts, ImpactError,
-    Kind, Law, Selection, State, Surface,
+    ClosedContactError, CollisionError, ComponentKind, ContactError, ContactMode, ContactOutcome, Contacts,
+    ImpactError, Law, Selection, State, Surface,
 };
 use hodograph_generator::numeric;
 
@@ -222,7 +222,7 @@ fn every_state_of_every_contact_has_an_answer_or_a_reason() {
         let mut random = Random::new(module.name());
         for sample in samples(&model, places) {
             let m = module.by_slices(&sample.inputs);
-            for contact in 0..m.count(Kind::Contact) {
+            for contact in 0..m.count(ComponentKind::Contact) {
                 for case in 0..speeds_of_each {
                     let size = 10.0_f64.powf(1.5 * random.number());
                     let speeds: Vec<f64> =
@@ -275,7 +275,7 @@ fn an_impact_without_collision_is_refused_where_a_force_exists() {
             speeds: &sample.inputs.speeds,
             inputs: &sample.inputs.inputs,
         };
-        for contact in 0..m.count(Kind::Contact) {
+        for contact in 0..m.count(ComponentKind::Contact) {
             let mut speeds = vec![0.0; at.speeds.len()];
             let surface = Surface { mu: 0.0, e: 0.5, law: Law::Poisson };
             let answer = m.impact_without_collision(contact, &at, &surface, &mut speeds);

@@ -4,7 +4,7 @@
 use crate::common::Model;
 use crate::common::emitted::{Emitted, emitted, routine};
 use crate::common::random::samples;
-use hodograph::{CollisionError, Kind, Law, Mechanism, State, StateError, Surface};
+use hodograph::{CollisionError, ComponentKind, Law, Mechanism, State, StateError, Surface};
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_generator::program::{Inputs, Quantity};
 use hodograph_interpreter::InterpretedMechanism;
@@ -161,7 +161,7 @@ fn collisions_of_many_states_are_those_of_one() {
             e: (row % 7) as f64 / 6.0,
             law: Law::ALL[row % Law::ALL.len()],
         };
-        for contact in 0..mechanism.count(Kind::Contact) {
+        for contact in 0..mechanism.count(ComponentKind::Contact) {
             let collisions = mechanism.collisions(contact).expect("collisions");
             let batch = Batch::of(&states, 67);
             let table = batch.table();
@@ -194,9 +194,9 @@ fn collisions_of_many_states_are_those_of_one() {
             });
             assert_eq!(next, batch.rows);
         }
-        let missing = mechanism.count(Kind::Contact);
+        let missing = mechanism.count(ComponentKind::Contact);
         let error = mechanism.collisions(missing).expect_err("no such contact");
-        assert_eq!(error, StateError::Missing { kind: Kind::Contact, index: missing });
+        assert_eq!(error, StateError::Missing { kind: ComponentKind::Contact, index: missing });
     }
     assert!(solved > 200 && refused > 200, "{solved} {refused}");
 }

@@ -1,6 +1,8 @@
 //! Mechanisms that touch the world at several points: what statics, symmetry and closed forms say of them.
 
-use hodograph::{ClosedContacts, Contacts, Kind, Law, Mechanism, Selection, State, StateError, Surface};
+use hodograph::{
+    ClosedContacts, ComponentKind, Contacts, Law, Mechanism, Selection, State, StateError, Surface,
+};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{
     Drive, Event, EventKind, ImpactsAtOnce, Options, Progress, Simulation, SimulationError,
@@ -30,18 +32,18 @@ impl Start {
                 .collect()
         };
         Self {
-            coordinates: values(&model.coordinates, Kind::Coordinate),
-            speeds: values(&model.speeds, Kind::Speed),
-            inputs: values(&model.inputs, Kind::Input),
+            coordinates: values(&model.coordinates, ComponentKind::Coordinate),
+            speeds: values(&model.speeds, ComponentKind::Speed),
+            inputs: values(&model.inputs, ComponentKind::Input),
         }
     }
 
     fn set(&mut self, mechanism: &InterpretedMechanism, name: &str, value: f64) {
         let place = |kind| mechanism.index(kind, name);
-        if let Some(index) = place(Kind::Coordinate) {
+        if let Some(index) = place(ComponentKind::Coordinate) {
             self.coordinates[index] = value;
         } else {
-            self.speeds[place(Kind::Speed).unwrap()] = value;
+            self.speeds[place(ComponentKind::Speed).unwrap()] = value;
         }
     }
 }
@@ -238,7 +240,7 @@ fn a_face_that_ends_by_a_maximum_is_refused() {
     let table = model("table_edge");
     let end = run(&table, &Start::of(&table), surface(0.2, 0.0), 1.0);
     let error = end.error.expect("the table ends");
-    assert_eq!(error.reason.kind(), "drift", "{error}");
+    assert_eq!(error.kind.name(), "drift", "{error}");
     assert_eq!(error.contact.as_deref(), Some("top"));
     assert!(end.coordinates[1].abs() < 1e-9, "{:?}", end.coordinates);
 }
@@ -288,7 +290,7 @@ fn one_pass_has_the_bits_of_the_single_methods() {
             inputs: &start.inputs,
         };
         let (n, p) = (start.coordinates.len(), start.speeds.len());
-        let all: Vec<usize> = (0..machine.count(Kind::Contact)).rev().collect();
+        let all: Vec<usize> = (0..machine.count(ComponentKind::Contact)).rev().collect();
         for contacts in [&all[..], &all[..1], &all[1..], &[]] {
             let k = contacts.len();
             let room = || [n, p, 3 * p * k, 3 * p * k, 3 * k, 3 * k].map(|count| vec![0.0_f64; count]);

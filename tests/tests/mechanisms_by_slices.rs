@@ -6,8 +6,8 @@ use crate::common::emitted::{Emitted, emitted, routine};
 use crate::common::random::samples;
 use hodograph::nalgebra::Vector3;
 use hodograph::{
-    ClosedContactError, CollisionError, ContactMode, Contacts, ImpactError, Kind, Law, ParameterError, State,
-    StateError, Surface,
+    ClosedContactError, CollisionError, ComponentKind, ContactMode, Contacts, ImpactError, Law,
+    ParameterError, State, StateError, Surface,
 };
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use hodograph_interpreter::InterpretedMechanism;
@@ -25,8 +25,13 @@ fn state(at: &Inputs) -> State<'_> {
 
 /// All numbers that the traits tell of a state, each with its name.
 fn everything(m: &dyn Contacts, state: &State<'_>) -> Vec<(String, Result<Vec<f64>, StateError>)> {
-    let [n, p, d, c] = [Kind::Coordinate, Kind::Speed, Kind::DependentSpeed, Kind::DependentCoordinate]
-        .map(|kind| m.count(kind));
+    let [n, p, d, c] = [
+        ComponentKind::Coordinate,
+        ComponentKind::Speed,
+        ComponentKind::DependentSpeed,
+        ComponentKind::DependentCoordinate,
+    ]
+    .map(|kind| m.count(kind));
     let mut all = Vec::new();
     let mut put = |name: String, numbers| all.push((name, numbers));
     let slice = |size: usize, write: &dyn Fn(&mut [f64]) -> Result<(), StateError>| {
@@ -51,26 +56,26 @@ fn everything(m: &dyn Contacts, state: &State<'_>) -> Vec<(String, Result<Vec<f6
         }),
     );
     let three = |v: Vector3<f64>| v.as_slice().to_vec();
-    for i in 0..m.count(Kind::Point) {
+    for i in 0..m.count(ComponentKind::Point) {
         put(format!("position {i}"), m.position(i, state).map(three));
         put(format!("velocity {i}"), m.velocity(i, state).map(three));
         put(format!("acceleration {i}"), m.acceleration(i, state, &accelerations).map(three));
         put(format!("jacobian {i}"), slice(3 * p, &|x| m.jacobian(i, state, x)));
     }
-    for i in 0..m.count(Kind::Quantity) {
+    for i in 0..m.count(ComponentKind::Quantity) {
         let (rows, columns) = m.quantity_shape(i).expect("a shape");
         put(format!("quantity {i}"), slice(rows * columns, &|x| m.quantity(i, state, x)));
     }
-    for i in 0..m.count(Kind::Point) {
+    for i in 0..m.count(ComponentKind::Point) {
         put(format!("angular momentum about {i}"), m.angular_momentum_about(i, state).map(three));
     }
-    for i in 0..m.count(Kind::Frame) {
+    for i in 0..m.count(ComponentKind::Frame) {
         put(
             format!("orientation {i}"),
             m.orientation(i, state).map(|axes| axes.transpose().as_slice().to_vec()),
         );
     }
-    for i in 0..m.count(Kind::Contact) {
+    for i in 0..m.count(ComponentKind::Contact) {
         put(
             format!("contact_state {i}"),
             m.contact_state(i, state).map(|contact| {
@@ -111,7 +116,7 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
                 assert_eq!(a, b, "{} {name}", module.name());
             }
             for &law in Law::ALL {
-                for contact in 0..generated.count(Kind::Contact) {
+                for contact in 0..generated.count(ComponentKind::Contact) {
                     let surface = Surface { mu: 0.4, e: 0.6, law };
                     let collide = |m: &dyn Contacts| {
                         let mut speeds = vec![0.0; at.speeds.len()];
@@ -119,10 +124,11 @@ fn modules_and_the_interpreter_answer_with_the_same_bits() {
                     };
                     assert_eq!(collide(&*generated), collide(&*interpreted), "{} {law:?}", module.name());
                     for quadratures in [0, 1, 2, 1000] {
-                        let surface = surface.within(quadratures);
+                        let surface = surface.with_budget(quadratures);
                         let budgeted = |m: &dyn Contacts| {
                             let mut speeds = vec![0.0; at.speeds.len()];
-                            m.collide_within(contact, &state, &surface, &mut speeds).map(|hit| (speeds, hit))
+                            m.collide_with_budget(contact, &state, &surface, &mut speeds)
+                                .map(|hit| (speeds, hit))
                         };
                         let answer = budgeted(&*generated);
                         assert_eq!(answer, budgeted(&*interpreted), "{} {law:?}", module.name());
@@ -176,7 +182,7 @@ fn names_units_and_initial_values_are_those_of_the_model() {
         let machines = both(&**module, &model, &initial);
         for m in &machines {
             assert_eq!(m.name(), model.mechanism.name);
-            for &kind in Kind::ALL {
+            for &kind in ComponentKind::ALL {
                 assert_eq!(m.component(kind, m.count(kind)), None);
                 for index in 0..m.count(kind) {
                     let component = m.component(kind, index).expect("a component");
@@ -187,19 +193,24 @@ fn names_units_and_initial_values_are_those_of_the_model() {
                 assert_eq!(m.index(kind, "no such name"), None);
             }
             for (index, speed) in model.mechanism.speeds.iter().filter(|speed| !speed.dependent).enumerate() {
-                let component = m.component(Kind::Speed, index).expect("a speed");
+                let component = m.component(ComponentKind::Speed, index).expect("a speed");
                 assert_eq!((component.name, component.unit), (speed.name.as_str(), speed.unit.as_str()));
             }
-            for index in 0..m.count(Kind::DependentCoordinate) {
+            for index in 0..m.count(ComponentKind::DependentCoordinate) {
                 let place = m.dependent_coordinate(index).expect("a dependent coordinate");
                 assert!(model.mechanism.coordinates[place].dependent);
                 assert_eq!(
-                    m.component(Kind::Coordinate, place),
-                    m.component(Kind::DependentCoordinate, index)
+                    m.component(ComponentKind::Coordinate, place),
+                    m.component(ComponentKind::DependentCoordinate, index)
                 );
             }
-            let sizes =
-                [Kind::Coordinate, Kind::Speed, Kind::Input, Kind::Parameter].map(|kind| m.count(kind));
+            let sizes = [
+                ComponentKind::Coordinate,
+                ComponentKind::Speed,
+                ComponentKind::Input,
+                ComponentKind::Parameter,
+            ]
+            .map(|kind| m.count(kind));
             let [mut q, mut u, mut w, mut parameters] = sizes.map(|size| vec![f64::NAN; size]);
             m.initial_state(&mut q, &mut u, &mut w).expect("an initial state");
             assert_eq!((&u, &w), (&initial.speeds, &initial.inputs));
@@ -263,16 +274,19 @@ fn wrong_lengths_and_numbers_are_named() {
             assert_eq!(m.mass_matrix(&long, &mut vec![0.0; p * p]), wrong("inputs", expected, 40));
             assert_eq!(
                 m.set_parameter_values(&[1.0; 99]),
-                Err(ParameterError::Length { expected: m.count(Kind::Parameter), found: 99 })
+                Err(ParameterError::Length { expected: m.count(ComponentKind::Parameter), found: 99 })
             );
-            let index = m.count(Kind::Contact);
-            let missing = StateError::Missing { kind: Kind::Contact, index };
+            let index = m.count(ComponentKind::Contact);
+            let missing = StateError::Missing { kind: ComponentKind::Contact, index };
             assert_eq!(m.gap(index, &good), Err(missing));
             let surface = Surface { mu: 0.0, e: 0.0, law: Law::Newton };
             let mut speeds = vec![0.0; p];
             assert_eq!(m.collide(index, &good, &surface, &mut speeds), Err(CollisionError::State(missing)));
-            let index = m.count(Kind::Point);
-            assert_eq!(m.position(index, &good), Err(StateError::Missing { kind: Kind::Point, index }));
+            let index = m.count(ComponentKind::Point);
+            assert_eq!(
+                m.position(index, &good),
+                Err(StateError::Missing { kind: ComponentKind::Point, index })
+            );
             let not_finite = vec![f64::NAN; p];
             let bad = State { speeds: &not_finite, ..good };
             assert_eq!(m.kinetic_energy(&bad), Err(StateError::NotFinite));
@@ -319,7 +333,7 @@ fn the_coupled_matrix_is_what_impulses_do() {
         let model = Model::load(module.name());
         let at = &samples(&model, 1)[0].inputs;
         let m = module.by_slices(at);
-        let contacts: Vec<usize> = (0..m.count(Kind::Contact)).collect();
+        let contacts: Vec<usize> = (0..m.count(ComponentKind::Contact)).collect();
         let (k, p) = (contacts.len(), at.speeds.len());
         if k == 0 {
             continue;

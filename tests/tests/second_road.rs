@@ -5,7 +5,7 @@
 use crate::common::random::{Sample, samples};
 use crate::common::rates::Rates;
 use crate::common::{Model, models, models_of_shapes};
-use hodograph::{Kind, Mechanism, State};
+use hodograph::{ComponentKind, Mechanism, State};
 use hodograph_generator::interpret::Array;
 use hodograph_generator::model::mechanism::{LoadKind, Place, PointId};
 use hodograph_generator::numeric::{Level, Views, central_inertia, views};
@@ -302,7 +302,7 @@ fn momenta_are_sums_over_the_bodies() {
             .unwrap();
             let Inputs { time, coordinates, speeds, inputs, .. } = &sample.inputs;
             let state = State { time: *time, coordinates, speeds, inputs };
-            for point in 0..machine.count(Kind::Point) {
+            for point in 0..machine.count(ComponentKind::Point) {
                 let Some(at) = sample.numeric.positions[point] else { continue };
                 let Ok(about) = machine.angular_momentum_about(point, &state) else { continue };
                 let theirs = central + (position - Vector3::from(at)).cross(&momentum);

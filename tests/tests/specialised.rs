@@ -37,7 +37,7 @@ macro_rules! collisions {
                         Err(_) => refused += 1,
                     }
                     assert_eq!(text(&usual(mu, e, Law::Newton)), text(&machine.newton($($time,)? &q, &u, mu, e)));
-                    let within = Surface { mu, e, law: Law::Poisson }.within(2);
+                    let within = Surface { mu, e, law: Law::Poisson }.with_budget(2);
                     let within = machine.$collide($($time,)? &q, &u, &within);
                     assert_eq!(text(&within), text(&machine.poisson($($time,)? &q, &u, mu, e)));
                     let budget = ImpactError::BudgetExceeded { quadratures: 2, normal_velocity: 0.0 }.kind();

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use hodograph::{Kind, Mechanism, State, StateError};
+use hodograph::{ComponentKind, Mechanism, State, StateError};
 
 use crate::layout::Layout;
 
@@ -39,7 +39,8 @@ pub trait Dynamics {
 
 /// n, p, m.
 fn sizes<D: Dynamics>() -> [usize; 3] {
-    [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| D::mechanism().count(kind))
+    [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+        .map(|kind| D::mechanism().count(kind))
 }
 
 /// Inputs and outputs without those that have no numbers, and the reason why a mechanism has no such
@@ -47,7 +48,7 @@ fn sizes<D: Dynamics>() -> [usize; 3] {
 fn layout<D: Dynamics>(inputs: &[(&str, usize)], outputs: &[(&str, usize)]) -> Layout {
     let some: Vec<_> = inputs.iter().copied().filter(|(name, size)| *name != "inputs" || *size > 0).collect();
     let mut layout = Layout::of_vectors(&some, outputs);
-    let loops = D::mechanism().count(Kind::DependentCoordinate);
+    let loops = D::mechanism().count(ComponentKind::DependentCoordinate);
     if loops > 0 {
         let name = D::mechanism().name();
         layout.refused = Some(format!(

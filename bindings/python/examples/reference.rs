@@ -1,7 +1,7 @@
 //! What generated modules answer, bit by bit, for the tests of the wheel: lines of `model routine row
 //! bits..`; states come first.
 
-use hodograph::{Contacts, Kind, Law, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, State, Surface};
 
 macro_rules! models {
     ($($name:literal $module:ident $mechanism:ident,)*) => {
@@ -25,7 +25,8 @@ fn number(row: usize, index: usize) -> f64 {
 
 fn main() {
     for (model, m) in models() {
-        let [n, p, w] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| m.count(kind));
+        let [n, p, w] =
+            [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input].map(|kind| m.count(kind));
         let (mut q0, mut u0, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
         m.initial_state(&mut q0, &mut u0, &mut inputs).expect("an initial state");
         for row in 0..40 {
@@ -47,7 +48,7 @@ fn main() {
             answer("forcing", p, &|x| m.forcing(&state, x).is_ok());
             answer("coordinate_rates", n, &|x| m.coordinate_rates(&state, x).is_ok());
             answer("inverse_dynamics", p, &|x| m.inverse_dynamics(&state, &u, x).is_ok());
-            for contact in 0..m.count(Kind::Contact) {
+            for contact in 0..m.count(ComponentKind::Contact) {
                 let surface = Surface { mu: 0.1 * (row % 8) as f64, e: 0.7, law: Law::Stronge };
                 answer(&format!("collide{contact}"), p, &|x| m.collide(contact, &state, &surface, x).is_ok());
             }

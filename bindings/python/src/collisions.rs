@@ -1,7 +1,7 @@
 //! Collisions of a contact of a mechanism.
 
 use hodograph::nalgebra::Vector3;
-use hodograph::{CollisionError, CollisionOutcome, Kind, Mechanism as _, Path, StateError};
+use hodograph::{CollisionError, CollisionOutcome, ComponentKind, Mechanism as _, Path, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::over_rows;
 use numpy::{PyArray1, PyArrayMethods};
@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 
 use crate::arguments::{Surfaces, array, common};
 use crate::errors;
-use crate::machines::{Machines, Struck, parameter_error};
+use crate::machines::{Machines, RowError, parameter_error};
 use crate::states::States;
 
 /// Why a row has no answer, by number; the first is none.
@@ -162,15 +162,16 @@ pub fn collide<'py>(
     };
     state_rows.rows = rows;
     let table = state_rows.table();
-    let freedom = mechanism.count(Kind::Speed);
+    let freedom = mechanism.count(ComponentKind::Speed);
     let mut fields = vec![("speeds", freedom)];
     fields.extend(FIELDS);
     let width = fields.iter().map(|(_, size)| size).sum();
     let surface = surfaces.of_rows();
     let solved = |range: std::ops::Range<usize>| {
         let mut answers = Answers::default();
-        let mut first: Option<(usize, Struck)> = None;
-        let mut answer = |row: usize, struck: Result<(CollisionOutcome<f64>, &[f64]), Struck>| match struck {
+        let mut first: Option<(usize, RowError)> = None;
+        let mut answer = |row: usize, struck: Result<(CollisionOutcome<f64>, &[f64]), RowError>| match struck
+        {
             // The model may not read what is not finite; such a state has no collision nevertheless.
             Ok(_) if wrong.binary_search(&row).is_ok() => answers.none(width, "not_finite"),
             Ok((outcome, speeds)) => {
@@ -180,8 +181,8 @@ pub fn collide<'py>(
             }
             Err(error) => {
                 let kind = match &error {
-                    Struck::Parameters(_) => "other",
-                    Struck::Collision(error) => error.kind(),
+                    RowError::Parameters(_) => "other",
+                    RowError::Collision(error) => error.kind(),
                 };
                 answers.none(width, kind);
                 first.get_or_insert((row, error));
@@ -190,7 +191,7 @@ pub fn collide<'py>(
         match machines {
             Some(machines) => machines.collide(mechanism, contact, (&table, range), &surface, answer),
             None => collisions.solve(&table, &surface, range, &mut |row, struck| {
-                answer(row, struck.map_err(Struck::Collision));
+                answer(row, struck.map_err(RowError::Collision));
             }),
         }
         (answers, first)
@@ -201,8 +202,8 @@ pub fn collide<'py>(
     if raises && let Some((row, error)) = failed.into_iter().flatten().next() {
         let count = answers.kinds.iter().filter(|&&kind| kind != 0).count();
         let error = match error {
-            Struck::Collision(error) => error,
-            Struck::Parameters(error) => {
+            RowError::Collision(error) => error,
+            RowError::Parameters(error) => {
                 return Err(parameter_error(py, &error, (row, rows.unwrap_or(1), count)));
             }
         };

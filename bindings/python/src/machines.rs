@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use hodograph::{
-    CollisionError, CollisionOutcome, Contacts as _, Kind, Mechanism as _, ParameterError, State, StateError,
-    Surface,
+    CollisionError, CollisionOutcome, ComponentKind, Contacts as _, Mechanism as _, ParameterError, State,
+    StateError, Surface,
 };
 use hodograph_generator::interpret::{Arguments, Prepared};
 use hodograph_interpreter::InterpretedMechanism;
@@ -106,16 +106,16 @@ impl Machines {
         contact: usize,
         (table, range): (&Table<'_>, Range<usize>),
         surface: impl Fn(usize) -> Surface<f64>,
-        mut with: impl FnMut(usize, Result<(CollisionOutcome<f64>, &[f64]), Struck>),
+        mut with: impl FnMut(usize, Result<(CollisionOutcome<f64>, &[f64]), RowError>),
     ) {
-        let mut speeds = vec![0.0; mechanism.count(Kind::Speed)];
+        let mut speeds = vec![0.0; mechanism.count(ComponentKind::Speed)];
         self.each(mechanism, range, |row, machine, _| {
             let state = OfRow::new(table, row);
             match machine {
-                Err(error) => with(row, Err(Struck::Parameters(error.clone()))),
+                Err(error) => with(row, Err(RowError::Parameters(error.clone()))),
                 Ok(machine) => match machine.collide(contact, &state.state(), &surface(row), &mut speeds) {
                     Ok(outcome) => with(row, Ok((outcome, &speeds))),
-                    Err(error) => with(row, Err(Struck::Collision(error))),
+                    Err(error) => with(row, Err(RowError::Collision(error))),
                 },
             }
         });
@@ -123,7 +123,7 @@ impl Machines {
 }
 
 /// Why a collision of a row has no outcome.
-pub enum Struck {
+pub enum RowError {
     Parameters(ParameterError),
     Collision(CollisionError<f64>),
 }

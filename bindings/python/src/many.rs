@@ -3,11 +3,11 @@
 use std::sync::PoisonError;
 use std::time::Duration;
 
-use hodograph::{Kind, Mechanism as _, State, StateError};
+use hodograph::{ComponentKind, Mechanism as _, State, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::motion as defaults;
 use hodograph_simulation::{
-    Batch, Case, Options, Outcome, Reason, SimulationError, Watch, digest, simulate_many,
+    Batch, Case, ErrorKind, Options, Outcome, SimulationError, Watch, digest, simulate_many,
 };
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -75,7 +75,7 @@ pub fn simulate<'py>(
     let row_of = |(numbers, width, many): &(Vec<f64>, usize, usize), row: usize| {
         numbers.get(row * many * width..(row * many + 1) * width).unwrap_or(&[]).to_vec()
     };
-    let never_closed: Vec<usize> = (0..mechanism.count(Kind::Contact))
+    let never_closed: Vec<usize> = (0..mechanism.count(ComponentKind::Contact))
         .filter(|&contact| {
             mechanism.model().contacts.get(contact).is_some_and(|contact| contact.gap.is_none())
         })
@@ -84,11 +84,14 @@ pub fn simulate<'py>(
     let not_finite = states.not_finite();
     let case = |row: usize| -> Result<Case<Box<InterpretedMechanism>>, SimulationError> {
         let start = time.as_ref().map_or(0.0, |time| row_of(time, row)[0]);
-        let wrong =
-            |message: String| SimulationError { time: start, contact: None, reason: Reason::Option(message) };
+        let wrong = |message: String| SimulationError {
+            time: start,
+            contact: None,
+            kind: ErrorKind::BadOption(message),
+        };
         if not_finite.binary_search(&row).is_ok() {
-            let reason = Reason::State(StateError::NotFinite);
-            return Err(SimulationError { time: start, contact: None, reason });
+            let kind = ErrorKind::State(StateError::NotFinite);
+            return Err(SimulationError { time: start, contact: None, kind });
         }
         let number = |name: &str| {
             let found = numbers.iter().find(|(other, ..)| *other == name);
@@ -161,7 +164,7 @@ fn tell<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let found = PyDict::new(py);
     let rows = Some(outcomes.len());
-    let [n, p] = [Kind::Coordinate, Kind::Speed].map(|kind| mechanism.count(kind));
+    let [n, p] = [ComponentKind::Coordinate, ComponentKind::Speed].map(|kind| mechanism.count(kind));
     let wide = |width: usize, of: fn(&Outcome) -> &[f64]| -> Vec<f64> {
         let row = |outcome: &Outcome| {
             // A row that did not begin has no state.
@@ -195,7 +198,9 @@ fn tell<'py>(
     found.set_item("several_modes", PyArray1::from_vec(py, several))?;
     let kinds: Vec<&str> = outcomes.iter().map(Outcome::kind).collect();
     found.set_item("kind", kinds)?;
-    let name = |&contact: &usize| mechanism.component(Kind::Contact, contact).map_or("", |found| found.name);
+    let name = |&contact: &usize| {
+        mechanism.component(ComponentKind::Contact, contact).map_or("", |found| found.name)
+    };
     let closed: Vec<Vec<&str>> =
         outcomes.iter().map(|outcome| outcome.closed.iter().map(name).collect()).collect();
     found.set_item("closed", closed)?;

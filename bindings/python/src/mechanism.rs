@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, PoisonError, RwLock};
 
-use hodograph::{Contacts as _, Kind, Mechanism as _, StateError};
+use hodograph::{ComponentKind, Contacts as _, Mechanism as _, StateError};
 use hodograph_generator::artifact::{self, Loaded};
 use hodograph_generator::check;
 use hodograph_generator::explain::{self, Format};
@@ -42,7 +42,8 @@ pub struct Mechanism {
 
 impl Mechanism {
     fn of(inner: InterpretedMechanism) -> Self {
-        let [n, p, w] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| inner.count(kind));
+        let [n, p, w] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+            .map(|kind| inner.count(kind));
         let (mut q, mut u, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
         // the slices have the lengths asked for
         let _ = inner.initial_state(&mut q, &mut u, &mut inputs);
@@ -174,7 +175,7 @@ impl Mechanism {
             Err(_) => Mechanism::read(py, &model.extract::<String>()?, derivation)?,
         };
         let Some(parameters) = parameters else { return Ok(Mechanism::of(inner)) };
-        let width = inner.count(Kind::Parameter);
+        let width = inner.count(ComponentKind::Parameter);
         let parameters = rows(py, Some(parameters), "parameters", width, &[])?;
         let numbers = parameters.slice();
         if let Some(rows) = parameters.rows {
@@ -189,25 +190,25 @@ impl Mechanism {
 
     /// Quantities of a kind: a list of (name, unit, value).
     fn _describe<'py>(&self, py: Python<'py>, kind: &str) -> PyResult<Bound<'py, PyList>> {
-        let mut parameters = vec![0.0; self.inner.count(Kind::Parameter)];
+        let mut parameters = vec![0.0; self.inner.count(ComponentKind::Parameter)];
         let _ = self.inner.parameter_values(&mut parameters);
         let [q, u, w] = &self.initial;
-        let (kind, values): (Kind, &[f64]) = match kind {
-            "parameters" => (Kind::Parameter, &parameters),
-            "coordinates" => (Kind::Coordinate, q),
-            "speeds" => (Kind::Speed, u),
-            "inputs" => (Kind::Input, w),
-            "dependent_speeds" => (Kind::DependentSpeed, &[]),
-            "points" => (Kind::Point, &[]),
-            "frames" => (Kind::Frame, &[]),
-            "quantities" => (Kind::Quantity, &[]),
-            _ => (Kind::Contact, &[]),
+        let (kind, values): (ComponentKind, &[f64]) = match kind {
+            "parameters" => (ComponentKind::Parameter, &parameters),
+            "coordinates" => (ComponentKind::Coordinate, q),
+            "speeds" => (ComponentKind::Speed, u),
+            "inputs" => (ComponentKind::Input, w),
+            "dependent_speeds" => (ComponentKind::DependentSpeed, &[]),
+            "points" => (ComponentKind::Point, &[]),
+            "frames" => (ComponentKind::Frame, &[]),
+            "quantities" => (ComponentKind::Quantity, &[]),
+            _ => (ComponentKind::Contact, &[]),
         };
         let all = PyList::empty(py);
         for index in 0..self.inner.count(kind) {
             if let Some(component) = self.inner.component(kind, index) {
                 let (name, unit) = (component.name, component.unit);
-                if let (Kind::Parameter, Some(machines)) = (kind, &self.machines) {
+                if let (ComponentKind::Parameter, Some(machines)) = (kind, &self.machines) {
                     let column = (0..machines.rows)
                         .map(|row| machines.row(row).get(index).copied().unwrap_or(f64::NAN));
                     all.append((name, unit, array(py, Some(machines.rows), &[], column.collect())?))?;

@@ -4,7 +4,7 @@ use std::ffi::CStr;
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
-use hodograph::{Kind, Mechanism as _, State};
+use hodograph::{ComponentKind, Mechanism as _, State};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::motion::{self as defaults, GivenSurface};
 use hodograph_simulation::{
@@ -108,7 +108,8 @@ pub fn given(py: Python<'_>, (mu, e, law): &Given) -> PyResult<GivenSurface> {
 /// Warns of contacts that a motion never sees close, as the command line tool does.
 pub fn warn_of_no_gap(py: Python<'_>, mechanism: &InterpretedMechanism, contacts: &[usize]) -> PyResult<()> {
     for &contact in contacts {
-        let name = mechanism.component(Kind::Contact, contact).map_or("", |component| component.name);
+        let name =
+            mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
         let message = format!("contact {name} has no gap in the model: it is never seen to close\0");
         let message = CStr::from_bytes_until_nul(message.as_bytes()).unwrap_or_default();
         PyErr::warn(py, &py.get_type::<PyUserWarning>(), message, 2)?;
@@ -133,7 +134,7 @@ pub fn own(
         own.push((*contact, laws::given(py, parts, raised)?));
     }
     let all = laws::given(py, &choices.law, raised)?;
-    let laws = laws::of_contacts(py, mechanism, &all, &own, mechanism.count(Kind::Contact))?;
+    let laws = laws::of_contacts(py, mechanism, &all, &own, mechanism.count(ComponentKind::Contact))?;
     Ok((surfaces, laws))
 }
 
@@ -266,7 +267,7 @@ pub fn simulate<'py>(
                 Some(contact) => format!("{contact}, time {} s", error.time),
                 None => format!("time {} s", error.time),
             };
-            let (message, kind) = (error.to_string(), error.reason.kind());
+            let (message, kind) = (error.to_string(), error.kind.name());
             Some(errors::error(py, "SimulationError", &message, kind, Some(place), Some(error.time)))
         }
         (None, None) => None,
@@ -293,13 +294,13 @@ fn tell<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let all = PyDict::new(py);
     let rows = Some(found.times.len());
-    let [n, p] = [Kind::Coordinate, Kind::Speed].map(|kind| mechanism.count(kind));
+    let [n, p] = [ComponentKind::Coordinate, ComponentKind::Speed].map(|kind| mechanism.count(kind));
     all.set_item("time", array(py, rows, &[], found.times)?)?;
     all.set_item("q", array(py, rows, &[n], found.coordinates)?)?;
     all.set_item("u", array(py, rows, &[p], found.speeds)?)?;
     let events = PyList::empty(py);
     for event in found.events {
-        let name = event.contact.and_then(|contact| mechanism.component(Kind::Contact, contact));
+        let name = event.contact.and_then(|contact| mechanism.component(ComponentKind::Contact, contact));
         let (impulse, energy) = match &event.kind {
             EventKind::Collision(struck) | EventKind::ImpactWithoutCollision(struck) => {
                 let impulse = struck.outcome.impulse_on_point;

@@ -1,6 +1,6 @@
 //! The states that a call is given: one, or rows of them.
 
-use hodograph::{Kind, Mechanism as _, StateError};
+use hodograph::{ComponentKind, Mechanism as _, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::{Column, Table};
 use pyo3::prelude::*;
@@ -60,9 +60,9 @@ impl States<'_> {
     ) -> PyErr {
         let table = self.table();
         let at_fault = [
-            (&table.coordinates, Kind::Coordinate, "q"),
-            (&table.speeds, Kind::Speed, "u"),
-            (&table.inputs, Kind::Input, "inputs"),
+            (&table.coordinates, ComponentKind::Coordinate, "q"),
+            (&table.speeds, ComponentKind::Speed, "u"),
+            (&table.inputs, ComponentKind::Input, "inputs"),
         ]
         .into_iter()
         .flat_map(|(columns, kind, name)| {

@@ -1,7 +1,7 @@
 //! Reads laws of restitution by name, and finds the surface of a contact: what options say, else what the
 //! model states.
 
-use hodograph::{Contacts, Kind as Of, Law, Surface};
+use hodograph::{ComponentKind, Contacts, Law, Surface};
 use hodograph_interpreter::motion::GivenSurface;
 
 use crate::json::{Failure, Kind};
@@ -30,7 +30,8 @@ pub fn stated_in(mechanism: &dyn Contacts<f64>, contact: usize, given: GivenSurf
     ];
     let says: Vec<String> = says.into_iter().flatten().collect();
     if !says.is_empty() {
-        let name = mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
+        let name =
+            mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
         output::say(format_args!("note: contact {name}: {} of the model", says.join(", ")));
     }
     given.or(stated.into())
@@ -66,7 +67,8 @@ impl SurfaceArguments {
         let law = self.law.as_deref().map(law).transpose()?;
         let given = GivenSurface { mu: self.mu, e: self.e, law };
         stated_in(mechanism, contact, given).whole().ok_or_else(|| {
-            let name = mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
+            let name =
+                mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
             Stop::Call(format!(
                 "contact {name} has no surface: give --mu, --e and --law, or state its `surface` in the model"
             ))

@@ -169,7 +169,7 @@ fn compilers_derive_at_once() {
 
 /// Names that mean something in Rust, in the prelude, in the runtime or in generated code.
 const MEANT: &str = "Some None Ok Err Option Result Vec String Box Default Clone Copy Debug Send Drop T Iterator usize f64 str core std alloc hodograph \
-     State Scalar Mechanism Contacts Surface Law Kind Parameters Coordinates Speeds Inputs Collision Derivatives MODEL NAMES UNITS DESCRIPTION q u v0 v1c \
+     State Scalar Mechanism Contacts Surface Law ComponentKind Parameters Coordinates Speeds Inputs Collision Derivatives MODEL NAMES UNITS DESCRIPTION q u v0 v1c \
      inputs parameters coordinates speeds hoisted new get iter from into state first second normal binormal mass_matrix forcing surface array number \
      Output index what rates of_part_1 given_1 lanes_1 krate union auto raw dyn_ macro_rules safe";
 

@@ -37,13 +37,13 @@ pub struct Lanes {
 /// An operation of a column: which it is, the factor that all columns share, and the operands of its own.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Step {
-    kind: Kind,
+    kind: ComponentKind,
     shared: Option<Value>,
     own: [Option<Value>; 2],
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum ComponentKind {
     Neg,
     Mul,
     NegMulAdd,
@@ -112,13 +112,13 @@ impl<'a> Columns<'a> {
         }
         let is_shared = |operand: Value| self.owner(operand) == Owner::Several;
         match self.emitter.program.operation(value) {
-            Operation::Neg(a) => Some(Step { kind: Kind::Neg, shared: None, own: [Some(a), None] }),
+            Operation::Neg(a) => Some(Step { kind: ComponentKind::Neg, shared: None, own: [Some(a), None] }),
             Operation::Mul(a, b) if is_shared(a) != is_shared(b) => {
                 let (shared, own) = if is_shared(a) { (a, b) } else { (b, a) };
-                Some(Step { kind: Kind::Mul, shared: Some(shared), own: [Some(own), None] })
+                Some(Step { kind: ComponentKind::Mul, shared: Some(shared), own: [Some(own), None] })
             }
             Operation::NegMulAdd(a, b, c) if is_shared(a) && !is_shared(b) => {
-                Some(Step { kind: Kind::NegMulAdd, shared: Some(a), own: [Some(b), Some(c)] })
+                Some(Step { kind: ComponentKind::NegMulAdd, shared: Some(a), own: [Some(b), Some(c)] })
             }
             _ => None,
         }

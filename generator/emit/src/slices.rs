@@ -161,7 +161,7 @@ impl Emitter<'_> {
             match #number {
                 #(#arms)*
                 index => ::core::result::Result::Err(::core::convert::From::from(
-                    #krate::StateError::Missing { kind: #krate::Kind::#kind, index },
+                    #krate::StateError::Missing { kind: #krate::ComponentKind::#kind, index },
                 )),
             }
         }

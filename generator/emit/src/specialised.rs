@@ -95,7 +95,7 @@ impl Emitter<'_> {
             let law = format_ident!("{law}");
             quote!(let law = #krate::Law::#law;)
         });
-        let within = budget.map(|budget| quote!(.within(#budget)));
+        let budget = budget.map(|budget| quote!(.with_budget(#budget)));
         let solved = match self.structure(contact) {
             Some(structure) => quote! {
                 #krate::generated::resolve_structured_inlined::<#krate::structure::#structure, #krate::generated::#marker, T>
@@ -113,7 +113,7 @@ impl Emitter<'_> {
             {
                 #(#given)*
                 #given_law
-                let surface = #krate::Surface { mu, e, law } #within;
+                let surface = #krate::Surface { mu, e, law } #budget;
                 #body
             }
         })

@@ -225,7 +225,7 @@ fn a_specialised_collision_knows_what_it_is_told() {
     let contact = &mechanism().contacts[0].name;
     let contact = hodograph_model::rust_names::snake_case(contact);
     let text = emitted(Structure::Planar, &contact, Some("Stronge"), Some(0.5), Some(8)).unwrap();
-    assert!(text.contains("mu : T ,)") && text.contains(". within (8u32)"), "{text}");
+    assert!(text.contains("mu : T ,)") && text.contains(". with_budget (8u32)"), "{text}");
     assert!(text.contains(
         "resolve_structured_inlined :: < :: hodograph :: structure :: Planar , :: hodograph :: generated :: Stronge , T >"
     ));
@@ -233,7 +233,7 @@ fn a_specialised_collision_knows_what_it_is_told() {
     assert!(text.contains("mu : T , e : T , law : :: hodograph :: Law ,)"), "{text}");
     assert!(
         text.contains("resolve_inlined :: < :: hodograph :: generated :: AnyLaw , T >")
-            && !text.contains("within")
+            && !text.contains("with_budget")
     );
     let error = emitted(Structure::General, "nobody", None, None, None).unwrap_err();
     assert!(error.contains("no contact `nobody`"), "{error}");

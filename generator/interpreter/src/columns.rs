@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use hodograph::nalgebra::Vector3;
 use hodograph::{
-    CollisionError, CollisionOutcome, Impact, ImpactError, Kind, Mechanism, ReducedMatrix, StateError,
-    Surface, solve,
+    CollisionError, CollisionOutcome, ComponentKind, Impact, ImpactError, Mechanism, ReducedMatrix,
+    StateError, Surface, solve,
 };
 use hodograph_program::interpret::columns::LANES;
 pub use hodograph_program::interpret::{Column, Columns, Failed, Table};
@@ -93,7 +93,7 @@ impl InterpretedMechanism {
     /// [`StateError::Missing`] where there is no contact of this number, [`StateError::Undefined`] where it
     /// has no collision.
     pub fn collisions(&self, contact: usize) -> Result<Collisions, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         if COLLISION_NEEDS.iter().any(|&quantity| self.size(contact, quantity) == 0) {
             return Err(StateError::Undefined { what: NO_COLLISION });
         }
@@ -117,7 +117,7 @@ impl Collisions {
     ) {
         let mechanism = &self.mechanism;
         let mut numbers = vec![0.0; self.columns.len()];
-        let freedom = Mechanism::count(mechanism, Kind::Speed);
+        let freedom = Mechanism::count(mechanism, ComponentKind::Speed);
         let mut speeds = vec![0.0; freedom];
         self.columns.for_each_block(table, rows, |block| {
             let results: Vec<&[f64]> = (0..self.columns.len()).map(|result| block.column(result)).collect();

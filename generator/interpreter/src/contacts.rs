@@ -7,9 +7,9 @@ use hodograph::generated::{
 use hodograph::nalgebra::Vector3;
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
-    Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ContactMode,
-    ContactOutcome, ContactState, ContactSurface, Contacts, ImpactError, Kind, Law, ReducedMatrix, State,
-    StateError, StatedLaw, Surface,
+    Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ComponentKind,
+    ContactMode, ContactOutcome, ContactState, ContactSurface, Contacts, ImpactError, Law, ReducedMatrix,
+    State, StateError, StatedLaw, Surface,
 };
 use hodograph_model::model::mechanism::Law as Stated;
 use hodograph_program::program::operation::Operation;
@@ -41,7 +41,7 @@ impl InterpretedMechanism {
         state: &State<'_>,
         what: &'static str,
     ) -> Result<Vector3<f64>, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         let request = Request::Contact(contact, OfContact::One(quantity));
         if !self.has(request) {
             return Err(StateError::Undefined { what });
@@ -113,7 +113,7 @@ impl InterpretedMechanism {
         state: &State<'_>,
         what: &'static str,
     ) -> Result<Vec<f64>, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         if quantities.iter().any(|&quantity| self.size(contact, quantity) == 0) {
             return Err(StateError::Undefined { what });
         }
@@ -221,7 +221,7 @@ fn six(numbers: &[f64], at: usize) -> ReducedMatrix<f64> {
 
 impl Contacts for InterpretedMechanism {
     fn contact_state(&self, contact: usize, state: &State<'_>) -> Result<ContactState<f64>, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         if self.size(contact, ContactQuantity::Reduced) == 0 {
             return Err(StateError::Undefined { what: "reduced matrix of this contact" });
         }
@@ -239,7 +239,7 @@ impl Contacts for InterpretedMechanism {
     }
 
     fn gap(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::Gap));
         let [gap] = self.array::<1>(request, state, &[])?;
         Ok(self.has(request).then_some(gap))
@@ -281,13 +281,13 @@ impl Contacts for InterpretedMechanism {
         state: &State<'_>,
         partial_velocities: &mut [f64],
     ) -> Result<(), StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::PartialVelocities));
         self.write(request, state, &[], partial_velocities, "the partial velocities")
     }
 
     fn response(&self, contact: usize, state: &State<'_>, response: &mut [f64]) -> Result<(), StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::Response));
         self.write(request, state, &[], response, "the response")
     }
@@ -302,7 +302,7 @@ impl Contacts for InterpretedMechanism {
         values.check(k, n, p)?;
         self.check(state)?;
         for &contact in contacts {
-            self.exists(Kind::Contact, contact)?;
+            self.exists(ComponentKind::Contact, contact)?;
             if OF_EACH.into_iter().any(|quantity| self.size(contact, quantity) == 0) {
                 return Err(StateError::Undefined { what: "closed contact" });
             }
@@ -337,7 +337,7 @@ impl Contacts for InterpretedMechanism {
         self.struck(contact, state, speeds, NO_COLLISION, |known| self.resolve(contact, known, surface))
     }
 
-    fn collide_within(
+    fn collide_with_budget(
         &self,
         contact: usize,
         state: &State<'_>,

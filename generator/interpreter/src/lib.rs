@@ -8,11 +8,11 @@
 //! [`columns`] evaluates many states at once.
 //!
 //! ```no_run
-//! use hodograph::{Kind, Mechanism};
+//! use hodograph::{ComponentKind, Mechanism};
 //! use hodograph_interpreter::InterpretedMechanism;
 //!
 //! let pendulum = InterpretedMechanism::read("models/pendulum.mech".as_ref())?;
-//! println!("{} has {} speeds", pendulum.name(), pendulum.count(Kind::Speed));
+//! println!("{} has {} speeds", pendulum.name(), pendulum.count(ComponentKind::Speed));
 //! # Ok::<(), hodograph_interpreter::Error>(())
 //! ```
 

@@ -2,7 +2,7 @@
 
 use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};
-use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
+use hodograph::{Component, ComponentKind, Mechanism, ParameterError, State, StateError};
 use hodograph_model::model::mechanism::Variable;
 use hodograph_model::numeric;
 use hodograph_program::program::{PointQuantity, Quantity};
@@ -21,17 +21,19 @@ fn named(name: &str) -> Component<'_> {
 
 impl InterpretedMechanism {
     /// The quantities of a kind that the model declares with units.
-    fn declared(&self, kind: Kind) -> Box<dyn Iterator<Item = &Variable> + '_> {
+    fn declared(&self, kind: ComponentKind) -> Box<dyn Iterator<Item = &Variable> + '_> {
         let model = self.model();
         match kind {
-            Kind::Parameter => Box::new(model.parameters.iter().filter(|parameter| !parameter.fixed)),
-            Kind::Coordinate => Box::new(model.coordinates.iter()),
-            Kind::DependentCoordinate => {
+            ComponentKind::Parameter => {
+                Box::new(model.parameters.iter().filter(|parameter| !parameter.fixed))
+            }
+            ComponentKind::Coordinate => Box::new(model.coordinates.iter()),
+            ComponentKind::DependentCoordinate => {
                 Box::new(self.dependent_coordinates().iter().map(|&index| &model.coordinates[index]))
             }
-            Kind::Speed => Box::new(model.speeds.iter().filter(|speed| !speed.dependent)),
-            Kind::DependentSpeed => Box::new(model.speeds.iter().filter(|speed| speed.dependent)),
-            Kind::Input => Box::new(model.inputs.iter()),
+            ComponentKind::Speed => Box::new(model.speeds.iter().filter(|speed| !speed.dependent)),
+            ComponentKind::DependentSpeed => Box::new(model.speeds.iter().filter(|speed| speed.dependent)),
+            ComponentKind::Input => Box::new(model.inputs.iter()),
             _ => Box::new(std::iter::empty()),
         }
     }
@@ -45,7 +47,7 @@ impl InterpretedMechanism {
     }
 
     /// Whether there is one of this number.
-    pub(crate) fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
+    pub(crate) fn exists(&self, kind: ComponentKind, index: usize) -> Result<(), StateError> {
         if index < Mechanism::count(self, kind) { Ok(()) } else { Err(StateError::Missing { kind, index }) }
     }
 
@@ -57,7 +59,7 @@ impl InterpretedMechanism {
         accelerations: &[f64],
         what: &'static str,
     ) -> Result<Vector3<f64>, StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         let request = Request::Point(point, quantity);
         if point == 0 {
             self.check(state)?;
@@ -75,23 +77,23 @@ impl Mechanism for InterpretedMechanism {
         &self.model().name
     }
 
-    fn count(&self, kind: Kind) -> usize {
+    fn count(&self, kind: ComponentKind) -> usize {
         match kind {
-            Kind::Point => self.model().points.len(),
-            Kind::Frame => self.model().frames.len(),
-            Kind::Contact => self.model().contacts.len(),
-            Kind::Quantity => self.named().count(),
+            ComponentKind::Point => self.model().points.len(),
+            ComponentKind::Frame => self.model().frames.len(),
+            ComponentKind::Contact => self.model().contacts.len(),
+            ComponentKind::Quantity => self.named().count(),
             kind => self.declared(kind).count(),
         }
     }
 
-    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>> {
+    fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
         let model = self.model();
         match kind {
-            Kind::Point => model.points.get(index).map(|point| named(&point.name)),
-            Kind::Frame => model.frames.get(index).map(|frame| named(&frame.name)),
-            Kind::Contact => model.contacts.get(index).map(|contact| named(&contact.name)),
-            Kind::Quantity => {
+            ComponentKind::Point => model.points.get(index).map(|point| named(&point.name)),
+            ComponentKind::Frame => model.frames.get(index).map(|frame| named(&frame.name)),
+            ComponentKind::Contact => model.contacts.get(index).map(|contact| named(&contact.name)),
+            ComponentKind::Quantity => {
                 let row = self.named().nth(index)?.description();
                 Some(Component { name: row.word, unit: row.unit })
             }
@@ -201,8 +203,8 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn quantity(&self, quantity: usize, state: &State<'_>, values: &mut [f64]) -> Result<(), StateError> {
-        self.exists(Kind::Quantity, quantity)?;
-        let missing = StateError::Missing { kind: Kind::Quantity, index: quantity };
+        self.exists(ComponentKind::Quantity, quantity)?;
+        let missing = StateError::Missing { kind: ComponentKind::Quantity, index: quantity };
         let quantity = self.named().nth(quantity).ok_or(missing)?;
         self.write(Request::Whole(quantity), state, &[], values, quantity.description().word)
     }
@@ -227,7 +229,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn jacobian(&self, point: usize, state: &State<'_>, jacobian: &mut [f64]) -> Result<(), StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         if point == 0 {
             self.check(state)?;
             check_length(jacobian, 3 * self.freedom(), "the partial velocities")?;
@@ -239,7 +241,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn orientation(&self, frame: usize, state: &State<'_>) -> Result<Matrix3<f64>, StateError> {
-        self.exists(Kind::Frame, frame)?;
+        self.exists(ComponentKind::Frame, frame)?;
         let request = Request::Frame(frame);
         if frame == 0 {
             self.check(state)?;

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use hodograph::{Contacts, ImpactError, Kind, Law, State, Surface};
+use hodograph::{ComponentKind, Contacts, ImpactError, Law, State, Surface};
 use hodograph_program::program::Program;
 use hodograph_program::program::graph::Input;
 use hodograph_program::program::operation::Operation;
@@ -145,7 +145,7 @@ pub fn surfaces(
     own: &[(usize, GivenSurface)],
 ) -> Result<Surfaces, NoSurface> {
     let mut found = Surfaces::default();
-    for contact in 0..mechanism.count(Kind::Contact) {
+    for contact in 0..mechanism.count(ComponentKind::Contact) {
         // A gap that cannot be evaluated is there: the simulation says why it cannot.
         if let Ok(None) = mechanism.gap(contact, state) {
             found.without_gap.push(contact);
@@ -155,7 +155,8 @@ pub fn surfaces(
         let stated = mechanism.surface(contact).map(GivenSurface::from).unwrap_or_default();
         let given = own.unwrap_or_default().or(all).or(stated);
         let Some(surface) = given.whole() else {
-            let name = mechanism.component(Kind::Contact, contact).map_or("", |component| component.name);
+            let name =
+                mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name);
             return Err(NoSurface { contact: name.to_owned(), missing: given.missing() });
         };
         found.of_contacts.push((contact, surface));

@@ -56,4 +56,4 @@ pub use crate::{
 /// Generated code names this constant, so that a module made by a generator of another version does not
 /// compile with this runtime.
 #[doc(hidden)]
-pub const GENERATED_CODE_FORMAT_5: () = ();
+pub const GENERATED_CODE_FORMAT_6: () = ();

@@ -3,7 +3,7 @@
 use nalgebra::SMatrix;
 
 use crate::{
-    Component, Kind, Scalar, State, StateError,
+    Component, ComponentKind, Scalar, State, StateError,
     mechanism::slices::{check_length, write},
 };
 
@@ -29,31 +29,31 @@ pub struct Description {
 
 impl Description {
     /// The number of components of a kind.
-    pub const fn count(&self, kind: Kind) -> usize {
+    pub const fn count(&self, kind: ComponentKind) -> usize {
         match kind {
-            Kind::DependentCoordinate => self.dependent_coordinates.len(),
+            ComponentKind::DependentCoordinate => self.dependent_coordinates.len(),
             kind => self.list(kind).len(),
         }
     }
 
-    const fn list(&self, kind: Kind) -> &'static [Component<'static>] {
+    const fn list(&self, kind: ComponentKind) -> &'static [Component<'static>] {
         match kind {
-            Kind::Parameter => self.parameters,
-            Kind::Coordinate | Kind::DependentCoordinate => self.coordinates,
-            Kind::Speed => self.speeds,
-            Kind::DependentSpeed => self.dependent_speeds,
-            Kind::Input => self.inputs,
-            Kind::Point => self.points,
-            Kind::Frame => self.frames,
-            Kind::Contact => self.contacts,
-            Kind::Quantity => self.quantities,
+            ComponentKind::Parameter => self.parameters,
+            ComponentKind::Coordinate | ComponentKind::DependentCoordinate => self.coordinates,
+            ComponentKind::Speed => self.speeds,
+            ComponentKind::DependentSpeed => self.dependent_speeds,
+            ComponentKind::Input => self.inputs,
+            ComponentKind::Point => self.points,
+            ComponentKind::Frame => self.frames,
+            ComponentKind::Contact => self.contacts,
+            ComponentKind::Quantity => self.quantities,
         }
     }
 
     /// The component of a kind with this number.
-    pub fn component(&self, kind: Kind, index: usize) -> Option<Component<'static>> {
+    pub fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'static>> {
         let index = match kind {
-            Kind::DependentCoordinate => *self.dependent_coordinates.get(index)?,
+            ComponentKind::DependentCoordinate => *self.dependent_coordinates.get(index)?,
             _ => index,
         };
         self.list(kind).get(index).copied()

@@ -92,7 +92,7 @@ impl<T> ClosedContacts<'_, T> {
     }
 }
 
-/// The contacts of a mechanism, by number; [`Mechanism::index`] with [`Kind::Contact`](crate::Kind::Contact)
+/// The contacts of a mechanism, by number; [`Mechanism::index`] with [`ComponentKind::Contact`](crate::ComponentKind::Contact)
 /// gives the number of a name. A mechanism without contacts has the trait too, and its count is 0.
 ///
 /// `p` is the number of independent speeds; matrices are written by rows; components along the contact basis
@@ -154,16 +154,13 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     ///
     /// Those of [`Contacts::collide`], and
     /// [`ImpactError::BudgetExceeded`](crate::ImpactError::BudgetExceeded).
-    fn collide_within(
+    fn collide_with_budget(
         &self,
         contact: usize,
         state: &State<'_, T>,
         surface: &Budgeted<T>,
         speeds: &mut [T],
-    ) -> Result<CollisionOutcome<T>, CollisionError<T>> {
-        let _ = (contact, state, surface, speeds);
-        Err(StateError::Undefined { what: "collision within a budget" }.into())
-    }
+    ) -> Result<CollisionOutcome<T>, CollisionError<T>>;
 
     /// Selects the mode of a closed contact (stick, slide, begin to slip, separate) with its force, coming
     /// from no contact force. The gap and v_n count as zero: neither is looked at. Of the surface only `mu`
@@ -173,17 +170,14 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     /// # Errors
     ///
     /// [`ClosedContactError::Contact`] where no finite force exists: an impact without collision follows, or
-    /// no mode fits. [`StateError::Undefined`] where the mechanism does not tell it.
+    /// no mode fits. [`StateError::Undefined`] where the model does not determine it.
     fn contact_mode(
         &self,
         contact: usize,
         state: &State<'_, T>,
         surface: &Surface<T>,
         accelerations: &mut [T],
-    ) -> Result<ContactOutcome<T>, ClosedContactError<T>> {
-        let _ = (contact, state, surface, accelerations);
-        Err(StateError::Undefined { what: "mode of this contact" }.into())
-    }
+    ) -> Result<ContactOutcome<T>, ClosedContactError<T>>;
     /// Force of a closed contact in a mode that is kept, as [`Contacts::contact_mode`] gives it for the mode
     /// that it selects. A margin that is not positive says that the mode has ended; the force is then the one
     /// that would keep it.
@@ -198,10 +192,7 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         state: &State<'_, T>,
         surface: &Surface<T>,
         accelerations: &mut [T],
-    ) -> Result<ContactOutcome<T>, ClosedContactError<T>> {
-        let _ = (contact, mode, state, surface, accelerations);
-        Err(StateError::Undefined { what: "force of this contact" }.into())
-    }
+    ) -> Result<ContactOutcome<T>, ClosedContactError<T>>;
     /// Solves the impact without collision of a contact that slides with f < 0 and is pressed together; v_n
     /// counts as zero. See [`impact_without_collision`](crate::impact_without_collision). `speeds` (`p`)
     /// receives the independent speeds after it.
@@ -215,10 +206,7 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         state: &State<'_, T>,
         surface: &Surface<T>,
         speeds: &mut [T],
-    ) -> Result<CollisionOutcome<T>, CollisionError<T>> {
-        let _ = (contact, state, surface, speeds);
-        Err(StateError::Undefined { what: "impact without collision of this contact" }.into())
-    }
+    ) -> Result<CollisionOutcome<T>, CollisionError<T>>;
 
     /// Everything that the forces of closed contacts follow from, in one pass: what several of the single methods
     /// need (kinematics, the factorisation of the mass matrix) is computed once.
@@ -232,8 +220,8 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         state: &State<'_, T>,
         values: &mut ClosedContacts<'_, T>,
     ) -> Result<(), StateError> {
-        let p = self.count(super::Kind::Speed);
-        values.check(contacts.len(), self.count(super::Kind::Coordinate), p)?;
+        let p = self.count(super::ComponentKind::Speed);
+        values.check(contacts.len(), self.count(super::ComponentKind::Coordinate), p)?;
         self.coordinate_rates(state, values.coordinate_rates)?;
         self.accelerations(state, values.accelerations)?;
         let vectors =
@@ -266,7 +254,7 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         matrix: &mut [T],
         workspace: &mut [T],
     ) -> Result<(), StateError> {
-        let (k, p) = (contacts.len(), self.count(super::Kind::Speed));
+        let (k, p) = (contacts.len(), self.count(super::ComponentKind::Speed));
         let size = 3 * k;
         check_length(matrix, size * size, "the coupled matrix")?;
         check_room(workspace, 3 * p * (k + 1), "the workspace")?;
@@ -309,7 +297,7 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
         accelerations: &mut [T],
         workspace: &mut [T],
     ) -> Result<(), StateError> {
-        let needed = 3 * self.count(super::Kind::Speed);
+        let needed = 3 * self.count(super::ComponentKind::Speed);
         check_room(workspace, needed, "the workspace")?;
         let Some(response) = workspace.get_mut(..needed) else { return Ok(()) };
         self.accelerations(state, accelerations)?;

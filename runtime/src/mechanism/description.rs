@@ -8,7 +8,7 @@
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-pub enum Kind {
+pub enum ComponentKind {
     /// parameters that can be changed at run time; those that the model declares `fixed` are not counted
     Parameter,
     /// generalized coordinates, independent and dependent ones
@@ -32,7 +32,7 @@ pub enum Kind {
     Quantity,
 }
 
-impl Kind {
+impl ComponentKind {
     /// Every kind, in the order of the variants.
     pub const ALL: &'static [Self] = &[
         Self::Parameter,

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::{ContactError, ImpactError, Kind};
+use crate::{ComponentKind, ContactError, ImpactError};
 
 /// Why a routine of a mechanism has no result in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -29,7 +29,7 @@ pub enum StateError {
     /// The mechanism has no component of this kind with this number.
     Missing {
         /// The kind.
-        kind: Kind,
+        kind: ComponentKind,
         /// The number, counted from 0.
         index: usize,
     },

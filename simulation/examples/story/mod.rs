@@ -5,7 +5,7 @@ pub mod picture;
 
 use std::error::Error;
 
-use hodograph::{Contacts, Kind, State};
+use hodograph::{ComponentKind, Contacts, State};
 use hodograph_simulation::{EnergyAccount, Event, EventKind, Options, Progress, Simulation};
 
 pub use picture::Picture;
@@ -54,9 +54,9 @@ impl Start {
     pub fn of(mechanism: &dyn Contacts<f64>) -> Result<Self, Box<dyn Error>> {
         let none = |kind| vec![0.0; mechanism.count(kind)];
         let mut start = Start {
-            coordinates: none(Kind::Coordinate),
-            speeds: none(Kind::Speed),
-            inputs: none(Kind::Input),
+            coordinates: none(ComponentKind::Coordinate),
+            speeds: none(ComponentKind::Speed),
+            inputs: none(ComponentKind::Input),
         };
         mechanism.initial_state(&mut start.coordinates, &mut start.speeds, &mut start.inputs)?;
         Ok(start)
@@ -128,7 +128,7 @@ fn bounces(event: &Event) -> bool {
 
 fn name(mechanism: &dyn Contacts<f64>, contact: Option<usize>) -> &str {
     contact
-        .and_then(|contact| mechanism.component(Kind::Contact, contact))
+        .and_then(|contact| mechanism.component(ComponentKind::Contact, contact))
         .map_or("", |component| component.name)
 }
 

@@ -2,10 +2,13 @@
 
 pub mod random;
 
-use hodograph::generated::{Contact, Resolved, resolve, resolve_without_collision};
+use hodograph::generated::{
+    Contact, Resolved, closed_contact, kept_contact, resolve, resolve_without_collision, slip_noise,
+};
 use hodograph::{
-    CollisionError, CollisionOutcome, Component, ContactState, Contacts, ImpactError, Kind, Law, Mechanism,
-    ParameterError, ReducedMatrix, State, StateError, Surface,
+    Budgeted, ClosedContactError, CollisionError, CollisionOutcome, Component, ComponentKind, ContactMode,
+    ContactOutcome, ContactState, Contacts, ImpactError, Law, Mechanism, ParameterError, ReducedMatrix,
+    State, StateError, Surface,
 };
 use hodograph_simulation::{Event, EventKind, Options, Progress, Simulation};
 use nalgebra::{Matrix3, Vector3};
@@ -83,6 +86,45 @@ impl Body {
         [1.0 / self.mass, 1.0 / self.mass, 1.0 / self.inertia]
     }
 
+    /// A contact as the solver takes it.
+    fn touch(&self, contact: usize, state: &State<'_>) -> Result<Contact<f64>, StateError> {
+        let ContactState { normal, first, second, velocity, reduced, .. } =
+            self.contact_state(contact, state)?;
+        let remainder = Vector3::new(0.0, -self.lines[contact].belt, 0.0);
+        let prescribed_work = Vector3::zeros();
+        Ok(Contact { normal, first, second, velocity, reduced, remainder, prescribed_work })
+    }
+
+    /// Adds M^-1 V^T times a force or an impulse.
+    fn respond(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        load: &Vector3<f64>,
+        to: &mut [f64],
+    ) -> Result<(), StateError> {
+        let mut response = [0.0; 9];
+        self.response(contact, state, &mut response)?;
+        for (rate, row) in to.iter_mut().zip(response.chunks(3)) {
+            *rate += row[0] * load.x + row[1] * load.y;
+        }
+        Ok(())
+    }
+
+    /// A closed contact whose force `decide` finds.
+    fn closed(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        accelerations: &mut [f64],
+        decide: impl FnOnce(&Contact<f64>, &Vector3<f64>) -> Result<ContactOutcome<f64>, ClosedContactError<f64>>,
+    ) -> Result<ContactOutcome<f64>, ClosedContactError<f64>> {
+        let outcome = decide(&self.touch(contact, state)?, &self.free_acceleration(contact, state)?)?;
+        self.accelerations(state, accelerations)?;
+        self.respond(contact, state, &outcome.answer.force, accelerations)?;
+        Ok(outcome)
+    }
+
     /// An impact that `resolve` solves, and the speeds after it.
     fn struck(
         &self,
@@ -91,19 +133,12 @@ impl Body {
         speeds: &mut [f64],
         resolve: impl FnOnce(&Contact<f64>) -> Result<Resolved<f64>, ImpactError<f64>>,
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
-        let ContactState { normal, first, second, velocity, reduced, .. } =
-            self.contact_state(contact, state)?;
-        let remainder = Vector3::new(0.0, -self.lines[contact].belt, 0.0);
-        let prescribed_work = Vector3::zeros();
-        let hit = resolve(&Contact { normal, first, second, velocity, reduced, remainder, prescribed_work })?;
-        let mut response = [0.0; 9];
-        self.response(contact, state, &mut response)?;
+        let touch = self.touch(contact, state)?;
+        let hit = resolve(&touch)?;
         speeds.copy_from_slice(state.speeds);
-        for (speed, row) in speeds.iter_mut().zip(response.chunks(3)) {
-            *speed += row[0] * hit.impulse.x + row[1] * hit.impulse.y;
-        }
+        self.respond(contact, state, &hit.impulse, speeds)?;
         Ok(CollisionOutcome {
-            normal,
+            normal: touch.normal,
             tangent: hit.tangent,
             binormal: hit.binormal,
             approach: hit.approach,
@@ -124,26 +159,26 @@ impl Mechanism<f64> for Body {
     fn name(&self) -> &str {
         "Body"
     }
-    fn count(&self, kind: Kind) -> usize {
+    fn count(&self, kind: ComponentKind) -> usize {
         match kind {
-            Kind::Coordinate | Kind::Speed => 3,
-            Kind::Input => 1,
-            Kind::Contact => self.lines.len(),
+            ComponentKind::Coordinate | ComponentKind::Speed => 3,
+            ComponentKind::Input => 1,
+            ComponentKind::Contact => self.lines.len(),
             _ => 0,
         }
     }
-    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>> {
+    fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
         let names: &[&str] = match kind {
-            Kind::Coordinate => &["x", "z", "theta"],
-            Kind::Speed => &["vx", "vz", "omega"],
-            Kind::Input => &["F"],
-            Kind::Contact => &["c0", "c1", "c2", "c3"],
+            ComponentKind::Coordinate => &["x", "z", "theta"],
+            ComponentKind::Speed => &["vx", "vz", "omega"],
+            ComponentKind::Input => &["F"],
+            ComponentKind::Contact => &["c0", "c1", "c2", "c3"],
             _ => &[],
         };
         let units: &[&str] = match kind {
-            Kind::Coordinate => &["m", "m", "rad"],
-            Kind::Speed => &["m/s", "m/s", "rad/s"],
-            Kind::Input => &["N"],
+            ComponentKind::Coordinate => &["m", "m", "rad"],
+            ComponentKind::Speed => &["m/s", "m/s", "rad/s"],
+            ComponentKind::Input => &["N"],
             _ => &["1"; 4],
         };
         (index < self.count(kind)).then(|| Component { name: names[index], unit: units[index] })
@@ -205,6 +240,9 @@ impl Mechanism<f64> for Body {
         Ok(Vector3::zeros())
     }
     fn velocity(&self, _: usize, _: &State<'_>) -> Result<Vector3<f64>, StateError> {
+        Ok(Vector3::zeros())
+    }
+    fn acceleration(&self, _: usize, _: &State<'_>, _: &[f64]) -> Result<Vector3<f64>, StateError> {
         Ok(Vector3::zeros())
     }
     fn jacobian(&self, _: usize, _: &State<'_>, _: &mut [f64]) -> Result<(), StateError> {
@@ -279,6 +317,15 @@ impl Contacts<f64> for Body {
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
         self.struck(contact, state, speeds, |contact| resolve(contact, surface))
     }
+    fn collide_with_budget(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        surface: &Budgeted<f64>,
+        speeds: &mut [f64],
+    ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
+        self.struck(contact, state, speeds, |contact| resolve(contact, surface))
+    }
     fn impact_without_collision(
         &self,
         contact: usize,
@@ -287,6 +334,30 @@ impl Contacts<f64> for Body {
         speeds: &mut [f64],
     ) -> Result<CollisionOutcome<f64>, CollisionError<f64>> {
         self.struck(contact, state, speeds, |contact| resolve_without_collision(contact, surface))
+    }
+    fn contact_mode(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        surface: &Surface<f64>,
+        accelerations: &mut [f64],
+    ) -> Result<ContactOutcome<f64>, ClosedContactError<f64>> {
+        let mut partial = [0.0; 9];
+        self.partial_velocities(contact, state, &mut partial)?;
+        self.closed(contact, state, accelerations, |touch, free| {
+            let noise = slip_noise(&partial, state.speeds, &touch.remainder);
+            closed_contact(touch, free, noise, surface.mu)
+        })
+    }
+    fn contact_force(
+        &self,
+        contact: usize,
+        mode: ContactMode,
+        state: &State<'_>,
+        surface: &Surface<f64>,
+        accelerations: &mut [f64],
+    ) -> Result<ContactOutcome<f64>, ClosedContactError<f64>> {
+        self.closed(contact, state, accelerations, |touch, free| kept_contact(mode, touch, free, surface.mu))
     }
 }
 
@@ -297,7 +368,7 @@ pub fn surface(mu: f64, e: f64, law: Law) -> Options {
 
 /// A simulation of a body from coordinates and speeds.
 pub fn start<'a>(body: &'a dyn Contacts<f64>, q: &[f64], u: &[f64], options: Options) -> Simulation<'a> {
-    let inputs = vec![0.0; body.count(Kind::Input)];
+    let inputs = vec![0.0; body.count(ComponentKind::Input)];
     let state = State { time: 0.0, coordinates: q, speeds: u, inputs: &inputs };
     Simulation::new(body, &state, options).unwrap_or_else(|error| panic!("{error}"))
 }

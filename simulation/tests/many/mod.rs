@@ -1,6 +1,6 @@
 //! Mechanisms with several contacts, read from their model files, and their motions.
 
-use hodograph::{Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, EventKind, Options, Progress, Simulation, SimulationError};
 
@@ -20,7 +20,8 @@ pub fn model(name: &str) -> InterpretedMechanism {
 pub fn with_parameters(mechanism: &InterpretedMechanism, changes: &[(&str, f64)]) -> InterpretedMechanism {
     let mut values = mechanism.all_parameters().to_vec();
     for (name, value) in changes {
-        let place = mechanism.index(Kind::Parameter, name).unwrap_or_else(|| panic!("no parameter {name}"));
+        let place =
+            mechanism.index(ComponentKind::Parameter, name).unwrap_or_else(|| panic!("no parameter {name}"));
         values[place] = *value;
     }
     let (model, program) = (mechanism.model().clone(), mechanism.program().clone());
@@ -49,18 +50,18 @@ impl Start {
         };
         let values = |kind| (0..mechanism.count(kind)).map(|i| stated(name(mechanism, kind, i))).collect();
         Self {
-            coordinates: values(Kind::Coordinate),
-            speeds: values(Kind::Speed),
-            inputs: values(Kind::Input),
+            coordinates: values(ComponentKind::Coordinate),
+            speeds: values(ComponentKind::Speed),
+            inputs: values(ComponentKind::Input),
         }
     }
 
     /// Sets a coordinate, speed or input by its name.
     pub fn set(&mut self, mechanism: &InterpretedMechanism, name: &str, value: f64) {
         let lists = [
-            (Kind::Coordinate, &mut self.coordinates),
-            (Kind::Speed, &mut self.speeds),
-            (Kind::Input, &mut self.inputs),
+            (ComponentKind::Coordinate, &mut self.coordinates),
+            (ComponentKind::Speed, &mut self.speeds),
+            (ComponentKind::Input, &mut self.inputs),
         ];
         for (kind, list) in lists {
             if let Some(place) = mechanism.index(kind, name) {
@@ -77,7 +78,7 @@ impl Start {
 }
 
 /// The name of a component.
-pub fn name(mechanism: &InterpretedMechanism, kind: Kind, index: usize) -> &str {
+pub fn name(mechanism: &InterpretedMechanism, kind: ComponentKind, index: usize) -> &str {
     mechanism.component(kind, index).map_or("?", |component| component.name)
 }
 
@@ -103,7 +104,7 @@ impl Ended {
     /// The name of how it ended: the error, `rest`, `singular` or `moves`.
     pub fn outcome(&self) -> &'static str {
         match (&self.error, self.events.last().map(|event| &event.kind)) {
-            (Some(error), _) => error.reason.kind(),
+            (Some(error), _) => error.kind.name(),
             (None, Some(EventKind::Rest)) => "rest",
             (None, Some(EventKind::Singular)) => "singular",
             _ => "moves",

@@ -12,7 +12,7 @@ use datafusion::logical_expr::{
     ColumnarValue, Expr, LogicalPlan, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDF, ScalarUDFImpl,
     Signature, Volatility,
 };
-use hodograph::{CollisionError, CollisionOutcome, Contacts, Kind, Law, Mechanism, Surface};
+use hodograph::{CollisionError, CollisionOutcome, ComponentKind, Contacts, Law, Mechanism, Surface};
 use hodograph_generator::program::Quantity;
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::{Collisions, Columns};
@@ -135,8 +135,8 @@ impl ModelFunction {
         if self.routine == Routine::Simulate {
             return Ok(simulate::fields(mechanism));
         }
-        let speeds = (0..Mechanism::count(mechanism, Kind::Speed))
-            .filter_map(|index| Mechanism::component(mechanism, Kind::Speed, index))
+        let speeds = (0..Mechanism::count(mechanism, ComponentKind::Speed))
+            .filter_map(|index| Mechanism::component(mechanism, ComponentKind::Speed, index))
             .map(|speed| speed.name.to_owned());
         let numbers: Vec<String> = match self.routine {
             Routine::Collide => COLLISION
@@ -254,12 +254,13 @@ impl Prepared {
         let count = |kind| Mechanism::count(mechanism, kind);
         let zeros = |kind| vec![0.0; count(kind)];
         let [mut q, mut u, mut inputs, mut parameters] =
-            [Kind::Coordinate, Kind::Speed, Kind::Input, Kind::Parameter].map(zeros);
+            [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input, ComponentKind::Parameter]
+                .map(zeros);
         // the slices have the lengths asked for
         let _ = mechanism.initial_state(&mut q, &mut u, &mut inputs);
         let _ = mechanism.parameter_values(&mut parameters);
-        let contacts = (0..count(Kind::Contact))
-            .filter_map(|index| Mechanism::component(mechanism, Kind::Contact, index));
+        let contacts = (0..count(ComponentKind::Contact))
+            .filter_map(|index| Mechanism::component(mechanism, ComponentKind::Contact, index));
         Prepared {
             known: match routine {
                 Routine::Simulate => places::known_of_motions(mechanism),
@@ -267,7 +268,9 @@ impl Prepared {
             },
             defaults: [q, u, inputs, parameters],
             contacts: contacts.map(|contact| contact.name.to_owned()).collect(),
-            collisions: (0..count(Kind::Contact)).map(|contact| mechanism.collisions(contact).ok()).collect(),
+            collisions: (0..count(ComponentKind::Contact))
+                .map(|contact| mechanism.collisions(contact).ok())
+                .collect(),
             columns: mechanism.columns(&quantities(routine)),
         }
     }

@@ -3,7 +3,7 @@
 
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use datafusion::common::{Result, plan_err};
-use hodograph::{Contacts as _, Kind, Mechanism};
+use hodograph::{ComponentKind, Contacts as _, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 
 use super::{is_number, is_text};
@@ -84,11 +84,11 @@ fn known_with(mechanism: &InterpretedMechanism, surface: &[(&str, Place)]) -> Ve
     all.push(("time".to_owned(), Place::Time));
     let reserved = all.len();
     type PlaceOf = fn(usize) -> Place;
-    let kinds: [(Kind, PlaceOf); 4] = [
-        (Kind::Coordinate, Place::Coordinate),
-        (Kind::Speed, Place::Speed),
-        (Kind::Input, Place::Input),
-        (Kind::Parameter, Place::Parameter),
+    let kinds: [(ComponentKind, PlaceOf); 4] = [
+        (ComponentKind::Coordinate, Place::Coordinate),
+        (ComponentKind::Speed, Place::Speed),
+        (ComponentKind::Input, Place::Input),
+        (ComponentKind::Parameter, Place::Parameter),
     ];
     for (kind, place) in kinds {
         for index in 0..Mechanism::count(mechanism, kind) {
@@ -114,7 +114,7 @@ pub fn resolve(
 ) -> Result<Vec<Place>> {
     let places = places_of(function, known, given)?;
     // what is not given is that of the model, where it states the surface of every contact
-    let mut contacts = 0..Mechanism::count(mechanism, Kind::Contact);
+    let mut contacts = 0..Mechanism::count(mechanism, ComponentKind::Contact);
     let needed = collision && !contacts.all(|contact| mechanism.surface(contact).is_some());
     for (name, place) in SURFACE.iter().take(3) {
         if needed && !places.contains(place) {

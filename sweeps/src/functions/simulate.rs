@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use datafusion::arrow::array::{ArrayRef, BooleanArray, Float64Array, Int64Array, StringArray, StructArray};
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
-use hodograph::{Contacts as _, Kind, Law, Mechanism, State};
+use hodograph::{ComponentKind, Contacts as _, Law, Mechanism, State};
 use hodograph_generator::model::mechanism::Law as Stated;
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::motion::{GivenSurface, check_tolerance, greatest_step, surfaces};
 use hodograph_simulation::{
-    Batch as Many, Case, ContactLaw, GivenLaw, Options, Outcome, Reason, SimulationError, simulate_many,
+    Batch as Many, Case, ContactLaw, ErrorKind, GivenLaw, Options, Outcome, SimulationError, simulate_many,
 };
 
 use super::UNKNOWN_LAW;
@@ -21,7 +21,7 @@ use super::places::Place;
 const NUMBERS: [&str; 8] =
     ["time", "rest", "energy", "kinetic", "potential", "friction_work", "impact_work", "input_work"];
 
-fn names(mechanism: &InterpretedMechanism, kind: Kind) -> Vec<&str> {
+fn names(mechanism: &InterpretedMechanism, kind: ComponentKind) -> Vec<&str> {
     let component = |index| Mechanism::component(mechanism, kind, index).map(|component| component.name);
     (0..Mechanism::count(mechanism, kind)).filter_map(component).collect()
 }
@@ -33,7 +33,7 @@ pub fn fields(mechanism: &InterpretedMechanism) -> Fields {
     all.extend(NUMBERS.map(|name| Field::new(name, DataType::Float64, true)));
     all.extend(["collisions", "events"].map(|name| Field::new(name, DataType::Int64, true)));
     all.push(Field::new("several_modes", DataType::Boolean, true));
-    for kind in [Kind::Coordinate, Kind::Speed] {
+    for kind in [ComponentKind::Coordinate, ComponentKind::Speed] {
         let end = |name: &str| Field::new(format!("end_{name}"), DataType::Float64, true);
         all.extend(names(mechanism, kind).into_iter().map(end));
     }
@@ -82,7 +82,7 @@ fn case<'m>(
     let wrong = |message: String| SimulationError {
         time: state.time,
         contact: None,
-        reason: Reason::Option(message),
+        kind: ErrorKind::BadOption(message),
     };
     let tolerance = batch.number(Place::Tolerance, row).unwrap_or(Options::default().relative_tolerance);
     check_tolerance(tolerance).map_err(wrong)?;
@@ -147,7 +147,7 @@ fn columns(mechanism: &InterpretedMechanism, answers: &[Answer], fields: Fields)
         Ok(outcome) => outcome.kind(),
         Err(kind) => kind,
     };
-    let contacts = names(mechanism, Kind::Contact);
+    let contacts = names(mechanism, ComponentKind::Contact);
     let closed = |outcome: &Outcome| -> String {
         let names: Vec<&str> =
             outcome.closed.iter().filter_map(|&contact| contacts.get(contact).copied()).collect();
@@ -176,10 +176,10 @@ fn columns(mechanism: &InterpretedMechanism, answers: &[Answer], fields: Fields)
             begun.iter().map(|outcome| outcome.as_ref().map(|outcome| outcome.several_modes)),
         )),
     ];
-    for index in 0..Mechanism::count(mechanism, Kind::Coordinate) {
+    for index in 0..Mechanism::count(mechanism, ComponentKind::Coordinate) {
         columns.push(number(&|outcome| outcome.coordinates.get(index).copied()));
     }
-    for index in 0..Mechanism::count(mechanism, Kind::Speed) {
+    for index in 0..Mechanism::count(mechanism, ComponentKind::Speed) {
         columns.push(number(&|outcome| outcome.speeds.get(index).copied()));
     }
     Arc::new(StructArray::new(fields, columns, None))

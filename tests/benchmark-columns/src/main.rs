@@ -6,7 +6,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use hodograph::{Kind, Mechanism, State};
+use hodograph::{ComponentKind, Mechanism, State};
 use hodograph_generator::interpret::columns::LANES;
 use hodograph_generator::program::Quantity;
 use hodograph_interpreter::InterpretedMechanism;
@@ -39,7 +39,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let interpreted = InterpretedMechanism::read(model.as_ref())?;
     let generated = generated::quadruped::Anymal::<f64>::default();
     let generated: &dyn Mechanism = &generated;
-    let [n, p, w] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| generated.count(kind));
+    let [n, p, w] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+        .map(|kind| generated.count(kind));
     let (mut start, mut u, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
     generated.initial_state(&mut start, &mut u, &mut inputs)?;
     let matrix = |width: usize, by: f64| -> Vec<f64> {

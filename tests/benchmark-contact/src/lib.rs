@@ -1,6 +1,6 @@
 //! Motions with contact that are measured: their mechanisms, surfaces and durations.
 
-use hodograph::{Contacts, Kind, Law, Mechanism, Surface};
+use hodograph::{ComponentKind, Contacts, Law, Mechanism, Surface};
 use hodograph_simulation::{Options, Progress, Simulation};
 
 /// The modules of the models.
@@ -75,9 +75,9 @@ pub fn motions() -> Result<Vec<Motion>, Failure> {
 ///
 /// There is no such parameter, or it may not have this value.
 pub fn change(mechanism: &mut dyn Mechanism<f64>, name: &str, value: f64) -> Result<(), Failure> {
-    let mut parameters = vec![0.0; mechanism.count(Kind::Parameter)];
+    let mut parameters = vec![0.0; mechanism.count(ComponentKind::Parameter)];
     mechanism.parameter_values(&mut parameters)?;
-    parameters[mechanism.index(Kind::Parameter, name).ok_or("no such parameter")?] = value;
+    parameters[mechanism.index(ComponentKind::Parameter, name).ok_or("no such parameter")?] = value;
     Ok(mechanism.set_parameter_values(&parameters)?)
 }
 
@@ -98,7 +98,8 @@ impl Motion {
     /// It cannot be followed.
     pub fn run_until(&self, tolerance: f64, until: f64) -> Result<Came, Failure> {
         let mechanism = &*self.mechanism;
-        let [n, p, w] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| mechanism.count(kind));
+        let [n, p, w] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+            .map(|kind| mechanism.count(kind));
         let (mut q, mut u, mut inputs) = (vec![0.0; n], vec![0.0; p], vec![0.0; w]);
         mechanism.initial_state(&mut q, &mut u, &mut inputs)?;
         let start = hodograph::State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };

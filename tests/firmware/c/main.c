@@ -64,8 +64,8 @@ int program(void)
             line("separation", hit.separation, 3);
             line("speeds", (const number *)&hit.speeds, 4);
             line("energy_change", &hit.energy_change, 1);
-            wrong += two_sleds_collide_bc_ac_within(&sleds, &q, &u, &surface, 100, &other) != TWO_SLEDS_OK || other.energy_change != hit.energy_change;
-            wrong += two_sleds_collide_bc_ac_within(&sleds, &q, &u, &surface, 0, &other) != TWO_SLEDS_BUDGET_EXCEEDED;
+            wrong += two_sleds_collide_bc_ac_with_budget(&sleds, &q, &u, &surface, 100, &other) != TWO_SLEDS_OK || other.energy_change != hit.energy_change;
+            wrong += two_sleds_collide_bc_ac_with_budget(&sleds, &q, &u, &surface, 0, &other) != TWO_SLEDS_BUDGET_EXCEEDED;
         }
     }
     wrong += two_sleds_accelerations(&sleds, &q, 0, &rates) != TWO_SLEDS_NULL;

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use firmware::hard;
 use firmware::random::Random;
 use hodograph::nalgebra::Vector3;
-use hodograph::{Contacts, Kind, Law, ReducedMatrix, State, Surface, solve};
+use hodograph::{ComponentKind, Contacts, Law, ReducedMatrix, State, Surface, solve};
 
 const STATES: usize = 1000;
 /// Singles are said to suffice where no error is larger.
@@ -73,7 +73,8 @@ fn heading(what: &str) {
 }
 
 fn model(single: &dyn Contacts<f32>, double: &dyn Contacts<f64>) -> [String; 2] {
-    let [n, p, inputs] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| single.count(kind));
+    let [n, p, inputs] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+        .map(|kind| single.count(kind));
     let (mut q0, mut u0, mut w0) = (vec![0f32; n], vec![0f32; p], vec![0f32; inputs]);
     single.initial_state(&mut q0, &mut u0, &mut w0).expect("the slices have its lengths");
     let mut random = Random::new(n as u64);

@@ -55,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         let index = machine.contact(arguments.contact.as_deref())?;
         let state = arguments.state.state(&machine)?;
         let surface = arguments.surface.surface(&machine.interpreted(&state)?, index)?;
-        let budget = surface.within(arguments.budget.unwrap_or(u32::MAX));
+        let budget = surface.with_budget(arguments.budget.unwrap_or(u32::MAX));
         let (mut collision, found) = collide(&machine, &state, index, &budget)?;
         let asked = arguments.characteristics.form;
         let of_paper =

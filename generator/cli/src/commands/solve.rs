@@ -158,7 +158,8 @@ impl Arguments {
         approach: &Vector3<f64>,
         surface: &Surface<f64>,
     ) -> Result<Answer, Failure> {
-        let impact = hodograph::solve(matrix, approach, &surface.within(self.budget.unwrap_or(u32::MAX)))?;
+        let impact =
+            hodograph::solve(matrix, approach, &surface.with_budget(self.budget.unwrap_or(u32::MAX)))?;
         let at =
             self.at.iter().map(|&impulse| snapshot_at(matrix, approach, surface.mu, impulse).map(At::from));
         let at = at.collect::<Result<_, _>>()?;

@@ -40,7 +40,7 @@ pub fn collide<'a>(
     let mechanism = machine.interpreted(state)?;
     let before = state.borrowed();
     let mut after = state.speeds.clone();
-    let outcome = mechanism.collide_within(index, &before, surface, &mut after)?;
+    let outcome = mechanism.collide_with_budget(index, &before, surface, &mut after)?;
     let answer = Answer::try_from(&outcome.impact)?;
     let mut dependent = vec![0.0; machine.mechanism.speeds.len() - after.len()];
     mechanism.dependent_speeds(&hodograph::State { speeds: &after, ..before }, &mut dependent)?;

@@ -113,8 +113,8 @@ fn structure(module: &Module, scalar: &str, record: &Record) -> String {
     out
 }
 
-/// A function's declaration without the semicolon; `within` a budget of quadratures.
-fn prototype(module: &Module, scalar: &str, routine: &Routine, within: bool) -> String {
+/// A function's declaration without the semicolon; `budgeted`: with a number of quadratures after the surface.
+fn prototype(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) -> String {
     let mut arguments = vec![format!("const {} *mechanism", module.name)];
     for (name, form) in &routine.arguments {
         let name = names::of(name);
@@ -122,7 +122,7 @@ fn prototype(module: &Module, scalar: &str, routine: &Routine, within: bool) -> 
             Form::Number => format!("{scalar} {name}"),
             form => format!("const {}", names::declared(module, scalar, form, &format!("*{name}"))),
         });
-        if within && *form == Form::Surface {
+        if budgeted && *form == Form::Surface {
             arguments.push("uint32_t quadratures".to_owned());
         }
     }
@@ -132,7 +132,7 @@ fn prototype(module: &Module, scalar: &str, routine: &Routine, within: bool) -> 
         }
         form => names::declared(module, scalar, form, "*answer"),
     });
-    format!("int32_t {}_{}({})", module.name, names::routine(routine, within), arguments.join(", "))
+    format!("int32_t {}_{}({})", module.name, names::routine(routine, budgeted), arguments.join(", "))
 }
 
 /// Lines of a comment.

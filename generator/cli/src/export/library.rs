@@ -181,8 +181,8 @@ fn construction(module: &Module, scalar: &str) -> String {
     )
 }
 
-/// The function of a routine; `within` a budget of quadratures.
-fn function(module: &Module, scalar: &str, routine: &Routine, within: bool) -> String {
+/// The function of a routine; `budgeted`: with a number of quadratures after the surface.
+fn function(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) -> String {
     let mut declared = vec!["mechanism: *const CMechanism".to_owned()];
     let mut nulls = vec!["mechanism.is_null()".to_owned()];
     let (mut read, mut passed) = (String::new(), Vec::new());
@@ -207,9 +207,9 @@ fn function(module: &Module, scalar: &str, routine: &Routine, within: bool) -> S
         }
         declared.push(format!("{name}: *const {memory}"));
         nulls.push(format!("{name}.is_null()"));
-        if within && *form == Form::Surface {
+        if budgeted && *form == Form::Surface {
             declared.push("quadratures: u32".to_owned());
-            passed.push(format!("&{name}.within(quadratures)"));
+            passed.push(format!("&{name}.with_budget(quadratures)"));
         } else {
             passed.push(format!("&{name}"));
         }
@@ -222,7 +222,7 @@ fn function(module: &Module, scalar: &str, routine: &Routine, within: bool) -> S
          // SAFETY: the pointers are not null, and point to what the header says; values are copied before anything is written.\n    \
          let mechanism = unsafe {{ &*mechanism.cast::<Mechanism>() }};\n{read}    match mechanism.{}({}) {{\n        Ok(value) => {{\n            \
          // SAFETY: as above.\n            unsafe {{ answer.write({}) }};\n            OK\n        }}\n        Err(error) => error.status(),\n    }}\n}}\n\n",
-        names::routine(routine, within),
+        names::routine(routine, budgeted),
         declared.join(",\n    "),
         nulls.join(" || "),
         routine.name,

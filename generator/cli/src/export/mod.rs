@@ -176,8 +176,16 @@ mod tests {
     /// Every name that the header declares is there once, whatever contacts and points are called.
     #[test]
     fn names_are_told_apart() {
-        let contacts =
-            ["tip", "tip_within", "tip_within_", "Tip", "TIP_WITHIN", "tip_", "tip__within", "within"];
+        let contacts = [
+            "tip",
+            "tip_with_budget",
+            "tip_with_budget_",
+            "Tip",
+            "TIP_WITH_BUDGET",
+            "tip_",
+            "tip__with_budget",
+            "with_budget",
+        ];
         let collisions = contacts.iter().map(|contact| routine(&format!("collide_{contact}"), true));
         let others = [
             "new",
@@ -220,7 +228,7 @@ mod tests {
         let symbol = |name: &str| {
             module.routines.iter().find(|routine| routine.name == name).map(|routine| routine.symbol.clone())
         };
-        assert_eq!(symbol("collide_tip_within").as_deref(), Some("collide_tip_within"));
+        assert_eq!(symbol("collide_tip_with_budget").as_deref(), Some("collide_tip_with_budget"));
         assert_eq!(symbol("collide_tip").as_deref(), Some("collide_tip__"));
         assert!(library::library(&module, "f64").contains("mechanism.collide_tip("));
     }

@@ -56,8 +56,8 @@ pub fn fields(record: &Record) -> Vec<String> {
 }
 
 /// What a routine is called after the name of the module, and with a budget.
-pub fn routine(routine: &Routine, within: bool) -> String {
-    format!("{}{}", routine.symbol, if within { "_within" } else { "" })
+pub fn routine(routine: &Routine, budgeted: bool) -> String {
+    format!("{}{}", routine.symbol, if budgeted { "_with_budget" } else { "" })
 }
 
 /// All names that the header declares, in order: constants, types and functions.
@@ -84,7 +84,8 @@ pub fn declared_names(module: &Module) -> Vec<String> {
 }
 
 /// Gives routines names that nothing else in the header has, also where only the case of letters is looked at:
-/// a contact `tip_within` beside a contact `tip`, whose collision within a budget is `collide_tip_within`.
+/// a contact `tip_with_budget` beside a contact `tip`, whose collision with a budget is
+/// `collide_tip_with_budget`.
 pub fn tell_apart(module: &mut Module) {
     let bare = Module { routines: Vec::new(), ..module.clone() };
     let mut taken: Vec<String> = declared_names(&bare).iter().map(|name| name.to_lowercase()).collect();
@@ -94,10 +95,10 @@ pub fn tell_apart(module: &mut Module) {
         let mut routine = module.routines[place].clone();
         let full = |name: &str| format!("{}_{name}", module.name).to_lowercase();
         loop {
-            let within = routine.budgeted.then(|| self::routine(&routine, true));
-            let is_of_another = within.as_ref().is_some_and(|within| plain.contains(&within.to_lowercase()));
+            let budgeted = routine.budgeted.then(|| self::routine(&routine, true));
+            let is_of_another = budgeted.as_ref().is_some_and(|name| plain.contains(&name.to_lowercase()));
             let own: Vec<String> =
-                std::iter::once(&routine.symbol).chain(&within).map(|name| full(name)).collect();
+                std::iter::once(&routine.symbol).chain(&budgeted).map(|name| full(name)).collect();
             if !is_of_another && own.iter().all(|name| !taken.contains(name)) {
                 taken.extend(own);
                 break;

@@ -48,9 +48,9 @@ int main(void)
 
     /* Within a budget the answer is the same, or there is none. */
     memset(&other, 0, sizeof other);
-    if (two_sleds_collide_bc_ac_within(&sleds, &q, &u, &surface, 1, &other) != TWO_SLEDS_BUDGET_EXCEEDED || other.energy_change != 0)
+    if (two_sleds_collide_bc_ac_with_budget(&sleds, &q, &u, &surface, 1, &other) != TWO_SLEDS_BUDGET_EXCEEDED || other.energy_change != 0)
         return 15;
-    if (two_sleds_collide_bc_ac_within(&sleds, &q, &u, &surface, 64, &other) != TWO_SLEDS_OK || memcmp(&other.impulse, &hit.impulse, sizeof hit.impulse) != 0)
+    if (two_sleds_collide_bc_ac_with_budget(&sleds, &q, &u, &surface, 64, &other) != TWO_SLEDS_OK || memcmp(&other.impulse, &hit.impulse, sizeof hit.impulse) != 0)
         return 16;
 
     /* The answer may stand where an argument stands: the argument is read first. */

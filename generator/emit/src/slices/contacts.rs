@@ -115,7 +115,7 @@ impl Emitter<'_> {
                 ) -> ::core::result::Result<#krate::CollisionOutcome<T>, #krate::CollisionError<T>> {
                     #collide
                 }
-                fn collide_within(
+                fn collide_with_budget(
                     &self,
                     contact: usize,
                     state: &#krate::State<'_, T>,

@@ -60,12 +60,12 @@ impl Emitter<'_> {
             fn name(&self) -> &str {
                 DESCRIPTION.name
             }
-            fn count(&self, kind: #krate::Kind) -> usize {
+            fn count(&self, kind: #krate::ComponentKind) -> usize {
                 DESCRIPTION.count(kind)
             }
             fn component(
                 &self,
-                kind: #krate::Kind,
+                kind: #krate::ComponentKind,
                 index: usize,
             ) -> ::core::option::Option<#krate::Component<'_>> {
                 DESCRIPTION.component(kind, index)

@@ -11,7 +11,7 @@
 /// A method of [`Pendulum`] that returns a `Result` fails where the state is singular or a result is not finite (`StateError`). A method that solves a collision also fails where it has no outcome (`CollisionError`); a method for the force of a closed contact fails where no finite force satisfies Coulomb's law (`ClosedContactError`).
 #[allow(non_snake_case, dead_code, unused_variables, clippy::all)]
 pub mod pendulum {
-    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_5;
+    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_6;
     /// Parameters of the mechanism.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Parameters<T = f64> {
@@ -855,12 +855,12 @@ pub mod pendulum {
         fn name(&self) -> &str {
             DESCRIPTION.name
         }
-        fn count(&self, kind: ::hodograph::Kind) -> usize {
+        fn count(&self, kind: ::hodograph::ComponentKind) -> usize {
             DESCRIPTION.count(kind)
         }
         fn component(
             &self,
-            kind: ::hodograph::Kind,
+            kind: ::hodograph::ComponentKind,
             index: usize,
         ) -> ::core::option::Option<::hodograph::Component<'_>> {
             DESCRIPTION.component(kind, index)
@@ -1129,7 +1129,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1159,7 +1159,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1200,7 +1200,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1234,7 +1234,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1259,7 +1259,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Frame,
+                            kind: ::hodograph::ComponentKind::Frame,
                             index,
                         }),
                     )
@@ -1302,7 +1302,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1322,7 +1322,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1362,7 +1362,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1388,7 +1388,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1413,7 +1413,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1448,7 +1448,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1495,14 +1495,14 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
                 }
             }
         }
-        fn collide_within(
+        fn collide_with_budget(
             &self,
             contact: usize,
             state: &::hodograph::State<'_, T>,
@@ -1542,7 +1542,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1594,7 +1594,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1622,7 +1622,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -1651,7 +1651,7 @@ pub mod pendulum {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )

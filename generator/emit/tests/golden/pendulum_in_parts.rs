@@ -11,7 +11,7 @@
 /// A method of [`Pendulum`] that returns a `Result` fails where the state is singular or a result is not finite (`StateError`). A method that solves a collision also fails where it has no outcome (`CollisionError`); a method for the force of a closed contact fails where no finite force satisfies Coulomb's law (`ClosedContactError`).
 #[allow(non_snake_case, dead_code, unused_variables, clippy::all)]
 pub mod pendulum_in_parts {
-    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_5;
+    const _: () = ::hodograph::generated::GENERATED_CODE_FORMAT_6;
     /// Parameters of the mechanism.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Parameters<T = f64> {
@@ -1615,12 +1615,12 @@ pub mod pendulum_in_parts {
         fn name(&self) -> &str {
             DESCRIPTION.name
         }
-        fn count(&self, kind: ::hodograph::Kind) -> usize {
+        fn count(&self, kind: ::hodograph::ComponentKind) -> usize {
             DESCRIPTION.count(kind)
         }
         fn component(
             &self,
-            kind: ::hodograph::Kind,
+            kind: ::hodograph::ComponentKind,
             index: usize,
         ) -> ::core::option::Option<::hodograph::Component<'_>> {
             DESCRIPTION.component(kind, index)
@@ -1889,7 +1889,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1919,7 +1919,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1960,7 +1960,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -1994,7 +1994,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Point,
+                            kind: ::hodograph::ComponentKind::Point,
                             index,
                         }),
                     )
@@ -2019,7 +2019,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Frame,
+                            kind: ::hodograph::ComponentKind::Frame,
                             index,
                         }),
                     )
@@ -2062,7 +2062,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2082,7 +2082,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2122,7 +2122,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2148,7 +2148,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2173,7 +2173,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2208,7 +2208,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2255,14 +2255,14 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
                 }
             }
         }
-        fn collide_within(
+        fn collide_with_budget(
             &self,
             contact: usize,
             state: &::hodograph::State<'_, T>,
@@ -2302,7 +2302,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2354,7 +2354,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2382,7 +2382,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )
@@ -2411,7 +2411,7 @@ pub mod pendulum_in_parts {
                 index => {
                     ::core::result::Result::Err(
                         ::core::convert::From::from(::hodograph::StateError::Missing {
-                            kind: ::hodograph::Kind::Contact,
+                            kind: ::hodograph::ComponentKind::Contact,
                             index,
                         }),
                     )

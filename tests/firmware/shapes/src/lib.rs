@@ -34,7 +34,7 @@ impl Controller {
         q: &Coordinates<f32>,
         u: &Speeds<f32>,
     ) -> Result<Speeds<f32>, CollisionError<f32>> {
-        let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge }.within(BUDGET);
+        let surface = Surface { mu: 0.6, e: 0.8, law: Law::Stronge }.with_budget(BUDGET);
         match self.sleds.collide_bc_ac(q, u, &surface) {
             Ok(hit) => self.last = hit.speeds,
             Err(CollisionError::Impact(ImpactError::BudgetExceeded { .. })) => {}

@@ -12,7 +12,7 @@ use firmware::board::{Output, Write, measured, run};
 use firmware::random::Random;
 use firmware::shipped;
 use hodograph::nalgebra::Vector3;
-use hodograph::{Contacts, Kind, Law, ReducedMatrix, State, Surface, solve};
+use hodograph::{ComponentKind, Contacts, Law, ReducedMatrix, State, Surface, solve};
 
 /// States per model.
 const STATES: u32 = 100;
@@ -65,7 +65,8 @@ impl Line {
 #[inline(never)]
 fn mechanism<T: Number>(output: &mut Output, mechanism: &dyn Contacts<T>) {
     let zero = T::zero();
-    let [n, p, inputs] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| mechanism.count(kind));
+    let [n, p, inputs] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+        .map(|kind| mechanism.count(kind));
     let (mut q0, mut u0, mut w0) = ([zero; MOST], [zero; MOST], [zero; MOST]);
     if mechanism.initial_state(&mut q0[..n], &mut u0[..p], &mut w0[..inputs]).is_err() {
         return;

@@ -16,7 +16,7 @@ use firmware::hard;
 use firmware::random::Random;
 use firmware::shipped;
 use hodograph::nalgebra::{Matrix3, Vector3};
-use hodograph::{Contacts, Kind, ReducedMatrix, State, Surface, solve};
+use hodograph::{ComponentKind, Contacts, ReducedMatrix, State, Surface, solve};
 
 /// More coordinates, speeds or inputs than any shipped model has.
 const MOST: usize = 16;
@@ -65,7 +65,8 @@ fn of_state(seed: u64, number: u32) -> Random {
 #[inline(never)]
 fn mechanism<T: Number>(output: &mut Output, mechanism: &dyn Contacts<T>) {
     let zero = T::zero();
-    let [n, p, inputs] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| mechanism.count(kind));
+    let [n, p, inputs] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+        .map(|kind| mechanism.count(kind));
     let (mut q0, mut u0, mut w0) = ([zero; MOST], [zero; MOST], [zero; MOST]);
     if mechanism.initial_state(&mut q0[..n], &mut u0[..p], &mut w0[..inputs]).is_err() {
         return;
@@ -149,7 +150,7 @@ fn alone<T: Number>(output: &mut Output) {
             let matrix = black_box(ReducedMatrix::from(entries.map(T::of)));
             let (v, surface) =
                 (v.map(T::of), Surface { mu: T::of(surface.mu), e: T::of(surface.e), law: surface.law });
-            let surface = black_box(surface.within(budget));
+            let surface = black_box(surface.with_budget(budget));
             let _ = counted(|| solve(&matrix, &v, &surface).is_ok());
             calls += 1;
         }

@@ -5,7 +5,7 @@ mod specialised;
 
 use std::hint::black_box;
 
-use hodograph::{Contacts, Kind, Law, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, State, Surface};
 
 /// Numbers that a mechanism is called with, and room for what it answers.
 struct Bench {
@@ -18,7 +18,8 @@ struct Bench {
 impl Bench {
     /// The initial state; speeds that are 0 there are not, so that nothing is too easy.
     fn of(mechanism: &dyn Contacts) -> Bench {
-        let [n, p, inputs] = [Kind::Coordinate, Kind::Speed, Kind::Input].map(|kind| mechanism.count(kind));
+        let [n, p, inputs] = [ComponentKind::Coordinate, ComponentKind::Speed, ComponentKind::Input]
+            .map(|kind| mechanism.count(kind));
         let mut bench = Bench {
             coordinates: vec![0.0; n],
             speeds: vec![0.0; p],

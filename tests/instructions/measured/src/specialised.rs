@@ -4,7 +4,7 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use hodograph::{Contacts, Kind, Law, State, Surface};
+use hodograph::{ComponentKind, Contacts, Law, State, Surface};
 
 /// The states of each model.
 const STATES: usize = 200;
@@ -27,7 +27,7 @@ impl Random {
 
 /// Coordinates and speeds around the initial state in which the first contact is struck.
 fn states(mechanism: &dyn Contacts) -> Vec<(Vec<f64>, Vec<f64>)> {
-    let [n, p] = [Kind::Coordinate, Kind::Speed].map(|kind| mechanism.count(kind));
+    let [n, p] = [ComponentKind::Coordinate, ComponentKind::Speed].map(|kind| mechanism.count(kind));
     let (mut q, mut u) = (vec![0.0; n], vec![0.0; p]);
     let _ = mechanism.initial_state(&mut q, &mut u, &mut []);
     let (mut random, mut states) = (Random(7), Vec::new());

@@ -1,6 +1,6 @@
 //! Writes the states and events of `simulate` as lines, or gathers them for a summary.
 
-use hodograph::{Kind as Of, Mechanism, Selection, State};
+use hodograph::{ComponentKind, Mechanism, Selection, State};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{CollisionRecord, EnergyAccount, Event, EventKind, SimultaneousCollision};
 use serde::Serialize;
@@ -101,8 +101,8 @@ impl<'m> Lines<'m> {
             };
             let head: Vec<&str> = ["t", "event", "contact"]
                 .into_iter()
-                .chain(names(Of::Coordinate))
-                .chain(names(Of::Speed))
+                .chain(names(ComponentKind::Coordinate))
+                .chain(names(ComponentKind::Speed))
                 .collect();
             lines.write(&head.join(","))?;
         }
@@ -163,7 +163,9 @@ impl<'m> Lines<'m> {
     ///
     /// As [`output::text`].
     pub fn event(&mut self, event: &Event) -> Outcome {
-        let name = |contact| self.mechanism.component(Of::Contact, contact).map(|component| component.name);
+        let name = |contact| {
+            self.mechanism.component(ComponentKind::Contact, contact).map(|component| component.name)
+        };
         let contact = event.contact.and_then(name);
         match self.format {
             Format::Json => {}
@@ -238,7 +240,7 @@ impl<'m> Lines<'m> {
         let shares = struck.shares.iter().map(|share| ShareOf {
             contact: self
                 .mechanism
-                .component(Of::Contact, share.contact)
+                .component(ComponentKind::Contact, share.contact)
                 .map_or("", |component| component.name),
             impulse: share.impulse + 0.0,
             v_before: share.approach + 0.0,
@@ -255,12 +257,12 @@ impl<'m> Lines<'m> {
     /// All speeds after an event.
     fn after(&self, event: &Event) -> Named<'_, f64> {
         let mut after = event.speeds.clone();
-        let mut dependent = vec![0.0; self.mechanism.count(Of::DependentSpeed)];
+        let mut dependent = vec![0.0; self.mechanism.count(ComponentKind::DependentSpeed)];
         let state = State {
             time: event.time,
             coordinates: &event.coordinates,
             speeds: &event.speeds,
-            inputs: &vec![0.0; self.mechanism.count(Of::Input)],
+            inputs: &vec![0.0; self.mechanism.count(ComponentKind::Input)],
         };
         if self.mechanism.dependent_speeds(&state, &mut dependent).is_ok() {
             after.extend(dependent);

@@ -1,6 +1,6 @@
 //! Records the states and events of a motion for its figure, its animated page and viewers of robots.
 
-use hodograph::{Contacts, Kind as Of, Mechanism, State as Borrowed};
+use hodograph::{ComponentKind, Contacts, Mechanism, State as Borrowed};
 use hodograph_generator::model::mechanism::{LoadKind, Place, Variable, Vector};
 use hodograph_generator::numeric::views::values;
 use hodograph_generator::numeric::{Level, Views};
@@ -104,11 +104,11 @@ impl<'m> Recording<'m> {
             energies: Energies::default(),
             solids,
             start: state.clone(),
-            gaps: none(Of::Contact),
-            pressures: none(Of::Contact),
-            coordinates: none(Of::Coordinate),
-            speeds: none(Of::Speed),
-            last: vec![None; mechanism.count(Of::Contact)],
+            gaps: none(ComponentKind::Contact),
+            pressures: none(ComponentKind::Contact),
+            coordinates: none(ComponentKind::Coordinate),
+            speeds: none(ComponentKind::Speed),
+            last: vec![None; mechanism.count(ComponentKind::Contact)],
         }
     }
 
@@ -192,7 +192,7 @@ impl<'m> Recording<'m> {
             time: event.time,
             coordinates: &event.coordinates,
             speeds: &event.speeds,
-            inputs: &vec![0.0; mechanism.count(Of::Input)],
+            inputs: &vec![0.0; mechanism.count(ComponentKind::Input)],
         };
         let mut show = |contact: Option<usize>, impulse: Option<Vector3<f64>>| {
             let contact = contact.and_then(|contact| mechanism.model().contacts.get(contact));
@@ -260,10 +260,10 @@ pub fn numbers(mechanism: &InterpretedMechanism) -> usize {
     let model = mechanism.model();
     1 + 3 * model.points.len()
         + 9 * model.bodies.len()
-        + 8 * count(Of::Contact)
+        + 8 * count(ComponentKind::Contact)
         + 3
-        + count(Of::Coordinate)
-        + count(Of::Speed)
+        + count(ComponentKind::Coordinate)
+        + count(ComponentKind::Speed)
 }
 
 /// What is to be said of points that are nowhere at any time, and so are not drawn.

@@ -1,6 +1,6 @@
 //! The surfaces of a motion: one for all contacts, or one for each.
 
-use hodograph::{Contacts, Kind as Of, State, Surface};
+use hodograph::{ComponentKind, Contacts, State, Surface};
 use hodograph_interpreter::motion::{GivenSurface, surfaces};
 use hodograph_simulation::{ContactLaw, GivenLaw};
 
@@ -55,7 +55,9 @@ impl MotionSurfaces {
     ///
     /// Numbers or names that are impossible, and [`Stop::Call`] where a contact is left without a surface.
     pub fn of(&self, mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Outcome<Found> {
-        let name = |contact| mechanism.component(Of::Contact, contact).map_or("", |component| component.name);
+        let name = |contact| {
+            mechanism.component(ComponentKind::Contact, contact).map_or("", |component| component.name)
+        };
         let law = self.law.as_deref().map(law).transpose()?;
         // What is given is checked even where it is not enough.
         let all = GivenSurface { mu: self.mu, e: self.e, law }.check().map_err(Failure::from)?;
@@ -74,13 +76,13 @@ impl MotionSurfaces {
             laws.push((place, law.or(all_laws.clone())));
         }
         // What the options leave open stands in the model, if at all.
-        for contact in 0..mechanism.count(Of::Contact) {
+        for contact in 0..mechanism.count(ComponentKind::Contact) {
             let has_gap = !matches!(mechanism.gap(contact, state), Ok(None));
             if has_gap && own.iter().all(|(other, _)| *other != contact) {
                 own.push((contact, stated_in(mechanism, contact, all)));
             }
         }
-        for contact in 0..mechanism.count(Of::Contact) {
+        for contact in 0..mechanism.count(ComponentKind::Contact) {
             let replaced = laws.iter().any(|(other, _)| *other == contact);
             if !replaced {
                 laws.push((contact, stated_law(mechanism, contact, name(contact), all_laws.clone())?));
@@ -140,10 +142,10 @@ fn stated_law(
 /// The number of a contact.
 fn place_of(contact: &str, mechanism: &dyn Contacts<f64>) -> Outcome<usize> {
     let names = || {
-        let component = |place| mechanism.component(Of::Contact, place);
-        (0..mechanism.count(Of::Contact)).filter_map(component).map(|component| component.name)
+        let component = |place| mechanism.component(ComponentKind::Contact, place);
+        (0..mechanism.count(ComponentKind::Contact)).filter_map(component).map(|component| component.name)
     };
-    mechanism.index(Of::Contact, contact).ok_or_else(|| {
+    mechanism.index(ComponentKind::Contact, contact).ok_or_else(|| {
         let hint = spelling::hint(contact, names().collect::<Vec<_>>());
         Failure::new(Kind::UnknownName, format!("there is no contact `{contact}`: {hint}")).into()
     })
