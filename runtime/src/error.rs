@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::Law;
+use crate::{Cause, Law};
 
 /// The reason why a collision could not be solved, with the number at fault.
 ///
@@ -110,21 +110,27 @@ impl fmt::Display for Violation {
 }
 
 impl<T> ImpactError<T> {
+    /// Its cause, without the numbers.
+    #[inline]
+    pub const fn cause(&self) -> Cause {
+        match self {
+            Self::NotFinite { .. } => Cause::NotFinite,
+            Self::NegativeFriction { .. } => Cause::NegativeFriction,
+            Self::RestitutionOutOfRange { .. } => Cause::RestitutionOutOfRange,
+            Self::NotApproaching { .. } => Cause::NotApproaching,
+            Self::NotPositiveSemidefinite { .. } => Cause::NotPositiveSemidefinite,
+            Self::NoNormalMobility { .. } => Cause::NoNormalMobility,
+            Self::NoImpact { .. } => Cause::NoImpact,
+            Self::Inaccurate { .. } => Cause::Inaccurate,
+            Self::Wedged { .. } => Cause::Wedged,
+            Self::BudgetExceeded { .. } => Cause::BudgetExceeded,
+        }
+    }
+
     /// A stable lower-case name, the same that `hodograph solve` writes.
     #[inline]
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::NotFinite { .. } => "not_finite",
-            Self::NegativeFriction { .. } => "negative_friction",
-            Self::RestitutionOutOfRange { .. } => "restitution_out_of_range",
-            Self::NotApproaching { .. } => "not_approaching",
-            Self::NotPositiveSemidefinite { .. } => "not_positive_semidefinite",
-            Self::NoNormalMobility { .. } => "no_normal_mobility",
-            Self::NoImpact { .. } => "no_impact",
-            Self::Inaccurate { .. } => "inaccurate",
-            Self::Wedged { .. } => "wedged",
-            Self::BudgetExceeded { .. } => "budget_exceeded",
-        }
+        self.cause().name()
     }
 }
 

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::{Motion, Phases, Scalar, Sensitivity, scalar::constant};
+use crate::{Motion, Phases, Scalar, Sensitivity, scalar::constant, table::table};
 
 /// The phases of a collision in order. A phase without impulse is left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +19,14 @@ pub enum Path {
     Sticking,
     /// No slip at the start; slip begins at once in the direction phi_hat (mu < mu_c).
     Renewal,
+}
+
+table! { Path
+    Sliding "sliding" "the point slides throughout",
+    SlidingThenSticking "sliding_then_sticking" "it slides, then sticks",
+    SlidingThenRenewal "sliding_then_renewal" "it slides, stops, and slides again",
+    Sticking "sticking" "it sticks throughout",
+    Renewal "renewal" "it starts without slip, and slides",
 }
 
 impl Path {

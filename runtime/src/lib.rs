@@ -55,6 +55,7 @@
 #[cfg(feature = "std")]
 extern crate std;
 
+mod cause;
 mod characteristics;
 mod contact;
 mod derivative;
@@ -79,9 +80,11 @@ mod solve;
 mod specialised;
 pub mod structure;
 mod surface;
+mod table;
 mod tangential_block;
 
 pub use crate::{
+    cause::Cause,
     characteristics::{Characteristics, Renewal, rates},
     contact::{
         ContactError, ContactForce, ContactMode, Margins, Selection, contact_force, contact_mode,

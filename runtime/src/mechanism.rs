@@ -29,9 +29,9 @@ use crate::Scalar;
 pub struct State<'a, T = f64> {
     /// time, s; models without explicit time do not read it
     pub time: T,
-    /// generalized coordinates, independent and dependent ones
+    /// generalised coordinates, independent and dependent ones
     pub coordinates: &'a [T],
-    /// independent generalized speeds
+    /// independent generalised speeds
     pub speeds: &'a [T],
     /// named inputs
     pub inputs: &'a [T],
@@ -117,7 +117,7 @@ pub trait Mechanism<T: Scalar = f64> {
     /// Forcing (`p`): M u' = forcing.
     fn forcing(&self, state: &State<'_, T>, forcing: &mut [T]) -> Result<(), StateError>;
     #[doc(alias = "RNEA")]
-    /// Generalized forces (`p`) that must be added to the loads for the independent speeds to have the rates
+    /// Generalised forces (`p`) that must be added to the loads for the independent speeds to have the rates
     /// `accelerations` (`p`).
     fn inverse_dynamics(
         &self,

@@ -4,6 +4,7 @@
 /// The energies at one time and the works since the start, J. The sum of kinetic and potential energy changes
 /// by the sum of the works, and by the works of prescribed motion and of loads without potential.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EnergyAccount {
     /// kinetic energy
     pub kinetic: f64,

@@ -6,6 +6,7 @@ use hodograph::{CollisionError, ComponentKind, ContactError, Contacts, StateErro
 
 /// Why a simulation cannot continue, with time and contact.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct SimulationError {
     /// when, s
     pub time: f64,
@@ -30,6 +31,8 @@ impl SimulationError {
 
 /// What is wrong.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum ErrorKind {
     /// The mechanism has no equations of motion there.

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 
 /// An event, with the state at its time.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Event {
     /// s
     pub time: f64,
@@ -20,6 +21,8 @@ pub struct Event {
 
 /// What happened.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 #[non_exhaustive]
 pub enum EventKind {
     /// Bodies collided.
@@ -92,6 +95,7 @@ impl EventKind {
 
 /// A solved collision.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CollisionRecord {
     /// the outcome along n, t, s, and these axes
     pub outcome: CollisionOutcome<f64>,
@@ -107,6 +111,7 @@ pub struct CollisionRecord {
 
 /// An impact of several contacts at once.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SimultaneousCollision {
     /// what each contact that could take part did
     pub shares: Vec<Share>,
@@ -120,6 +125,7 @@ pub struct SimultaneousCollision {
 
 /// What one contact did in an impact of several at once.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Share {
     /// number of the contact
     pub contact: usize,

@@ -33,6 +33,7 @@ pub struct Case<M> {
 
 /// What became of one motion.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Outcome {
     /// when the motion ended: the time asked for, or that of the error, s
     pub time: f64,

@@ -192,7 +192,7 @@ impl Motion<'_> {
         Ok(Evaluation { rates, support, holds, forces: found })
     }
 
-    /// Power of the inputs: the generalized forces they add, times the speeds.
+    /// Power of the inputs: the generalised forces they add, times the speeds.
     fn input_power(&self, state: &State<'_>) -> Result<f64, StateError> {
         let p = state.speeds.len();
         let (mut with, mut without) = (vec![0.0; p], vec![0.0; p]);

@@ -36,6 +36,8 @@ impl Phase {
 
 /// The phase of a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum ContactPhase {
     /// The bodies are apart or separate.
     Open,

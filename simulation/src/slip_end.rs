@@ -112,7 +112,7 @@ pub(crate) fn time_of_slip(here: &Evaluation, place: usize, scale: &[f64]) -> Op
 
 /// Whether slip that has a direction is so small that its rate could end it within a time, were it
 /// against the slip. A slip of 1e-10 m/s has the direction that the errors of the steps before leave it: it
-/// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalized speeds, `scale` the
+/// may seem to grow while it turns, and ends nevertheless. `speeds` are the generalised speeds, `scale` the
 /// greatest so far.
 pub(crate) fn may_end(here: &Evaluation, place: usize, speeds: &[f64], scale: &[f64], within: f64) -> bool {
     if is_rounding(here, place, scale) {

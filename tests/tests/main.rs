@@ -19,6 +19,7 @@ mod downstream;
 mod emitted_equals_interpreted;
 mod emitted_models;
 mod evaluate;
+mod events_as_json;
 mod gallery;
 mod impacts;
 mod inlined;

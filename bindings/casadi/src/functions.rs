@@ -113,7 +113,7 @@ impl<D: Dynamics> Function for RatesJacobian<D> {
     }
 }
 
-/// Generalized forces at q, u, u' and inputs.
+/// Generalised forces at q, u, u' and inputs.
 pub struct InverseDynamics<D>(PhantomData<D>);
 
 /// q, u, u' and inputs, in this order.

@@ -13,7 +13,7 @@
 //! | function | inputs | outputs |
 //! | --- | --- | --- |
 //! | `cart_pole` | `q` (n), `u` (p), `inputs` (m) | `q_rates` (n), `u_rates` (p): the right side of the equations of motion |
-//! | `cart_pole_inverse_dynamics` | `q` (n), `u` (p), `acceleration` (p), `inputs` (m) | `forces` (p): generalized forces that must be added to the loads |
+//! | `cart_pole_inverse_dynamics` | `q` (n), `u` (p), `acceleration` (p), `inputs` (m) | `forces` (p): generalised forces that must be added to the loads |
 //!
 //! Units and order are those of the model; `inputs` is there only where the model has some. Jacobians are
 //! those of `accelerations_derivatives`, `coordinate_rates_derivatives`, `inverse_dynamics_derivatives` and

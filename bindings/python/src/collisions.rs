@@ -1,7 +1,7 @@
 //! Collisions of a contact of a mechanism.
 
 use hodograph::nalgebra::Vector3;
-use hodograph::{CollisionError, CollisionOutcome, ComponentKind, Mechanism as _, Path, StateError};
+use hodograph::{Cause, CollisionError, CollisionOutcome, ComponentKind, Mechanism as _, StateError};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_interpreter::columns::over_rows;
 use numpy::{PyArray1, PyArrayMethods};
@@ -13,34 +13,9 @@ use crate::errors;
 use crate::machines::{Machines, RowError, parameter_error};
 use crate::states::States;
 
-/// Why a row has no answer, by number; the first is none.
-pub const KINDS: [&str; 12] = [
-    "",
-    "not_finite",
-    "negative_friction",
-    "restitution_out_of_range",
-    "not_approaching",
-    "not_positive_semidefinite",
-    "no_normal_mobility",
-    "no_impact",
-    "inaccurate",
-    "wedged",
-    "singular_state",
-    "other",
-];
-
-/// The phases that a collision went through, by number.
-pub const PATHS: [Path; 5] =
-    [Path::Sliding, Path::SlidingThenSticking, Path::SlidingThenRenewal, Path::Sticking, Path::Renewal];
-
-/// The number of a kind.
-pub fn number_of_kind(kind: &str) -> u8 {
-    KINDS.iter().position(|known| *known == kind).unwrap_or(KINDS.len() - 1) as u8
-}
-
-/// The number of a path.
-pub fn number_of_path(path: Path) -> u8 {
-    PATHS.iter().position(|known| *known == path).unwrap_or(0) as u8
+/// Why a row has no answer, by number: 0 is none, and a cause has its own number after it.
+pub fn kinds() -> Vec<&'static str> {
+    [""].into_iter().chain(Cause::NAMES.iter().copied()).collect()
 }
 
 /// What is told of each row beside the speeds, and how many numbers that are.
@@ -69,10 +44,10 @@ pub struct Answers {
 
 impl Answers {
     /// A row without an answer.
-    pub fn none(&mut self, width: usize, kind: &str) {
+    pub fn none(&mut self, width: usize, cause: Cause) {
         self.numbers.extend(std::iter::repeat_n(f64::NAN, width));
         self.paths.push(u8::MAX);
-        self.kinds.push(number_of_kind(kind));
+        self.kinds.push(1 + cause.number());
     }
 
     /// The rows of several answers.
@@ -173,18 +148,18 @@ pub fn collide<'py>(
         let mut answer = |row: usize, struck: Result<(CollisionOutcome<f64>, &[f64]), RowError>| match struck
         {
             // The model may not read what is not finite; such a state has no collision nevertheless.
-            Ok(_) if wrong.binary_search(&row).is_ok() => answers.none(width, "not_finite"),
+            Ok(_) if wrong.binary_search(&row).is_ok() => answers.none(width, Cause::NotFinite),
             Ok((outcome, speeds)) => {
                 write(&mut answers.numbers, &outcome, speeds);
-                answers.paths.push(number_of_path(outcome.impact.path));
+                answers.paths.push(outcome.impact.path.number());
                 answers.kinds.push(0);
             }
             Err(error) => {
-                let kind = match &error {
-                    RowError::Parameters(_) => "other",
-                    RowError::Collision(error) => error.kind(),
+                let cause = match &error {
+                    RowError::Parameters(error) => error.cause(),
+                    RowError::Collision(error) => error.cause(),
                 };
-                answers.none(width, kind);
+                answers.none(width, cause);
                 first.get_or_insert((row, error));
             }
         };

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arguments::{Rows, Surfaces, array, common, raises, rows};
-use crate::collisions::{Answers, impact_error, number_of_path};
+use crate::collisions::{Answers, impact_error};
 
 const FIELDS: [(&str, usize); 5] =
     [("impulse", 3), ("velocity", 3), ("contact_work", 1), ("normal_work", 1), ("energy_gained", 1)];
@@ -72,7 +72,7 @@ fn answered(
                 match solve(row, &mut answers) {
                     Ok(()) => answers.kinds.push(0),
                     Err(error) => {
-                        answers.none(width, error.kind());
+                        answers.none(width, error.cause());
                         first.get_or_insert((row, error));
                     }
                 }
@@ -112,7 +112,7 @@ pub fn solve_rows<'py>(
                 answers.numbers.extend(impact.impulse.iter().chain(impact.velocity.iter()));
                 let gained = impact.energy_gained().unwrap_or(0.0);
                 answers.numbers.extend([impact.contact_work, impact.normal_work, gained]);
-                answers.paths.push(number_of_path(impact.path));
+                answers.paths.push(impact.path.number());
             }
             Err(error) => outcome = Err(error),
         });
@@ -142,7 +142,7 @@ pub fn derivative_rows<'py>(
         answers.numbers.extend(by_rows(&found.impulse));
         answers.numbers.extend(by_rows(&found.velocity));
         answers.numbers.push(if found.non_smoothness.is_some() { 0.0 } else { 1.0 });
-        answers.paths.push(number_of_path(found.impact.path));
+        answers.paths.push(found.impact.path.number());
         Ok(())
     })?;
     answers.into_fields(py, given.rows, &[("impulse", 33), ("velocity", 33), ("smooth", 1)])
@@ -181,7 +181,7 @@ pub fn characteristics_rows<'py>(
         answers.numbers.push(or_none(stop));
         answers.numbers.extend(end.unwrap_or([f64::NAN; 2]));
         answers.numbers.extend(slip.unwrap_or([f64::NAN; 3]));
-        answers.paths.push(number_of_path(impact.path));
+        answers.paths.push(impact.path.number());
         Ok(())
     })?;
     answers.into_fields(py, given.rows, &CHARACTERISTICS.map(|name| (name, 1)))

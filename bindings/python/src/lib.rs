@@ -15,6 +15,7 @@ mod model;
 mod motion;
 mod states;
 
+use hodograph::Path;
 use pyo3::prelude::*;
 
 /// Module of the package that is compiled from Rust.
@@ -27,7 +28,7 @@ fn hodograph_native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(impacts::derivative_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::characteristics_rows, module)?)?;
     module.add_function(wrap_pyfunction!(impacts::course, module)?)?;
-    module.add("KINDS", collisions::KINDS)?;
-    module.add("PATHS", collisions::PATHS.map(|path| path.to_string()))?;
+    module.add("KINDS", collisions::kinds())?;
+    module.add("PATHS", Path::ALL.iter().map(Path::to_string).collect::<Vec<_>>())?;
     Ok(())
 }

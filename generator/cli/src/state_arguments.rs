@@ -1,5 +1,6 @@
 //! The options that give the state of a model: JSON of a file or standard input, and numbers by name.
 
+use hodograph::Cause;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -101,7 +102,7 @@ impl StateArguments {
                     .ok_or_else(|| Stop::Call(format!("{option} {text}: give NAME=NUMBER, as in q1=0.3")))?;
                 let name = name.trim();
                 let value = expression::number(value).map_err(|error| {
-                    Failure::new(Kind::NotFinite, format!("{option} {name}={value}: {error}"))
+                    Failure::new(Kind::Of(Cause::NotFinite), format!("{option} {name}={value}: {error}"))
                 })?;
                 if named.iter().any(|other| other == name) {
                     return Err(Stop::Call(format!("{option} {text}: {name} is given twice: leave one out")));

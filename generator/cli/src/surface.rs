@@ -1,7 +1,7 @@
 //! Reads laws of restitution by name, and finds the surface of a contact: what options say, else what the
 //! model states.
 
-use hodograph::{ComponentKind, Contacts, Law, Surface};
+use hodograph::{Cause, ComponentKind, Contacts, Law, Surface};
 use hodograph_interpreter::motion::GivenSurface;
 
 use crate::json::{Failure, Kind};
@@ -61,7 +61,7 @@ impl SurfaceArguments {
         for (option, value) in [("--mu", self.mu), ("--e", self.e)] {
             if let Some(value) = value.filter(|value| !value.is_finite()) {
                 let message = format!("{option} is {value}: give a finite number");
-                return Err(Failure::new(Kind::NotFinite, message).into());
+                return Err(Failure::new(Kind::Of(Cause::NotFinite), message).into());
             }
         }
         let law = self.law.as_deref().map(law).transpose()?;

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! model -> kinematics  frames, points, velocities, contact bases
-//!       -> kane        partial velocities, generalized forces, constraints
+//!       -> kane        partial velocities, generalised forces, constraints
 //!       -> program     (hodograph-program)
 //! ```
 //!

@@ -4,10 +4,11 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{Argument, Failure, Field, Group, Method, Signature, Struct, Type};
 use super::record;
 use super::routine::Arguments;
 use super::values::local;
-use crate::identifiers::{docs, ident};
+use crate::identifiers::ident;
 use hodograph_program::program::{ContactQuantity, Quantity};
 
 /// What the mode needs of a contact beside what a collision needs.
@@ -22,63 +23,63 @@ impl Emitter<'_> {
     }
 
     /// The type of closed contacts, where there is one.
-    pub fn closed_type(&self) -> TokenStream {
-        if !(0..self.mechanism.contacts.len()).any(|contact| self.closes(contact)) {
-            return quote!();
-        }
-        let krate = self.krate;
-        let vector = quote!(#krate::nalgebra::Vector3<T>);
-        let has_dependent = !self.dependent.is_empty();
-        let dependent = has_dependent.then(|| {
-            quote! {
-                /// rates of the dependent speeds under the contact force, in the units of the speeds per second
-                pub dependent_accelerations: DependentSpeeds<T>,
-            }
+    pub fn closed_structure(&self) -> Option<Struct> {
+        (0..self.mechanism.contacts.len()).find(|&contact| self.closes(contact))?;
+        let vector = |name: &str, docs: &str| Field::new(name, Type::Vector(3), docs);
+        let dependent = (!self.dependent.is_empty()).then(|| {
+            Field::new(
+                "dependent_accelerations",
+                Type::of_struct("DependentSpeeds"),
+                "rates of the dependent speeds under the contact force, in the units of the speeds per second",
+            )
         });
-        let dependent_field = has_dependent.then_some("dependent_accelerations");
-        let fields = [
-            "force",
-            "force_on_point",
-            "force_on_struck",
-            "contact_acceleration",
-            "direction",
-            "margins",
-            "outcome",
+        let mut fields = vec![
+            Field::new("mode", Type::Mode, "whether it sticks, slides, begins to slip or separates"),
+            Field::new("selection", Type::Selection, "whether another mode would fit too"),
+            Field::new(
+                "accelerations",
+                Type::of_struct("Speeds"),
+                "rates of the independent speeds under the contact force, in the units of the speeds per second",
+            ),
         ];
-        let fields: Vec<&str> =
-            ["mode", "selection", "accelerations"].into_iter().chain(dependent_field).chain(fields).collect();
-        let written = record::outcome(krate, "ClosedContact", &fields);
-        quote! {
-            /// Mode, force and accelerations of a closed contact. n, t, s are the axes `normal`, `first`, `second` of the contact basis.
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            #[must_use]
-            #[non_exhaustive]
-            pub struct ClosedContact<T: #krate::nalgebra::Scalar = f64> {
-                /// whether it sticks, slides, begins to slip or separates
-                pub mode: #krate::ContactMode,
-                /// whether another mode would fit too
-                pub selection: #krate::Selection,
-                /// rates of the independent speeds under the contact force, in the units of the speeds per second
-                pub accelerations: Speeds<T>,
-                #dependent
-                /// force on the striking point along n, t, s, in N
-                pub force: #vector,
-                /// force on the striking point along N.x, N.y, N.z, in N
-                pub force_on_point: #vector,
-                /// force on what is touched along N.x, N.y, N.z, in N: the opposite of `force_on_point`
-                pub force_on_struck: #vector,
-                /// rate of the contact velocity under the force, along n, t, s, in m/s^2
-                pub contact_acceleration: #vector,
-                /// direction of slip, or in which slip begins, along N.x, N.y, N.z; of length one
-                pub direction: ::core::option::Option<#vector>,
-                /// the mode holds while all margins that are `Some` are positive
-                pub margins: #krate::Margins<T>,
-                /// the same in the type that all mechanisms share, with the quantities from which it was computed
-                pub outcome: #krate::ContactOutcome<T>,
-            }
+        fields.extend(dependent);
+        fields.extend([
+            vector("force", "force on the striking point along n, t, s, in N"),
+            vector("force_on_point", "force on the striking point along N.x, N.y, N.z, in N"),
+            vector(
+                "force_on_struck",
+                "force on what is touched along N.x, N.y, N.z, in N: the opposite of `force_on_point`",
+            ),
+            vector(
+                "contact_acceleration",
+                "rate of the contact velocity under the force, along n, t, s, in m/s^2",
+            ),
+            Field::new(
+                "direction",
+                Type::Optional(Box::new(Type::Vector(3))),
+                "direction of slip, or in which slip begins, along N.x, N.y, N.z; of length one",
+            ),
+            Field::new(
+                "margins",
+                Type::Margins,
+                "the mode holds while all margins that are `Some` are positive",
+            ),
+            Field::new(
+                "outcome",
+                Type::ContactOutcome,
+                "the same in the type that all mechanisms share, with the quantities from which it was computed",
+            ),
+        ]);
+        let docs = "Mode, force and accelerations of a closed contact. n, t, s are the axes `normal`, `first`, `second` of the contact basis.";
+        Some(Struct::of_results("ClosedContact", docs, fields))
+    }
 
-            #written
-        }
+    /// The type of closed contacts with what it implements.
+    pub fn closed_type(&self) -> Option<TokenStream> {
+        let structure = self.closed_structure()?;
+        let written = record::outcome(self.krate, &structure.name, &structure.names());
+        let structure = structure.tokens(self.krate, &quote!(#[non_exhaustive]));
+        Some(quote! { #structure #written })
     }
 
     /// What the mode is computed from.
@@ -98,56 +99,63 @@ impl Emitter<'_> {
     }
 
     /// `contact_mode_..` and `contact_force_..`, and the routine that they share.
-    pub fn closed(&self, contact: usize) -> TokenStream {
+    pub fn closed(&self, contact: usize) -> Group {
         let krate = self.krate;
         let words = self.contact_words(contact);
-        let named = |prefix: &str| ident(&self.contact_method(prefix, contact));
-        let [mode, force, shared] = ["contact_mode", "contact_force", "touching"].map(named);
-        let collision = self.contact_method("impact_without_collision", contact);
-        let docs_mode = docs(&format!(
+        let named = |prefix: &str| self.contact_method(prefix, contact);
+        let [mode, force, collision] =
+            ["contact_mode", "contact_force", "impact_without_collision"].map(named);
+        let shared = ident(&named("touching"));
+        let docs_mode = format!(
             "Selects the mode (stick, slide, begin to slip, separate) of the closed contact {words}, with its force, the accelerations under that force \
              and the margins of the mode. The contact had no force before.\n\nThe gap and the normal velocity are taken for zero and not read. Of the \
              surface only `mu` is read. Slip within rounding of zero counts as none. Where no finite force exists, the error says whether \
              `{collision}` follows or no mode fits."
-        ));
-        let docs_force = docs(&format!(
+        );
+        let docs_force = format!(
             "The force that keeps the closed contact {words} in a given mode, in the form of `{mode}`. A margin that is not positive says that the mode has \
              ended. Where no force keeps the mode the error is `NoMode`."
-        ));
-        let arguments = self.closed_arguments(contact);
-        let (signature, passed) = (self.signature(arguments), self.passed(arguments));
+        );
+        let taken = self.closed_arguments(contact);
+        let (private, passed) = (self.signature(taken), self.passed(taken));
         let body = self.touching(contact);
+        let (of_mode, surface) =
+            (Argument { name: "mode", of: Type::Mode }, Argument { name: "surface", of: Type::Surface });
+        let method = |name: String, docs: String, more: Vec<Argument>, decide: TokenStream| {
+            let arguments = self.declared(taken).into_iter().chain(more).collect();
+            let answer = Type::of_struct("ClosedContact");
+            let signature = Signature { name, docs, arguments, answer, failure: Failure::ClosedContact };
+            Method {
+                signature,
+                attributes: quote!(#[inline]),
+                body: quote!(Self::#shared(self, #passed #decide)),
+            }
+        };
+        let selects = quote! {
+            |contact, free, noise| #krate::generated::closed_contact(contact, free, noise, surface.mu)
+        };
+        let keeps = quote! {
+            |contact, free, _| #krate::generated::kept_contact(mode, contact, free, surface.mu)
+        };
         let error = quote!(#krate::ClosedContactError<T>);
-        let result = quote!(::core::result::Result<ClosedContact<T>, #error>);
-        let vector = quote!(#krate::nalgebra::Vector3<T>);
-        quote! {
-            #docs_mode
-            #[inline]
-            pub fn #mode(#signature surface: &#krate::Surface<T>) -> #result {
-                Self::#shared(self, #passed |contact, free, noise| {
-                    #krate::generated::closed_contact(contact, free, noise, surface.mu)
-                })
-            }
-
-            #docs_force
-            #[inline]
-            pub fn #force(#signature mode: #krate::ContactMode, surface: &#krate::Surface<T>) -> #result {
-                Self::#shared(self, #passed |contact, free, _| {
-                    #krate::generated::kept_contact(mode, contact, free, surface.mu)
-                })
-            }
-
-            #[inline]
-            fn #shared(
-                #signature
-                decide: impl ::core::ops::FnOnce(
-                    &#krate::generated::Contact<T>,
-                    &#vector,
-                    T,
-                ) -> ::core::result::Result<#krate::ContactOutcome<T>, #error>,
-            ) -> #result {
-                #body
-            }
+        Group {
+            methods: vec![
+                method(mode, docs_mode, vec![surface.clone()], selects),
+                method(force, docs_force, vec![of_mode, surface], keeps),
+            ],
+            private: quote! {
+                #[inline]
+                fn #shared(
+                    #private
+                    decide: impl ::core::ops::FnOnce(
+                        &#krate::generated::Contact<T>,
+                        &#krate::nalgebra::Vector3<T>,
+                        T,
+                    ) -> ::core::result::Result<#krate::ContactOutcome<T>, #error>,
+                ) -> ::core::result::Result<ClosedContact<T>, #error> {
+                    #body
+                }
+            },
         }
     }
 

@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{Argument, Failure, Field, Group, Method, Signature, Struct, Type};
 use super::record;
 use super::routine::Arguments;
 use super::values::local;
@@ -27,69 +28,54 @@ impl Emitter<'_> {
     }
 
     /// The type of solved collisions, where there is a contact.
-    pub fn collision_type(&self) -> TokenStream {
-        if !(0..self.mechanism.contacts.len()).any(|contact| self.collides(contact)) {
-            return quote!();
-        }
-        let krate = self.krate;
-        let vector = quote!(#krate::nalgebra::Vector3<T>);
+    pub fn collision_structure(&self) -> Option<Struct> {
+        (0..self.mechanism.contacts.len()).find(|&contact| self.collides(contact))?;
+        let vector = |name: &str, docs: &str| Field::new(name, Type::Vector(3), docs);
         let dependent = (!self.dependent.is_empty()).then(|| {
-            quote! {
-                /// dependent speeds after the collision
-                pub dependent_speeds: DependentSpeeds<T>,
-            }
+            let of = Type::of_struct("DependentSpeeds");
+            Field::new("dependent_speeds", of, "dependent speeds after the collision")
         });
-        let dependent_field = (!self.dependent.is_empty()).then_some("dependent_speeds");
-        let fields = [
-            "impulse",
-            "impulse_on_point",
-            "impulse_on_struck",
-            "normal",
-            "tangent",
-            "binormal",
-            "approach",
-            "separation",
-            "reduced",
-            "energy_change",
-            "path",
-            "impact",
-        ];
-        let fields: Vec<&str> = ["speeds"].into_iter().chain(dependent_field).chain(fields).collect();
-        let written = record::outcome(krate, "Collision", &fields);
-        quote! {
-            /// A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            #[must_use]
-            #[non_exhaustive]
-            pub struct Collision<T: #krate::nalgebra::Scalar = f64> {
-                /// independent speeds after the collision (12a)
-                pub speeds: Speeds<T>,
-                #dependent
-                /// impulse on the striking point along n, t, s, in N s
-                pub impulse: #vector,
-                /// impulse on the striking point along N.x, N.y, N.z, in N s
-                pub impulse_on_point: #vector,
-                /// impulse on what is struck along N.x, N.y, N.z, in N s: the opposite of `impulse_on_point`
-                pub impulse_on_struck: #vector,
-                /// n along N.x, N.y, N.z
-                pub normal: #vector,
-                /// t along N.x, N.y, N.z
-                pub tangent: #vector,
-                /// s along N.x, N.y, N.z
-                pub binormal: #vector,
-                /// velocity of approach along n, t, s, in m/s
-                pub approach: #vector,
-                /// velocity of separation along n, t, s, in m/s
-                pub separation: #vector,
-                /// reduced mass matrix along n, t, s, in 1/kg
-                pub reduced: #krate::ReducedMatrix<T>,
-                /// change of the kinetic energy, in J; it differs from `impact.contact_work` where motion is prescribed (24)
-                pub energy_change: T,
-                /// the phases of the collision
-                pub path: #krate::Path,
-                /// the outcome of the impact solver, along n, t, s: works, phases, sensitivity
-                pub impact: #krate::Impact<T>,
-            }
+        let speeds = Type::of_struct("Speeds");
+        let mut fields = vec![Field::new("speeds", speeds, "independent speeds after the collision (12a)")];
+        fields.extend(dependent);
+        fields.extend([
+            vector("impulse", "impulse on the striking point along n, t, s, in N s"),
+            vector("impulse_on_point", "impulse on the striking point along N.x, N.y, N.z, in N s"),
+            vector(
+                "impulse_on_struck",
+                "impulse on what is struck along N.x, N.y, N.z, in N s: the opposite of `impulse_on_point`",
+            ),
+            vector("normal", "n along N.x, N.y, N.z"),
+            vector("tangent", "t along N.x, N.y, N.z"),
+            vector("binormal", "s along N.x, N.y, N.z"),
+            vector("approach", "velocity of approach along n, t, s, in m/s"),
+            vector("separation", "velocity of separation along n, t, s, in m/s"),
+            Field::new("reduced", Type::Reduced, "reduced mass matrix along n, t, s, in 1/kg"),
+            Field::new(
+                "energy_change",
+                Type::Number,
+                "change of the kinetic energy, in J; it differs from `impact.contact_work` where motion is prescribed (24)",
+            ),
+            Field::new("path", Type::Path, "the phases of the collision"),
+            Field::new(
+                "impact",
+                Type::Impact,
+                "the outcome of the impact solver, along n, t, s: works, phases, sensitivity",
+            ),
+        ]);
+        let docs =
+            "A solved collision. n is the contact's normal, t lies along the slip of approach, s = n x t.";
+        Some(Struct::of_results("Collision", docs, fields))
+    }
+
+    /// The type of solved collisions with what it implements.
+    pub fn collision_type(&self) -> Option<TokenStream> {
+        let krate = self.krate;
+        let structure = self.collision_structure()?;
+        let written = record::outcome(krate, &structure.name, &structure.names());
+        let structure = structure.tokens(krate, &quote!(#[non_exhaustive]));
+        Some(quote! {
+            #structure
 
             impl<T: #krate::Scalar> Collision<T> {
                 /// The collision in the type that all mechanisms share, without the speeds after it.
@@ -110,7 +96,7 @@ impl Emitter<'_> {
             }
 
             #written
-        }
+        })
     }
 
     /// What a collision is computed from.
@@ -178,51 +164,51 @@ impl Emitter<'_> {
     }
 
     /// `collide_..` and `impact_without_collision_..`, and the routine that they share.
-    pub fn collide(&self, contact: usize) -> TokenStream {
+    pub fn collide(&self, contact: usize) -> Group {
         let krate = self.krate;
         let words = self.contact_words(contact);
-        let named = |prefix: &str| crate::identifiers::ident(&self.contact_method(prefix, contact));
-        let [collide, without, shared] = ["collide", "impact_without_collision", "struck"].map(named);
-        let docs = crate::identifiers::docs(&format!(
+        let named = |prefix: &str| self.contact_method(prefix, contact);
+        let [collide, without] = ["collide", "impact_without_collision"].map(named);
+        let shared = crate::identifiers::ident(&named("struck"));
+        let docs = format!(
             "Solves the collision at {words}.\n\nThe coordinates do not change; the speeds change by M^-1 V^T I (12a), I being the impulse."
-        ));
-        let docs_without = crate::identifiers::docs(&format!(
+        );
+        let docs_without = format!(
             "Solves the impact without collision at {words}. The contact is closed, slides with f < 0 (31) and is pressed together, so that no finite force \
              exists (Painleve's paradox). The normal velocity is taken for zero; the speeds change as in `{collide}`. Where f > 0 or without slip \
              a finite force exists, and the error is `NoImpact`."
-        ));
+        );
         let resolve = match self.structure(contact) {
             Some(marker) => {
                 quote!(#krate::generated::resolve_structured::<#krate::structure::#marker, T>)
             }
             None => quote!(#krate::generated::resolve),
         };
-        let arguments = self.collision_arguments(contact);
-        let (signature, passed) = (self.signature(arguments), self.passed(arguments));
+        let taken = self.collision_arguments(contact);
+        let (private, passed) = (self.signature(taken), self.passed(taken));
         let body = self.struck(contact, &quote!(resolve(&contact)));
-        let result = quote!(::core::result::Result<Collision<T>, #krate::CollisionError<T>>);
-        quote! {
-            #docs
-            #[inline]
-            pub fn #collide(#signature surface: &impl #krate::ContactSurface<T>) -> #result {
-                Self::#shared(self, #passed |contact| #resolve(contact, surface))
-            }
-
-            #docs_without
-            #[inline]
-            pub fn #without(#signature surface: &impl #krate::ContactSurface<T>) -> #result {
-                Self::#shared(self, #passed |contact| #krate::generated::resolve_without_collision(contact, surface))
-            }
-
-            #[inline]
-            fn #shared(
-                #signature
-                resolve: impl ::core::ops::FnOnce(
-                    &#krate::generated::Contact<T>,
-                ) -> ::core::result::Result<#krate::generated::Resolved<T>, #krate::ImpactError<T>>,
-            ) -> #result {
-                #body
-            }
+        let method = |name: String, docs: String, resolve: TokenStream| {
+            let mut arguments = self.declared(taken);
+            arguments.push(Argument { name: "surface", of: Type::BudgetedSurface });
+            let answer = Type::of_struct("Collision");
+            let signature = Signature { name, docs, arguments, answer, failure: Failure::Collision };
+            let body = quote!(Self::#shared(self, #passed |contact| #resolve(contact, surface)));
+            Method { signature, attributes: quote!(#[inline]), body }
+        };
+        let without_collision = quote!(#krate::generated::resolve_without_collision);
+        Group {
+            methods: vec![method(collide, docs, resolve), method(without, docs_without, without_collision)],
+            private: quote! {
+                #[inline]
+                fn #shared(
+                    #private
+                    resolve: impl ::core::ops::FnOnce(
+                        &#krate::generated::Contact<T>,
+                    ) -> ::core::result::Result<#krate::generated::Resolved<T>, #krate::ImpactError<T>>,
+                ) -> ::core::result::Result<Collision<T>, #krate::CollisionError<T>> {
+                    #body
+                }
+            },
         }
     }
 

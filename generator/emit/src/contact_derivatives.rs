@@ -2,53 +2,62 @@
 
 use std::ops::Range;
 
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, TokenStream};
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{Field, Struct, Type};
 use super::routine::Routine;
 use super::values::local;
 use hodograph_program::program::{ContactQuantity, Output};
 
 impl Emitter<'_> {
     /// The record of a contact with its derivatives; nothing where no contact has them.
-    pub fn contact_derivatives_record(&self) -> TokenStream {
-        let contacts = 0..self.mechanism.contacts.len();
-        if contacts.filter_map(|contact| self.contact_derivatives(contact)).next().is_none() {
-            return quote!();
-        }
-        let krate = self.krate;
-        let [p, n, m] = self.derivative_sizes().map(Literal::usize_unsuffixed);
-        let matrix = quote!(#krate::nalgebra::SMatrix);
-        quote! {
-            /// What a collision at a contact is made of, with its derivatives. Columns belong to the independent coordinates, independent speeds and named inputs, in
-            /// their order; dependent ones follow.
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            #[must_use]
-            #[non_exhaustive]
-            pub struct ContactDerivatives<T: #krate::nalgebra::Scalar = f64> {
-                /// velocity along the contact basis, in m/s
-                pub velocity: #krate::nalgebra::Vector3<T>,
-                /// its derivatives with respect to the coordinates
-                pub velocity_by_coordinates: #matrix<T, 3, #n>,
-                /// its derivatives with respect to the speeds: the partial velocities
-                pub velocity_by_speeds: #matrix<T, 3, #p>,
-                /// its derivatives with respect to the named inputs
-                pub velocity_by_inputs: #matrix<T, 3, #m>,
-                /// reduced mass matrix along the contact basis, in 1/kg
-                pub reduced: #krate::ReducedMatrix<T>,
-                /// derivatives of nn, nt, ns, tt, ts, ss (rows) with respect to the coordinates
-                pub reduced_by_coordinates: #matrix<T, 6, #n>,
-                /// response M^-1 V^T, as of the method `response_..`
-                pub response: #matrix<T, #p, 3>,
-                /// its derivatives with respect to each coordinate
-                pub response_by_coordinates: [#matrix<T, #p, 3>; #n],
-                /// gap, in m, where the model gives one
-                pub gap: ::core::option::Option<T>,
-                /// its derivatives with respect to the coordinates
-                pub gap_by_coordinates: ::core::option::Option<#krate::nalgebra::SVector<T, #n>>,
-            }
-        }
+    pub fn contact_derivatives_record(&self) -> Option<Struct> {
+        let mut contacts = 0..self.mechanism.contacts.len();
+        contacts.find(|&contact| self.contact_derivatives(contact).is_some())?;
+        let [p, n, m] = self.derivative_sizes();
+        let response = Type::of_shape(p, 3);
+        let field = |name: &str, of: Type, docs: &str| Field::new(name, of, docs);
+        let fields = vec![
+            field("velocity", Type::Vector(3), "velocity along the contact basis, in m/s"),
+            field(
+                "velocity_by_coordinates",
+                Type::of_shape(3, n),
+                "its derivatives with respect to the coordinates",
+            ),
+            field(
+                "velocity_by_speeds",
+                Type::of_shape(3, p),
+                "its derivatives with respect to the speeds: the partial velocities",
+            ),
+            field(
+                "velocity_by_inputs",
+                Type::of_shape(3, m),
+                "its derivatives with respect to the named inputs",
+            ),
+            field("reduced", Type::Reduced, "reduced mass matrix along the contact basis, in 1/kg"),
+            field(
+                "reduced_by_coordinates",
+                Type::of_shape(6, n),
+                "derivatives of nn, nt, ns, tt, ts, ss (rows) with respect to the coordinates",
+            ),
+            field("response", response.clone(), "response M^-1 V^T, as of the method `response_..`"),
+            field(
+                "response_by_coordinates",
+                Type::Array(Box::new(response), n),
+                "its derivatives with respect to each coordinate",
+            ),
+            field("gap", Type::Optional(Box::new(Type::Number)), "gap, in m, where the model gives one"),
+            field(
+                "gap_by_coordinates",
+                Type::Optional(Box::new(Type::Vector(n))),
+                "its derivatives with respect to the coordinates",
+            ),
+        ];
+        let docs = "What a collision at a contact is made of, with its derivatives. Columns belong to the independent coordinates, independent speeds and named \
+                    inputs, in their order; dependent ones follow.";
+        Some(Struct::of_results("ContactDerivatives", docs, fields))
     }
 
     /// Numbers of independent speeds, independent coordinates and named inputs.
@@ -111,7 +120,7 @@ impl Emitter<'_> {
             name,
             docs,
             quantities: vec![output.quantity],
-            result: quote!(ContactDerivatives<T>),
+            answer: Type::of_struct("ContactDerivatives"),
             value,
         })
     }

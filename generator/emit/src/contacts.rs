@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{Group, Type};
 use super::methods::about;
 use super::record::number;
 use super::routine::Routine;
@@ -19,19 +20,19 @@ impl Emitter<'_> {
     }
 
     /// The methods of all contacts.
-    pub fn contacts(&self) -> TokenStream {
-        let methods = (0..self.mechanism.contacts.len()).map(|contact| self.contact(contact));
-        quote! { #(#methods)* }
+    pub fn contacts(&self) -> Vec<Group> {
+        (0..self.mechanism.contacts.len()).flat_map(|contact| self.contact(contact)).collect()
     }
 
-    fn contact(&self, contact: usize) -> TokenStream {
+    fn contact(&self, contact: usize) -> Vec<Group> {
         let routines = self.contact_routines(contact);
-        let routines = routines.iter().map(|routine| self.routine(routine));
-        let collide = self.collides(contact).then(|| self.collide(contact));
-        let closed = self.closes(contact).then(|| self.closed(contact));
-        let derivatives = self.collides(contact).then(|| self.derivatives(contact));
-        let surface = self.surface(contact);
-        quote! { #(#routines)* #collide #closed #derivatives #surface }
+        let methods = routines.iter().map(|routine| self.routine(routine)).collect();
+        let mut groups = vec![Group { methods, ..Group::default() }];
+        groups.extend(self.collides(contact).then(|| self.collide(contact)));
+        groups.extend(self.closes(contact).then(|| self.closed(contact)));
+        groups.extend(self.collides(contact).then(|| self.derivatives(contact)));
+        groups.extend(self.surface(contact).map(|private| Group { private, ..Group::default() }));
+        groups
     }
 
     /// Friction and restitution, where the model states them.
@@ -65,8 +66,8 @@ impl Emitter<'_> {
         let queries = CONTACT.iter().filter_map(|&(quantity, _)| {
             let output = self.contact_output(contact, quantity)?;
             let (name, docs) = self.describe(output.quantity)?;
-            let (result, value) = self.shaped(output);
-            Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+            let (answer, value) = self.shaped(output);
+            Some(Routine { name, docs, quantities: vec![output.quantity], answer, value })
         });
         let several = [
             self.contact_basis(contact),
@@ -129,7 +130,7 @@ impl Emitter<'_> {
         };
         let name = self.contact_method("contact_state", contact);
         let quantities = self.contact_state_quantities(contact);
-        Some(Routine { name, docs, quantities, result: quote!(#krate::ContactState<T>), value })
+        Some(Routine { name, docs, quantities, answer: Type::ContactState, value })
     }
 
     pub fn contact_words(&self, contact: usize) -> String {
@@ -158,11 +159,10 @@ impl Emitter<'_> {
             self.contact_words(contact)
         );
         let name = self.contact_method("contact_basis", contact);
-        Some(Routine { name, docs, quantities, result: quote!(#krate::nalgebra::Matrix3<T>), value })
+        Some(Routine { name, docs, quantities, answer: Type::Matrix(3, 3), value })
     }
 
     fn reduced_matrix(&self, contact: usize) -> Option<Routine> {
-        let krate = self.krate;
         let output = self.contact_output(contact, ContactQuantity::Reduced)?;
         let value = self.reduced(output);
         let docs = format!(
@@ -170,13 +170,11 @@ impl Emitter<'_> {
             self.contact_words(contact)
         );
         let name = self.contact_method("reduced_matrix", contact);
-        let result = quote!(#krate::ReducedMatrix<T>);
-        Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+        Some(Routine { name, docs, quantities: vec![output.quantity], answer: Type::Reduced, value })
     }
 
     /// Both at once, for what they share.
     fn contact_matrices(&self, contact: usize) -> Option<Routine> {
-        let krate = self.krate;
         let partial = self.contact_output(contact, ContactQuantity::PartialVelocities)?;
         let reduced = self.contact_output(contact, ContactQuantity::Reduced)?;
         let (shape, velocities) = self.matrix(partial);
@@ -188,9 +186,9 @@ impl Emitter<'_> {
             self.contact_method("reduced_matrix", contact)
         );
         let name = self.contact_method("contact_matrices", contact);
-        let result = quote!((#shape, #krate::ReducedMatrix<T>));
+        let answer = Type::Pair(Box::new(shape), Box::new(Type::Reduced));
         let quantities = vec![partial.quantity, reduced.quantity];
-        Some(Routine { name, docs, quantities, result, value: quote!((#velocities, #matrix)) })
+        Some(Routine { name, docs, quantities, answer, value: quote!((#velocities, #matrix)) })
     }
 
     pub fn reduced(&self, output: &Output) -> TokenStream {

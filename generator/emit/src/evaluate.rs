@@ -8,9 +8,10 @@ use std::collections::BTreeSet;
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 
+use super::interface::{Failure, Field, Method, Signature, Struct, Type};
 use super::routine::Routine;
 use super::{Emitter, Requests};
-use crate::identifiers::{RECORDS, docs, pascal_case};
+use crate::identifiers::{RECORDS, ident, pascal_case};
 use hodograph_model::rust_names::is_keyword;
 use hodograph_model::suggest::nearest;
 use hodograph_program::program::Quantity;
@@ -36,9 +37,8 @@ impl Set {
 
 impl Emitter<'_> {
     /// The types and the methods of sets.
-    pub fn sets(&self, sets: &[Set]) -> (TokenStream, TokenStream) {
-        let (types, methods): (Vec<_>, Vec<_>) = sets.iter().map(|set| self.set(set)).unzip();
-        (quote!(#(#types)*), quote!(#(#methods)*))
+    pub fn sets(&self, sets: &[Set]) -> (Vec<Struct>, Vec<Method>) {
+        sets.iter().map(|set| self.set(set)).unzip()
     }
 
     /// All routines of the module.
@@ -52,8 +52,7 @@ impl Emitter<'_> {
         routines
     }
 
-    fn set(&self, set: &Set) -> (TokenStream, TokenStream) {
-        let krate = self.krate;
+    fn set(&self, set: &Set) -> (Struct, Method) {
         let named = |routines: Vec<Routine>| -> Vec<Routine> {
             let mut all: Vec<Option<Routine>> = routines.into_iter().map(Some).collect();
             let is = |routine: &Option<Routine>, name: &Ident| {
@@ -69,38 +68,33 @@ impl Emitter<'_> {
             }
         }
         let routines = named(self.all_routines());
-        let (name, of_type) = (&set.name, format_ident!("{}", set.type_name()));
-        let fields: Vec<Ident> =
-            routines.iter().map(|routine| crate::identifiers::ident(&routine.name)).collect();
-        let docs_of = routines.iter().map(|routine| docs(&routine.docs));
-        let (results, values): (Vec<_>, Vec<_>) =
-            routines.iter().map(|routine| (&routine.result, &routine.value)).unzip();
-        let machine = &self.name;
-        let about = format!(" What [`{machine}::{name}`] gives: quantities of one state.");
-        let listed: Vec<String> = fields.iter().map(|field| format!("`{field}`")).collect();
-        let of_method = format!(
-            " {} of one state in one call. What they have in common is computed once; each is the answer of the method of its name.",
+        let (name, of_type) = (&set.name, set.type_name());
+        let fields: Vec<Field> = routines
+            .iter()
+            .map(|routine| Field::new(&routine.name, routine.answer.clone(), &routine.docs))
+            .collect();
+        let (names, values): (Vec<Ident>, Vec<_>) =
+            routines.iter().map(|routine| (ident(&routine.name), &routine.value)).unzip();
+        let about = format!("What [`{}::{name}`] gives: quantities of one state.", self.name);
+        let listed: Vec<String> = names.iter().map(|field| format!("`{field}`")).collect();
+        let docs = format!(
+            "{} of one state in one call. What they have in common is computed once; each is the answer of the method of its name.",
             listed.join(", ")
         );
-        let signature = self.signature(self.arguments(&quantities));
-        let body = self.compute(&quantities);
-        let record = quote! {
-            #[doc = #about]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            #[must_use]
-            pub struct #of_type<T: #krate::nalgebra::Scalar = f64> {
-                #(#docs_of pub #fields: #results),*
-            }
+        let signature = Signature {
+            name: name.to_string(),
+            docs,
+            arguments: self.declared(self.arguments(&quantities)),
+            answer: Type::of_struct(&of_type),
+            failure: Failure::State,
         };
-        let method = quote! {
-            #[doc = #of_method]
-            #[inline]
-            pub fn #name(#signature) -> ::core::result::Result<#of_type<T>, #krate::StateError> {
-                #body
-                ::core::result::Result::Ok(#of_type { #(#fields: #values),* })
-            }
+        let (compute, record) = (self.compute(&quantities), format_ident!("{of_type}"));
+        let body = quote! {
+            #compute
+            ::core::result::Result::Ok(#record { #(#names: #values),* })
         };
-        (record, method)
+        let structure = Struct::of_results(&of_type, &about, fields);
+        (structure, Method { signature, attributes: quote!(#[inline]), body })
     }
 
     /// What is wrong with requests.
@@ -111,9 +105,10 @@ impl Emitter<'_> {
         }
         let routines: BTreeSet<String> =
             self.all_routines().into_iter().map(|routine| routine.name).collect();
-        let (methods, contacts, traits) = (self.methods(), self.contacts(), self.traits());
+        let (methods, traits) = (self.groups(), self.traits());
+        let methods = methods.iter().map(|group| group.tokens(self.krate));
         let mechanism_type = self.mechanism_type();
-        let taken = names_after("fn", quote!(#mechanism_type #methods #contacts #traits));
+        let taken = names_after("fn", quote!(#mechanism_type #(#methods)* #traits));
         let mut found = Vec::new();
         for (number, set) in sets.iter().enumerate() {
             if let Some(message) = self.name_mistake(set, &sets[..number], &taken) {

@@ -15,6 +15,7 @@ mod evaluate;
 mod finite;
 mod groups;
 pub mod identifiers;
+pub mod interface;
 mod lanes;
 mod linearisation;
 mod methods;
@@ -37,6 +38,7 @@ use hodograph_program::program::Quantity;
 use hodograph_program::program::graph::Input;
 use hodograph_program::program::operation::{Operation, Stage, Value};
 use hodograph_program::program::{Guard, Program, fits};
+use interface::{Group, Interface, Struct};
 use record::Record;
 
 pub use evaluate::Set;
@@ -95,21 +97,18 @@ fn module_in_parts(
     let module = identifiers::ident(&options.module);
     let tracked = &options.tracked;
     let docs = identifiers::docs(&emitter.module_docs());
-    let records =
-        [&emitter.parameters, &emitter.coordinates, &emitter.speeds, &emitter.dependent, &emitter.inputs];
-    let records = records.into_iter().filter(|record| !record.is_empty()).map(|record| record.tokens(krate));
+    let records = emitter.records().into_iter().map(|record| record.tokens(krate));
     let mechanism_type = emitter.mechanism_type();
-    let collision = emitter.collision_type();
-    let closed = emitter.closed_type();
-    let derivative = emitter.derivative_type();
-    let methods = emitter.methods();
-    let contacts = emitter.contacts();
-    let linearisation = emitter.linearisation_record();
-    let derivatives = emitter.derivatives_record();
-    let contact_derivatives = emitter.contact_derivatives_record();
+    let (collision, closed) = (emitter.collision_type(), emitter.closed_type());
+    let plain = emitter.plain_structures();
+    let plain = plain.iter().map(|structure| structure.tokens(krate, &quote!(#[non_exhaustive])));
+    let methods = emitter.groups();
+    let methods = methods.iter().map(|group| group.tokens(krate));
     let traits = emitter.traits();
     let (of_sets, sets) = emitter.sets(&options.requests.sets);
-    let specialised = emitter.specialised(&options.requests.specialised);
+    let of_sets = of_sets.iter().map(|structure| structure.tokens(krate, &quote!()));
+    let asked = sets.into_iter().chain(emitter.specialised(&options.requests.specialised));
+    let asked = asked.map(|method| method.tokens(krate));
     let name = &emitter.name;
     Ok(quote! {
         #docs
@@ -123,21 +122,36 @@ fn module_in_parts(
             #mechanism_type
             #collision
             #closed
-            #derivative
-            #linearisation
-            #derivatives
-            #contact_derivatives
-            #of_sets
+            #(#plain)*
+            #(#of_sets)*
 
             impl<T: #krate::Scalar> #name<T> {
-                #methods
-                #contacts
-                #sets
-                #specialised
+                #(#methods)*
+                #(#asked)*
             }
 
             #traits
         }
+    })
+}
+
+/// What the module of a mechanism offers, but for what a user asks for beside. The error says why the program is not
+/// one of this mechanism.
+pub fn interface(mechanism: &Mechanism, program: &Program, module: &str) -> Result<Interface, String> {
+    fits(mechanism, program)?;
+    let krate = quote!(hodograph);
+    let emitter = Emitter::new(mechanism, program, &krate);
+    let results = [emitter.collision_structure(), emitter.closed_structure()];
+    let records = emitter.records().into_iter().map(Record::structure);
+    let structures = records.chain(results.into_iter().flatten()).chain(emitter.plain_structures());
+    let methods = emitter.groups().into_iter().flat_map(|group| group.methods);
+    Ok(Interface {
+        module: module.to_owned(),
+        mechanism: emitter.name.to_string(),
+        docs: emitter.module_docs(),
+        numbers: emitter.parameters.len() + emitter.hoisted.len(),
+        structures: structures.collect(),
+        methods: methods.map(|method| method.signature).collect(),
     })
 }
 
@@ -178,15 +192,15 @@ impl<'a> Emitter<'a> {
             krate,
             name: format_ident!("{}", identifiers::type_name(&mechanism.name)),
             parameters: Record::new("Parameters", "Parameters of the mechanism.", run_time),
-            coordinates: Record::new("Coordinates", "Generalized coordinates.", mechanism.coordinates.iter()),
+            coordinates: Record::new("Coordinates", "Generalised coordinates.", mechanism.coordinates.iter()),
             speeds: Record::new(
                 "Speeds",
-                "Independent generalized speeds, or their rates (per second).",
+                "Independent generalised speeds, or their rates (per second).",
                 independent,
             ),
             dependent: Record::new(
                 "DependentSpeeds",
-                "Dependent generalized speeds, or their rates (per second).",
+                "Dependent generalised speeds, or their rates (per second).",
                 dependent,
             ),
             inputs: Record::new("Inputs", "Named inputs.", mechanism.inputs.iter()),
@@ -200,6 +214,30 @@ impl<'a> Emitter<'a> {
         emitter.unit_quaternions();
         emitter.kinematic_inputs = emitter.find_kinematic_inputs();
         emitter
+    }
+
+    /// The structs of named numbers that are not empty.
+    fn records(&self) -> Vec<&Record> {
+        let all = [&self.parameters, &self.coordinates, &self.speeds, &self.dependent, &self.inputs];
+        all.into_iter().filter(|record| !record.is_empty()).collect()
+    }
+
+    /// The structs of results that implement nothing but what is derived.
+    fn plain_structures(&self) -> Vec<Struct> {
+        let all = [
+            self.derivative_structure(),
+            self.linearisation_record(),
+            self.derivatives_record(),
+            self.contact_derivatives_record(),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
+    /// The methods of every module.
+    fn groups(&self) -> Vec<Group> {
+        let mut groups = vec![self.methods()];
+        groups.extend(self.contacts());
+        groups
     }
 
     /// A quaternion without initial values starts as the identity.

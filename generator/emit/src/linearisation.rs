@@ -7,6 +7,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{Failure, Field, Method, Signature, Struct, Type};
 use super::routine::Arguments;
 use super::values::local;
 use hodograph_program::program::{Output, Quantity};
@@ -18,20 +19,15 @@ impl Emitter<'_> {
     }
 
     /// The type of a direction: states, then inputs.
-    pub fn tangent_argument(&self) -> TokenStream {
+    pub fn tangent_type(&self) -> Type {
         let (states, inputs) = self.linear_sizes();
-        let size = Literal::usize_unsuffixed(states + inputs);
-        quote!(tangent: &[T; #size],)
+        Type::Array(Box::new(Type::Number), states + inputs)
     }
 
     /// The record of the two matrices; nothing where the program has no directional derivative.
-    pub fn linearisation_record(&self) -> TokenStream {
-        if self.program.output(Quantity::StateTangent).is_none() {
-            return quote!();
-        }
-        let krate = self.krate;
+    pub fn linearisation_record(&self) -> Option<Struct> {
+        self.program.output(Quantity::StateTangent)?;
         let (states, inputs) = self.linear_sizes();
-        let (n, m) = (Literal::usize_unsuffixed(states), Literal::usize_unsuffixed(inputs));
         let names = |dependent: bool| {
             let all = self.mechanism.coordinates.iter().chain(&self.mechanism.speeds);
             let names: Vec<_> =
@@ -39,55 +35,47 @@ impl Emitter<'_> {
             names.join(", ")
         };
         let docs = format!(
-            " Equations linearised about a state: x' = A x + B w for small deviations of the states {} (in this order){}.",
+            "Equations linearised about a state: x' = A x + B w for small deviations of the states {} (in this order){}.",
             names(false),
             if inputs == 0 { "" } else { " and of the named inputs w" },
         );
-        quote! {
-            #[doc = #docs]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            #[must_use]
-            #[non_exhaustive]
-            pub struct Linearisation<T> {
-                /// A: derivatives of the rates of the states (rows) with respect to the states (columns)
-                pub a: #krate::nalgebra::SMatrix<T, #n, #n>,
-                /// B: derivatives of the rates of the states (rows) with respect to the named inputs (columns)
-                pub b: #krate::nalgebra::SMatrix<T, #n, #m>,
-            }
-        }
+        let fields = vec![
+            Field::new(
+                "a",
+                Type::of_shape(states, states),
+                "A: derivatives of the rates of the states (rows) with respect to the states (columns)",
+            ),
+            Field::new(
+                "b",
+                Type::of_shape(states, inputs),
+                "B: derivatives of the rates of the states (rows) with respect to the named inputs (columns)",
+            ),
+        ];
+        Some(Struct::of_results("Linearisation", &docs, fields))
     }
 
     /// The record of a value and its derivatives; nothing where the program has none.
-    pub fn derivatives_record(&self) -> TokenStream {
+    pub fn derivatives_record(&self) -> Option<Struct> {
         let of = [Quantity::AccelerationsDerivatives, Quantity::InverseDynamicsDerivatives];
-        if of.iter().all(|&quantity| self.program.output(quantity).is_none()) {
-            return quote!();
-        }
-        let krate = self.krate;
-        let [rows, coordinates, inputs] = [
-            self.speeds.len(),
-            self.mechanism.independent_states() - self.speeds.len(),
-            self.mechanism.inputs.len(),
-        ]
-        .map(Literal::usize_unsuffixed);
-        quote! {
-            /// Accelerations or generalized forces with their derivatives. Rows: independent speeds.
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            pub struct Derivatives<T> {
-                /// the quantity itself
-                pub value: #krate::nalgebra::SVector<T, #rows>,
-                /// derivatives with respect to the independent coordinates (columns, in their order)
-                pub by_coordinates: #krate::nalgebra::SMatrix<T, #rows, #coordinates>,
-                /// derivatives with respect to the independent speeds (columns, in their order)
-                pub by_speeds: #krate::nalgebra::SMatrix<T, #rows, #rows>,
-                /// derivatives with respect to the named inputs (columns, in their order)
-                pub by_inputs: #krate::nalgebra::SMatrix<T, #rows, #inputs>,
-            }
-        }
+        of.iter().find(|&&quantity| self.program.output(quantity).is_some())?;
+        let (states, inputs) = self.linear_sizes();
+        let rows = self.speeds.len();
+        let by = |name: &str, columns: usize, what: &str| {
+            let docs = format!("derivatives with respect to the {what} (columns, in their order)");
+            Field::new(name, Type::of_shape(rows, columns), &docs)
+        };
+        let fields = vec![
+            Field::new("value", Type::Vector(rows), "the quantity itself"),
+            by("by_coordinates", states - rows, "independent coordinates"),
+            by("by_speeds", rows, "independent speeds"),
+            by("by_inputs", inputs, "named inputs"),
+        ];
+        let docs = "Accelerations or generalised forces with their derivatives. Rows: independent speeds.";
+        Some(Struct::of_results("Derivatives", docs, fields))
     }
 
     /// The type and the expression of a value with its derivatives.
-    pub fn value_and_derivatives(&self, output: &Output) -> (TokenStream, TokenStream) {
+    pub fn value_and_derivatives(&self, output: &Output) -> (Type, TokenStream) {
         let (states, inputs) = self.linear_sizes();
         let coordinates = 1 + states - self.speeds.len();
         let [(_, value), (_, by_coordinates), (_, by_speeds), (_, by_inputs)] =
@@ -96,30 +84,32 @@ impl Emitter<'_> {
         let fields = quote! {
             value: #value, by_coordinates: #by_coordinates, by_speeds: #by_speeds, by_inputs: #by_inputs
         };
-        (quote!(Derivatives<T>), quote!(Derivatives { #fields }))
+        (Type::of_struct("Derivatives"), quote!(Derivatives { #fields }))
     }
 
     /// The method `linearise`; nothing where the program has no directional derivative.
-    pub fn linearise(&self) -> TokenStream {
-        if self.program.output(Quantity::StateTangent).is_none() {
-            return quote!();
-        }
-        let krate = self.krate;
+    pub fn linearise(&self) -> Option<Method> {
+        self.program.output(Quantity::StateTangent)?;
         let mut arguments = self.arguments(&[Quantity::StateTangent]);
         arguments.tangent = false;
-        let signature = self.signature(arguments);
         let body = match self.program.output(Quantity::AccelerationsDerivatives) {
             Some(_) => self.by_derivatives(arguments),
             None => self.by_tangents(arguments),
         };
-        quote! {
-            /// The equations linearised about a state, by exact differentiation. Dependent coordinates and speeds follow the independent ones; parameters
-            /// and time are constant.
-            pub fn linearise(#signature) -> ::core::result::Result<Linearisation<T>, #krate::StateError> {
-                #body
-                ::core::result::Result::Ok(Linearisation { a, b })
-            }
-        }
+        let docs = "The equations linearised about a state, by exact differentiation. Dependent coordinates and \
+                    speeds follow the independent ones; parameters and time are constant.";
+        let signature = Signature {
+            name: "linearise".to_owned(),
+            docs: docs.to_owned(),
+            arguments: self.declared(arguments),
+            answer: Type::of_struct("Linearisation"),
+            failure: Failure::State,
+        };
+        let body = quote! {
+            #body
+            ::core::result::Result::Ok(Linearisation { a, b })
+        };
+        Some(Method { signature, attributes: TokenStream::new(), body })
     }
 
     /// Rows of coordinates from the derivatives of their rates, rows of speeds from those of the

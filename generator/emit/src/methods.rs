@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use super::Emitter;
+use super::interface::{Failure, Group, Method, Signature, Type};
 use super::record::Record;
 use super::routine::Routine;
 use super::values::local;
@@ -16,11 +17,10 @@ use hodograph_program::program::{ContactQuantity, Output, Quantity};
 
 impl Emitter<'_> {
     /// All methods that do not belong to a contact.
-    pub fn methods(&self) -> TokenStream {
+    pub fn methods(&self) -> Group {
         let routines = self.routines();
         let methods = routines.iter().map(|routine| self.routine(routine));
-        let linearise = self.linearise();
-        quote! { #(#methods)* #linearise }
+        Group { methods: methods.chain(self.linearise()).collect(), ..Group::default() }
     }
 
     /// The routines that do not belong to a contact.
@@ -30,8 +30,8 @@ impl Emitter<'_> {
                 return None;
             }
             let (name, docs) = self.describe(output.quantity).filter(|_| !output.values.is_empty())?;
-            let (result, value) = self.shaped(output);
-            Some(Routine { name, docs, quantities: vec![output.quantity], result, value })
+            let (answer, value) = self.shaped(output);
+            Some(Routine { name, docs, quantities: vec![output.quantity], answer, value })
         };
         let described = self.program.outputs.iter().filter_map(described);
         described.chain(self.all_accelerations()).chain(self.mass_matrix_lower()).collect()
@@ -44,14 +44,13 @@ impl Emitter<'_> {
             (0..output.rows).flat_map(|row| (0..=row).map(move |column| row * output.columns + column));
         let values = lower.map(|place| output.values.get(place).map(|&value| local(value)));
         let values = values.collect::<Option<Vec<_>>>()?;
-        let count = Literal::usize_unsuffixed(values.len());
         Some(Routine {
             name: "mass_matrix_lower".to_string(),
             docs: "The lower triangle of the mass matrix, row by row: entry (i, j) with j <= i stands at i (i + 1) / 2 + j. LAPACK calls this layout the packed upper triangle. \
                    The values are those of `mass_matrix`, with fewer numbers to store."
                 .to_string(),
             quantities: vec![output.quantity],
-            result: quote!([T; #count]),
+            answer: Type::Array(Box::new(Type::Number), values.len()),
             value: quote!([#(#values),*]),
         })
     }
@@ -68,18 +67,22 @@ impl Emitter<'_> {
             docs: "Rates of the independent and of the dependent speeds without contact forces in one call: those of `accelerations` and `dependent_accelerations`."
                 .to_string(),
             quantities: vec![own.quantity, dependent.quantity],
-            result: quote!((#of_own, #of_dependent)),
+            answer: Type::Pair(Box::new(of_own), Box::new(of_dependent)),
             value: quote!((#own_value, #dependent_value)),
         })
     }
 
     /// The method of a routine.
-    pub fn routine(&self, routine: &Routine) -> TokenStream {
+    pub fn routine(&self, routine: &Routine) -> Method {
         let krate = self.krate;
-        let Routine { name, docs, quantities, result, value } = routine;
-        let name = crate::identifiers::ident(name);
-        let docs = crate::identifiers::docs(docs);
-        let signature = self.signature(self.arguments(quantities));
+        let Routine { name, docs, quantities, answer: of_answer, value } = routine;
+        let signature = Signature {
+            name: name.clone(),
+            docs: docs.clone(),
+            arguments: self.declared(self.arguments(quantities)),
+            answer: of_answer.clone(),
+            failure: Failure::State,
+        };
         let (statements, wrong) = self.computed(quantities);
         let right = quote!(::core::result::Result::Ok(#value));
         let not_finite = quote!(::core::result::Result::Err(#krate::StateError::NotFinite));
@@ -99,14 +102,8 @@ impl Emitter<'_> {
                 #right
             },
         };
-        quote! {
-            #docs
-            #[inline]
-            pub fn #name(#signature) -> ::core::result::Result<#result, #krate::StateError> {
-                #statements
-                #answer
-            }
-        }
+        let body = quote!(#statements #answer);
+        Method { signature, attributes: quote!(#[inline]), body }
     }
 
     /// Whether the answer of a routine is made before it is checked: each number is then stored once, where
@@ -123,18 +120,16 @@ impl Emitter<'_> {
     }
 
     /// The type and the expression of an output.
-    pub fn shaped(&self, output: &Output) -> (TokenStream, TokenStream) {
+    pub fn shaped(&self, output: &Output) -> (Type, TokenStream) {
         let values: Vec<TokenStream> =
             output.values.iter().map(|&value| local(value)).map(|value| quote!(#value)).collect();
-        let record = |record: &Record| {
-            let name = record.name();
-            (quote!(#name<T>), record.construct(&values))
-        };
+        let record =
+            |record: &Record| (Type::of_struct(&record.name().to_string()), record.construct(&values));
         let entries = output.quantity.description().entries;
         match self.record_of(output.quantity).filter(|record| record.len() == values.len()) {
             Some(of) => record(of),
             None if entries == Entries::ValueAndDerivatives => self.value_and_derivatives(output),
-            None if values.len() == 1 && entries == Entries::Scalar => (quote!(T), quote!(#(#values)*)),
+            None if values.len() == 1 && entries == Entries::Scalar => (Type::Number, quote!(#(#values)*)),
             None => self.matrix(output),
         }
     }
@@ -154,19 +149,17 @@ impl Emitter<'_> {
     }
 
     /// An output as a matrix of static size.
-    pub fn matrix(&self, output: &Output) -> (TokenStream, TokenStream) {
+    pub fn matrix(&self, output: &Output) -> (Type, TokenStream) {
         self.block(output, 0..output.columns)
     }
 
     /// Some columns of an output.
-    pub fn block(&self, output: &Output, columns: Range<usize>) -> (TokenStream, TokenStream) {
+    pub fn block(&self, output: &Output, columns: Range<usize>) -> (Type, TokenStream) {
         let krate = self.krate;
-        let (rows, count) =
-            (Literal::usize_unsuffixed(output.rows), Literal::usize_unsuffixed(columns.len()));
         let entry = |row: usize, column: usize| {
             output.values.get(row * output.columns + column).map(|&value| local(value))
         };
-        let shape = quote!(#krate::nalgebra::SMatrix<T, #rows, #count>);
+        let shape = Type::of_shape(output.rows, columns.len());
         if columns.is_empty() {
             return (shape, quote!(#krate::nalgebra::SMatrix::zeros()));
         }

@@ -4,6 +4,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::identifiers::{ident, prose};
+use crate::interface::{self, Struct, Type};
 use hodograph_model::model::mechanism::Variable;
 
 /// A struct of named numbers.
@@ -78,6 +79,17 @@ impl Record {
     /// The names of the fields.
     pub fn fields(&self) -> impl Iterator<Item = &Ident> {
         self.fields.iter().map(|field| &field.name)
+    }
+
+    /// What it offers.
+    pub fn structure(&self) -> Struct {
+        let fields = self.fields.iter().map(|field| {
+            let name = field.name.to_string();
+            interface::Field::new(name.trim_start_matches("r#"), Type::Number, field.docs.trim())
+        });
+        // Dependent speeds follow from the others.
+        let stated = self.name != "DependentSpeeds";
+        Struct { name: self.name.to_string(), docs: self.docs.clone(), fields: fields.collect(), stated }
     }
 
     /// A value of the struct from an expression per field.

@@ -6,6 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{self, Argument, Type};
 use super::lanes::{self, Lanes};
 use super::values::local;
 use hodograph_program::program::Guard;
@@ -23,7 +24,7 @@ pub struct Routine {
     /// what it computes
     pub quantities: Vec<Quantity>,
     /// the type of its answer
-    pub result: TokenStream,
+    pub answer: Type,
     /// its answer, from the local variables of the values
     pub value: TokenStream,
 }
@@ -146,15 +147,24 @@ impl Emitter<'_> {
             .any(|&value| matches!(self.program.operation(value), Operation::Input(input) if which(input)))
     }
 
-    /// The signature after the name: arguments in their order.
+    /// The arguments in their order, with their types.
+    pub fn declared(&self, arguments: Arguments) -> Vec<Argument> {
+        let Arguments { time, coordinates, speeds, accelerations, inputs, tangent } = arguments;
+        let all = [
+            (time, "time", Type::Number),
+            (coordinates, "q", Type::of_struct("Coordinates")),
+            (speeds, "u", Type::of_struct("Speeds")),
+            (accelerations, "acceleration", Type::of_struct("Speeds")),
+            (inputs, "inputs", Type::of_struct("Inputs")),
+            (tangent, "tangent", self.tangent_type()),
+        ];
+        all.into_iter().filter(|(taken, ..)| *taken).map(|(_, name, of)| Argument { name, of }).collect()
+    }
+
+    /// The arguments of a private function.
     pub fn signature(&self, arguments: Arguments) -> TokenStream {
-        let time = arguments.time.then(|| quote!(time: T,));
-        let coordinates = arguments.coordinates.then(|| quote!(q: &Coordinates<T>,));
-        let speeds = arguments.speeds.then(|| quote!(u: &Speeds<T>,));
-        let accelerations = arguments.accelerations.then(|| quote!(acceleration: &Speeds<T>,));
-        let inputs = arguments.inputs.then(|| quote!(inputs: &Inputs<T>,));
-        let tangent = arguments.tangent.then(|| self.tangent_argument());
-        quote!(&self, #time #coordinates #speeds #accelerations #inputs #tangent)
+        let declared = interface::declared(&self.declared(arguments), self.krate);
+        quote!(&self, #declared)
     }
 
     /// The same arguments, handed on to another routine.

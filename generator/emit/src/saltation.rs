@@ -4,9 +4,10 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::Emitter;
+use super::interface::{Argument, Failure, Field, Group, Method, Signature, Struct, Type};
 use super::routine::Routine;
 use super::values::local;
-use crate::identifiers::{docs, ident};
+use crate::identifiers::ident;
 use hodograph_program::program::{ContactQuantity, Quantity};
 
 /// What the derivative by the speeds needs of a contact.
@@ -24,66 +25,60 @@ impl Emitter<'_> {
     }
 
     /// The type of differentiated collisions, where there is a contact.
-    pub fn derivative_type(&self) -> TokenStream {
-        if !(0..self.mechanism.contacts.len()).any(|contact| self.collides(contact)) {
-            return quote!();
-        }
-        let krate = self.krate;
-        let p = Literal::usize_unsuffixed(self.independent_speeds());
-        let names: Vec<_> = self
-            .mechanism
-            .speeds
-            .iter()
-            .filter(|speed| !speed.dependent)
-            .map(|speed| format!("`{}`", speed.name))
-            .collect();
-        let text = format!(
-            " The derivative of a collision at one configuration. Rows and columns of speeds are {}, in this order.",
+    pub fn derivative_structure(&self) -> Option<Struct> {
+        (0..self.mechanism.contacts.len()).find(|&contact| self.collides(contact))?;
+        let p = self.independent_speeds();
+        let independent = self.mechanism.speeds.iter().filter(|speed| !speed.dependent);
+        let names: Vec<_> = independent.map(|speed| format!("`{}`", speed.name)).collect();
+        let docs = format!(
+            "The derivative of a collision at one configuration. Rows and columns of speeds are {}, in this order.",
             names.join(", ")
         );
-        quote! {
-            #[doc = #text]
-            #[derive(Clone, Copy, Debug, PartialEq)]
-            #[must_use]
-            #[non_exhaustive]
-            pub struct CollisionDerivative<T: #krate::nalgebra::Scalar = f64> {
-                /// derivative of the speeds after the collision with respect to those before: 1 + M^-1 V^T (dI/dv) V
-                pub speeds: #krate::nalgebra::SMatrix<T, #p, #p>,
-                /// derivative of the speeds after with respect to the coefficient of friction
-                pub by_friction: #krate::nalgebra::SVector<T, #p>,
-                /// derivative of the speeds after with respect to the coefficient of restitution
-                pub by_restitution: #krate::nalgebra::SVector<T, #p>,
-                /// derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the
-                /// contact basis (normal, first, second); if there is no derivative `outcome.non_smoothness` says why
-                pub outcome: #krate::ImpactDerivative<T>,
-            }
-        }
+        let by = |name: &str, what: &str| {
+            let docs = format!("derivative of the speeds after with respect to the coefficient of {what}");
+            Field::new(name, Type::Vector(p), &docs)
+        };
+        let fields = vec![
+            Field::new(
+                "speeds",
+                Type::of_shape(p, p),
+                "derivative of the speeds after the collision with respect to those before: 1 + M^-1 V^T (dI/dv) V",
+            ),
+            by("by_friction", "friction"),
+            by("by_restitution", "restitution"),
+            Field::new(
+                "outcome",
+                Type::ImpactDerivative,
+                "derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the contact basis \
+                 (normal, first, second); if there is no derivative `outcome.non_smoothness` says why",
+            ),
+        ];
+        Some(Struct::of_results("CollisionDerivative", &docs, fields))
     }
 
     /// `contact_tangent_..`, `collide_.._derivative` and `saltation_..` of a contact.
-    pub fn derivatives(&self, contact: usize) -> TokenStream {
-        let tangent = self.contact_tangent(contact).map(|tangent| self.routine(&tangent));
-        let whole = self.contact_derivatives(contact).map(|routine| self.routine(&routine));
-        let derivative = self.collide_derivative(contact);
-        let saltation = self.saltation(contact);
-        quote! { #tangent #whole #derivative #saltation }
+    pub fn derivatives(&self, contact: usize) -> Group {
+        let routines = [self.contact_tangent(contact), self.contact_derivatives(contact)];
+        let routines = routines.iter().flatten().map(|routine| self.routine(routine));
+        let whole = [self.collide_derivative(contact), self.saltation(contact)];
+        Group { methods: routines.chain(whole.into_iter().flatten()).collect(), ..Group::default() }
     }
 
     /// The routine of the derivative of a contact along a direction.
     pub fn contact_tangent(&self, contact: usize) -> Option<Routine> {
         self.contact_output(contact, ContactQuantity::Tangent).map(|output| {
-            let (result, value) = self.shaped(output);
+            let (answer, value) = self.shaped(output);
             let docs = format!(
                 "Directional derivative of velocity (3 numbers), reduced matrix (6: nn, nt, ns, tt, ts, ss) and response M^-1 V^T (by rows){} at {}, along the contact basis.",
                 if self.contact_output(contact, ContactQuantity::Gap).is_some() { " and gap" } else { "" },
                 self.contact_words(contact)
             );
             let name = self.contact_method("contact_tangent", contact);
-            Routine { name, docs, quantities: vec![output.quantity], result, value }
+            Routine { name, docs, quantities: vec![output.quantity], answer, value }
         })
     }
 
-    fn collide_derivative(&self, contact: usize) -> Option<TokenStream> {
+    fn collide_derivative(&self, contact: usize) -> Option<Method> {
         let krate = self.krate;
         let outputs: Vec<_> =
             NEEDED.iter().filter_map(|&quantity| self.contact_output(contact, quantity)).collect();
@@ -93,36 +88,35 @@ impl Emitter<'_> {
         let (_, partial) = self.matrix(partial);
         let reduced = self.reduced(reduced);
         let (_, response) = self.matrix(response);
-        let name = ident(&format!("{}_derivative", self.contact_method("collide", contact)));
-        let docs = docs(&format!(
+        let docs = format!(
             "Solves the collision at {} and differentiates its outcome. Where the outcome has no derivative, `outcome.non_smoothness` says why.",
             self.contact_words(contact)
-        ));
+        );
         let mut arguments = self.arguments(&quantities);
         arguments.speeds = true;
-        let signature = self.signature(arguments);
-        let body = self.compute(&quantities);
-        Some(quote! {
-            #docs
-            pub fn #name(
-                #signature surface: &#krate::Surface<T>,
-            ) -> ::core::result::Result<CollisionDerivative<T>, #krate::CollisionError<T>> {
-                #body
-                let velocity = #krate::nalgebra::Vector3::new(#(#velocity),*);
-                let outcome = #krate::derivative(&#reduced, &velocity, surface)?;
-                let response = #response;
-                ::core::result::Result::Ok(CollisionDerivative {
-                    speeds: #krate::speed_derivative(&outcome, &#partial, &response),
-                    by_friction: response * outcome.by_friction().0,
-                    by_restitution: response * outcome.by_restitution().0,
-                    outcome,
-                })
-            }
-        })
+        let compute = self.compute(&quantities);
+        let body = quote! {
+            #compute
+            let velocity = #krate::nalgebra::Vector3::new(#(#velocity),*);
+            let outcome = #krate::derivative(&#reduced, &velocity, surface)?;
+            let response = #response;
+            ::core::result::Result::Ok(CollisionDerivative {
+                speeds: #krate::speed_derivative(&outcome, &#partial, &response),
+                by_friction: response * outcome.by_friction().0,
+                by_restitution: response * outcome.by_restitution().0,
+                outcome,
+            })
+        };
+        let mut arguments = self.declared(arguments);
+        arguments.push(Argument { name: "surface", of: Type::Surface });
+        let name = format!("{}_derivative", self.contact_method("collide", contact));
+        let answer = Type::of_struct("CollisionDerivative");
+        let signature = Signature { name, docs, arguments, answer, failure: Failure::Collision };
+        Some(Method { signature, attributes: TokenStream::new(), body })
     }
 
     /// Only where the derivatives of the contact by the coordinates and a gap are there.
-    fn saltation(&self, contact: usize) -> Option<TokenStream> {
+    fn saltation(&self, contact: usize) -> Option<Method> {
         let krate = self.krate;
         let tangent = self.contact_output(contact, ContactQuantity::Tangent)?;
         self.contact_output(contact, ContactQuantity::Gap)?;
@@ -133,9 +127,9 @@ impl Emitter<'_> {
             .filter(|&i| !self.mechanism.coordinates[i].dependent)
             .collect();
         let p = self.independent_speeds();
-        let states = coordinates.len() + p;
-        let directions = Literal::usize_unsuffixed(states + self.mechanism.inputs.len());
-        let [n, c, p] = [states, coordinates.len(), p].map(Literal::usize_unsuffixed);
+        let count = coordinates.len() + p;
+        let directions = Literal::usize_unsuffixed(count + self.mechanism.inputs.len());
+        let [n, c, p] = [count, coordinates.len(), p].map(Literal::usize_unsuffixed);
         let indices = coordinates.iter().map(|&index| Literal::usize_unsuffixed(index));
 
         let collision = [ContactQuantity::Velocity, ContactQuantity::Reduced, ContactQuantity::Response]
@@ -154,7 +148,6 @@ impl Emitter<'_> {
             all.coordinates |= arguments.coordinates;
             all.inputs |= arguments.inputs;
         }
-        let signature = self.signature(all);
         let [to_collision, to_rates, to_accelerations, to_tangent] =
             [of_collision, of_rates, of_accelerations, of_tangent].map(|mut arguments| {
                 arguments.tangent = false;
@@ -176,7 +169,6 @@ impl Emitter<'_> {
         let tangent_routine = ident(&self.contact_method("contact_tangent", contact));
         let derivative_routine = ident(&format!("{}_derivative", self.contact_method("collide", contact)));
         let collide_routine = ident(&self.contact_method("collide", contact));
-        let name = ident(&self.contact_method("saltation", contact));
         let states: Vec<_> = self
             .mechanism
             .coordinates
@@ -185,12 +177,12 @@ impl Emitter<'_> {
             .filter(|q| !q.dependent)
             .map(|q| format!("`{}`", q.name))
             .collect();
-        let docs = docs(&format!(
+        let docs = format!(
             "The saltation matrix of the collision at {}: to first order it maps the deviation of a neighbouring trajectory before the collision to that \
              after it, at the same time. The states are {}, in this order. Where there is no derivative, `non_smoothness` says why.",
             self.contact_words(contact),
             states.join(", ")
-        ));
+        );
         let changes = match self.contact_derivatives(contact) {
             Some(routine) => {
                 let routine = ident(&routine.name);
@@ -226,11 +218,7 @@ impl Emitter<'_> {
                 }
             },
         };
-        Some(quote! {
-            #docs
-            pub fn #name(
-                #signature surface: &#krate::Surface<T>,
-            ) -> ::core::result::Result<#krate::Saltation<T, #n>, #krate::CollisionError<T>> {
+        let body = quote! {
                 let hit = self.#collide_routine(#to_collision surface)?;
                 let derivative = self.#derivative_routine(#to_collision surface)?;
                 let outcome = &derivative.outcome;
@@ -247,7 +235,12 @@ impl Emitter<'_> {
                 let mut gradient = #krate::nalgebra::SVector::<T, #n>::zeros();
                 #changes
                 #krate::generated::salted(&reset, &before, &after, &gradient, outcome)
-            }
-        })
+        };
+        let mut arguments = self.declared(all);
+        arguments.push(Argument { name: "surface", of: Type::Surface });
+        let answer = Type::Saltation(count);
+        let name = self.contact_method("saltation", contact);
+        let signature = Signature { name, docs, arguments, answer, failure: Failure::Collision };
+        Some(Method { signature, attributes: TokenStream::new(), body })
     }
 }

@@ -1,9 +1,10 @@
 //! Emits a collision that is one routine, specialised to its contact: the solver is part of it, and what is
 //! known of the surface while compiling is folded in.
 
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Span};
 use quote::{format_ident, quote};
 
+use super::interface::{Argument, Failure, Method, Signature, Type};
 use super::{Emitter, record};
 use hodograph_model::suggest::nearest;
 
@@ -60,7 +61,7 @@ impl Emitter<'_> {
     }
 
     /// The methods of specialised collisions.
-    pub fn specialised(&self, all: &[Specialised]) -> TokenStream {
+    pub fn specialised(&self, all: &[Specialised]) -> Vec<Method> {
         // Long routines are not split here, and sines and cosines are no functions of their own.
         let emitter = Emitter {
             inlined: true,
@@ -70,19 +71,15 @@ impl Emitter<'_> {
         all.iter().filter_map(|specialised| emitter.specialised_collision(specialised)).collect()
     }
 
-    fn specialised_collision(&self, specialised: &Specialised) -> Option<TokenStream> {
+    fn specialised_collision(&self, specialised: &Specialised) -> Option<Method> {
         let krate = self.krate;
         let Specialised { name, law, mu, e, budget, .. } = specialised;
         let contact = self.named_contact(&specialised.contact)?;
-        let argument = |name: &str, ty: TokenStream| {
-            let name = format_ident!("{name}");
-            quote!(#name: #ty,)
-        };
-        let arguments = [
-            mu.is_none().then(|| argument("mu", quote!(T))),
-            e.is_none().then(|| argument("e", quote!(T))),
-            law.is_none().then(|| argument("law", quote!(#krate::Law))),
-        ];
+        let known = [mu.is_some(), e.is_some(), law.is_some()];
+        let of_surface = [("mu", Type::Number), ("e", Type::Number), ("law", Type::Law)];
+        let left = of_surface.into_iter().zip(known).filter(|(_, known)| !known);
+        let mut arguments = self.declared(self.collision_arguments(contact));
+        arguments.extend(left.map(|((name, of), _)| Argument { name, of }));
         let given = [("mu", mu), ("e", e)].map(|(name, value)| {
             let name = format_ident!("{name}");
             value.map(|value| {
@@ -102,21 +99,18 @@ impl Emitter<'_> {
             },
             None => quote!(#krate::generated::resolve_inlined::<#krate::generated::#marker, T>),
         };
-        let body = self.struck(contact, &quote!(#solved(&contact, &surface)));
-        let signature = self.signature(self.collision_arguments(contact));
-        let docs = crate::identifiers::docs(&self.about_specialised(specialised, contact));
-        Some(quote! {
-            #docs
-            #[inline(never)]
-            pub fn #name(#signature #(#arguments)*)
-                -> ::core::result::Result<Collision<T>, #krate::CollisionError<T>>
-            {
-                #(#given)*
-                #given_law
-                let surface = #krate::Surface { mu, e, law } #budget;
-                #body
-            }
-        })
+        let struck = self.struck(contact, &quote!(#solved(&contact, &surface)));
+        let body = quote! {
+            #(#given)*
+            #given_law
+            let surface = #krate::Surface { mu, e, law } #budget;
+            #struck
+        };
+        let docs = self.about_specialised(specialised, contact);
+        let answer = Type::of_struct("Collision");
+        let signature =
+            Signature { name: name.to_string(), docs, arguments, answer, failure: Failure::Collision };
+        Some(Method { signature, attributes: quote!(#[inline(never)]), body })
     }
 
     fn about_specialised(&self, specialised: &Specialised, contact: usize) -> String {

@@ -1,6 +1,10 @@
 //! A small module under review, and the properties that every module has.
 
-use super::{Options, Program, Requests, Specialised, module, module_in_parts};
+use std::collections::BTreeMap;
+
+use super::interface::{self as offers, Struct};
+use super::{Options, Program, Requests, Specialised, interface, module, module_in_parts};
+use proc_macro2::TokenStream;
 use quote::quote;
 
 use hodograph_model::arithmetic::Function;
@@ -334,4 +338,60 @@ fn a_foreign_program_is_refused() {
     };
     let error = module(&mechanism, &Program::new(&derived()), &options).unwrap_err();
     assert!(error.contains("Coordinate(0)"), "{error}");
+}
+
+/// What the interface says of methods and structs is what the Rust text declares.
+#[test]
+fn the_interface_is_that_of_the_module() {
+    let file: syn::File = syn::parse_str(&emitted()).unwrap();
+    let syn::Item::Mod(module) = &file.items[0] else { panic!("a module") };
+    let items = &module.content.as_ref().unwrap().1;
+    let krate = quote!(::hodograph);
+    let text =
+        |tokens: TokenStream| tokens.to_string().replace(' ', "").replace(",)", ")").replace(",>", ">");
+
+    let mut declared = BTreeMap::new();
+    for item in items {
+        let syn::Item::Impl(block) = item else { continue };
+        let of_mechanism = text(quote!(#block)).contains("forPendulum<T>") || block.trait_.is_some();
+        for item in block.items.iter().filter(|_| !of_mechanism) {
+            if let syn::ImplItem::Fn(method) = item
+                && matches!(method.vis, syn::Visibility::Public(_))
+                && let Some(syn::FnArg::Receiver(_)) = method.sig.inputs.first()
+            {
+                let taken = method.sig.inputs.iter().skip(1).map(|argument| text(quote!(#argument)));
+                let answer = &method.sig.output;
+                declared.insert(method.sig.ident.to_string(), (taken.collect(), text(quote!(#answer))));
+            }
+        }
+    }
+    // what makes, reads and changes a mechanism or an outcome is no routine
+    declared.retain(|name, _| !["parameters", "set_parameters", "outcome"].contains(&name.as_str()));
+
+    let offered = interface(&mechanism(), &Program::new(&derived()), "pendulum").unwrap();
+    let methods: BTreeMap<String, (Vec<String>, String)> = offered
+        .methods
+        .iter()
+        .map(|method| {
+            let each = |argument| text(offers::declared(std::slice::from_ref(argument), &krate));
+            let taken = method.arguments.iter().map(each).map(|taken| taken.trim_end_matches(',').to_owned());
+            (method.name.clone(), (taken.collect(), format!("->{}", text(method.result(&krate)))))
+        })
+        .collect();
+    assert_eq!(methods, declared);
+    assert_eq!(methods.len(), 13);
+
+    let fields = |item: &syn::Item| match item {
+        syn::Item::Struct(record) => {
+            let of = |field: &syn::Field| field.ident.as_ref().map(ToString::to_string);
+            Some((record.ident.to_string(), record.fields.iter().filter_map(of).collect::<Vec<_>>()))
+        }
+        _ => None,
+    };
+    let mut declared: BTreeMap<String, Vec<String>> = items.iter().filter_map(fields).collect();
+    let own = declared.remove("Pendulum").expect("the mechanism's type");
+    assert_eq!(own, ["parameters", "hoisted"]);
+    let names = |record: &Struct| record.names().into_iter().map(str::to_owned).collect();
+    let structures = offered.structures.iter().map(|record| (record.name.clone(), names(record)));
+    assert_eq!(structures.collect::<BTreeMap<_, _>>(), declared);
 }

@@ -172,7 +172,7 @@ impl Mechanism for InterpretedMechanism {
     ) -> Result<(), StateError> {
         check_length(accelerations, self.freedom(), "the accelerations")?;
         let request = Request::Whole(Quantity::InverseDynamics);
-        self.write(request, state, accelerations, forces, "the generalized forces")
+        self.write(request, state, accelerations, forces, "the generalised forces")
     }
 
     fn kinetic_energy(&self, state: &State<'_>) -> Result<f64, StateError> {

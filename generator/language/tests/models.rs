@@ -336,7 +336,7 @@ fn hovering_tells_kind_unit_value_and_chain() {
     assert!(at("Q =").contains("\nP = O + l*B.x\n"), "{}", at("Q ="));
     assert!(at("rotate").contains("right-handed"), "{}", at("rotate"));
     assert!(at("cm").contains("= 0.01 SI: in m"), "{}", at("cm"));
-    assert!(at("coordinates").contains("generalized coordinates"));
+    assert!(at("coordinates").contains("generalised coordinates"));
 }
 
 #[test]

@@ -20,9 +20,9 @@ const fn word(text: &'static str, form: &'static str, meaning: &'static str) -> 
 pub const SECTIONS: &[Word] = &[
     word("parameters", "name: unit = value,", "constants whose values are given at run time"),
     word("inputs", "name: unit,", "quantities given at each evaluation"),
-    word("coordinates", "name: unit = value,", "generalized coordinates"),
-    word("speeds", "name: unit = value,", "independent generalized speeds"),
-    word("dependent", "name: unit,", "dependent generalized speeds"),
+    word("coordinates", "name: unit = value,", "generalised coordinates"),
+    word("speeds", "name: unit = value,", "independent generalised speeds"),
+    word("dependent", "name: unit,", "dependent generalised speeds"),
     word("definitions", "name = expression;", "names for expressions"),
     word("frames", "name = N.rotate(z, angle);", "orientations"),
     word("angular_velocities", "frame = vector;", "angular velocities in terms of speeds"),

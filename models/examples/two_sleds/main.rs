@@ -175,7 +175,7 @@ fn compare() -> Result<(), Box<dyn Error>> {
         );
     }
 
-    say!("\nGeneralized speeds after the collision by (12a); before: u1 = u4 = 1 m/s, u3 = u6 = 0.1 rad/s\n");
+    say!("\nGeneralised speeds after the collision by (12a); before: u1 = u4 = 1 m/s, u3 = u6 = 0.1 rad/s\n");
     say!("  mu   law              u1         u2         u3         u4         u5         u6");
     for Outcome { mu, law, hit } in &outcomes {
         let (u, d) = (&hit.speeds, &hit.dependent_speeds);

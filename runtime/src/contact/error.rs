@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::ImpactError;
+use crate::{Cause, ImpactError};
 
 /// The reason why a closed contact has no finite force, with the numbers at fault.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,15 +35,21 @@ pub enum ContactError<T> {
 }
 
 impl<T> ContactError<T> {
+    /// Its cause, without the numbers.
+    #[inline]
+    pub const fn cause(&self) -> Cause {
+        match self {
+            Self::ImpactWithoutCollision { .. } => Cause::ImpactWithoutCollision,
+            Self::Jam { .. } => Cause::Jam,
+            Self::NoMode { .. } => Cause::NoMode,
+            Self::Input(error) => error.cause(),
+        }
+    }
+
     /// A stable lower-case name.
     #[inline]
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::ImpactWithoutCollision { .. } => "impact_without_collision",
-            Self::Jam { .. } => "jam",
-            Self::NoMode { .. } => "no_mode",
-            Self::Input(error) => error.kind(),
-        }
+        self.cause().name()
     }
 }
 

@@ -32,6 +32,7 @@ use core::str::FromStr;
 use nalgebra::{Vector2, Vector3};
 
 pub use self::error::ContactError;
+use crate::table::table;
 use crate::{ReducedMatrix, Scalar, UnknownName};
 
 /// What a closed contact does.
@@ -49,20 +50,11 @@ pub enum ContactMode {
     BeginSlip,
 }
 
-impl ContactMode {
-    /// A stable lower-case name.
-    #[inline]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Separate => "separate",
-            Self::Slide => "slide",
-            Self::Stick => "stick",
-            Self::BeginSlip => "begin_slip",
-        }
-    }
-
-    /// Every mode, in the order of the variants.
-    pub const ALL: &'static [Self] = &[Self::Separate, Self::Slide, Self::Stick, Self::BeginSlip];
+table! { ContactMode
+    Separate "separate" "the contact opens",
+    Slide "slide" "the point slides",
+    Stick "stick" "the point sticks",
+    BeginSlip "begin_slip" "the point begins to slip",
 }
 
 /// The name, as [`ContactMode::from_str`] reads it.
@@ -83,8 +75,8 @@ impl FromStr for ContactMode {
     type Err = UnknownName;
 
     fn from_str(name: &str) -> Result<Self, UnknownName> {
-        let names = &["separate", "slide", "stick", "begin_slip"];
-        Self::ALL.iter().copied().find(|mode| mode.name() == name).ok_or(UnknownName { names })
+        let named = Self::ALL.iter().copied().find(|mode| mode.name() == name);
+        named.ok_or(UnknownName { names: Self::NAMES })
     }
 }
 

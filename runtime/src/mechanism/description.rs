@@ -11,13 +11,13 @@
 pub enum ComponentKind {
     /// parameters that can be changed at run time; those that the model declares `fixed` are not counted
     Parameter,
-    /// generalized coordinates, independent and dependent ones
+    /// generalised coordinates, independent and dependent ones
     Coordinate,
     /// dependent coordinates alone, which the configuration equations determine
     DependentCoordinate,
-    /// independent generalized speeds
+    /// independent generalised speeds
     Speed,
-    /// dependent generalized speeds, which the constraints determine
+    /// dependent generalised speeds, which the constraints determine
     DependentSpeed,
     /// named inputs
     Input,

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::{ComponentKind, ContactError, ImpactError};
+use crate::{Cause, ComponentKind, ContactError, ImpactError};
 
 /// Why a routine of a mechanism has no result in a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -41,15 +41,20 @@ pub enum StateError {
 }
 
 impl StateError {
+    /// Its cause, without the numbers.
+    pub const fn cause(&self) -> Cause {
+        match self {
+            Self::Singular { .. } => Cause::SingularState,
+            Self::NotFinite => Cause::NotFinite,
+            Self::Length { .. } => Cause::WrongLength,
+            Self::Missing { .. } => Cause::Missing,
+            Self::Undefined { .. } => Cause::Undefined,
+        }
+    }
+
     /// A stable lower-case name.
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::Singular { .. } => "singular_state",
-            Self::NotFinite => "not_finite",
-            Self::Length { .. } => "wrong_length",
-            Self::Missing { .. } => "missing",
-            Self::Undefined { .. } => "undefined",
-        }
+        self.cause().name()
     }
 }
 
@@ -112,15 +117,20 @@ pub enum ParameterError {
 }
 
 impl ParameterError {
+    /// Its cause, without the numbers.
+    pub const fn cause(&self) -> Cause {
+        match self {
+            Self::NotFinite { .. } => Cause::NotFinite,
+            Self::Mass { .. } => Cause::ImpossibleMass,
+            Self::Inertia { .. } => Cause::ImpossibleInertia,
+            Self::Singular { .. } => Cause::SingularParameters,
+            Self::Length { .. } => Cause::WrongLength,
+        }
+    }
+
     /// A stable lower-case name.
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::NotFinite { .. } => "not_finite",
-            Self::Mass { .. } => "impossible_mass",
-            Self::Inertia { .. } => "impossible_inertia",
-            Self::Singular { .. } => "singular_parameters",
-            Self::Length { .. } => "wrong_length",
-        }
+        self.cause().name()
     }
 }
 
@@ -169,12 +179,17 @@ pub enum CollisionError<T> {
 }
 
 impl<T> CollisionError<T> {
+    /// Its cause, without the numbers.
+    pub const fn cause(&self) -> Cause {
+        match self {
+            Self::State(error) => error.cause(),
+            Self::Impact(error) => error.cause(),
+        }
+    }
+
     /// A stable lower-case name.
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::State(error) => error.kind(),
-            Self::Impact(error) => error.kind(),
-        }
+        self.cause().name()
     }
 }
 
@@ -221,12 +236,17 @@ pub enum ClosedContactError<T> {
 }
 
 impl<T> ClosedContactError<T> {
+    /// Its cause, without the numbers.
+    pub const fn cause(&self) -> Cause {
+        match self {
+            Self::State(error) => error.cause(),
+            Self::Contact(error) => error.cause(),
+        }
+    }
+
     /// A stable lower-case name.
     pub const fn kind(&self) -> &'static str {
-        match self {
-            Self::State(error) => error.kind(),
-            Self::Contact(error) => error.kind(),
-        }
+        self.cause().name()
     }
 }
 

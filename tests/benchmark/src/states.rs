@@ -31,7 +31,7 @@ pub struct State {
 pub struct Expected {
     /// u'
     pub forward: Vec<f64>,
-    /// generalized forces without inputs
+    /// generalised forces without inputs
     pub inverse: Vec<f64>,
     /// mass matrix by rows
     pub mass: Vec<f64>,

@@ -158,7 +158,7 @@ class Mechanism(_native.Mechanism):
         return self._evaluate("forcing", q, u, inputs, time, errors)
 
     def inverse_dynamics(self, accelerations, q=None, u=None, inputs=None, time=None, *, errors="raise"):
-        """Generalized forces, (p,) or (k, p), that must be added to the loads for these u': M u' - forcing."""
+        """Generalised forces, (p,) or (k, p), that must be added to the loads for these u': M u' - forcing."""
         return self._evaluate("inverse_dynamics", q, u, inputs, time, errors, accelerations)
 
     def coordinate_rates(self, q=None, u=None, inputs=None, time=None, *, errors="raise"):

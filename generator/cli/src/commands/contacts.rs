@@ -1,6 +1,7 @@
 //! `hodograph contacts`: solves problems of several contacts given as JSON lines, and writes forces and velocities as
 //! JSON lines.
 
+use hodograph::Cause;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, IsTerminal};
 use std::path::PathBuf;
@@ -150,7 +151,7 @@ impl Given {
         let mu = list(fields, "mu", k, "a coefficient of friction for each contact")?;
         if let Some(i) = (0..k).find(|&i| mu[i] < 0.0) {
             return Err(Failure::new(
-                Kind::NegativeFriction,
+                Kind::Of(Cause::NegativeFriction),
                 format!("`mu[{i}]` is {}: friction cannot be negative", mu[i]),
             ));
         }
@@ -169,7 +170,7 @@ impl Given {
         }
         if let Some(row) = (0..3 * k).find(|&row| w[(row, row)] < 0.0) {
             return Err(Failure::new(
-                Kind::NotPositiveSemidefinite,
+                Kind::Of(Cause::NotPositiveSemidefinite),
                 format!(
                     "`w` has {} on its diagonal (contact {}): it belongs to no mechanism",
                     w[(row, row)],
@@ -239,7 +240,7 @@ impl Given {
             Ok(answer)
         } else {
             Err(Failure::new(
-                Kind::NotFinite,
+                Kind::Of(Cause::NotFinite),
                 "the answer is out of the range of doubles: choose other units",
             ))
         }
@@ -313,9 +314,9 @@ fn direction(item: &Json, i: usize) -> Result<Option<Vector2<f64>>, Failure> {
 
 fn failure(reason: &Unsolved) -> Failure {
     let kind = match reason {
-        Unsolved::Jam { .. } => Kind::Jam,
+        Unsolved::Jam { .. } => Kind::Of(Cause::Jam),
         Unsolved::NotFound { .. } => Kind::Unsolved,
-        _ => Kind::BadJson,
+        Unsolved::Lengths | Unsolved::Input { .. } => Kind::BadJson,
     };
     Failure::new(kind, reason.to_string())
 }

@@ -9,6 +9,7 @@ use hodograph_generator::rust_names::snake_case;
 use proc_macro2::TokenStream;
 
 use crate::derivation::{self, Limits};
+use crate::evaluate::Machine;
 use crate::model;
 use crate::output;
 use crate::stop::{Outcome, Stop};
@@ -61,8 +62,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
 /// # Errors
 ///
 /// The model has errors or cannot be derived.
-pub fn text(model: &Path, requests: Requests, limits: &Limits) -> Outcome<String> {
-    let machine = derivation::machine(model, limits)?;
+fn text(model: &Path, requests: Requests, limits: &Limits) -> Outcome<String> {
+    module(&derivation::machine(model, limits)?, requests)
+}
+
+/// The Rust module of a mechanism.
+///
+/// # Errors
+///
+/// The requests have mistakes.
+pub fn module(machine: &Machine, requests: Requests) -> Outcome<String> {
     let mistakes = emit::mistakes(&machine.mechanism, &machine.program, &requests);
     if !mistakes.is_empty() {
         let mistakes: Vec<String> = mistakes.into_iter().map(|(_, message)| message).collect();

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use hodograph_generator::emit::Requests;
+use hodograph_generator::emit::{self, Requests};
+use hodograph_generator::rust_names::snake_case;
 
 use crate::commands::expand;
-use crate::derivation::Limits;
+use crate::derivation::{self, Limits};
 use crate::export::{Scalar, files};
 use crate::output;
 use crate::stop::{Outcome, Stop};
@@ -63,9 +64,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         None => format!("{{ version = \"{}\", default-features = false }}", env!("CARGO_PKG_VERSION")),
     };
     let scalar = if arguments.single { Scalar::Single } else { Scalar::Double };
-    let expanded = expand::text(&arguments.model, Requests::default(), &arguments.limits)?;
-    let files = files(&expanded, scalar, &dependency)
-        .ok_or_else(|| Stop::Fault("the generated module cannot be read".to_owned()))?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
+    let expanded = expand::module(&machine, Requests::default())?;
+    let name = snake_case(&machine.mechanism.name);
+    let offered = emit::interface(&machine.mechanism, &machine.program, &name).map_err(Stop::Fault)?;
+    let files = files(&expanded, &offered, scalar, &dependency);
     output::files(folder, &files)?;
     output::say(format_args!(
         "{} written: README.md there says how to build it",

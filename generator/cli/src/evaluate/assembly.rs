@@ -1,5 +1,6 @@
 //! Completes a state: finds dependent coordinates that satisfy the configuration equations of closed loops.
 
+use hodograph::Cause;
 use hodograph_generator::numeric;
 use hodograph_generator::program::{PointQuantity, Quantity};
 use nalgebra::{DMatrix, DVector};
@@ -57,7 +58,7 @@ pub fn assemble(machine: &Machine, state: &mut State) -> Result<(), Failure> {
     let names = listed(dependent.iter().map(|&index| coordinates[index].name.as_str()));
     if here.closed && here.pivot < FOLDED {
         return Err(Failure::new(
-            Kind::SingularState,
+            Kind::Of(Cause::SingularState),
             format!(
                 "the configuration equations cannot be solved for {names}: the linkage is at a dead centre where {} (a \
                  relative pivot is {:.1e}, below {FOLDED:e}); change the other coordinates a little",
@@ -140,7 +141,7 @@ fn newton(machine: &Machine, state: &State, dependent: &[usize]) -> Result<Here,
     let values = DVector::from_iterator(count, dependent.iter().map(|&index| state.coordinates[index]));
     let cutoff = 1e-13 * largest;
     let step = svd.solve(&-&residual, cutoff).map_err(|error| {
-        Failure::new(Kind::SingularState, format!("the configuration equations: {error}"))
+        Failure::new(Kind::Of(Cause::SingularState), format!("the configuration equations: {error}"))
     })?;
     let sizes = dependent
         .iter()

@@ -6,6 +6,7 @@ pub mod contact;
 pub mod report;
 pub mod tables;
 
+use hodograph::Cause;
 use hodograph_generator::check::{ROUNDED_QUATERNION, UNIT_QUATERNION, impossible_bodies};
 use hodograph_generator::diagnostics::codes;
 use hodograph_generator::interpret::{self, Evaluator};
@@ -93,11 +94,11 @@ impl Machine {
                     let place: String = place.collect();
                     let cure = self.cure(state);
                     Failure::new(
-                        Kind::SingularState,
+                        Kind::Of(Cause::SingularState),
                         format!("{message} ({place}a divisor is {value:e}): {cure}"),
                     )
                 }
-                other => Failure::new(Kind::SingularState, other.to_string()),
+                other => Failure::new(Kind::Of(Cause::SingularState), other.to_string()),
             })?;
         for array in arrays.iter().filter(|array| array.quantity == Quantity::MassMatrix) {
             if !positive_definite(array) {

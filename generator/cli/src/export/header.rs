@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::module::{Form, Module, Record, Routine};
-use super::{LAWS, MODES, PATHS, STATUSES, names};
+use super::{Constant, enums, names};
 
 /// The text of the header.
 pub fn header(module: &Module, scalar: &str) -> String {
@@ -18,14 +18,9 @@ pub fn header(module: &Module, scalar: &str) -> String {
         comment(&module.docs, " * "),
         env!("CARGO_PKG_VERSION"),
     );
-    out += "\n/** What a call says. */\n";
-    out += &constants(&upper, "status", STATUSES.iter().map(|(name, docs)| (*name, *docs)));
-    out += "\n/** Hypotheses of restitution. */\n";
-    out += &constants(&upper, "law", LAWS.iter().map(|(name, docs)| (*name, *docs)));
-    out += "\n/** Phases of a collision. */\n";
-    out += &constants(&upper, "path", PATHS.iter().map(|(name, _, docs)| (*name, *docs)));
-    out += "\n/** Modes of a closed contact. */\n";
-    out += &constants(&upper, "mode", MODES.iter().map(|(name, _, docs)| (*name, *docs)));
+    for (what, docs, rows) in enums() {
+        let _ = write!(out, "\n/** {docs} */\n{}", constants(&upper, what, &rows));
+    }
     let _ = write!(
         out,
         "\n/** Friction and restitution of a contact. */\ntypedef struct {name}_surface {{\n    /** coefficient of friction, not negative */\n    {scalar} mu;\n    \
@@ -83,9 +78,10 @@ pub fn header(module: &Module, scalar: &str) -> String {
 }
 
 /// An enum whose constants count from zero.
-fn constants<'a>(upper: &str, what: &str, rows: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+fn constants(upper: &str, what: &str, rows: &[Constant]) -> String {
     // Without a comma after the last: C90 and C++98 know none there.
     let rows: Vec<String> = rows
+        .iter()
         .enumerate()
         .map(|(value, (name, docs))| format!("    /** {docs} */\n    {upper}_{name} = {value}"))
         .collect();

@@ -3,14 +3,14 @@
 use std::fmt::Write;
 
 use super::module::{Form, Module, Routine};
-use super::{LAWS, MODES, PATHS, STATUSES, names};
+use super::{STATUSES, names};
 
 /// The text of `src/lib.rs`.
 pub fn library(module: &Module, scalar: &str) -> String {
     let name = &module.name;
     let mut out = format!(
         "//! The mechanism `{}` for C: see `include/{name}.h`.\n\n#![cfg_attr(not(feature = \"std\"), no_std)]\n#![allow(clippy::missing_safety_doc, clippy::useless_conversion)]\n\n\
-         mod mechanism;\n\nuse hodograph::nalgebra::Matrix3;\nuse hodograph::{{\n    ClosedContactError, CollisionError, ContactError, ContactMode, ImpactError, Law, ParameterError, Path, StateError, Surface,\n}};\n\
+         mod mechanism;\n\nuse hodograph::nalgebra::Matrix3;\nuse hodograph::{{Cause, Law, Surface}};\n\
          use mechanism::{} as model;\n\n",
         module.mechanism, module.path
     );
@@ -23,8 +23,7 @@ pub fn library(module: &Module, scalar: &str) -> String {
         module.numbers.max(1),
         module.mechanism,
     );
-    out += &statuses();
-    out += &choices();
+    out += &statuses(scalar);
     for record in module.records.iter().filter(|record| !record.is_plain()) {
         let _ = write!(
             out,
@@ -66,99 +65,19 @@ pub fn library(module: &Module, scalar: &str) -> String {
     out
 }
 
-/// The constants of the status, and the status of each error.
-fn statuses() -> String {
+/// The constants of the status, the status of a cause, and a surface with the number of its law.
+fn statuses(scalar: &str) -> String {
     let mut out = String::new();
     for (value, (name, docs)) in STATUSES.iter().enumerate() {
         let _ = write!(out, "/// {docs}\npub const {name}: i32 = {value};\n");
     }
-    out + "
-fn state(error: &StateError) -> i32 {
-    match error {
-        StateError::Singular { .. } => SINGULAR,
-        StateError::NotFinite => NOT_FINITE,
-        StateError::Undefined { .. } => UNDEFINED,
-        _ => OTHER,
-    }
-}
-
-fn impact<T>(error: &ImpactError<T>) -> i32 {
-    match error {
-        ImpactError::NotFinite { .. } => NOT_FINITE,
-        ImpactError::NegativeFriction { .. } => NEGATIVE_FRICTION,
-        ImpactError::RestitutionOutOfRange { .. } => RESTITUTION_OUT_OF_RANGE,
-        ImpactError::NotApproaching { .. } => NOT_APPROACHING,
-        ImpactError::NotPositiveSemidefinite { .. } => NOT_POSITIVE_SEMIDEFINITE,
-        ImpactError::NoNormalMobility { .. } => NO_NORMAL_MOBILITY,
-        ImpactError::NoImpact { .. } => NO_IMPACT,
-        ImpactError::Inaccurate { .. } => INACCURATE,
-        ImpactError::Wedged { .. } => WEDGED,
-        ImpactError::BudgetExceeded { .. } => BUDGET_EXCEEDED,
-        _ => OTHER,
-    }
-}
-
-trait Status {
-    fn status(&self) -> i32;
-}
-
-impl Status for StateError {
-    fn status(&self) -> i32 {
-        state(self)
-    }
-}
-
-impl Status for ParameterError {
-    fn status(&self) -> i32 {
-        PARAMETER
-    }
-}
-
-impl<T> Status for CollisionError<T> {
-    fn status(&self) -> i32 {
-        match self {
-            CollisionError::State(error) => state(error),
-            CollisionError::Impact(error) => impact(error),
-            _ => OTHER,
-        }
-    }
-}
-
-impl<T> Status for ClosedContactError<T> {
-    fn status(&self) -> i32 {
-        match self {
-            ClosedContactError::State(error) => state(error),
-            ClosedContactError::Contact(ContactError::ImpactWithoutCollision { .. }) => IMPACT_WITHOUT_COLLISION,
-            ClosedContactError::Contact(ContactError::Jam { .. }) => JAM,
-            ClosedContactError::Contact(ContactError::NoMode { .. }) => NO_MODE,
-            ClosedContactError::Contact(ContactError::Input(error)) => impact(error),
-            _ => OTHER,
-        }
-    }
-}
-
-"
-}
-
-/// The numbers of hypotheses, phases and modes.
-fn choices() -> String {
-    let mut out =
-        "fn surface_of<T: Copy>(mu: T, e: T, law: i32) -> Option<Surface<T>> {\n    let law = match law {\n"
-            .to_owned();
-    for (value, (_, law)) in
-        LAWS.iter().map(|(name, _)| name).zip(["Newton", "Poisson", "Stronge"]).enumerate()
-    {
-        let _ = writeln!(out, "        {value} => Law::{law},");
-    }
-    out += "        _ => return None,\n    };\n    Some(Surface { mu, e, law })\n}\n\n#[allow(unreachable_patterns)]\nfn path(path: Path) -> i32 {\n    match path {\n";
-    for (value, (_, variant, _)) in PATHS.iter().enumerate() {
-        let _ = writeln!(out, "        Path::{variant} => {value},");
-    }
-    out += "        _ => -1,\n    }\n}\n\n#[allow(unreachable_patterns)]\nfn mode(mode: ContactMode) -> i32 {\n    match mode {\n";
-    for (value, (_, variant, _)) in MODES.iter().enumerate() {
-        let _ = writeln!(out, "        ContactMode::{variant} => {value},");
-    }
-    out + "        _ => -1,\n    }\n}\n\n"
+    let first = STATUSES.len();
+    let _ = write!(
+        out,
+        "\n/// The status of a cause: its number after the others.\nfn status(cause: Cause) -> i32 {{\n    {first} + i32::from(cause.number())\n}}\n\n\
+         fn surface_of(CSurface {{ mu, e, law }}: CSurface) -> Option<Surface<{scalar}>> {{\n    Law::numbered(law).map(|law| Surface {{ mu, e, law }})\n}}\n\n"
+    );
+    out
 }
 
 fn construction(module: &Module, scalar: &str) -> String {
@@ -177,7 +96,7 @@ fn construction(module: &Module, scalar: &str) -> String {
         "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {name}_new({argument}answer: *mut CMechanism) -> i32 {{\n    if {check}answer.is_null() {{\n        return NULL;\n    }}\n    \
          // SAFETY: the pointers are not null, and point to what the header says.\n    match {value} {{\n        Ok(mechanism) => {{\n            \
          // SAFETY: as above; the memory is large enough and aligned, which was asserted.\n            unsafe {{ answer.cast::<Mechanism>().write(mechanism) }};\n            OK\n        }}\n        \
-         Err(error) => error.status(),\n    }}\n}}\n\n"
+         Err(error) => status(error.cause()),\n    }}\n}}\n\n"
     )
 }
 
@@ -197,7 +116,7 @@ fn function(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) ->
             Form::Surface => {
                 let _ = write!(
                     read,
-                    "    let CSurface {{ mu, e, law }} = unsafe {{ {name}.read() }};\n    let Some({name}) = surface_of(mu, e, law) else {{ return UNKNOWN_LAW }};\n"
+                    "    let Some({name}) = surface_of(unsafe {{ {name}.read() }}) else {{ return UNKNOWN_LAW }};\n"
                 );
             }
             Form::Record(record) => {
@@ -221,7 +140,7 @@ fn function(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) ->
         "#[unsafe(no_mangle)]\npub unsafe extern \"C\" fn {of}_{}(\n    {},\n) -> i32 {{\n    if {} {{\n        return NULL;\n    }}\n    \
          // SAFETY: the pointers are not null, and point to what the header says; values are copied before anything is written.\n    \
          let mechanism = unsafe {{ &*mechanism.cast::<Mechanism>() }};\n{read}    match mechanism.{}({}) {{\n        Ok(value) => {{\n            \
-         // SAFETY: as above.\n            unsafe {{ answer.write({}) }};\n            OK\n        }}\n        Err(error) => error.status(),\n    }}\n}}\n\n",
+         // SAFETY: as above.\n            unsafe {{ answer.write({}) }};\n            OK\n        }}\n        Err(error) => status(error.cause()),\n    }}\n}}\n\n",
         names::routine(routine, budgeted),
         declared.join(",\n    "),
         nulls.join(" || "),

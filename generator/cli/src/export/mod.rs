@@ -1,6 +1,6 @@
 //! A generated module as a library for C: a crate with functions of C's calling convention, and their header.
 //!
-//! * `module` reads from the generated module which records and routines have a form in C;
+//! * `module` selects the structs and methods of the generated module that have a form in C, by their types;
 //! * `names` gives names, declarations and conversions of values;
 //! * `header` and `library` write the two sides;
 //! * this file puts the crate together.
@@ -10,59 +10,36 @@ mod library;
 mod module;
 mod names;
 
-/// What calls say: name and documentation, numbered from zero.
-const STATUSES: &[(&str, &str)] = &[
+use hodograph::{Cause, ContactMode, Law, Path};
+use hodograph_generator::emit::interface::Interface;
+
+/// What calls say before the causes of errors: name and documentation, numbered from zero. The number of a
+/// [`Cause`] is counted from there.
+const STATUSES: [(&str, &str); 3] = [
     ("OK", "the answer is there"),
     ("NULL", "a pointer is null"),
-    (
-        "PARAMETER",
-        "a parameter is not finite, a mass is not positive, no body can have an inertia, or a divisor is zero",
-    ),
-    ("SINGULAR", "the state is singular"),
-    ("NOT_FINITE", "a number that went in, or the answer, is not finite"),
-    ("UNDEFINED", "the quantity has no value in this state"),
     ("UNKNOWN_LAW", "the surface names no hypothesis of restitution"),
-    ("NEGATIVE_FRICTION", "the coefficient of friction is negative"),
-    ("RESTITUTION_OUT_OF_RANGE", "the coefficient of restitution is not between 0 and 1"),
-    ("NOT_APPROACHING", "the bodies do not approach each other: there is no collision"),
-    ("NOT_POSITIVE_SEMIDEFINITE", "no mechanism has such a reduced matrix"),
-    ("NO_NORMAL_MOBILITY", "no impulse changes the normal velocity"),
-    ("NO_IMPACT", "finite forces exist: there is no impact without collision"),
-    ("INACCURATE", "the outcome would break a law of mechanics by rounding"),
-    (
-        "IMPACT_WITHOUT_COLLISION",
-        "no finite force satisfies Coulomb's law: an impact without collision follows",
-    ),
-    ("JAM", "the contact jams: the force grows without bound"),
-    ("NO_MODE", "no mode of the contact fits"),
-    ("WEDGED", "the bodies wedge: no impulse ends the collision under this hypothesis"),
-    ("BUDGET_EXCEEDED", "the collision needs more quadratures than allowed"),
-    ("OTHER", "another error"),
 ];
 
-/// Hypotheses of restitution: name and documentation, numbered from zero.
-const LAWS: &[(&str, &str)] = &[
-    ("NEWTON", "ratio of normal velocities"),
-    ("POISSON", "ratio of normal impulses"),
-    ("STRONGE", "ratio of works of the normal force"),
-];
+/// A constant of the header: its name after the prefix, and its documentation.
+type Constant = (String, &'static str);
 
-/// Phases of a collision: name, variant of `Path` and documentation, numbered from zero.
-const PATHS: &[(&str, &str, &str)] = &[
-    ("SLIDING", "Sliding", "the point slides throughout"),
-    ("SLIDING_THEN_STICKING", "SlidingThenSticking", "it slides, then sticks"),
-    ("SLIDING_THEN_RENEWAL", "SlidingThenRenewal", "it slides, stops, and slides again"),
-    ("STICKING", "Sticking", "it sticks throughout"),
-    ("RENEWAL", "Renewal", "it starts without slip, and slides"),
-];
-
-/// Modes of a closed contact: name, variant of `ContactMode` and documentation, numbered from zero.
-const MODES: &[(&str, &str, &str)] = &[
-    ("SEPARATE", "Separate", "the contact opens"),
-    ("SLIDE", "Slide", "the point slides"),
-    ("STICK", "Stick", "the point sticks"),
-    ("BEGIN_SLIP", "BeginSlip", "the point begins to slip"),
-];
+/// The enums of the header with their constants, numbered from zero: what they are called, what they are, and the
+/// tables of the runtime.
+fn enums() -> [(&'static str, &'static str, Vec<Constant>); 4] {
+    let upper = |name: &str| name.to_uppercase();
+    let statuses = STATUSES.map(|(name, docs)| (name.to_owned(), docs)).into_iter();
+    let causes = Cause::ALL.iter().map(|cause| (upper(cause.name()), cause.about()));
+    let laws = Law::ALL.iter().map(|law| (upper(law.name()), law.about()));
+    let paths = Path::ALL.iter().map(|path| (upper(path.name()), path.about()));
+    let modes = ContactMode::ALL.iter().map(|mode| (upper(mode.name()), mode.about()));
+    [
+        ("status", "What a call says.", statuses.chain(causes).collect()),
+        ("law", "Hypotheses of restitution.", laws.collect()),
+        ("path", "Phases of a collision.", paths.collect()),
+        ("mode", "Modes of a closed contact.", modes.collect()),
+    ]
+}
 
 /// The type of all numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,10 +53,10 @@ pub enum Scalar {
 /// A file of the crate: its path in the crate's folder, and its text.
 pub type File = (String, String);
 
-/// The files of the crate. `expanded` is the Rust text of the generated module, `dependency` what stands
-/// after `hodograph =` in the manifest, in braces. `None`: the text is no generated module.
-pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<File>> {
-    let mut module = module::read(&syn::parse_file(expanded).ok()?)?;
+/// The files of the crate. `expanded` is the Rust text of the generated module, `interface` what it offers,
+/// `dependency` what stands after `hodograph =` in the manifest, in braces.
+pub fn files(expanded: &str, interface: &Interface, scalar: Scalar, dependency: &str) -> Vec<File> {
+    let mut module = module::of(interface);
     module.name = names::of_library(&module.path);
     names::tell_apart(&mut module);
     let (c, rust) = match scalar {
@@ -87,13 +64,13 @@ pub fn files(expanded: &str, scalar: Scalar, dependency: &str) -> Option<Vec<Fil
         Scalar::Single => ("float", "f32"),
     };
     let name = &module.name;
-    Some(vec![
+    vec![
         ("Cargo.toml".to_owned(), manifest(&module, dependency)),
         ("README.md".to_owned(), readme(&module, c)),
         (format!("include/{name}.h"), header::header(&module, c)),
         ("src/lib.rs".to_owned(), library::library(&module, rust)),
         ("src/mechanism.rs".to_owned(), expanded.to_owned()),
-    ])
+    ]
 }
 
 fn manifest(module: &module::Module, dependency: &str) -> String {

@@ -1,7 +1,7 @@
 //! Names in C, and the texts of the values that cross the border.
 
+use super::enums;
 use super::module::{Form, Module, Record, Routine};
-use super::{LAWS, MODES, PATHS, STATUSES};
 
 /// Keywords of C99, C11 and C++20, and words with a meaning of their own in some places of C++.
 const KEYWORDS: &str = "alignas alignof and and_eq asm atomic_cancel atomic_commit atomic_noexcept auto bitand bitor bool break case catch char char8_t char16_t char32_t \
@@ -63,11 +63,11 @@ pub fn routine(routine: &Routine, budgeted: bool) -> String {
 /// All names that the header declares, in order: constants, types and functions.
 pub fn declared_names(module: &Module) -> Vec<String> {
     let (name, upper) = (&module.name, module.name.to_uppercase());
-    let mut all: Vec<String> =
-        ["status", "law", "path", "mode"].map(|what| format!("{name}_{what}")).to_vec();
-    let constants = STATUSES.iter().map(|row| row.0).chain(LAWS.iter().map(|row| row.0));
-    let constants = constants.chain(PATHS.iter().map(|row| row.0)).chain(MODES.iter().map(|row| row.0));
-    all.extend(constants.map(|constant| format!("{upper}_{constant}")));
+    let mut all = Vec::new();
+    for (what, _, constants) in enums() {
+        all.push(format!("{name}_{what}"));
+        all.extend(constants.iter().map(|(constant, _)| format!("{upper}_{constant}")));
+    }
     all.extend([format!("{upper}_H"), format!("{name}_surface"), name.clone(), format!("{name}_new")]);
     for record in module.records.iter().filter(|record| !record.fields.is_empty()) {
         let of = self::record(module, &record.name);
@@ -166,7 +166,6 @@ pub fn stored(module: &Module, form: &Form, value: &str) -> String {
             _ => format!("C{name}::from({value})"),
         },
         Form::Surface => value.to_owned(),
-        Form::Path => format!("path({value})"),
-        Form::Mode => format!("mode({value})"),
+        Form::Path | Form::Mode => format!("{value}.number().into()"),
     }
 }

@@ -1,6 +1,6 @@
 //! Writes an impact as JSON for `solve` and `collide`.
 
-use hodograph::{Impact, Motion, Snapshot};
+use hodograph::{Cause, Impact, Motion, Snapshot};
 use serde::Serialize;
 
 use super::characteristics::Characteristics;
@@ -80,7 +80,7 @@ impl TryFrom<&Impact<f64>> for Answer {
         if !impact.impulse.iter().chain(impact.velocity.iter()).chain(&works).all(|number| number.is_finite())
         {
             return Err(Failure::new(
-                Kind::NotFinite,
+                Kind::Of(Cause::NotFinite),
                 "the outcome is out of the range of doubles: choose units in which the numbers are nearer to 1",
             ));
         }

@@ -3,12 +3,11 @@
 use std::fmt;
 
 use hodograph::methods::MethodError;
-use hodograph::{CollisionError, ImpactError, StateError};
-use serde::Serialize;
+use hodograph::{Cause, CollisionError, ImpactError, StateError};
+use serde::{Serialize, Serializer};
 
 /// What kind of error it is: the stable names of the contract.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// no JSON, or JSON of another shape than asked for
     BadJson,
@@ -16,36 +15,37 @@ pub enum Kind {
     MissingField,
     /// a name that the model does not have, or that must not be given here
     UnknownName,
-    /// a number that is infinite or not a number
-    NotFinite,
-    /// friction below zero
-    NegativeFriction,
-    /// restitution outside [0, 1]
-    RestitutionOutOfRange,
-    /// the bodies do not approach
-    NotApproaching,
-    /// the reduced matrix belongs to no mechanism
-    NotPositiveSemidefinite,
-    /// no impulse along the normal moves the contact
-    NoNormalMobility,
-    /// no outcome exists
-    Wedged,
-    /// no forces are known to exist: a contact that slips jams
-    Jam,
     /// no forces were found that obey the laws within their bound
     Unsolved,
-    /// rounding forbids an outcome that obeys the laws of impact
-    Inaccurate,
-    /// the collision needs more quadratures than it may take
-    BudgetExceeded,
     /// a method other than the exact one did not come to an end
     Unfinished,
-    /// the equations cannot be evaluated in this state
-    SingularState,
     /// the coordinates contradict each other
     InconsistentState,
     /// a mass or an inertia that no body has
     ImpossibleBody,
+    /// a cause that the runtime knows, by its name
+    Of(Cause),
+}
+
+impl Kind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::BadJson => "bad_json",
+            Self::MissingField => "missing_field",
+            Self::UnknownName => "unknown_name",
+            Self::Unsolved => "unsolved",
+            Self::Unfinished => "unfinished",
+            Self::InconsistentState => "inconsistent_state",
+            Self::ImpossibleBody => "impossible_body",
+            Self::Of(cause) => cause.name(),
+        }
+    }
+}
+
+impl Serialize for Kind {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
 }
 
 /// An error of `solve`, `eval` or `collide`.
@@ -87,38 +87,19 @@ impl fmt::Display for Failure {
 
 impl From<ImpactError<f64>> for Failure {
     fn from(error: ImpactError<f64>) -> Self {
-        let kind = match error {
-            ImpactError::NegativeFriction { .. } => Kind::NegativeFriction,
-            ImpactError::RestitutionOutOfRange { .. } => Kind::RestitutionOutOfRange,
-            ImpactError::NotApproaching { .. } => Kind::NotApproaching,
-            ImpactError::NotPositiveSemidefinite { .. } => Kind::NotPositiveSemidefinite,
-            ImpactError::NoNormalMobility { .. } => Kind::NoNormalMobility,
-            ImpactError::Wedged { .. } => Kind::Wedged,
-            ImpactError::Inaccurate { .. } => Kind::Inaccurate,
-            ImpactError::BudgetExceeded { .. } => Kind::BudgetExceeded,
-            _ => Kind::NotFinite,
-        };
-        Failure::new(kind, error.to_string())
+        Failure::new(Kind::Of(error.cause()), error.to_string())
     }
 }
 
 impl From<StateError> for Failure {
     fn from(error: StateError) -> Self {
-        let kind = match error {
-            StateError::NotFinite => Kind::NotFinite,
-            _ => Kind::SingularState,
-        };
-        Failure::new(kind, error.to_string())
+        Failure::new(Kind::Of(error.cause()), error.to_string())
     }
 }
 
 impl From<CollisionError<f64>> for Failure {
     fn from(error: CollisionError<f64>) -> Self {
-        match error {
-            CollisionError::State(error) => error.into(),
-            CollisionError::Impact(error) => error.into(),
-            error => Failure::new(Kind::SingularState, error.to_string()),
-        }
+        Failure::new(Kind::Of(error.cause()), error.to_string())
     }
 }
 

@@ -1,6 +1,7 @@
 //! JSON values with fields in the order of the text (including repeated ones) and numbers as the nearest
 //! double.
 
+use hodograph::Cause;
 use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
@@ -34,7 +35,7 @@ impl Json {
     pub fn parse(text: &str) -> Result<Json, Failure> {
         serde_json::from_str(text).map_err(|error| match without_infinities(text) {
             Some((rest, word)) if serde_json::from_str::<Json>(&rest).is_ok() => Failure::new(
-                Kind::NotFinite,
+                Kind::Of(Cause::NotFinite),
                 format!("{word} is not a finite number: give a number below 1.8e308 in magnitude"),
             ),
             _ => Failure::bad_json(format!("this is no JSON: {error}")),
@@ -151,7 +152,7 @@ mod tests {
     #[test]
     fn infinities_are_told_from_bad_json() {
         for text in ["1e999", "[1, -1e400]", "{\"a\": NaN}", "[-Infinity]", "[Infinity, \"NaN\"]"] {
-            assert_eq!(Json::parse(text).unwrap_err().kind, Kind::NotFinite, "{text}");
+            assert_eq!(Json::parse(text).unwrap_err().kind, Kind::Of(Cause::NotFinite), "{text}");
         }
         for text in ["", "[", "{\"a\": nan?}", "[1e999", "[1,]", "nil", "\"\\"] {
             assert_eq!(Json::parse(text).unwrap_err().kind, Kind::BadJson, "{text}");

@@ -76,7 +76,7 @@ int main(void)
     if (two_sleds_collide_bc_ac(&sleds, &q, &hit.speeds, &surface, &hit) != TWO_SLEDS_NOT_APPROACHING)
         return 13;
     parameters.m = -parameters.m;
-    if (two_sleds_new(&parameters, &copy) != TWO_SLEDS_PARAMETER)
+    if (two_sleds_new(&parameters, &copy) != TWO_SLEDS_IMPOSSIBLE_MASS)
         return 14;
     return 0;
 }

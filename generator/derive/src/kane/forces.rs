@@ -1,9 +1,9 @@
-//! Generalized active and inertia forces, passed along the graph of velocities from the leaves back to the
+//! Generalised active and inertia forces, passed along the graph of velocities from the leaves back to the
 //! ground.
 //!
-//! The generalized force F_r is the sum of partial velocities times forces. Instead of forming all partial
+//! The generalised force F_r is the sum of partial velocities times forces. Instead of forming all partial
 //! velocities, each force is passed from its point to the base of that point; its moment acts on the frames
-//! of the arms, and its product with the partial velocities of the relation is added to the generalized
+//! of the arms, and its product with the partial velocities of the relation is added to the generalised
 //! forces of the speeds in the relation.
 //!
 //! Theory: docs/theory.md, section 16.1.
@@ -28,7 +28,7 @@ pub struct Wrenches {
     /// torques on frames that turn, along their home axes
     pub torques: BTreeMap<FrameId, Triple>,
     /// what acts on a speed directly
-    pub generalized: BTreeMap<usize, Expr>,
+    pub generalised: BTreeMap<usize, Expr>,
 }
 
 impl Wrenches {
@@ -72,8 +72,8 @@ impl Wrenches {
                 for (&slot, a) in &motion.relative.terms {
                     let work = linear_forms::dot(a, &along).mul(&Expr::integer(sign));
                     let sum =
-                        self.generalized.get(&slot).map_or_else(|| work.clone(), |have| have.add(&work));
-                    self.generalized.insert(slot, sum);
+                        self.generalised.get(&slot).map_or_else(|| work.clone(), |have| have.add(&work));
+                    self.generalised.insert(slot, sum);
                 }
             }
         }
@@ -138,9 +138,9 @@ pub fn wrenches(
     wrenches
 }
 
-/// Generalized forces of all speeds (dependent ones included), active and inertia forces together, for given
+/// Generalised forces of all speeds (dependent ones included), active and inertia forces together, for given
 /// derivatives of all speeds.
-pub fn generalized_forces(
+pub fn generalised_forces(
     k: &mut Kinematics<'_>,
     lumps: &BTreeMap<Attachment, LumpedInertia>,
     derivatives: Vec<Expr>,
@@ -235,10 +235,10 @@ fn apply_loads(k: &mut Kinematics<'_>, wrenches: &mut Wrenches) {
     }
 }
 
-/// Passes forces and torques back to the ground; what each speed meets on the way is its generalized force.
+/// Passes forces and torques back to the ground; what each speed meets on the way is its generalised force.
 fn pass_back(k: &mut Kinematics<'_>, mut wrenches: Wrenches) -> Vec<Expr> {
     let mut result = vec![Expr::zero(); k.speeds.len()];
-    for (&slot, force) in &wrenches.generalized {
+    for (&slot, force) in &wrenches.generalised {
         result[slot] = force.clone();
     }
     let points: Vec<_> = wrenches.forces.keys().copied().collect();

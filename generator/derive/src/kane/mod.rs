@@ -1,4 +1,4 @@
-//! Derives Kane's equations: mass matrix, generalized forces, elimination of constraints, contacts; written
+//! Derives Kane's equations: mass matrix, generalised forces, elimination of constraints, contacts; written
 //! as a graph of values.
 
 pub mod accelerations;

@@ -197,9 +197,9 @@ impl Writer<'_, '_> {
         open.map(guard).collect()
     }
 
-    /// Generalized forces in independent speeds for given derivatives of all speeds.
+    /// Generalised forces in independent speeds for given derivatives of all speeds.
     fn reduced_forces(&mut self, derivatives: Vec<Expr>) -> Vec<Node> {
-        let forces = forces::generalized_forces(self.k, &self.lumps, derivatives);
+        let forces = forces::generalised_forces(self.k, &self.lumps, derivatives);
         let mut result = Vec::new();
         for &r in &self.independent.clone() {
             let mut sum = forces[r].clone();

@@ -1,4 +1,4 @@
-//! Scalars and vectors as forms linear in the generalized speeds: every velocity is such a form.
+//! Scalars and vectors as forms linear in the generalised speeds: every velocity is such a form.
 
 use std::collections::BTreeMap;
 

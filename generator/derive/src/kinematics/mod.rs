@@ -1,8 +1,8 @@
-//! Kinematics: axes, angular velocities and velocities as forms linear in the generalized speeds.
+//! Kinematics: axes, angular velocities and velocities as forms linear in the generalised speeds.
 //!
 //! The forms are kept as a graph of small relations, one per frame (`angular velocity = that of another frame + sum
 //! of a_r u_r`) and one per point (`velocity = that of another point + angular velocity x arm + sum of
-//! b_r u_r`). Partial velocities, mass matrix and generalized forces are computed by passing along that
+//! b_r u_r`). Partial velocities, mass matrix and generalised forces are computed by passing along that
 //! graph, so that their cost is nearly linear in the number of bodies.
 //!
 //! Theory: docs/theory.md, section 16.1.

@@ -74,7 +74,7 @@ pub mod pendulum_in_parts {
             Self::from([m, l, g])
         }
     }
-    /// Generalized coordinates.
+    /// Generalised coordinates.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Coordinates<T = f64> {
         /// angle from the vertical, in rad
@@ -130,7 +130,7 @@ pub mod pendulum_in_parts {
             Self::from([q1])
         }
     }
-    /// Independent generalized speeds, or their rates (per second).
+    /// Independent generalised speeds, or their rates (per second).
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Speeds<T = f64> {
         /// u1, in rad/s
@@ -422,12 +422,11 @@ pub mod pendulum_in_parts {
         pub by_friction: ::hodograph::nalgebra::SVector<T, 1>,
         /// derivative of the speeds after with respect to the coefficient of restitution
         pub by_restitution: ::hodograph::nalgebra::SVector<T, 1>,
-        /// derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the
-        /// contact basis (normal, first, second); if there is no derivative `outcome.non_smoothness` says why
+        /// derivatives of impulse and velocity of separation with respect to velocity of approach, reduced matrix, mu and e, along the contact basis (normal, first, second); if there is no derivative `outcome.non_smoothness` says why
         pub outcome: ::hodograph::ImpactDerivative<T>,
     }
     impl<T: ::hodograph::Scalar> Pendulum<T> {
-        /// Rates q' of the generalized coordinates, in their units per second.
+        /// Rates q' of the generalised coordinates, in their units per second.
         #[inline]
         pub fn coordinate_rates(
             &self,
@@ -614,7 +613,7 @@ pub mod pendulum_in_parts {
             &self,
             q: &Coordinates<T>,
         ) -> ::core::result::Result<
-            ::hodograph::nalgebra::SMatrix<T, 3, 1>,
+            ::hodograph::nalgebra::Vector3<T>,
             ::hodograph::StateError,
         > {
             let v1 = self.parameters.l;
@@ -707,7 +706,7 @@ pub mod pendulum_in_parts {
             q: &Coordinates<T>,
             u: &Speeds<T>,
         ) -> ::core::result::Result<
-            ::hodograph::nalgebra::SMatrix<T, 3, 1>,
+            ::hodograph::nalgebra::Vector3<T>,
             ::hodograph::StateError,
         > {
             let v3 = q.q1;
@@ -1810,7 +1809,7 @@ pub mod pendulum_in_parts {
                 >(accelerations, "the accelerations")?,
             );
             DESCRIPTION.check(state)?;
-            ::hodograph::generated::check_length(forces, 0, "the generalized forces")
+            ::hodograph::generated::check_length(forces, 0, "the generalised forces")
         }
         fn kinetic_energy(
             &self,

@@ -122,7 +122,7 @@ impl Articulated {
         let mut acting = Acting {
             force: wrenches.forces,
             torque: wrenches.torques,
-            loads: wrenches.generalized.into_iter().collect(),
+            loads: wrenches.generalised.into_iter().collect(),
         };
         let mut loads = Vec::new();
         for step in &self.steps {

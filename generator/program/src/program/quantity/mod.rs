@@ -29,7 +29,7 @@ pub enum Quantity {
     /// u' of the dependent speeds (d)
     DependentAccelerations,
     #[doc(alias = "RNEA")]
-    /// generalized forces (p) that must be added to the loads for the given u' (inputs `Acceleration`): M u' - forcing
+    /// generalised forces (p) that must be added to the loads for the given u' (inputs `Acceleration`): M u' - forcing
     InverseDynamics,
     /// derivative of the rates of the independent coordinates and of the accelerations along a direction
     /// (inputs `Tangent`): a column of the linearised equations (number of independent coordinates + p)

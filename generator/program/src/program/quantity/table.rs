@@ -39,7 +39,7 @@ pub const WHOLE: &[(Q, Description)] = &[
         Description {
             word: "coordinate_rates",
             method: Some("coordinate_rates"),
-            docs: "Rates q' of the generalized coordinates, in their units per second.",
+            docs: "Rates q' of the generalised coordinates, in their units per second.",
             title: "Rates of the coordinates",
             symbol: "q",
             shape: [Extent::Coordinates, Extent::Count(1)],
@@ -72,7 +72,7 @@ pub const WHOLE: &[(Q, Description)] = &[
         Description {
             word: "dependent_speeds",
             method: Some("dependent_speeds"),
-            docs: "Dependent generalized speeds, which the velocity constraints determine from the independent ones.",
+            docs: "Dependent generalised speeds, which the velocity constraints determine from the independent ones.",
             title: "Dependent speeds",
             symbol: "u",
             shape: [Extent::DependentSpeeds, Extent::Count(1)],
@@ -138,14 +138,14 @@ pub const WHOLE: &[(Q, Description)] = &[
         Description {
             word: "inverse_dynamics",
             method: Some("inverse_dynamics"),
-            docs: "Generalized forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing. An entry times its speed is in W.",
+            docs: "Generalised forces that must be added to the loads so that the independent speeds have the rates `acceleration`: M u' - forcing. An entry times its speed is in W.",
             title: "Inverse dynamics",
             symbol: "Q",
             unit: FORCES,
             shape: [Extent::Speeds, Extent::Count(1)],
             takes: Takes { accelerations: true, ..LOADED },
             offer: Offer::Written,
-            slice: ("forces", "the generalized forces"),
+            slice: ("forces", "the generalised forces"),
             ..PLAIN
         },
     ),
