@@ -1,5 +1,5 @@
 //! What documents say of the repository holds: the models that they show are accepted as they stand, workspaces
-//! are named, and `unsafe` stands nowhere else.
+//! are named, `unsafe` stands nowhere else, and numbers of equations lead to equations.
 
 use std::path::{Path, PathBuf};
 
@@ -109,4 +109,48 @@ fn unsafe_code_stands_where_the_architecture_says() {
         "tests/freestanding/src",
     ];
     assert_eq!(found, expected);
+}
+
+/// The numbers in parentheses, such as 13.3 of "(13.3)".
+fn numbers(line: &str) -> impl Iterator<Item = &str> {
+    line.split('(').skip(1).filter_map(|rest| {
+        let number = rest.split(')').next()?;
+        let (section, equation) = number.split_once('.')?;
+        let digits = |text: &str| (1..=2).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+        (digits(section) && digits(equation.trim_end_matches('a'))).then_some(number)
+    })
+}
+
+/// Every equation of the theory that a document or a comment names is there, and so is every section in parentheses.
+#[test]
+fn equations_that_are_named_are_there() {
+    let theory = std::fs::read_to_string(root().join("docs/theory.md")).expect("docs/theory.md");
+    let tagged = theory.lines().filter_map(|line| {
+        let line = line.trim_end();
+        numbers(line).last().filter(|number| line.ends_with(&format!("({number})")))
+    });
+    let heads = theory.lines().filter_map(|line| line.strip_prefix("### ")?.split(' ').next());
+    let there: std::collections::BTreeSet<&str> = tagged.chain(heads).collect();
+    assert!(there.contains("13.3") && there.contains("18.9") && there.len() > 100, "{there:?}");
+    let mut paths = Vec::new();
+    files(&root(), &|name| name.ends_with(".rs") || name.ends_with(".md"), &mut paths);
+    let mut named = 0;
+    for path in paths {
+        let text = std::fs::read_to_string(&path).expect("a text");
+        let is_theory = path.ends_with("docs/theory.md");
+        for line in text.lines() {
+            let of_equations = ["equation (", "equations (", "theory, (", "theory: ("];
+            if is_theory || of_equations.iter().any(|words| line.contains(words)) {
+                let code =
+                    !is_theory && path.extension().is_some_and(|end| end == "rs") && !line.contains("//");
+                // 18.13 and the like have bounds as well as equations
+                let bound = |number: &&str| number.starts_with('0') || is_theory && line.starts_with('|');
+                for number in numbers(line).filter(|number| !code && !bound(number)) {
+                    assert!(there.contains(number), "{}: ({number})", path.display());
+                    named += 1;
+                }
+            }
+        }
+    }
+    assert!(named > 150, "{named}");
 }

@@ -160,7 +160,7 @@ pub(super) struct Zero<T: Real> {
     pub direction: Vector2<T>,
     /// abs(h') at the zero.
     pub slope: T,
-    /// g at the zero without its constant term -mu tau, tau being half the trace of T.
+    /// g at the zero without its constant term -mu chi, chi being half the trace of T.
     pub pull: T,
 }
 

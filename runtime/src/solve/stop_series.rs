@@ -1,7 +1,7 @@
 //! Integrates the rest of the sliding arc, until slip stops, by power series in u = 1 / w.
 //!
-//! Near the stable direction slip is tau (b + a u)^2 with tau = sigma w^2. The integrals from here to the end
-//! of slip are tau R(u) (tau^2 R(u) for the work of friction), where Q u R' - K R is a known polynomial in u.
+//! Near the stable direction slip is sigma_u (b + a u)^2 with sigma_u = sigma w^2. The integrals from here to the end
+//! of slip are sigma_u R(u) (sigma_u^2 R(u) for the work of friction), where Q u R' - K R is a known polynomial in u.
 //! The coefficients of R obey a three-term recurrence, which runs for four integrals at once. They are kept
 //! in arrays of four, which the compiler holds in one vector register.
 //!
@@ -99,9 +99,9 @@ impl<T: Real> SlidingArc<T> {
         let mut rows = [[zero; 4]; BLOCK + 2];
         let mut total = [zero; 4];
         let eps = T::default_epsilon();
-        let tau = point.sigma * point.w * point.w;
-        let before = point.state.normal / tau;
-        let worked = point.state.work.abs() / (tau * tau * self.mu);
+        let sigma_u = point.sigma * point.w * point.w;
+        let before = point.state.normal / sigma_u;
+        let worked = point.state.work.abs() / (sigma_u * sigma_u * self.mu);
         for _ in 0..BLOCKS {
             if HERE {
                 block_here(&mut rows, &mut sources, &mut taps, &mut total, zero);
@@ -119,7 +119,7 @@ impl<T: Real> SlidingArc<T> {
         let [third, second, first, rubbed] = total;
         let from = &point.state;
         let mut state = *from;
-        self.add([first * tau, second * tau, third * tau], &mut state);
+        self.add([first * sigma_u, second * sigma_u, third * sigma_u], &mut state);
         let (slip, pushed) = (self.slip(point), state.tangential - from.tangential);
         let done = fma(
             constant::<T>(0.5),
@@ -128,7 +128,7 @@ impl<T: Real> SlidingArc<T> {
                 state.normal - from.normal,
                 dot(slip.x, pushed.x, slip.y, pushed.y),
             ),
-            self.mu * tau * tau * rubbed,
+            self.mu * sigma_u * sigma_u * rubbed,
         );
         state.work += done;
         (state, point.since + done)
