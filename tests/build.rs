@@ -5,7 +5,10 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use hodograph_generator::emit::{self, Options, Requests};
+use hodograph_generator::emit::{
+    self,
+    interface::{Interface, Signature, Type},
+};
 use hodograph_generator::files;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_generator::rust_names::snake_case;
@@ -31,14 +34,8 @@ fn main() {
         let Ok(derived) = std::fs::read_to_string(derivation) else { continue };
         let Ok(artifact) = artifact::decode(&derived) else { continue };
         let module = path.file_stem().expect("a stem").to_string_lossy().into_owned();
-        let options = Options {
-            krate: "hodograph".parse().expect("a path"),
-            module: module.clone(),
-            tracked: vec![],
-            requests: Requests::default(),
-        };
-        let Ok(tokens) = emit::module(&mechanism, &artifact.program, &options) else { continue };
-        write_module(&mut text, &module, &mechanism, &tokens.to_string());
+        let Ok(offered) = emit::interface(&mechanism, &artifact.program, &module) else { continue };
+        write_module(&mut text, &offered, &mechanism);
         modules.push(module);
     }
     writeln!(text, "/// All of them.\npub fn emitted() -> Vec<Box<dyn Emitted>> {{\n    vec![").unwrap();
@@ -63,117 +60,74 @@ fn dual(argument: &str) -> &'static str {
     }
 }
 
-/// A public method of a generated module, read from its tokens.
-struct Method<'a> {
-    name: &'a str,
-    /// names of its arguments without `&self`
-    arguments: Vec<&'a str>,
-    /// what follows the arguments: the type of the result, and the body
-    rest: &'a str,
+/// Whether other tests call a method: `mechanisms_by_slices.rs`, `closed_contacts.rs` and `saltation.rs`.
+fn is_called_elsewhere(method: &Signature) -> bool {
+    ["contact_mode_", "contact_force_", "impact_without_collision_", "saltation_"]
+        .iter()
+        .any(|prefix| method.name.starts_with(prefix))
 }
 
-/// The methods of a module that take `&self`.
-fn methods(code: &str) -> impl Iterator<Item = Method<'_>> {
-    code.split("pub fn ").skip(1).filter_map(|method| {
-        let (name, rest) = method.split_once('(')?;
-        let mut depth = 1;
-        let end = rest.find(|c| {
-            depth += i32::from(c == '(') - i32::from(c == ')');
-            depth == 0
-        })?;
-        let (arguments, rest) = rest.split_at(end);
-        let mut arguments: Vec<&str> = arguments
-            .trim()
-            .strip_prefix("& self")?
-            .split(" : ")
-            .filter_map(|before| before.rsplit([' ', ',']).find(|word| !word.is_empty()))
-            .collect();
-        // The last word is of the last type.
-        arguments.pop();
-        Some(Method { name: name.trim(), arguments, rest })
+/// The call of a method with plain numbers.
+fn call(method: &Signature) -> String {
+    let passed = method.arguments.iter().map(|argument| match argument.name {
+        "time" => "at.time",
+        "q" => "&array(&at.coordinates).into()",
+        "u" => "&array(&at.speeds).into()",
+        "acceleration" => "&array(&at.accelerations).into()",
+        "inputs" => "&array(&at.inputs).into()",
+        "tangent" => "&array(&at.tangent)",
+        "surface" => "surface",
+        other => panic!("{} has an argument {other} that tests do not know", method.name),
+    });
+    format!("Self::machine(at).{}({})", method.name, passed.collect::<Vec<_>>().join(", "))
+}
+
+/// The call with numbers that carry derivatives.
+fn dual_call(method: &Signature) -> String {
+    let passed: Vec<&str> = method.arguments.iter().map(|argument| dual(argument.name)).collect();
+    format!("Self::dual_machine(at).{}({})", method.name, passed.join(", "))
+}
+
+/// What makes a list of numbers of the `value` that a method answers; nothing for one that collisions and
+/// `mechanisms_by_slices.rs` call.
+fn flat(method: &Signature) -> Option<&'static str> {
+    Some(match &method.answer {
+        Type::Pair(..) | Type::ContactState => return None,
+        Type::Vector(_) | Type::Matrix(..) => "by_rows(value)",
+        Type::Reduced => "<[f64; 6]>::from(value).to_vec()",
+        Type::Array(..) => "value.to_vec()",
+        Type::Number => "vec![value]",
+        Type::Struct(name) => match name.as_str() {
+            "Coordinates" | "Speeds" | "DependentSpeeds" => "<[_; _]>::from(value).to_vec()",
+            "ContactDerivatives" => "contact_beside!(value)",
+            "Derivatives" => "beside!(value)",
+            "Linearisation" => "[by_rows(value.a), by_rows(value.b)].concat()",
+            _ => panic!("{} answers {name}, which tests do not know", method.name),
+        },
+        other => panic!("{} answers {other:?}, which tests do not know", method.name),
     })
 }
 
-impl Method<'_> {
-    /// Whether other tests call it: `mechanisms_by_slices.rs`, `closed_contacts.rs` and `saltation.rs`.
-    fn is_called_elsewhere(&self) -> bool {
-        ["contact_mode_", "contact_force_", "impact_without_collision_", "saltation_"]
-            .iter()
-            .any(|prefix| self.name.starts_with(prefix))
-    }
-
-    /// The call with plain numbers.
-    fn call(&self) -> String {
-        let passed = |argument: &&str| match *argument {
-            "time" => "at.time",
-            "q" => "&array(&at.coordinates).into()",
-            "u" => "&array(&at.speeds).into()",
-            "acceleration" => "&array(&at.accelerations).into()",
-            "inputs" => "&array(&at.inputs).into()",
-            "tangent" => "&array(&at.tangent)",
-            "surface" => "surface",
-            other => panic!("{} has an argument {other} that tests do not know", self.name),
-        };
-        let passed: Vec<&str> = self.arguments.iter().map(passed).collect();
-        format!("Self::machine(at).{}({})", self.name, passed.join(", "))
-    }
-
-    /// The call with numbers that carry derivatives.
-    fn dual_call(&self) -> String {
-        let passed: Vec<&str> = self.arguments.iter().map(|argument| dual(argument)).collect();
-        format!("Self::dual_machine(at).{}({})", self.name, passed.join(", "))
-    }
-
-    /// What makes a list of numbers of its `value`; nothing for a method that is no routine or that
-    /// collisions and `mechanisms_by_slices.rs` call.
-    fn flat(&self) -> Option<&'static str> {
-        let (result, _) = self.rest.split_once("StateError")?;
-        let holds = |name: &str| result.contains(name);
-        if holds("Result < (") || holds("ContactState") {
-            return None;
-        }
-        Some(if holds("SMatrix") || holds("Matrix3") {
-            "by_rows(value)"
-        } else if holds("ReducedMatrix") {
-            "<[f64; 6]>::from(value).to_vec()"
-        } else if holds("Coordinates") || holds("Speeds") {
-            "<[_; _]>::from(value).to_vec()"
-        } else if holds("ContactDerivatives") {
-            "contact_beside!(value)"
-        } else if holds("Derivatives") {
-            "beside!(value)"
-        } else if holds("Linearisation") {
-            "[by_rows(value.a), by_rows(value.b)].concat()"
-        } else if holds("Result < [T") {
-            "value.to_vec()"
-        } else if holds("Result < T ,") {
-            "vec![value]"
-        } else {
-            panic!("{} has a result that tests do not know: {result}", self.name)
-        })
-    }
-}
-
 /// Writes the calls of a module's methods.
-fn write_module(text: &mut String, module: &str, mechanism: &Mechanism, code: &str) {
+fn write_module(text: &mut String, offered: &Interface, mechanism: &Mechanism) {
+    let (module, name) = (&offered.module, &offered.mechanism);
     let path = format!("hodograph_models::{module}");
-    let name = emit::identifiers::type_name(&mechanism.name);
-    let contact_of = |method: &Method| {
+    let contact_of = |method: &Signature| {
         let contact = method.name.strip_prefix("collide_")?;
         mechanism.contacts.iter().position(|of| snake_case(&of.name) == contact)
     };
     let mut routines = String::new();
     let mut collisions = String::new();
     let mut duals = String::new();
-    for method in methods(code).filter(|method| !method.is_called_elsewhere()) {
-        let (name, call) = (method.name, method.call());
+    for method in offered.methods.iter().filter(|method| !is_called_elsewhere(method)) {
+        let (name, call) = (method.name.as_str(), call(method));
         if name.starts_with("collide_") {
-            if let Some(contact) = contact_of(&method) {
+            if let Some(contact) = contact_of(method) {
                 writeln!(collisions, "            {contact} => hit!({call}),").unwrap();
             }
-        } else if let Some(flat) = method.flat() {
+        } else if let Some(flat) = flat(method) {
             if DIFFERENTIATED.contains(&name) {
-                let call = method.dual_call();
+                let call = dual_call(method);
                 // The closure as clippy wants it.
                 let flatten =
                     if flat == "by_rows(value)" { "by_rows".into() } else { format!("|value| {flat}") };

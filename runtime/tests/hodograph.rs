@@ -144,7 +144,7 @@ fn the_course_obeys_the_differential_equations() {
     }
 }
 
-/// Another road to the middle of a collision: integration (55) of the same collision that Poisson's law ends
+/// Another way to the middle of a collision: integration (55) of the same collision that Poisson's law ends
 /// there.
 #[cfg(feature = "std")]
 #[test]

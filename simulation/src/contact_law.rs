@@ -71,6 +71,7 @@ impl ContactLaw {
 
 /// Sliding friction as a function of the speed of slip s, m/s.
 #[derive(Clone, Default)]
+#[non_exhaustive]
 pub enum Sliding {
     /// mu of the surface
     #[default]
@@ -88,6 +89,7 @@ pub enum Sliding {
 
 /// The coefficient of restitution as a function of the speed of approach v = -v_n, m/s. e is that of the surface.
 #[derive(Clone, Default)]
+#[non_exhaustive]
 pub enum Restitution {
     /// e
     #[default]

@@ -12,6 +12,7 @@ pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
 
 /// What happens where several contacts are struck at the same time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum ImpactsAtOnce {
     /// All that approach strike at once, by Moreau's law with friction; what their impulses press together
     /// strikes next, until nothing approaches. A contact that strikes alone does so exactly, by its own law.

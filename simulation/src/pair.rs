@@ -189,7 +189,7 @@ const ENDED: f64 = 1e-9;
 mod tests {
     use super::*;
 
-    /// The sum of a ladder with constant e, by the other road.
+    /// The sum of a ladder with constant e, by the other computation.
     #[test]
     fn ladders_have_the_sum_of_their_series() {
         let surface = Surface { mu: 0.0, e: 0.7, law: hodograph::Law::Newton };

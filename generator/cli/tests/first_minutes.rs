@@ -49,6 +49,21 @@ fn a_new_model_collides() {
     }
 }
 
+/// The model of shapes has no mistake either, and its crate comes to rest on the floor.
+#[cfg(feature = "derive")]
+#[test]
+fn a_new_crate_comes_to_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let (name, path) = (place(&folder, "my_crate"), place(&folder, "my_crate.mech"));
+    let made = hodograph(&["new", &name, "--template", "crate"], "");
+    assert_eq!(made.told().0, 0, "{}", made.stderr);
+    let checked = hodograph(&["check", &path], "");
+    assert_eq!((checked.code, checked.stdout.as_str()), (0, ""));
+    let run = hodograph(&["simulate", &path, "--format", "table"], "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    assert!(run.stdout.contains("at rest from t ="), "{}", run.stdout);
+}
+
 /// Without `--until` a motion ends where all is at rest, 10 s after its start at the latest.
 #[cfg(feature = "derive")]
 #[test]

@@ -61,7 +61,7 @@ pub struct Arguments {
     pub budget: Option<u32>,
 }
 
-/// The roads to an outcome.
+/// The methods that find an outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Method {
     /// the exact solver

@@ -49,7 +49,7 @@ impl Letter {
 }
 
 /// The letters of marked text in a size, and its width.
-pub fn letters(marked: &str, size: f64) -> (Vec<Letter>, f64) {
+pub fn placed(marked: &str, size: f64) -> (Vec<Letter>, f64) {
     let mut x = 0.0;
     let mut letters = Vec::new();
     for (kind, text) in Label::pieces(marked) {
@@ -72,5 +72,5 @@ pub fn letters(marked: &str, size: f64) -> (Vec<Letter>, f64) {
 
 /// The width of marked text.
 pub fn width(marked: &str, size: f64) -> f64 {
-    letters(marked, size).1
+    placed(marked, size).1
 }

@@ -77,7 +77,7 @@ fn draw(picture: &mut Pixmap, shape: &Shape) {
             }
         }
         Shape::Text { marked, at, size, colour, anchor, upwards } => {
-            let (letters, width) = font::letters(marked, *size);
+            let (letters, width) = font::placed(marked, *size);
             let begin = match anchor {
                 Anchor::Start => 0.0,
                 Anchor::Middle => -width / 2.0,

@@ -39,7 +39,7 @@ impl LumpedInertia {
         }
     }
 
-    /// Adds another lump whose reference point is at `r`, along the same axes.
+    /// Adds another inertia whose reference point is at `r`, along the same axes.
     fn add_at(&mut self, other: &LumpedInertia, r: &Triple) {
         for (i, j) in ENTRIES {
             let shift = other.mass.mul(&r[i]).mul(&r[j]);
@@ -98,12 +98,12 @@ pub enum Masses {
 
 /// All inertia of the mechanism.
 pub fn lumped_inertias(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Attachment, LumpedInertia> {
-    let mut lumps: BTreeMap<Attachment, LumpedInertia> = BTreeMap::new();
+    let mut inertias: BTreeMap<Attachment, LumpedInertia> = BTreeMap::new();
     for body in &k.mechanism.bodies {
-        let mut lump = LumpedInertia::empty();
+        let mut lumped = LumpedInertia::empty();
         let place = format!("body `{}`", body.name);
         let mass = k.within(place, |k| k.scalar(&body.mass));
-        lump.mass = k.z.name(mass);
+        lumped.mass = k.z.name(mass);
         let own = body.frame.map(|frame| k.turning(frame)).filter(|&frame| frame != FrameId::N);
         let frame = own.or_else(|| carrier(k, body.centre)).unwrap_or(FrameId::N);
         if own.is_some()
@@ -114,17 +114,17 @@ pub fn lumped_inertias(k: &mut Kinematics<'_>, masses: Masses) -> BTreeMap<Attac
             // second moments: 1/2 trace 1 - I
             let half = Expr::number(&Number::ratio(1, 2));
             let trace = inertia[0].add(&inertia[1]).add(&inertia[2]).mul(&half);
-            lump.second =
+            lumped.second =
                 std::array::from_fn(|i| if i < 3 { trace.sub(&inertia[i]) } else { inertia[i].neg() });
         }
         let (reference, r) = rigid_way(k, frame, Some(body.centre));
-        lumps.entry((frame, reference)).or_insert_with(LumpedInertia::empty).add_at(&lump, &r);
+        inertias.entry((frame, reference)).or_insert_with(LumpedInertia::empty).add_at(&lumped, &r);
     }
-    regroup(k, &mut lumps, masses);
-    for lump in lumps.values_mut() {
-        lump.tidy(k);
+    regroup(k, &mut inertias, masses);
+    for lumped in inertias.values_mut() {
+        lumped.tidy(k);
     }
-    lumps
+    inertias
 }
 
 /// The frame that carries a particle rigidly from its base point, if one does.
@@ -168,9 +168,9 @@ fn rigid_way(k: &mut Kinematics<'_>, frame: FrameId, from: Option<PointId>) -> (
 }
 
 /// Hands what lies on joint axes to the other side of the joint, from the leaves to the ground.
-fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Attachment, LumpedInertia>, masses: Masses) {
+fn regroup(k: &mut Kinematics<'_>, inertias: &mut BTreeMap<Attachment, LumpedInertia>, masses: Masses) {
     let mut frames: Vec<FrameId> =
-        lumps.keys().map(|attachment| attachment.0).filter(|&f| f != FrameId::N).collect();
+        inertias.keys().map(|attachment| attachment.0).filter(|&f| f != FrameId::N).collect();
     for frame in frames.clone() {
         frames.extend(k.ancestry(frame).into_iter().map(|frame| k.turning(frame)));
     }
@@ -181,7 +181,7 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Attachment, LumpedInerti
         let Some(axis) = joint_axis(k, frame) else { continue };
         let base = k.turning(k.frames[frame.0].base);
         let attachments: Vec<Attachment> =
-            lumps.keys().copied().filter(|attachment| attachment.0 == frame).collect();
+            inertias.keys().copied().filter(|attachment| attachment.0 == frame).collect();
         for attachment in attachments {
             // Points on the axis move with the base as they do with the frame, whether the joint is fixed in
             // the base or not; where it is, the way goes on to the base's own reference point.
@@ -190,14 +190,14 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Attachment, LumpedInerti
             } else {
                 rigid_way(k, base, attachment.1)
             };
-            let Some(lump) = lumps.get_mut(&attachment) else { continue };
+            let Some(lumped) = inertias.get_mut(&attachment) else { continue };
             let mut rod = LumpedInertia::empty();
             if masses == Masses::Regrouped {
-                rod.mass = std::mem::replace(&mut lump.mass, Expr::zero());
+                rod.mass = std::mem::replace(&mut lumped.mass, Expr::zero());
             }
-            rod.moment[axis] = std::mem::replace(&mut lump.moment[axis], Expr::zero());
-            rod.second[axis] = std::mem::replace(&mut lump.second[axis], Expr::zero());
-            lump.tidy(k);
+            rod.moment[axis] = std::mem::replace(&mut lumped.moment[axis], Expr::zero());
+            rod.second[axis] = std::mem::replace(&mut lumped.second[axis], Expr::zero());
+            lumped.tidy(k);
             if base == FrameId::N {
                 // about an axis that keeps its direction only the mass matters
                 rod.moment[axis] = Expr::zero();
@@ -210,7 +210,7 @@ fn regroup(k: &mut Kinematics<'_>, lumps: &mut BTreeMap<Attachment, LumpedInerti
                 moment: linear_forms::scale(&rod.moment[axis], &along),
                 second: ENTRIES.map(|(i, j)| rod.second[axis].mul(&along[i]).mul(&along[j])),
             };
-            lumps.entry((base, target)).or_insert_with(LumpedInertia::empty).add_at(&turned, &r);
+            inertias.entry((base, target)).or_insert_with(LumpedInertia::empty).add_at(&turned, &r);
         }
     }
 }

@@ -27,29 +27,29 @@ enum Magnitude {
 use Magnitude::{Of, Speed};
 
 /// A bound of each diagonal entry of the mass matrix of all speeds.
-pub fn diagonal(k: &mut Kinematics<'_>, lumps: &BTreeMap<Attachment, LumpedInertia>) -> Vec<Expr> {
+pub fn diagonal(k: &mut Kinematics<'_>, inertias: &BTreeMap<Attachment, LumpedInertia>) -> Vec<Expr> {
     // Twice the kinetic energy: coefficients of products of magnitudes, each pair once.
     let mut form: BTreeMap<(Magnitude, Magnitude), Expr> = BTreeMap::new();
     let two = Expr::integer(2);
-    for (&(frame, point), lump) in lumps {
+    for (&(frame, point), lumped) in inertias {
         let point = point.map(|point| Of(Node::Point(point)));
         let frame = Some(frame).filter(|&frame| frame != FrameId::N).map(|frame| Of(Node::Frame(frame)));
         if let Some(point) = point {
-            let mass = k.z.bound(&lump.mass);
+            let mass = k.z.bound(&lumped.mass);
             sum_scalar(&mut form, (point, point), &mass);
         }
         if let Some(frame) = frame {
-            let trace = Expr::sum(&lump.second[..3].iter().map(|c| k.z.bound(c)).collect::<Vec<_>>());
+            let trace = Expr::sum(&lumped.second[..3].iter().map(|c| k.z.bound(c)).collect::<Vec<_>>());
             sum_scalar(&mut form, (frame, frame), &trace.mul(&two));
             if let Some(point) = point {
-                let moment = magnitude(k, &lump.moment).mul(&two);
+                let moment = magnitude(k, &lumped.moment).mul(&two);
                 sum_scalar(&mut form, pair(frame, point), &moment);
             }
         }
     }
-    let points: Vec<_> = lumps.keys().filter_map(|attachment| attachment.1).collect();
+    let points: Vec<_> = inertias.keys().filter_map(|attachment| attachment.1).collect();
     let frames: Vec<_> =
-        lumps.keys().map(|attachment| attachment.0).filter(|&frame| frame != FrameId::N).collect();
+        inertias.keys().map(|attachment| attachment.0).filter(|&frame| frame != FrameId::N).collect();
     let order = elimination_order::elimination_order(k, &points, &frames);
     let relations: Vec<_> = order.iter().map(|&node| relation(k, node)).collect();
     for (at, &node) in order.iter().enumerate() {

@@ -101,11 +101,11 @@ pub fn ground(k: &mut Kinematics<'_>) -> Mixed {
 /// Forces and torques, active and inertia together, for given accelerations.
 pub fn wrenches(
     k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Attachment, LumpedInertia>,
+    inertias: &BTreeMap<Attachment, LumpedInertia>,
     accelerations: &mut Accelerations,
 ) -> Wrenches {
     let mut wrenches = Wrenches::default();
-    for (&(frame, point), lump) in lumps {
+    for (&(frame, point), lumped) in inertias {
         let home = k.frames[frame.0].home;
         // acceleration of the reference point, along the home axes of the frame
         let at_rest = accelerations.ground();
@@ -115,22 +115,23 @@ pub fn wrenches(
         };
         if frame == FrameId::N {
             if let Some(point) = point {
-                wrenches.force(k, point, &vectors::scale(&lump.mass.neg(), &a));
+                wrenches.force(k, point, &vectors::scale(&lumped.mass.neg(), &a));
             }
             continue;
         }
         let rows = accelerations.turning_matrix(k, frame);
         if let Some(point) = point {
-            let turning: Triple = std::array::from_fn(|i| linear_forms::dot(&rows[i], &lump.moment));
+            let turning: Triple = std::array::from_fn(|i| linear_forms::dot(&rows[i], &lumped.moment));
             let turning = linear_forms::name(&mut k.z, linear_forms::scale(&Expr::integer(-1), &turning));
             wrenches.force(k, point, &vectors::mixed(home, turning));
-            wrenches.force(k, point, &vectors::scale(&lump.mass.neg(), &a));
+            wrenches.force(k, point, &vectors::scale(&lumped.mass.neg(), &a));
         }
-        let a = if linear_forms::is_zero(&lump.moment) { linear_forms::zero() } else { k.express(&a, home) };
+        let a =
+            if linear_forms::is_zero(&lumped.moment) { linear_forms::zero() } else { k.express(&a, home) };
         let alpha = accelerations.angular(k, frame);
         let w = k.angular_velocity(frame);
-        let moment = inertia_moment(&mut k.z, &rows, &alpha, &w, &lump.second);
-        let moment = linear_forms::add(&moment, &linear_forms::cross(&lump.moment, &a));
+        let moment = inertia_moment(&mut k.z, &rows, &alpha, &w, &lumped.second);
+        let moment = linear_forms::add(&moment, &linear_forms::cross(&lumped.moment, &a));
         let moment = linear_forms::name(&mut k.z, linear_forms::scale(&Expr::integer(-1), &moment));
         wrenches.torque(k, frame, &vectors::mixed(home, moment));
     }
@@ -142,11 +143,11 @@ pub fn wrenches(
 /// derivatives of all speeds.
 pub fn generalised_forces(
     k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Attachment, LumpedInertia>,
+    inertias: &BTreeMap<Attachment, LumpedInertia>,
     derivatives: Vec<Expr>,
 ) -> Vec<Expr> {
     let ground = ground(k);
-    let wrenches = wrenches(k, lumps, &mut Accelerations::new(derivatives, ground));
+    let wrenches = wrenches(k, inertias, &mut Accelerations::new(derivatives, ground));
     pass_back(k, wrenches)
 }
 

@@ -37,23 +37,23 @@ struct Form {
 /// the last speed stands for prescribed motion (the remainders, with speed 1).
 pub fn full_mass_matrix(
     k: &mut Kinematics<'_>,
-    lumps: &BTreeMap<Attachment, LumpedInertia>,
+    inertias: &BTreeMap<Attachment, LumpedInertia>,
 ) -> BTreeMap<(usize, usize), Expr> {
     let mut form = Form::default();
     let (mut points, mut frames) = (Vec::new(), Vec::new());
-    for (&(frame, point), lump) in lumps {
+    for (&(frame, point), lumped) in inertias {
         if let Some(point) = point {
             points.push(point);
-            if !lump.mass.is_zero() {
-                sum_scalar(&mut form.mass, point, &lump.mass);
+            if !lumped.mass.is_zero() {
+                sum_scalar(&mut form.mass, point, &lumped.mass);
             }
         }
         if frame != FrameId::N {
             frames.push(frame);
-            let inertia = lump.inertia(k);
+            let inertia = lumped.inertia(k);
             sum_symmetric(&mut form.inertia, frame, &inertia);
             if let Some(point) = point {
-                sum_triple(&mut form.moment, (point, frame), &lump.moment);
+                sum_triple(&mut form.moment, (point, frame), &lumped.moment);
             }
         }
     }

@@ -31,7 +31,7 @@ struct Writer<'k, 'm> {
     guards: Vec<Guard<Node>>,
     independent: Vec<usize>,
     dependent: Vec<usize>,
-    lumps: BTreeMap<Attachment, LumpedInertia>,
+    inertias: BTreeMap<Attachment, LumpedInertia>,
     /// what each diagonal entry of the mass matrix can be at most, whatever the angles; empty where
     /// dependent speeds enter
     largest: Vec<Node>,
@@ -47,7 +47,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
     for (slot, speed) in k.mechanism.speeds.iter().enumerate() {
         if speed.dependent { dependent.push(slot) } else { independent.push(slot) }
     }
-    let lumps = base_parameters::lumped_inertias(k, Masses::Regrouped);
+    let inertias = base_parameters::lumped_inertias(k, Masses::Regrouped);
     let mut writer = Writer {
         k,
         graph: Graph::new(),
@@ -56,7 +56,7 @@ pub fn write(k: &mut Kinematics<'_>) -> Derived {
         guards: Vec::new(),
         independent,
         dependent,
-        lumps,
+        inertias,
         largest: Vec::new(),
         articulated: None,
         followers: Vec::new(),
@@ -122,7 +122,7 @@ impl Writer<'_, '_> {
 
     /// The mass matrix in independent speeds, and what couples them to prescribed motion.
     fn mass_matrix(&mut self) -> (Vec<Vec<Node>>, Vec<Node>) {
-        let full = inertia::full_mass_matrix(self.k, &self.lumps);
+        let full = inertia::full_mass_matrix(self.k, &self.inertias);
         let remainder = self.k.speeds.len();
         let entry = |r: usize, s: usize| full.get(&(r.min(s), r.max(s))).cloned().unwrap_or_else(Expr::zero);
         let (independent, dependent) = (self.independent.clone(), self.dependent.clone());
@@ -170,7 +170,7 @@ impl Writer<'_, '_> {
         }
         let prescribed: Vec<Expr> = independent.iter().map(|&r| reduced(r, remainder)).collect();
         if dependent.is_empty() {
-            let largest = bounds::diagonal(self.k, &self.lumps);
+            let largest = bounds::diagonal(self.k, &self.inertias);
             self.largest = self.nodes(&largest);
         }
         let matrix: Vec<Vec<Node>> = matrix.iter().map(|row| self.nodes(row)).collect();
@@ -199,7 +199,7 @@ impl Writer<'_, '_> {
 
     /// Generalised forces in independent speeds for given derivatives of all speeds.
     fn reduced_forces(&mut self, derivatives: Vec<Expr>) -> Vec<Node> {
-        let forces = forces::generalised_forces(self.k, &self.lumps, derivatives);
+        let forces = forces::generalised_forces(self.k, &self.inertias, derivatives);
         let mut result = Vec::new();
         for &r in &self.independent.clone() {
             let mut sum = forces[r].clone();
@@ -227,12 +227,12 @@ impl Writer<'_, '_> {
     /// forces.
     fn articulate(&mut self, contacts: &[ContactForms]) -> Wrenches {
         let mut apart = self.apart();
-        let lumps = base_parameters::lumped_inertias(self.k, Masses::InBody);
-        let acting = forces::wrenches(self.k, &lumps, &mut apart);
+        let inertias = base_parameters::lumped_inertias(self.k, Masses::InBody);
+        let acting = forces::wrenches(self.k, &inertias, &mut apart);
         let all = || contacts.iter().flat_map(|forms| forms.forces.iter().flatten()).chain([&acting]);
         let points = all().flat_map(|wrenches| wrenches.forces.keys().copied()).collect();
         let frames = all().flat_map(|wrenches| wrenches.torques.keys().copied()).collect();
-        self.articulated = Articulated::new(self.k, &lumps, points, frames);
+        self.articulated = Articulated::new(self.k, &inertias, points, frames);
         acting
     }
 

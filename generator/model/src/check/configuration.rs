@@ -95,7 +95,7 @@ fn free_coordinate(m: &Mechanism, state: &State, dependent: &[usize]) -> Option<
     Some((0..dependent.len()).find(without).map(|column| dependent[column]))
 }
 
-/// Which of the two roads decided.
+/// Which of the two computations decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Decided {
     Exactly,

@@ -63,18 +63,18 @@ pub fn read_all(
     places: &mut Places,
     mistakes: &mut Vec<Diagnostic>,
 ) -> Vec<Read> {
-    let mut reading = Reading {
+    let mut reader = Importer {
         files,
         left: most,
         all: vec![Read { file: None, outline: root, imports: vec![] }],
         places,
         mistakes,
     };
-    reading.imports_of(0, &mut vec![(0, Span::default())]);
-    reading.all
+    reader.imports_of(0, &mut vec![(0, Span::default())]);
+    reader.all
 }
 
-struct Reading<'a> {
+struct Importer<'a> {
     files: &'a dyn Files,
     /// how many tokens may still be read
     left: usize,
@@ -83,7 +83,7 @@ struct Reading<'a> {
     mistakes: &'a mut Vec<Diagnostic>,
 }
 
-impl Reading<'_> {
+impl Importer<'_> {
     /// Reads what a file imports. `open` are the files on the way to it, each with the import that led there.
     fn imports_of(&mut self, importing: usize, open: &mut Vec<(usize, Span)>) {
         for import in self.all[importing].outline.imports.clone() {

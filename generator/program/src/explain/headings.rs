@@ -54,7 +54,7 @@ pub fn lefts(mechanism: &Mechanism, output: &Output, symbol: &str) -> Vec<Left> 
         }
         Entries::Scalar | Entries::Numbers | Entries::ValueAndDerivatives | Entries::Lists => {}
     }
-    let [rows, columns] = description.axes.map(letters);
+    let [rows, columns] = description.axes.map(axis_names);
     let index = |axes: Option<[char; 3]>, number: usize| match axes.and_then(|axes| axes.get(number).copied())
     {
         Some(axis) => axis.to_string(),
@@ -76,8 +76,8 @@ pub fn lefts(mechanism: &Mechanism, output: &Output, symbol: &str) -> Vec<Left> 
     lefts
 }
 
-/// The letters of axes.
-fn letters(axes: Axes) -> Option<[char; 3]> {
+/// What the axes are called.
+fn axis_names(axes: Axes) -> Option<[char; 3]> {
     match axes {
         Axes::None => None,
         Axes::Space => Some(['x', 'y', 'z']),

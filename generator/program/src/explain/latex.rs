@@ -69,7 +69,7 @@ fn plain(text: &str) -> String {
 }
 
 /// A letter or word in a formula.
-fn letters(text: &str) -> String {
+fn identifier(text: &str) -> String {
     let mut rest = text;
     let mut out = String::new();
     while let Some((name, letter)) =
@@ -102,11 +102,11 @@ fn with_index(base: &str, index: &str) -> String {
 }
 
 fn symbol(symbol: &Symbol) -> String {
-    with_index(&letters(&symbol.head), &symbol.index)
+    with_index(&identifier(&symbol.head), &symbol.index)
 }
 
 fn rate(symbol: &Symbol) -> String {
-    with_index(&format!("\\dot{{{}}}", letters(&symbol.head)), &symbol.index)
+    with_index(&format!("\\dot{{{}}}", identifier(&symbol.head)), &symbol.index)
 }
 
 fn number(number: f64) -> String {
@@ -129,7 +129,7 @@ impl Writer<'_> {
     }
 
     fn z(&self, index: usize) -> String {
-        with_index(&letters(self.document.symbols.letter), &index.to_string())
+        with_index(&identifier(self.document.symbols.letter), &index.to_string())
     }
 
     fn left(&self, left: &Left) -> String {

@@ -5,18 +5,38 @@ use std::path::{Path, PathBuf};
 use crate::output;
 use crate::stop::{Outcome, Stop};
 
-/// The model, of a mechanism called `Pendulum`.
-const PENDULUM: &str = include_str!("pendulum.mech");
+/// A model to begin with.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Template {
+    /// a rod on a pivot whose tip strikes a wall: point, normal and gap of the contact are written out
+    Pendulum,
+    /// a box that tumbles on a floor: mass, inertia and contacts follow from shapes
+    Crate,
+}
 
-/// Write a commented model to begin with: a pendulum whose tip strikes a wall
+impl Template {
+    /// The name of its mechanism, and its text.
+    fn model(self) -> (&'static str, &'static str) {
+        match self {
+            Self::Pendulum => ("Pendulum", include_str!("pendulum.mech")),
+            Self::Crate => ("Crate", include_str!("crate.mech")),
+        }
+    }
+}
+
+/// Write a commented model to begin with: a pendulum whose tip strikes a wall, or a crate on a floor
 ///
 ///   hodograph new pendulum
 ///   hodograph simulate pendulum.mech --html pendulum.html
+///   hodograph new my_crate --template crate
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
     /// the name of the mechanism, in letters, digits and `_`; its file is NAME.mech
     name: PathBuf,
+    /// what to begin with
+    #[arg(long, value_enum, default_value_t = Template::Pendulum)]
+    template: Template,
 }
 
 /// Runs the command.
@@ -42,7 +62,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if path.exists() {
         return Err(Stop::Fault(format!("{} exists: give another name, or remove it", path.display())));
     }
-    let text = PENDULUM.replace("mechanism Pendulum;", &format!("mechanism {mechanism};"));
+    let (of_template, text) = arguments.template.model();
+    let text = text.replace(&format!("mechanism {of_template};"), &format!("mechanism {mechanism};"));
     output::new_file(&path, text.as_bytes())?;
     let shown = path.display();
     let page = Path::new(&file).with_extension("html");

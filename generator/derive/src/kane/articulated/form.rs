@@ -139,21 +139,21 @@ fn split<K: Ord + Copy>(
 }
 
 impl Form {
-    /// The inertia of all lumps.
-    pub fn new(k: &mut Kinematics<'_>, lumps: &BTreeMap<Attachment, LumpedInertia>) -> Self {
+    /// The inertia of all bodies.
+    pub fn new(k: &mut Kinematics<'_>, inertias: &BTreeMap<Attachment, LumpedInertia>) -> Self {
         let mut form = Form::default();
-        for (&(frame, point), lump) in lumps {
+        for (&(frame, point), lumped) in inertias {
             if let Some(point) = point {
-                let mass = std::array::from_fn(|i| if i < 3 { lump.mass.clone() } else { Expr::zero() });
+                let mass = std::array::from_fn(|i| if i < 3 { lumped.mass.clone() } else { Expr::zero() });
                 sum_symmetric(&mut form.mass, point, &mass);
             }
             if frame != FrameId::N {
-                let inertia = lump.inertia(k);
+                let inertia = lumped.inertia(k);
                 sum_symmetric(&mut form.inertia, frame, &inertia);
                 if let Some(point) = point {
                     // da . (dalpha x S), rows turned to the point's axes
                     let (from, to) = (k.frames[frame.0].home, k.points[point.0].home);
-                    let skew = turn_rows(k, &arm_matrix(&lump.moment), from, to);
+                    let skew = turn_rows(k, &arm_matrix(&lumped.moment), from, to);
                     sum_matrix(&mut form.moment, (point, frame), &skew);
                 }
             }

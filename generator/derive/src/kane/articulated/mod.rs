@@ -53,16 +53,16 @@ impl Articulated {
     /// where the graph is no tree, or constraints couple the speeds.
     pub fn new(
         k: &mut Kinematics<'_>,
-        lumps: &BTreeMap<Attachment, LumpedInertia>,
+        inertias: &BTreeMap<Attachment, LumpedInertia>,
         mut points: Vec<PointId>,
         mut frames: Vec<FrameId>,
     ) -> Option<Self> {
         if !k.dependent.is_empty() {
             return None;
         }
-        let mut form = Form::new(k, lumps);
-        points.extend(lumps.keys().filter_map(|attachment| attachment.1));
-        frames.extend(lumps.keys().map(|attachment| attachment.0).filter(|&frame| frame != FrameId::N));
+        let mut form = Form::new(k, inertias);
+        points.extend(inertias.keys().filter_map(|attachment| attachment.1));
+        frames.extend(inertias.keys().map(|attachment| attachment.0).filter(|&frame| frame != FrameId::N));
         let order = elimination_order::elimination_order(k, &points, &frames);
         let mut last: BTreeMap<usize, usize> = BTreeMap::new();
         for (at, node) in order.iter().enumerate() {

@@ -37,6 +37,12 @@ impl Lowering<'_> {
             self.report(error.help(format!("write `{form}`; what is struck stands under `against`")));
             return (surface, more);
         };
+        if fields.is_empty() {
+            let message = "a surface that says nothing";
+            let error = Diagnostic::new(codes::SURFACE, field.value.span, message);
+            self.report(error.help("state `mu`, `e` and `law`, or leave `surface` out"));
+            return (surface, more);
+        }
         let owner = &field.name;
         let known = words::SURFACE;
         let [mu, e, law, mu_static, mu_impact, sliding, restitution] =

@@ -28,7 +28,7 @@ pub fn math(inner: &str) -> String {
 }
 
 /// A letter, which browsers set italic, or a word, which stands upright.
-pub fn letters(text: &str) -> String {
+pub fn identifier(text: &str) -> String {
     format!("<mi>{}</mi>", plain(&text.replace('\'', "\u{2032}")))
 }
 
@@ -50,11 +50,11 @@ fn scripted(base: String, index: &str, exponent: &str) -> String {
 }
 
 fn symbol(symbol: &Symbol, exponent: &str) -> String {
-    scripted(letters(&symbol.head), &symbol.index, exponent)
+    scripted(identifier(&symbol.head), &symbol.index, exponent)
 }
 
 fn rate(symbol: &Symbol) -> String {
-    let head = letters(&symbol.head);
+    let head = identifier(&symbol.head);
     scripted(format!("<mover accent=\"true\">{head}<mo>&#x2D9;</mo></mover>"), &symbol.index, "")
 }
 
@@ -87,7 +87,7 @@ impl Writer<'_> {
     }
 
     fn z(&self, index: usize, exponent: &str) -> String {
-        scripted(letters(self.symbols.letter), &index.to_string(), exponent)
+        scripted(identifier(self.symbols.letter), &index.to_string(), exponent)
     }
 
     /// A left side.
@@ -96,7 +96,7 @@ impl Writer<'_> {
             Left::Z(index) => self.z(*index, ""),
             Left::Of(name, false) => self.name(name),
             Left::Of(name, true) => rate(&self.symbols.of(name)),
-            Left::Entry(symbol, indices) => scripted(letters(symbol), &indices.join(","), ""),
+            Left::Entry(symbol, indices) => scripted(identifier(symbol), &indices.join(","), ""),
         }
     }
 

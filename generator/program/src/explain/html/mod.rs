@@ -8,7 +8,7 @@ mod escape;
 mod mathml;
 
 use escape::plain;
-use mathml::{Writer, letters, math};
+use mathml::{Writer, identifier, math};
 
 use super::symbols::{Form, form, unit};
 use super::{Document, Equation, Place, Rank, Section, Term, text};
@@ -188,7 +188,7 @@ fn matrix(section: &Section, places: &[Vec<Place<'_>>], writer: &Writer<'_>) -> 
     let rows = places.iter().map(|row| format!("<mtr>{}</mtr>", row.iter().map(cell).collect::<String>()));
     let rows: String = rows.collect();
     let symbol =
-        section.symbol.as_ref().map_or(String::new(), |symbol| format!("{}<mo>=</mo>", letters(symbol)));
+        section.symbol.as_ref().map_or(String::new(), |symbol| format!("{}<mo>=</mo>", identifier(symbol)));
     format!(
         "<div class=\"matrix\" tabindex=\"0\" role=\"group\" aria-label=\"{}\"><math display=\"block\"><mrow>{symbol}<mrow><mo \
          form=\"prefix\" stretchy=\"true\">[</mo><mtable>{rows}</mtable><mo form=\"postfix\" stretchy=\"true\">]</mo></mrow></mrow></math></div>\n",
