@@ -5,7 +5,6 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-mod animation;
 mod answers;
 mod commands;
 mod derivation;

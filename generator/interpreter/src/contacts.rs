@@ -11,7 +11,7 @@ use hodograph::{
     ContactMode, ContactOutcome, ContactState, ContactSurface, Contacts, ImpactError, Law, ReducedMatrix,
     State, StateError, StatedLaw, Surface,
 };
-use hodograph_model::model::mechanism::Law as Stated;
+use hodograph_model::model::mechanism::{Law as Stated, Mechanism};
 use hodograph_program::program::operation::Operation;
 use hodograph_program::program::{ContactQuantity, Quantity, Structure};
 
@@ -200,6 +200,29 @@ impl InterpretedMechanism {
     }
 }
 
+/// Friction and restitution that a model states for a contact.
+pub fn stated_surface(model: &Mechanism, contact: usize) -> Option<Surface<f64>> {
+    let stated = model.contacts.get(contact)?.surface?;
+    let law = match stated.law {
+        Stated::Newton => Law::Newton,
+        Stated::Poisson => Law::Poisson,
+        Stated::Stronge => Law::Stronge,
+    };
+    Some(Surface { mu: stated.mu, e: stated.e, law })
+}
+
+/// What a model states of a contact beyond that.
+pub fn stated_law(model: &Mechanism, contact: usize) -> StatedLaw<'_> {
+    let Some(contact) = model.contacts.get(contact) else { return StatedLaw::default() };
+    let law = &contact.law;
+    StatedLaw {
+        mu_static: law.mu_static,
+        mu_impact: law.mu_impact,
+        sliding: law.sliding.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+        restitution: law.restitution.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+    }
+}
+
 /// What the mode of a closed contact is decided from.
 struct Touching {
     known: Contact<f64>,
@@ -246,24 +269,11 @@ impl Contacts for InterpretedMechanism {
     }
 
     fn surface(&self, contact: usize) -> Option<Surface<f64>> {
-        let stated = self.model().contacts.get(contact)?.surface?;
-        let law = match stated.law {
-            Stated::Newton => Law::Newton,
-            Stated::Poisson => Law::Poisson,
-            Stated::Stronge => Law::Stronge,
-        };
-        Some(Surface { mu: stated.mu, e: stated.e, law })
+        stated_surface(self.model(), contact)
     }
 
     fn stated_law(&self, contact: usize) -> StatedLaw<'_> {
-        let Some(contact) = self.model().contacts.get(contact) else { return StatedLaw::default() };
-        let law = &contact.law;
-        StatedLaw {
-            mu_static: law.mu_static,
-            mu_impact: law.mu_impact,
-            sliding: law.sliding.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
-            restitution: law.restitution.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
-        }
+        stated_law(self.model(), contact)
     }
 
     fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {

@@ -5,14 +5,14 @@ use std::sync::Arc;
 
 use hodograph::generated::check_length;
 use hodograph::{ParameterError, State, StateError};
-use hodograph_model::model::mechanism::{self, Mechanism, Orientation};
+use hodograph_model::model::mechanism::{self, Mechanism};
 use hodograph_model::{check, rendering};
 use hodograph_program::interpret::{Arguments, Constants};
 use hodograph_program::program::Program;
 use hodograph_program::{artifact, files, program};
 
 use crate::routines::{Request, Routines};
-use crate::{Error, parameters};
+use crate::{Error, description, parameters};
 
 /// A mechanism whose equations are interpreted. It has the traits [`hodograph::Mechanism`] and
 /// [`hodograph::Contacts`].
@@ -55,7 +55,7 @@ impl InterpretedMechanism {
     ///
     /// [`Error`]
     pub fn with_parameters(model: Mechanism, program: Program, parameters: &[f64]) -> Result<Self, Error> {
-        let all = all_parameters(&model, parameters)?;
+        let all = parameters::all(&model, parameters)?;
         Self::with(model, program, all)
     }
 
@@ -81,15 +81,10 @@ impl InterpretedMechanism {
     fn with(model: Mechanism, program: Program, parameters: Vec<f64>) -> Result<Self, Error> {
         program::fits(&model, &program).map_err(Error::Derivation)?;
         let constants = parameters::constants(&model, &program, &parameters)?;
-        let quaternions = model.frames.iter().filter_map(|frame| match &frame.orientation {
-            Orientation::Quaternion(ids) => Some(ids.map(|id| id.0)),
-            _ => None,
-        });
-        let dependent = model.coordinates.iter().enumerate().filter(|(_, coordinate)| coordinate.dependent);
         Ok(InterpretedMechanism {
             routines: Routines::new(&model),
-            quaternions: quaternions.collect(),
-            dependent_coordinates: dependent.map(|(index, _)| index).collect(),
+            quaternions: description::quaternions(&model),
+            dependent_coordinates: description::dependent_coordinates(&model),
             model: Arc::new(model),
             program: Arc::new(program),
             parameters,
@@ -127,11 +122,11 @@ impl InterpretedMechanism {
 
     /// Number of independent speeds.
     pub(crate) fn freedom(&self) -> usize {
-        self.model.speeds.iter().filter(|speed| !speed.dependent).count()
+        description::freedom(&self.model)
     }
 
     pub(crate) fn change_parameters(&mut self, parameters: &[f64]) -> Result<(), ParameterError> {
-        let all = all_parameters(&self.model, parameters)?;
+        let all = parameters::all(&self.model, parameters)?;
         self.constants = parameters::constants(&self.model, &self.program, &all)?;
         self.parameters = all;
         self.routines.refresh(&self.constants);
@@ -220,18 +215,4 @@ impl InterpretedMechanism {
 fn arguments<'a>(state: &State<'a>, accelerations: &'a [f64]) -> Arguments<'a> {
     let State { time, coordinates, speeds, inputs } = *state;
     Arguments { time, coordinates, speeds, inputs, accelerations, tangent: &[] }
-}
-
-/// All parameters from those that are not `fixed`.
-fn all_parameters(model: &Mechanism, parameters: &[f64]) -> Result<Vec<f64>, ParameterError> {
-    let expected = model.parameters.iter().filter(|parameter| !parameter.fixed).count();
-    if parameters.len() != expected {
-        return Err(ParameterError::Length { expected, found: parameters.len() });
-    }
-    let mut given = parameters.iter().copied();
-    let mut next = |parameter: &mechanism::Variable| match parameter.fixed {
-        true => parameter.value.unwrap_or(0.0),
-        false => given.next().unwrap_or(f64::NAN),
-    };
-    Ok(model.parameters.iter().map(&mut next).collect())
 }

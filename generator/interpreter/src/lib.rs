@@ -5,7 +5,7 @@
 //! Its numbers have the same bits as those of the generated module. So a program that works on many models,
 //! or is called from another language, needs no compiler.
 //!
-//! [`columns`] evaluates many states at once.
+//! [`columns`] evaluates many states at once. A [`NumericMechanism`] needs the model alone, and is slower.
 //!
 //! ```no_run
 //! use hodograph::{ComponentKind, Mechanism};
@@ -18,13 +18,16 @@
 
 pub mod columns;
 mod contacts;
+mod description;
 mod error;
 mod intern;
 mod interpreted;
 mod mechanism;
 pub mod motion;
+mod numeric;
 mod parameters;
 mod routines;
 
 pub use error::Error;
 pub use interpreted::InterpretedMechanism;
+pub use numeric::NumericMechanism;

@@ -2,42 +2,14 @@
 
 use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};
-use hodograph::{Component, ComponentKind, Mechanism, ParameterError, State, StateError};
-use hodograph_model::model::mechanism::Variable;
+use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
 use hodograph_model::numeric;
 use hodograph_program::program::{PointQuantity, Quantity};
 
-use crate::InterpretedMechanism;
+use crate::{InterpretedMechanism, description, parameters};
 use crate::routines::Request;
 
-/// A quantity of a declaration as the trait describes it.
-fn described(quantity: &Variable) -> Component<'_> {
-    Component { name: &quantity.name, unit: if quantity.unit.is_empty() { "1" } else { &quantity.unit } }
-}
-
-fn named(name: &str) -> Component<'_> {
-    Component { name, unit: "" }
-}
-
 impl InterpretedMechanism {
-    /// The quantities of a kind that the model declares with units.
-    fn declared(&self, kind: ComponentKind) -> Box<dyn Iterator<Item = &Variable> + '_> {
-        let model = self.model();
-        match kind {
-            ComponentKind::Parameter => {
-                Box::new(model.parameters.iter().filter(|parameter| !parameter.fixed))
-            }
-            ComponentKind::Coordinate => Box::new(model.coordinates.iter()),
-            ComponentKind::DependentCoordinate => {
-                Box::new(self.dependent_coordinates().iter().map(|&index| &model.coordinates[index]))
-            }
-            ComponentKind::Speed => Box::new(model.speeds.iter().filter(|speed| !speed.dependent)),
-            ComponentKind::DependentSpeed => Box::new(model.speeds.iter().filter(|speed| speed.dependent)),
-            ComponentKind::Input => Box::new(model.inputs.iter()),
-            _ => Box::new(std::iter::empty()),
-        }
-    }
-
     /// The quantities that the program has and that are offered by name.
     fn named(&self) -> impl Iterator<Item = Quantity> + '_ {
         let has = |quantity: &Quantity| {
@@ -47,7 +19,7 @@ impl InterpretedMechanism {
     }
 
     /// Whether there is one of this number.
-    pub(crate) fn exists(&self, kind: ComponentKind, index: usize) -> Result<(), StateError> {
+    pub(crate) fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
         if index < Mechanism::count(self, kind) { Ok(()) } else { Err(StateError::Missing { kind, index }) }
     }
 
@@ -59,7 +31,7 @@ impl InterpretedMechanism {
         accelerations: &[f64],
         what: &'static str,
     ) -> Result<Vector3<f64>, StateError> {
-        self.exists(ComponentKind::Point, point)?;
+        self.exists(Kind::Point, point)?;
         let request = Request::Point(point, quantity);
         if point == 0 {
             self.check(state)?;
@@ -77,27 +49,20 @@ impl Mechanism for InterpretedMechanism {
         &self.model().name
     }
 
-    fn count(&self, kind: ComponentKind) -> usize {
+    fn count(&self, kind: Kind) -> usize {
         match kind {
-            ComponentKind::Point => self.model().points.len(),
-            ComponentKind::Frame => self.model().frames.len(),
-            ComponentKind::Contact => self.model().contacts.len(),
-            ComponentKind::Quantity => self.named().count(),
-            kind => self.declared(kind).count(),
+            Kind::Quantity => self.named().count(),
+            kind => description::count(self.model(), kind),
         }
     }
 
-    fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
-        let model = self.model();
+    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>> {
         match kind {
-            ComponentKind::Point => model.points.get(index).map(|point| named(&point.name)),
-            ComponentKind::Frame => model.frames.get(index).map(|frame| named(&frame.name)),
-            ComponentKind::Contact => model.contacts.get(index).map(|contact| named(&contact.name)),
-            ComponentKind::Quantity => {
+            Kind::Quantity => {
                 let row = self.named().nth(index)?.description();
                 Some(Component { name: row.word, unit: row.unit })
             }
-            kind => self.declared(kind).nth(index).map(described),
+            kind => description::component(self.model(), kind, index),
         }
     }
 
@@ -105,11 +70,9 @@ impl Mechanism for InterpretedMechanism {
         self.dependent_coordinates().get(index).copied()
     }
 
-    fn parameter_values(&self, parameters: &mut [f64]) -> Result<(), StateError> {
-        let all = self.model().parameters.iter().zip(self.all_parameters());
-        let run_time: Vec<f64> =
-            all.filter(|(parameter, _)| !parameter.fixed).map(|(_, &value)| value).collect();
-        write(parameters, &run_time, "parameters")
+    fn parameter_values(&self, values: &mut [f64]) -> Result<(), StateError> {
+        let run_time = parameters::run_time(self.model(), self.all_parameters());
+        write(values, &run_time, "parameters")
     }
 
     fn set_parameter_values(&mut self, parameters: &[f64]) -> Result<(), ParameterError> {
@@ -203,8 +166,8 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn quantity(&self, quantity: usize, state: &State<'_>, values: &mut [f64]) -> Result<(), StateError> {
-        self.exists(ComponentKind::Quantity, quantity)?;
-        let missing = StateError::Missing { kind: ComponentKind::Quantity, index: quantity };
+        self.exists(Kind::Quantity, quantity)?;
+        let missing = StateError::Missing { kind: Kind::Quantity, index: quantity };
         let quantity = self.named().nth(quantity).ok_or(missing)?;
         self.write(Request::Whole(quantity), state, &[], values, quantity.description().word)
     }
@@ -229,7 +192,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn jacobian(&self, point: usize, state: &State<'_>, jacobian: &mut [f64]) -> Result<(), StateError> {
-        self.exists(ComponentKind::Point, point)?;
+        self.exists(Kind::Point, point)?;
         if point == 0 {
             self.check(state)?;
             check_length(jacobian, 3 * self.freedom(), "the partial velocities")?;
@@ -241,7 +204,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn orientation(&self, frame: usize, state: &State<'_>) -> Result<Matrix3<f64>, StateError> {
-        self.exists(ComponentKind::Frame, frame)?;
+        self.exists(Kind::Frame, frame)?;
         let request = Request::Frame(frame);
         if frame == 0 {
             self.check(state)?;

@@ -3,7 +3,7 @@
 use hodograph::ParameterError;
 use hodograph::generated::{abs, check_inertia, check_mass, exp, log, power, recip, sqrt};
 use hodograph_model::arithmetic::Function;
-use hodograph_model::model::mechanism::{DefinitionValue, Mechanism, Scalar};
+use hodograph_model::model::mechanism::{DefinitionValue, Mechanism, Scalar, Variable};
 use hodograph_program::interpret::Constants;
 use hodograph_program::program::Program;
 
@@ -22,6 +22,22 @@ pub fn constants(
     program: &Program,
     parameters: &[f64],
 ) -> Result<Constants, ParameterError> {
+    check(model, parameters)?;
+    let constants = Constants::new(program, parameters);
+    let not_finite = || ParameterError::from(hodograph::StateError::NotFinite);
+    if let Some((message, finite)) = constants.failure(program) {
+        let singular = ParameterError::Singular { what: intern(message) };
+        return Err(if finite { singular } else { not_finite() });
+    }
+    if constants.finite(program) { Ok(constants) } else { Err(not_finite()) }
+}
+
+/// Checks what the model says of its bodies with these parameters.
+///
+/// # Errors
+///
+/// As `new` of a generated module.
+pub fn check(model: &Mechanism, parameters: &[f64]) -> Result<(), ParameterError> {
     let run_time = model.parameters.iter().zip(parameters).filter(|(parameter, _)| !parameter.fixed);
     for (parameter, value) in run_time {
         if !value.is_finite() {
@@ -40,13 +56,31 @@ pub fn constants(
             check_inertia([xx, yy, zz, xy, yz, zx], name)?;
         }
     }
-    let constants = Constants::new(program, parameters);
-    let not_finite = || ParameterError::from(hodograph::StateError::NotFinite);
-    if let Some((message, finite)) = constants.failure(program) {
-        let singular = ParameterError::Singular { what: intern(message) };
-        return Err(if finite { singular } else { not_finite() });
+    Ok(())
+}
+
+/// All parameters from those that are not `fixed`.
+///
+/// # Errors
+///
+/// [`ParameterError::Length`].
+pub fn all(model: &Mechanism, parameters: &[f64]) -> Result<Vec<f64>, ParameterError> {
+    let expected = model.parameters.iter().filter(|parameter| !parameter.fixed).count();
+    if parameters.len() != expected {
+        return Err(ParameterError::Length { expected, found: parameters.len() });
     }
-    if constants.finite(program) { Ok(constants) } else { Err(not_finite()) }
+    let mut given = parameters.iter().copied();
+    let mut next = |parameter: &Variable| match parameter.fixed {
+        true => parameter.value.unwrap_or(0.0),
+        false => given.next().unwrap_or(f64::NAN),
+    };
+    Ok(model.parameters.iter().map(&mut next).collect())
+}
+
+/// Those that are not `fixed`, of all parameters.
+pub fn run_time(model: &Mechanism, all: &[f64]) -> Vec<f64> {
+    let all = model.parameters.iter().zip(all);
+    all.filter(|(parameter, _)| !parameter.fixed).map(|(_, &value)| value).collect()
 }
 
 /// An expression of parameters alone; `None` for any other.

@@ -1,25 +1,21 @@
 //! `hodograph simulate`: simulates motion with collisions and lasting contact.
 
-mod energies;
 mod figure;
-mod gap;
 mod inputs;
 mod lines;
 mod pictures;
-mod recording;
-mod rigid;
 mod setup;
-mod solids;
 mod summary;
 mod surfaces;
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use hodograph::{ComponentKind, Mechanism as _, State as Borrowed};
+use hodograph::{Kind as Of, Mechanism as _, State as Borrowed};
+use hodograph_animation::{Span, Watch};
 use hodograph_generator::artifact::place;
 use hodograph_interpreter::{InterpretedMechanism, motion};
-use hodograph_simulation::{EventKind, ImpactsAtOnce, Options, Progress, Simulation, SimulationError};
+use hodograph_simulation::{Event, ImpactsAtOnce, Options, Simulation, SimulationError};
 
 use self::lines::{Format, Lines};
 use self::pictures::{PictureFiles, Pictures};
@@ -181,7 +177,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
     let setup = || setup::setup(&arguments.model, &machine.mechanism, &state, &options.surfaces);
     let mut pictures = Pictures::new(&arguments.pictures, &mechanism, &state, setup);
     let progress = bar(state.time, until, format);
-    let span = Span { until, step, at_rest };
+    let span = Span { start: state.time, until, step, at_rest };
     let done = follow(&mechanism, &state, options, &span, &mut lines, &mut pictures, &progress);
     progress.finish_and_clear();
     // What was seen before the motion ended is worth seeing, above all where it ended with an error.
@@ -197,19 +193,6 @@ const MOST_NUMBERS: f64 = 2e7;
 const BYTES: f64 = 10.0;
 /// How long a motion lasts where nothing is said, s.
 const LASTS: f64 = 10.0;
-/// Speeds below count as none, in their units.
-const STILL: f64 = 1e-9;
-/// All is at rest where this many samples show no speed.
-const RESTS: u32 = 10;
-
-/// Which stretch of time is simulated.
-struct Span {
-    until: f64,
-    step: f64,
-    /// whether it ends earlier where all is at rest
-    at_rest: bool,
-}
-
 /// Refuses so many steps that their pictures or tables, which are kept until the end, would be larger than
 /// anything opens; and more than can be counted.
 fn check_size(
@@ -225,8 +208,8 @@ fn check_size(
             "--step {step:e} is too short: {steps:.1e} steps; give a longer one"
         )));
     }
-    let table = if format == Format::Table { 1 + mechanism.count(ComponentKind::Coordinate) } else { 0 };
-    let each = if pictures { recording::numbers(mechanism) } else { table };
+    let table = if format == Format::Table { 1 + mechanism.count(Of::Coordinate) } else { 0 };
+    let each = if pictures { hodograph_animation::numbers(mechanism, mechanism.model()) } else { table };
     let numbers = steps * each as f64;
     if numbers <= MOST_NUMBERS {
         return Ok(());
@@ -248,7 +231,7 @@ fn follow(
     mechanism: &InterpretedMechanism,
     state: &State,
     options: Options,
-    &Span { until, step, at_rest }: &Span,
+    span: &Span,
     lines: &mut Lines<'_>,
     pictures: &mut Pictures<'_>,
     progress: &indicatif::ProgressBar,
@@ -257,37 +240,49 @@ fn follow(
     lines.sample(state.time, &state.coordinates, &state.speeds)?;
     lines.energy(simulation.energy().map_err(fault)?);
     pictures.add(&simulation);
-    let shown = |t: f64| {
-        progress.set_position(((t - state.time) * 1e3) as u64);
-        progress.set_message(format!("t = {t:.3} s"));
-    };
-    let mut still = 0;
-    'motion: for count in 1_u64.. {
-        let end = (state.time + count as f64 * step).min(until);
-        while let Progress::Event(event) = simulation.advance(end).map_err(fault)? {
-            lines.event(&event)?;
-            pictures.event(&event, &simulation);
-            shown(event.time);
-            if matches!(event.kind, EventKind::Singular) {
-                // The motion has an end of its own.
-                lines.sample(event.time, simulation.coordinates(), simulation.speeds())?;
-                pictures.add(&simulation);
-                break 'motion;
-            }
-        }
-        if end > state.time {
-            lines.sample(end, simulation.coordinates(), simulation.speeds())?;
-        }
-        pictures.add(&simulation);
-        shown(end);
-        let is_still = simulation.speeds().iter().all(|speed| speed.abs() <= STILL);
-        still = if is_still { still + 1 } else { 0 };
-        if end >= until || at_rest && still >= RESTS {
-            break;
-        }
-    }
+    hodograph_animation::follow(&mut simulation, span, &mut Writer { lines, pictures, progress, span })?;
     lines.energy(simulation.energy().map_err(fault)?);
     Ok(())
+}
+
+/// Writes samples and events.
+struct Writer<'w, 'l, 'p> {
+    lines: &'w mut Lines<'l>,
+    pictures: &'w mut Pictures<'p>,
+    progress: &'w indicatif::ProgressBar,
+    span: &'w Span,
+}
+
+impl Writer<'_, '_, '_> {
+    fn show(&self, t: f64) {
+        self.progress.set_position(((t - self.span.start) * 1e3) as u64);
+        self.progress.set_message(format!("t = {t:.3} s"));
+    }
+}
+
+impl Watch<Stop> for Writer<'_, '_, '_> {
+    fn sample(&mut self, simulation: &Simulation<'_>) -> Outcome {
+        let time = simulation.time();
+        if time > self.span.start {
+            self.lines.sample(time, simulation.coordinates(), simulation.speeds())?;
+        }
+        self.pictures.add(simulation);
+        self.show(time);
+        Ok(())
+    }
+
+    fn event(&mut self, event: &Event, simulation: &Simulation<'_>) -> Outcome {
+        self.lines.event(event)?;
+        self.pictures.event(event, simulation);
+        self.show(event.time);
+        Ok(())
+    }
+}
+
+impl From<SimulationError> for Stop {
+    fn from(error: SimulationError) -> Self {
+        fault(error)
+    }
 }
 
 /// Shown where someone looks at standard error and not at lines that run.

@@ -19,7 +19,7 @@ use serde_json::{Map, Value, json};
 
 use self::messages::{Log, Time, xyz};
 use self::scene::Scene;
-use crate::animation::{Animation, Series};
+use hodograph_animation::{Animation, Series};
 
 /// Times of the file are unsigned and those of its messages have 32 bits for seconds, s.
 pub const LAST: f64 = u32::MAX as f64;
@@ -75,12 +75,12 @@ fn known(number: f64) -> Option<Value> {
 
 /// The vectors of the contact forces along N.x, N.y, N.z, N; zero where a contact is open.
 fn forces(shown: &Animation, moment: usize) -> Map<String, Value> {
-    let of = |force: &crate::animation::Force| json!(xyz(force.force[moment].unwrap_or([0.0; 3])));
+    let of = |force: &hodograph_animation::Force| json!(xyz(force.force[moment].unwrap_or([0.0; 3])));
     shown.forces.iter().map(|force| (force.name.clone(), of(force))).collect()
 }
 
 /// An event in words.
-fn log(event: &crate::animation::Event) -> Log<'_> {
+fn log(event: &hodograph_animation::Happening) -> Log<'_> {
     let place = if event.contact.is_empty() { String::new() } else { format!(", {}", event.contact) };
     let impulse = event
         .impulse

@@ -1,10 +1,10 @@
 //! What is to be seen at a moment: points and lines, their names, arrows of forces and impulses.
 
+use hodograph_animation::{Animation, Happening, Shape};
 use nalgebra::Vector3;
 
 use super::messages::{Arrow, Color, Entity, Line, Pose, Sphere, Text, Time, Update, turning, xyz};
 use super::transforms::INERTIAL;
-use crate::animation::{Animation, Event, Shape};
 
 const fn color(r: f64, g: f64, b: f64) -> Color {
     Color { r, g, b, a: 1.0 }
@@ -156,7 +156,7 @@ impl<'a> Scene<'a> {
 
     /// The contact forces; where none acts, no arrow replaces the ones before.
     pub fn forces(&self, moment: usize) -> Update {
-        let arrow = |force: &crate::animation::Force| {
+        let arrow = |force: &hodograph_animation::Force| {
             self.arrow(force.at[moment], force.force[moment]?, self.largest[0], FORCE)
         };
         let arrows = self.shown.forces.iter().filter_map(arrow).collect();
@@ -164,7 +164,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The impulse of an event, for a while.
-    pub fn impulse(&self, event: &Event) -> Update {
+    pub fn impulse(&self, event: &Happening) -> Update {
         let arrow = event.at.zip(event.impulse);
         let arrow = arrow.and_then(|(at, impulse)| self.arrow(at, impulse, self.largest[1], IMPULSE));
         update(Entity {

@@ -4,7 +4,7 @@
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use super::messages::{Time, Transform, Transforms, turning, xyz};
-use crate::animation::Animation;
+use hodograph_animation::Animation;
 
 /// The inertial frame of models.
 pub const INERTIAL: &str = "N";

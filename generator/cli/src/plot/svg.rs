@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use hodograph_animation::escaped;
+
 use super::canvas::{Anchor, Colour, Shape, Sheet};
 use super::font::{FAMILY, LOWER, RAISE, SMALL};
 use super::label::{Kind, Label};
@@ -27,24 +29,6 @@ fn short(length: f64) -> String {
     let text = format!("{length:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
-}
-
-/// Text as SVG and HTML want it.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            letter if letter.is_control() => {}
-            _ => out.push(letter),
-        }
-    }
-    out
 }
 
 /// The attributes of a colour that fills, or of a line.

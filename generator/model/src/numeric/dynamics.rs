@@ -38,6 +38,8 @@ pub fn evaluate_views(m: &Mechanism, views: &Views<'_>) -> Result<Evaluation, Fa
         angular_velocities: Vec::new(),
         configuration: Vec::new(),
         dependent_accelerations: views.dependent_accelerations.clone(),
+        dependent_partials: views.dependent_partials.clone(),
+        prescribed_momentum: vec![0.0; p],
     };
     for body in &m.bodies {
         add_body(views, body, &mut out)?;
@@ -89,6 +91,7 @@ fn add_body(views: &Views<'_>, body: &Body, out: &mut Evaluation) -> Result<(), 
     let mass = views.now.scalar(&body.mass, Level::Motion)?.re;
     let partial = views.partials(|values| values.velocity(body.centre))?;
     let velocity = values(views.now.velocity(body.centre)?);
+    let prescribed = values(views.rest.velocity(body.centre)?);
     let acceleration = accelerations(views.onward.velocity(body.centre)?);
     let p = partial.len();
     out.kinetic_energy += 0.5 * mass * dot3(velocity, velocity);
@@ -97,12 +100,14 @@ fn add_body(views: &Views<'_>, body: &Body, out: &mut Evaluation) -> Result<(), 
             out.mass_matrix[r][s] += mass * dot3(partial[r], partial[s]);
         }
         out.forcing[r] -= mass * dot3(partial[r], acceleration);
+        out.prescribed_momentum[r] += mass * dot3(partial[r], prescribed);
     }
     let (Some(frame), Some(inertia)) = (body.frame, central_inertia(&views.now, body)?) else {
         return Ok(());
     };
     let turning = views.partials(|values| values.angular_velocity(frame))?;
     let omega = values(views.now.angular_velocity(frame)?);
+    let prescribed = apply3(&inertia, values(views.rest.angular_velocity(frame)?));
     let alpha = accelerations(views.onward.angular_velocity(frame)?);
     let momentum = apply3(&inertia, omega);
     out.kinetic_energy += 0.5 * dot3(omega, momentum);
@@ -113,6 +118,7 @@ fn add_body(views: &Views<'_>, body: &Body, out: &mut Evaluation) -> Result<(), 
             out.mass_matrix[r][s] += dot3(turning[r], apply3(&inertia, turning[s]));
         }
         out.forcing[r] -= dot3(turning[r], torque) + dot3(turning[r], gyroscopic);
+        out.prescribed_momentum[r] += dot3(turning[r], prescribed);
     }
     Ok(())
 }

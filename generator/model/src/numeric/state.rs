@@ -78,6 +78,11 @@ pub struct Evaluation {
     pub configuration: Vec<f64>,
     /// rates of the dependent speeds while the independent ones stay
     pub dependent_accelerations: Vec<f64>,
+    /// per independent speed: what its unit adds to each dependent speed
+    pub dependent_partials: Vec<Vec<f64>>,
+    /// per independent speed: sum over bodies of m v_r . v_t + w_r . I . w_t, where v_t and w_t are what prescribed
+    /// motion leaves with all independent speeds 0
+    pub prescribed_momentum: Vec<f64>,
 }
 
 /// What holds of a contact at a state.

@@ -63,6 +63,8 @@ pub struct Views<'m> {
     pub speeds: Vec<f64>,
     /// rates of the dependent speeds while the independent ones stay
     pub dependent_accelerations: Vec<f64>,
+    /// per independent speed: what its unit adds to each dependent speed
+    pub dependent_partials: Vec<Vec<f64>>,
 }
 
 impl<'m> Views<'m> {
@@ -94,14 +96,18 @@ impl<'m> Views<'m> {
         let (onward_rates, onward_speeds) = view(&onward_maps, &independent);
         let evaluator_at = |w: &[HyperDual]| {
             let (rates, speeds) = view(&maps, w);
-            still.evaluator(&rates, speeds)
+            let dependent: Vec<f64> = speeds.iter().skip(p).map(|u| u.re).collect();
+            (still.evaluator(&rates, speeds), dependent)
         };
         let mut unit = vec![HyperDual::ZERO; p];
-        let rest = evaluator_at(&unit);
+        let (rest, at_rest) = evaluator_at(&unit);
         let mut units = Vec::new();
+        let mut dependent_partials = Vec::new();
         for r in 0..p {
             unit[r] = HyperDual::ONE;
-            units.push(evaluator_at(&unit));
+            let (evaluator, moving) = evaluator_at(&unit);
+            units.push(evaluator);
+            dependent_partials.push(moving.iter().zip(&at_rest).map(|(u, rest)| u - rest).collect());
             unit[r] = HyperDual::ZERO;
         }
         Ok(Views {
@@ -114,6 +120,7 @@ impl<'m> Views<'m> {
                 .iter()
                 .map(|u| u.e2)
                 .collect(),
+            dependent_partials,
             onward: onward.evaluator(&onward_rates, onward_speeds),
         })
     }

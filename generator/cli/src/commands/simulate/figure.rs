@@ -1,8 +1,8 @@
 //! The figure of a motion: coordinates, speeds, gaps, normal forces and energies over time, a panel for each
 //! unit.
 
-use super::recording::Recorded;
-use crate::animation::Series as Curve;
+use hodograph_animation::{Recorded, Series as Curve};
+
 use crate::plot::figure::{Axis, Figure, Panel, Series};
 use crate::plot::label::Label;
 

@@ -2,17 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use hodograph_animation::{Recording, Setup};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::{Event, Simulation};
 
 use super::figure::figure;
-use super::recording::Recording;
-use crate::animation::Setup;
 use crate::answers::is_read;
 use crate::json::state::State;
 use crate::plot::file::Format;
 use crate::stop::{Outcome, Stop};
-use crate::{animation, mcap_file, output};
+use crate::{mcap_file, output};
 
 /// The files that are asked for.
 #[derive(Clone, Debug, clap::Args)]
@@ -85,7 +84,7 @@ impl<'m> Pictures<'m> {
         state: &State,
         setup: impl FnOnce() -> Setup,
     ) -> Self {
-        let recording = files.wanted().then(|| Recording::new(mechanism, state, setup()));
+        let recording = files.wanted().then(|| Recording::new(mechanism, mechanism.model(), &state.to_numeric(), setup()));
         Pictures { recording, begun: false }
     }
 
@@ -123,7 +122,7 @@ impl<'m> Pictures<'m> {
             outcomes.push(format.and_then(|format| figure(&recorded).save(path, format)));
         }
         if let Some(path) = &files.html {
-            outcomes.push(output::file(path, animation::page(&recorded.shown).as_bytes()));
+            outcomes.push(output::file(path, hodograph_animation::page(&recorded.shown).as_bytes()));
         }
         if let Some(path) = &files.mcap {
             let bytes = mcap_file::bytes(&recorded.shown, &recorded.states)

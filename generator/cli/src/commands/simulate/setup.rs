@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use hodograph::Surface;
+use hodograph_animation::{Setup, Value};
 use hodograph_generator::files;
 use hodograph_generator::format::plain;
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 
-use crate::animation::{Setup, Value};
 use crate::json::state::State;
 
 /// The setup of a motion from a state.

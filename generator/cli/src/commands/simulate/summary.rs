@@ -3,7 +3,6 @@
 use hodograph_generator::model::mechanism::{Mechanism, Variable};
 use hodograph_simulation::{EnergyAccount, Event, EventKind};
 
-use super::energies;
 use crate::table::{Table, number, with_unit};
 
 /// At most this many states are shown, and this many events.
@@ -177,7 +176,7 @@ fn energy_table(start: &EnergyAccount, end: &EnergyAccount, model: &Mechanism) -
         }
     }
     let works = if works.is_empty() { String::new() } else { format!("\n{}", works.text("  ")) };
-    let note = energies::missing(model).filter(|_| end.potential.is_none());
+    let note = hodograph_animation::missing(model).filter(|_| end.potential.is_none());
     let note = note.map_or(String::new(), |note| format!("\n  note: {note}\n"));
     format!("\n{}{works}{note}", table.text("  "))
 }

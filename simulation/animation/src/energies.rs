@@ -1,8 +1,7 @@
 //! The energies of a motion over time.
 
-use hodograph::{Mechanism as _, State};
-use hodograph_generator::model::mechanism::{LoadKind, Mechanism};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph::{Contacts, State};
+use hodograph_model::model::mechanism::{LoadKind, Mechanism};
 
 /// Energies at the recorded moments, J.
 #[derive(Clone, Debug, Default)]
@@ -14,7 +13,7 @@ pub struct Energies {
 
 impl Energies {
     /// Those of a state.
-    pub fn add(&mut self, mechanism: &InterpretedMechanism, state: &State<'_>) {
+    pub fn add(&mut self, mechanism: &dyn Contacts<f64>, state: &State<'_>) {
         self.kinetic.push(mechanism.kinetic_energy(state).unwrap_or(f64::NAN));
         self.potential.push(mechanism.potential_energy(state).unwrap_or(Some(f64::NAN)));
     }

@@ -1,17 +1,15 @@
 //! The shapes of a model as outlines, and the planes of contacts that have none.
 
-use hodograph::{Contacts, Mechanism, State as Borrowed};
-use hodograph_generator::model::mechanism::{
+use hodograph::{Contacts, State as Borrowed};
+use hodograph_model::model::mechanism::{
     Against, FrameId, Height, Kind, Mechanism as Model, PointId, Shape,
 };
-use hodograph_generator::numeric::hyper_dual::HyperDual;
-use hodograph_generator::numeric::{Evaluator, Level, Views};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph_model::numeric::hyper_dual::HyperDual;
+use hodograph_model::numeric::{Evaluator, Level, State, Views};
 use nalgebra::{Matrix3, Vector3};
 
-use super::gap::gap;
-use crate::animation::{self, Animation, Frame, Outline, Place};
-use crate::json::state::State;
+use crate::gap::gap;
+use crate::{Animation, Frame, Outline, Place, Shape as Shown};
 
 /// Colours of shapes that state none, one after another.
 const COLOURS: [&str; 6] = ["#5b8db8", "#c98a3c", "#6a9f6a", "#a8749b", "#8a8f98", "#b5655b"];
@@ -45,8 +43,7 @@ impl Solids {
             frames: Vec::new(),
             planes: vec![Seen::Nothing; model.contacts.len()],
         };
-        let numeric = state.to_numeric();
-        let Ok(views) = Views::at(model, &numeric) else { return solids };
+        let Ok(views) = Views::at(model, state) else { return solids };
         let with_frames: Vec<(FrameId, PointId)> =
             model.bodies.iter().filter_map(|body| Some((body.frame?, body.centre))).collect();
         for (i, shape) in model.shapes.iter().enumerate() {
@@ -78,8 +75,8 @@ impl Solids {
     }
 
     /// A moment of the motion: whether the planes of contacts without shapes stay.
-    pub fn moment(&mut self, mechanism: &InterpretedMechanism, state: &Borrowed<'_>) {
-        for (i, contact) in mechanism.model().contacts.iter().enumerate() {
+    pub fn moment(&mut self, mechanism: &dyn Contacts<f64>, model: &Model, state: &Borrowed<'_>) {
+        for (i, contact) in model.contacts.iter().enumerate() {
             let fixed = matches!(contact.against, Against::Fixed) && contact.shapes.is_none();
             if !fixed || matches!(self.planes[i], Seen::Moves) {
                 continue;
@@ -105,9 +102,8 @@ impl Solids {
     }
 
     /// All outlines, when the extent of the motion is known.
-    pub fn finish(self, model: &Model, state: &State, shown: &Animation) -> Vec<animation::Shape> {
-        let numeric = state.to_numeric();
-        let Ok(views) = Views::at(model, &numeric) else { return Vec::new() };
+    pub fn finish(self, model: &Model, state: &State, shown: &Animation) -> Vec<Shown> {
+        let Ok(views) = Views::at(model, state) else { return Vec::new() };
         let (middle, extent) = extent(model, &views.now, shown);
         let mut out = Vec::new();
         for (i, frame) in &self.shapes {
@@ -164,13 +160,13 @@ struct Local<'a> {
 }
 
 impl Local<'_> {
-    fn vector(&self, vector: &hodograph_generator::model::mechanism::Vector) -> Option<Vector3<f64>> {
+    fn vector(&self, vector: &hodograph_model::model::mechanism::Vector) -> Option<Vector3<f64>> {
         let v = self.values.vector(vector, Level::Geometry).ok()?.map(|c| c.re);
         let v = Vector3::from(v);
         v.iter().all(|x| x.is_finite()).then(|| self.turned.transpose() * v)
     }
 
-    fn anchor(&self, anchor: &hodograph_generator::model::mechanism::Anchor) -> Option<Vector3<f64>> {
+    fn anchor(&self, anchor: &hodograph_model::model::mechanism::Anchor) -> Option<Vector3<f64>> {
         let at = place(self.values, anchor.point)? - self.origin;
         Some(self.turned.transpose() * at + self.vector(&anchor.by)?)
     }

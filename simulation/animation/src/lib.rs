@@ -4,22 +4,42 @@
 //! [`page`] makes the text of the page from an [`Animation`]. The page loads no other files, and works with
 //! mouse, touch and keyboard.
 
+mod energies;
+mod follow;
+mod gap;
+mod number;
+mod recording;
+mod rigid;
 mod segments;
 mod setup;
 mod shapes;
+mod solids;
 #[cfg(test)]
 mod tests;
 
 use serde::Serialize;
 
+pub use energies::missing;
+pub use follow::{Span, Watch, follow};
+pub use gap::gap;
+pub use number::{escaped, number};
+pub use recording::{Recorded, Recording, numbers};
 pub use segments::segments;
 pub use setup::{Setup, Value};
 pub use shapes::{Outline, Place, Shape};
 
-use crate::plot::svg::escaped;
-
-const STYLE: &str = include_str!("page.css");
-const SCRIPT: &str = include_str!("page.js");
+const STYLE: &str = include_str!("../page/style.css");
+/// The drawing of a motion, which the playground has too: its `build` joins the same files.
+const SCRIPT: &str = concat!(
+    include_str!("../page/geometry.js"),
+    include_str!("../page/body.js"),
+    include_str!("../page/motion.js"),
+);
+/// Where a written page has its motion.
+const BODY: &str = "<div id=\"motion\"></div>\n<noscript><p>This page needs JavaScript, which stands in the page itself.</p></noscript>\n";
+/// Shows it.
+const SHOW: &str =
+    "showMotion(document.getElementById(\"motion\"), JSON.parse(document.getElementById(\"data\").textContent));";
 /// A page holds this many instants at most, about; of more, every second or third .. is kept, and those of
 /// events.
 const MOMENTS: usize = 6000;
@@ -43,7 +63,7 @@ pub struct Animation {
     /// shapes of bodies, and grounds
     pub shapes: Vec<Shape>,
     /// in the order of time
-    pub events: Vec<Event>,
+    pub events: Vec<Happening>,
     /// forces that last
     pub forces: Vec<Force>,
     /// curves below the picture; those with the same panel share axes
@@ -82,7 +102,7 @@ pub struct Frame {
 
 /// An event at one instant.
 #[derive(Clone, Debug, Serialize)]
-pub struct Event {
+pub struct Happening {
     /// s
     pub time: f64,
     /// the contact at which it happens; may be empty
@@ -131,33 +151,13 @@ pub fn page(animation: &Animation) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
          content=\"width=device-width, initial-scale=1\">\n<title>{title}: motion</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
          <header><h1>{title}</h1>{line}</header>\n<main>\n{BODY}{setup}</main>\n<script type=\"application/json\" id=\"data\">{data}</script>\n\
-         <script>\n{SCRIPT}</script>\n</body>\n</html>\n"
+         <script>\n{SCRIPT}{SHOW}\n</script>\n</body>\n</html>\n"
     )
 }
 
-const BODY: &str = r#"<section class="motion" aria-label="Motion">
-<svg id="stage" role="img" aria-label="The mechanism; drag, or use the arrow keys with Shift, to look from elsewhere" tabindex="0"></svg>
-<div class="controls">
-<button id="play" type="button" aria-label="Play"></button>
-<span class="line"><input id="time" type="range" min="0" max="1" step="any" value="0" aria-label="Time"><svg id="marks" aria-hidden="true"></svg></span>
-<output id="now" for="time"></output>
-<label>Speed <select id="speed"></select></label>
-<label><input id="names" type="checkbox" checked> names</label>
-<label><input id="trails" type="checkbox" checked> paths</label>
-<button id="view" type="button">Reset view</button>
-</div>
-<p class="help">Space plays and pauses; the left and right arrow keys go from moment to moment. Drag the picture to turn it, pinch or roll to come closer.</p>
-<ul class="key" id="key"></ul>
-</section>
-<div id="zoom"><button id="closer" type="button" aria-label="Show less of the time">+</button><button id="farther" type="button" aria-label="Show more of the time">&minus;</button><button id="whole" type="button">All the time</button><span>zooms the curves in time, as Shift or Ctrl and the wheel do</span></div>
-<section id="curves" aria-label="Curves over time"></section>
-<section id="events" aria-label="Events"></section>
-<noscript><p>This page needs JavaScript, which stands in the page itself.</p></noscript>
-"#;
-
 impl Animation {
     /// Leaves out moments where there are too many, none of them at an event, nor the last.
-    fn thin(&mut self) {
+    pub fn thin(&mut self) {
         let stride = self.times.len().div_ceil(MOMENTS).max(1);
         let last = self.times.len().saturating_sub(1);
         let keep: Vec<bool> = (0..self.times.len())

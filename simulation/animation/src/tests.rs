@@ -2,7 +2,7 @@
 
 use super::*;
 
-#[path = "../../tests/common/browser.rs"]
+#[path = "../../../generator/cli/tests/common/browser.rs"]
 mod browser;
 
 /// A double pendulum that is struck twice, of as many moments as wanted.
@@ -21,7 +21,7 @@ fn pendulum(moments: usize) -> Animation {
         unit: unit.to_owned(),
         values: times.iter().map(|&time| of(time)).collect(),
     };
-    let event = |index: usize| Event {
+    let event = |index: usize| Happening {
         time: times[index],
         contact: "tip_wall".to_owned(),
         label: "collision".to_owned(),

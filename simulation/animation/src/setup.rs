@@ -1,7 +1,6 @@
 //! Writes what a motion is the motion of: surfaces, parameters, initial values, and the text of the model.
 
-use crate::plot::svg::escaped;
-use crate::table::number;
+use crate::number::{escaped, number};
 
 /// What was simulated.
 #[derive(Clone, Debug, Default)]

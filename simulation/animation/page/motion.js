@@ -1,25 +1,13 @@
-"use strict";
-(() => {
-  const data = JSON.parse(document.getElementById("data").textContent);
-  const byId = (id) => document.getElementById(id);
+// Shows a motion in an element: the mechanism, its clock, curves and events. `data` is what `Animation` writes.
+// `kept` is what the answer's `keep()` gave for a motion shown before: place in time, view, choices; with
+// `onTime` it is told of the time that is shown, and of the event before it.
+function showMotion(root, data, kept = {}) {
+  root.innerHTML = MOTION;
+  const byId = (id) => root.querySelector("#" + id);
+  const ended = new AbortController(), signal = ended.signal;
   const stage = byId("stage"), slider = byId("time"), clock = byId("now");
   const times = data.times, count = times.length;
   const first = count ? times[0] : 0, last = count ? times[count - 1] : 0;
-  const finite = (v) => v !== null && v.every((x) => x !== null);
-  const SVG = stage.namespaceURI;
-  const make = (parent, tag, kind, attributes) => {
-    const node = document.createElementNS(SVG, tag);
-    if (kind) node.setAttribute("class", kind);
-    for (const name in attributes || {}) node.setAttribute(name, attributes[name]);
-    return parent.appendChild(node);
-  };
-  const set = (node, attributes) => { for (const name in attributes) node.setAttribute(name, attributes[name]); };
-  const show = (node, shown) => { node.style.display = shown ? "" : "none"; };
-  const minus = (text) => text.replace("-", "\u2212");
-  const dashes = ["", "7 3", "8 3 1.5 3", "2 2.5", "13 3", "5 2 1.5 2 1.5 2"];
-  // After the last colour they begin anew, with other dashes.
-  const look = (i) => ({ style: `stroke:var(--c${i % 6})`, "stroke-dasharray": dashes[(i + Math.floor(i / 6)) % 6] });
-
   // Where the time lies between two moments: at an impact, after it.
   const moment = (t) => {
     let low = 0, high = count - 1;
@@ -37,13 +25,6 @@
     return a.map((x, i) => x + (b[i] - x) * m.part);
   };
 
-  // Vectors, and the direction from which one looks.
-  const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-  const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-  const norm = (a) => Math.hypot(a[0], a[1], a[2]);
-  const scaled = (a, s) => a.map((x) => x * s);
-  const plus = (a, b) => a.map((x, i) => x + b[i]);
-  const unit = (a) => { const n = norm(a); return n > 0 ? scaled(a, 1 / n) : null; };
   const up = unit(data.up) || [0, 0, 1];
   const side = unit(cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
   const other = cross(side, up);
@@ -87,16 +68,16 @@
     const upAxis = [0, 1, 2].find((i) => Math.abs(up[i]) > 0.99);
     if (flat.length === 1 && flat[0] !== upAxis) {
       const from = [0, 0, 0]; from[flat[0]] = flat[0] === 1 ? -1 : 1;
-      return { turn: Math.atan2(dot(from, other), dot(from, side)), tilt: 0, zoom: 1 };
+      return { turn: Math.atan2(dot(from, other), dot(from, side)), tilt: 0, zoom: 1, pan: [0, 0] };
     }
     if (flat.length === 1) {
       // From above, with N.x to the right; N.y where that is upwards.
       const ahead = cross(flat[0] === 0 ? [0, 1, 0] : [1, 0, 0], up);
-      return { turn: Math.atan2(dot(ahead, other), dot(ahead, side)), tilt: Math.PI / 2 - 0.001, zoom: 1 };
+      return { turn: Math.atan2(dot(ahead, other), dot(ahead, side)), tilt: Math.PI / 2 - 0.001, zoom: 1, pan: [0, 0] };
     }
-    return { turn: 0.6, tilt: 0.35, zoom: 1 };
+    return { turn: 0.6, tilt: 0.35, zoom: 1, pan: [0, 0] };
   };
-  let view = home();
+  let view = kept.view ? { ...kept.view } : home();
   const camera = () => {
     const flat = plus(scaled(side, Math.cos(view.turn)), scaled(other, Math.sin(view.turn)));
     const towards = plus(scaled(flat, Math.cos(view.tilt)), scaled(up, Math.sin(view.tilt)));
@@ -115,7 +96,7 @@
     const scale = Math.max(room, 1e-9) * view.zoom;
     const place = (v) => {
       const d = plus(v, scaled(middle, -1));
-      return [TRIAD + half + scale * dot(d, right), size[1] / 2 - scale * dot(d, above)];
+      return [TRIAD + half + view.pan[0] + scale * dot(d, right), size[1] / 2 + view.pan[1] - scale * dot(d, above)];
     };
     return { place, scale };
   };
@@ -134,22 +115,6 @@
     body.style.fill = body.style.stroke = edges.style.stroke = s.colour;
     return { shape: s, node, body, edges };
   });
-  // The outline of points on the stage: the smallest convex polygon that holds them.
-  const hull = (list) => {
-    const sorted = list.slice().sort((a, b) => a[0] - b[0] || a[1] - b[1]);
-    const turns = (a, b, c) => (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    const half = (points) => {
-      const out = [];
-      for (const p of points) {
-        while (out.length > 1 && turns(out[out.length - 2], out[out.length - 1], p) <= 0) out.pop();
-        out.push(p);
-      }
-      return out.slice(0, -1);
-    };
-    return sorted.length < 3 ? sorted : half(sorted).concat(half(sorted.reverse()));
-  };
-  const written = (list, end) => (list.length ? "M" + list.map((p) => `${p[0].toFixed(1)} ${p[1].toFixed(1)}`).join("L") + end : "");
-  const rounds = [...Array(32).keys()].map((k) => [Math.cos(k * Math.PI / 16), Math.sin(k * Math.PI / 16)]);
   const drawShapes = (m, place, scale) => shapes.forEach(({ shape, node, body, edges }) => {
     const put = (v) => {
       const a = located(shape, v, m.low), b = located(shape, v, m.next);
@@ -182,13 +147,6 @@
   // An event is shown for a while after it.
   const hold = Math.max(0.04 * (last - first), 1e-9);
 
-  const arrow = (from, to) => {
-    const d = [to[0] - from[0], to[1] - from[1]], n = Math.hypot(d[0], d[1]);
-    if (n < 1) return "";
-    const [x, y] = [d[0] / n, d[1] / n], h = Math.min(10, 0.5 * n), w = 0.45 * h;
-    const at = (u, v) => `${(to[0] - h * u * x - v * w * y).toFixed(1)} ${(to[1] - h * u * y + v * w * x).toFixed(1)}`;
-    return `M${from[0].toFixed(1)} ${from[1].toFixed(1)}L${to[0].toFixed(1)} ${to[1].toFixed(1)}M${at(1, 1)}L${at(0, 0)}L${at(1, -1)}`;
-  };
   const pointed = (node, at, vector, longest, place) => {
     const from = at && finite(at) ? place(at) : null;
     const ok = from && vector && finite(vector) && longest > 0;
@@ -249,7 +207,7 @@
     });
   };
 
-  let now = first;
+  let now = first, announced = NaN;
   const draw = () => {
     const m = moment(now), { place, scale } = projector();
     const at = data.points.map((p) => { const v = between(p.places, m); return v ? place(v) : null; });
@@ -290,6 +248,7 @@
       if (buttons[current]) buttons[current].setAttribute("aria-current", "true");
       marked = current;
     }
+    if (kept.onTime && announced !== now) kept.onTime(announced = now, current);
   };
   const digits = Math.max(2, Math.min(9, 3 - Math.floor(Math.log10(Math.max(last - first, 1e-6)))));
 
@@ -302,21 +261,6 @@
   // Curves below: one chart for each panel, all over the same part of the time, which can be narrowed.
   const cursors = [], charts = [];
   let left = 60, shown = [first, last];
-  const step = (width, most) => {
-    const rough = width / most, power = 10 ** Math.floor(Math.log10(rough)), times = rough / power;
-    return (times <= 1 ? 1 : times <= 2 ? 2 : times <= 5 ? 5 : 10) * power;
-  };
-  const numbers = (low, high, most) => {
-    const by = step(high - low, most), list = [];
-    const places = Math.max(0, -Math.floor(Math.log10(by) + 1e-9));
-    const text = (x) => {
-      const largest = Math.max(Math.abs(low), Math.abs(high));
-      if (largest >= 1e5 || largest < 1e-3) return x === 0 ? "0" : minus(String(+x.toPrecision(3)).includes("e") ? x.toExponential(1) : String(+x.toPrecision(4)));
-      return minus((Math.abs(x) < by / 1e6 ? 0 : x).toFixed(Math.min(places, 9)));
-    };
-    for (let k = Math.ceil(low / by - 1e-9); k * by <= high + 1e-9 * by && list.length < 50; k++) list.push([k * by, text(k * by)]);
-    return list;
-  };
   const drawCharts = () => {
     left = Math.max(60, ...charts.map((chart) => chart.measure()));
     charts.forEach((chart) => chart.draw());
@@ -486,7 +430,7 @@
   const speed = byId("speed");
   speeds.filter((s) => s >= nearest / 110 && s <= nearest * 11).forEach((s) => {
     const option = document.createElement("option");
-    option.value = s; option.textContent = `${s}\u00d7`; option.selected = s === nearest;
+    option.value = s; option.textContent = `${s}\u00d7`; option.selected = s === (kept.speed || nearest);
     speed.append(option);
   });
   let running = false, clockBefore = 0;
@@ -512,6 +456,15 @@
     if (now >= last) pause(); else requestAnimationFrame(tick);
   };
   const go = (t) => { now = Math.min(last, Math.max(first, t)); draw(); };
+  // To the event after or before the time that is shown, and there stands.
+  const jump = (by) => {
+    pause();
+    const all = data.events.map((e) => e.time);
+    const to = by > 0 ? all.find((t) => t > now) : all.reverse().find((t) => t < now);
+    go(to === undefined ? (by > 0 ? last : first) : to);
+  };
+  byId("before").addEventListener("click", () => jump(-1));
+  byId("after").addEventListener("click", () => jump(1));
   const hop = (by) => {
     pause();
     const m = moment(now);
@@ -525,17 +478,21 @@
   slider.addEventListener("input", () => { pause(); go(Number(slider.value)); });
   document.addEventListener("keydown", (event) => {
     const field = event.target.closest("button, select, input");
+    if (event.target !== document.body && !root.contains(event.target)) return;
     if (event.altKey || event.ctrlKey || event.metaKey || event.target === speed) return;
     const turn = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, 0.1], ArrowDown: [0, -0.1] }[event.key];
     if (event.shiftKey && turn) { rotate(turn[0], turn[1]); }
     else if (event.key === " " && !(field && field !== slider)) { running ? pause() : start(); }
     else if (event.key === "ArrowLeft") hop(-1);
     else if (event.key === "ArrowRight") hop(1);
+    else if (event.key === "+" || event.key === "=") closer(1.25);
+    else if (event.key === "-") closer(0.8);
+    else if (event.key === "." || event.key === ",") jump(event.key === "." ? 1 : -1);
     else if (event.key === "Home") { pause(); go(first); }
     else if (event.key === "End") { pause(); go(last); }
     else return;
     event.preventDefault();
-  });
+  }, { signal });
 
   // The view turns with a pointer and comes closer with two, or a wheel.
   const pointers = new Map();
@@ -544,6 +501,7 @@
     view.tilt = Math.min(Math.PI / 2 - 0.001, Math.max(-Math.PI / 2 + 0.001, view.tilt + tilt));
     drawTrails(); draw();
   };
+  const shift = (x, y) => { view.pan = [view.pan[0] + x, view.pan[1] + y]; drawTrails(); draw(); };
   const closer = (by) => { view.zoom = Math.min(50, Math.max(0.1, view.zoom * by)); drawTrails(); draw(); };
   stage.addEventListener("pointerdown", (event) => { stage.setPointerCapture(event.pointerId); pointers.set(event.pointerId, [event.clientX, event.clientY]); });
   stage.addEventListener("pointermove", (event) => {
@@ -555,9 +513,12 @@
     if (others.length) {
       const away = (p) => Math.hypot(p[0] - others[0][0], p[1] - others[0][1]);
       if (away(before) > 5) closer(away(after) / away(before));
-    } else rotate((after[0] - before[0]) / 150, (after[1] - before[1]) / 150);
+      shift((after[0] - before[0]) / 2, (after[1] - before[1]) / 2);
+    } else if (event.shiftKey || event.buttons > 1) shift(after[0] - before[0], after[1] - before[1]);
+    else rotate((after[0] - before[0]) / 150, (after[1] - before[1]) / 150);
   });
   ["pointerup", "pointercancel"].forEach((name) => stage.addEventListener(name, (event) => pointers.delete(event.pointerId)));
+  stage.addEventListener("contextmenu", (event) => event.preventDefault());
   stage.addEventListener("wheel", (event) => { event.preventDefault(); closer(Math.exp(-event.deltaY / 600)); }, { passive: false });
   byId("view").addEventListener("click", () => { view = home(); drawTrails(); draw(); });
   ["names", "trails"].forEach((id) => byId(id).addEventListener("change", () => { drawTrails(); draw(); }));
@@ -578,14 +539,27 @@
     });
   };
 
+  ["names", "trails"].forEach((id) => { if (kept[id] === false) byId(id).checked = false; });
   const layout = () => {
     size = [stage.clientWidth || 600, stage.clientHeight || 400];
     stage.setAttribute("viewBox", `0 0 ${size[0]} ${size[1]}`);
     drawMarks(); drawCharts(); drawTrails(); draw();
   };
+  const watching = new ResizeObserver(layout);
   if (count) {
-    new ResizeObserver(layout).observe(document.body);
+    if (kept.now !== undefined) now = Math.min(last, Math.max(first, kept.now));
+    watching.observe(root);
     layout();
-    if (!matchMedia("(prefers-reduced-motion: reduce)").matches) start();
+    const still = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    if (kept.running === undefined ? !still : kept.running) start();
   }
-})();
+  return {
+    go: (t) => { pause(); go(t); },
+    pause,
+    // What a motion that is shown in place of this one begins with.
+    keep: () => ({
+      ...kept, view: { ...view }, now, running, speed: Number(speed.value), names: byId("names").checked, trails: byId("trails").checked,
+    }),
+    end: () => { pause(); ended.abort(); watching.disconnect(); root.replaceChildren(); },
+  };
+}

@@ -1,23 +1,21 @@
 //! Records the states and events of a motion for its figure, its animated page and viewers of robots.
 
-use hodograph::{ComponentKind, Contacts, Mechanism, State as Borrowed};
-use hodograph_generator::model::mechanism::{LoadKind, Place, Variable, Vector};
-use hodograph_generator::numeric::views::values;
-use hodograph_generator::numeric::{Level, Views};
-use hodograph_interpreter::InterpretedMechanism;
+use hodograph::{Contacts, Kind as Of, State as Borrowed};
+use hodograph_model::model::mechanism::{LoadKind, Mechanism as Model, Place, Variable, Vector};
+use hodograph_model::numeric::views::values;
+use hodograph_model::numeric::{Level, State, Views};
 use hodograph_simulation::{Event, EventKind, Simulation};
 use nalgebra::Vector3;
 
-use super::energies::Energies;
-use super::gap::gap;
-use super::rigid;
-use super::solids::{self, Solids};
-use crate::animation::{self, Animation, Force, Frame, Point, Series, Setup, segments};
-use crate::json::state::State;
+use crate::energies::Energies;
+use crate::gap::gap;
+use crate::solids::{self, Solids};
+use crate::{Animation, Force, Frame, Happening, Point, Series, Setup, rigid, segments};
 
 /// A motion as it will be shown.
 pub struct Recording<'m> {
-    mechanism: &'m InterpretedMechanism,
+    mechanism: &'m dyn Contacts<f64>,
+    model: &'m Model,
     shown: Animation,
     energies: Energies,
     solids: Solids,
@@ -43,8 +41,12 @@ pub struct Recorded {
 
 impl<'m> Recording<'m> {
     /// Nothing yet, of a motion from a state; `setup` says of which.
-    pub fn new(mechanism: &'m InterpretedMechanism, state: &State, setup: Setup) -> Self {
-        let model = mechanism.model();
+    pub fn new(
+        mechanism: &'m dyn Contacts<f64>,
+        model: &'m Model,
+        state: &State,
+        setup: Setup,
+    ) -> Self {
         let from: Vec<Option<usize>> = model
             .points
             .iter()
@@ -92,7 +94,7 @@ impl<'m> Recording<'m> {
                 .iter()
                 .map(|contact| Force { name: contact.name.clone(), at: Vec::new(), force: Vec::new() })
                 .collect(),
-            up: up(mechanism, state),
+            up: up(model, state),
             setup,
             ..Animation::default()
         };
@@ -100,15 +102,16 @@ impl<'m> Recording<'m> {
         let none = |kind| vec![Vec::new(); mechanism.count(kind)];
         Recording {
             mechanism,
+            model,
             shown,
             energies: Energies::default(),
             solids,
             start: state.clone(),
-            gaps: none(ComponentKind::Contact),
-            pressures: none(ComponentKind::Contact),
-            coordinates: none(ComponentKind::Coordinate),
-            speeds: none(ComponentKind::Speed),
-            last: vec![None; mechanism.count(ComponentKind::Contact)],
+            gaps: none(Of::Contact),
+            pressures: none(Of::Contact),
+            coordinates: none(Of::Coordinate),
+            speeds: none(Of::Speed),
+            last: vec![None; mechanism.count(Of::Contact)],
         }
     }
 
@@ -148,7 +151,7 @@ impl<'m> Recording<'m> {
 
     /// A moment, with the force of each closed contact along its n, t, s.
     fn moment(&mut self, state: &Borrowed<'_>, force: impl Fn(usize) -> Option<Vector3<f64>>) {
-        let mechanism = self.mechanism;
+        let (mechanism, model) = (self.mechanism, self.model);
         self.shown.times.push(state.time);
         self.coordinates.iter_mut().zip(state.coordinates).for_each(|(curve, &value)| curve.push(value));
         self.speeds.iter_mut().zip(state.speeds).for_each(|(curve, &value)| curve.push(value));
@@ -156,7 +159,7 @@ impl<'m> Recording<'m> {
             point.places.push(place(mechanism, index, state));
         }
         let mut frames = self.shown.frames.iter_mut();
-        for body in &mechanism.model().bodies {
+        for body in &model.bodies {
             if let (Some(frame), Some(shown)) = (body.frame, body.frame.and_then(|_| frames.next())) {
                 // Its columns are the axes along N.
                 let turned = mechanism.orientation(frame.0, state).unwrap_or_default();
@@ -167,13 +170,13 @@ impl<'m> Recording<'m> {
             let turned = mechanism.orientation(frame.0, state).unwrap_or_default();
             shown.axes.push([0, 1, 2].map(|axis| turned.column(axis).into_owned().into()));
         }
-        self.solids.moment(mechanism, state);
+        self.solids.moment(mechanism, model, state);
         for (contact, shown) in self.shown.forces.iter_mut().enumerate() {
             let here = mechanism.contact_state(contact, state);
             let along = force(contact);
             self.last[contact] = along;
             let force = along.zip(here.ok());
-            shown.at.push(place(mechanism, mechanism.model().contacts[contact].point.0, state));
+            shown.at.push(place(mechanism, model.contacts[contact].point.0, state));
             shown.force.push(force.map(|(force, here)| {
                 (here.normal * force.x + here.first * force.y + here.second * force.z).into()
             }));
@@ -187,16 +190,16 @@ impl<'m> Recording<'m> {
 
     /// Something that happened, where the simulation now is.
     pub fn event(&mut self, event: &Event) {
-        let mechanism = self.mechanism;
+        let (mechanism, model) = (self.mechanism, self.model);
         let state = Borrowed {
             time: event.time,
             coordinates: &event.coordinates,
             speeds: &event.speeds,
-            inputs: &vec![0.0; mechanism.count(ComponentKind::Input)],
+            inputs: &vec![0.0; mechanism.count(Of::Input)],
         };
         let mut show = |contact: Option<usize>, impulse: Option<Vector3<f64>>| {
-            let contact = contact.and_then(|contact| mechanism.model().contacts.get(contact));
-            self.shown.events.push(animation::Event {
+            let contact = contact.and_then(|contact| model.contacts.get(contact));
+            self.shown.events.push(Happening {
                 time: event.time,
                 contact: contact.map_or(String::new(), |contact| contact.name.clone()),
                 label: event.kind.name().replace('_', " "),
@@ -218,6 +221,11 @@ impl<'m> Recording<'m> {
         }
     }
 
+    /// What was recorded so far.
+    pub fn shown(&self) -> &Animation {
+        &self.shown
+    }
+
     /// The whole motion.
     pub fn finish(mut self) -> Recorded {
         let series = |panel: &str, name: &str, unit: &str, values| Series {
@@ -226,7 +234,7 @@ impl<'m> Recording<'m> {
             unit: unit.to_owned(),
             values,
         };
-        let model = self.mechanism.model();
+        let model = self.model;
         let (energies, note) = self.energies.curves(model);
         for (name, values) in energies {
             self.shown.series.push(series("energy", name, "J", values));
@@ -255,15 +263,14 @@ impl<'m> Recording<'m> {
 }
 
 /// How many numbers a moment is kept as: the time, places, axes, forces with their places, and curves.
-pub fn numbers(mechanism: &InterpretedMechanism) -> usize {
+pub fn numbers(mechanism: &dyn Contacts<f64>, model: &Model) -> usize {
     let count = |kind| mechanism.count(kind);
-    let model = mechanism.model();
     1 + 3 * model.points.len()
         + 9 * model.bodies.len()
-        + 8 * count(ComponentKind::Contact)
+        + 8 * count(Of::Contact)
         + 3
-        + count(ComponentKind::Coordinate)
-        + count(ComponentKind::Speed)
+        + count(Of::Coordinate)
+        + count(Of::Speed)
 }
 
 /// What is to be said of points that are nowhere at any time, and so are not drawn.
@@ -282,20 +289,18 @@ fn placeless(points: &[Point]) -> Option<String> {
 }
 
 /// Where a point is, along N.x, N.y, N.z; no number where it cannot be known.
-fn place(mechanism: &InterpretedMechanism, point: usize, state: &Borrowed<'_>) -> [f64; 3] {
+fn place(mechanism: &dyn Contacts<f64>, point: usize, state: &Borrowed<'_>) -> [f64; 3] {
     mechanism.position(point, state).unwrap_or(Vector3::repeat(f64::NAN)).into()
 }
 
 /// Against gravity at the start; N.z where the model has none.
-fn up(mechanism: &InterpretedMechanism, state: &State) -> [f64; 3] {
-    let model = mechanism.model();
+fn up(model: &Model, state: &State) -> [f64; 3] {
     let gravity = model.loads.iter().find_map(|load| match &load.kind {
         LoadKind::Gravity(vector) => Some(vector),
         _ => None,
     });
     let known = |vector: &Vector| -> Option<Vector3<f64>> {
-        let state = state.to_numeric();
-        let views = Views::at(model, &state).ok()?;
+        let views = Views::at(model, state).ok()?;
         Some(Vector3::from(values(views.now.vector(vector, Level::Motion).ok()?)))
     };
     match gravity.and_then(known) {

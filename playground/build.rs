@@ -1,0 +1,8 @@
+//! Gives the module as much stack as deeply nested expressions need.
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    if std::env::var("CARGO_CFG_TARGET_ARCH").as_deref() == Ok("wasm32") {
+        println!("cargo:rustc-cdylib-link-arg=-zstack-size=8388608");
+    }
+}

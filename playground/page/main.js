@@ -1,0 +1,166 @@
+// The page: a model on one side, its motion on the other.
+
+import { showMotion } from "drawing";
+import WORKER from "worker";
+import { asker } from "./asker.js";
+import { makeControls } from "./controls.js";
+import { showCourse } from "./course.js";
+import { makeEditor } from "./editor.js";
+import { loadModule } from "./module.js";
+import { saveModel, savePicture, saveTable } from "./save.js";
+import { fromFragment, toFragment } from "./share.js";
+import { watchFile } from "./watch.js";
+
+/** A motion is computed for so long at most, in milliseconds. */
+const LIMIT = 10_000;
+const byId = (id) => document.getElementById(id);
+const examples = JSON.parse(byId("examples-data").textContent);
+const say = (text, kind = "") => { const node = byId("status"); node.textContent = text; node.className = kind; };
+const later = (wait, run) => {
+  let timer = 0;
+  return () => { clearTimeout(timer); timer = setTimeout(run, wait); };
+};
+
+async function begin() {
+  const served = watchFile((file) => { derivation = file.derivation || ""; editor.replace(file.text); });
+  const [module, shared, file] = await Promise.all([loadModule(), fromFragment(location.hash), served]);
+  const words = asker(WORKER, module), motions = asker(WORKER, module);
+  let derivation = file?.derivation || "", model = null, shown = null, latest = null, round = 0, course = -2;
+
+  const first = file?.text ?? shared?.text ?? examples[0].text;
+  const editor = makeEditor(byId("editor"), first, (question) => words.ask(question, { limit: 5000 }), () => checkSoon());
+  editor.onAnnounce((text) => say(text, "warning"));
+  const controls = makeControls(byId("controls"), () => moveSoon());
+  controls.take(shared);
+  if (shared?.until) byId("until").value = shared.until;
+  byId("name").textContent = file?.name || "";
+
+  const problems = (answer) => {
+    const list = byId("problems");
+    list.replaceChildren(...answer.findings.slice(0, 30).map((found) => {
+      const item = document.createElement("li"), button = document.createElement("button");
+      button.type = "button";
+      button.className = found.error ? "error" : "warning";
+      const line = editor.view.state.doc.lineAt(Math.min(found.from, editor.view.state.doc.length)).number;
+      button.textContent = `${found.code}, line ${line}: ${found.message.split("\n")[0]}`;
+      button.addEventListener("click", () => editor.select(found.from, found.to));
+      item.append(button);
+      return item;
+    }));
+    list.hidden = !answer.findings.length;
+  };
+
+  const check = async () => {
+    const text = editor.text();
+    const answer = await words.ask({ ask: "check", text }, { limit: 5000 });
+    if (!answer || editor.text() !== text) return;
+    if (answer.fault) return say(answer.fault, "error");
+    editor.show(answer, text);
+    problems(answer);
+    const count = answer.findings.filter((found) => found.error).length;
+    document.body.dataset.errors = count;
+    if (answer.errors) {
+      motions.drop();
+      return say(count === 1 ? "1 mistake: the motion is that of the model before it" : `${count} mistakes: the motion is that of the model before them`, "error");
+    }
+    const described = await words.ask({ ask: "describe", text }, { limit: 5000 });
+    if (!described || described.fault || editor.text() !== text) return;
+    model = described;
+    controls.show(model);
+    document.title = `${model.name}: Hodograph`;
+    move();
+  };
+  const checkSoon = later(60, check);
+
+  const move = async () => {
+    const mine = ++round, text = editor.text();
+    if (!model) return;
+    motions.drop();
+    const span = Number(byId("until").value);
+    const question = { ask: "move", text, derivation, ...controls.asked(), ...(span > 0 ? { until: span } : {}) };
+    say("computing");
+    const began = performance.now();
+    const answer = await motions.ask(question, {
+      limit: LIMIT,
+      progress: (time) => { if (mine === round) say(`computing: t = ${time.toFixed(2)} s`); },
+    });
+    if (!answer || mine !== round) return;
+    if (answer.fault) return say(answer.fault, "error");
+    latest = answer;
+    latest.curves = answer.animation.series.filter((one) => one.values.length === answer.times.length);
+    const kept = shown ? shown.keep() : {};
+    // Another model is looked at anew.
+    if (kept.name !== model.name) for (const key of ["view", "now", "speed", "running"]) delete kept[key];
+    shown?.end();
+    course = -2;
+    shown = showMotion(byId("motion"), answer.animation, { ...kept, name: model.name, onTime: (time, event) => follow(event) });
+    const spent = ((performance.now() - began) / 1000).toFixed(2);
+    const road = answer.road === "derivation" ? "from its derivation" : "evaluated numerically";
+    if (answer.stopped !== null) say(`stopped at t = ${answer.stopped.toFixed(3)} s: this motion takes longer than ${LIMIT / 1000} s to compute`, "warning");
+    else if (answer.ended) say(`the motion ends: ${answer.ended}`, "warning");
+    else say(`${answer.times.length} moments, ${answer.events.length} events in ${spent} s, ${road}`);
+    document.body.dataset.moved = String(Number(document.body.dataset.moved || 0) + 1);
+    performance.mark("moved");
+  };
+  const moveSoon = later(40, move);
+
+  // The collision at the cursor: the last one before the time that is shown, else the first.
+  const follow = async (event) => {
+    const all = latest.collisions;
+    const found = all.filter((one) => one.event <= event).pop() || all[0];
+    const index = found ? found.event : -1;
+    if (index === course) return;
+    course = index;
+    byId("course").hidden = !found;
+    if (!found) return;
+    const answer = await words.ask({ ask: "hodograph", ...found }, { limit: 5000 });
+    if (!answer?.points || course !== index) return;
+    showCourse(byId("course"), found, answer, latest.animation.events[index].contact);
+  };
+
+  // The menu, the buttons.
+  examples.forEach((one, index) => byId("examples").append(new Option(one.name, index)));
+  byId("examples").addEventListener("change", (event) => {
+    const chosen = examples[event.target.value];
+    if (!chosen) return;
+    derivation = "";
+    controls.clear();
+    history.replaceState(null, "", location.pathname + location.search);
+    editor.replace(chosen.text);
+    event.target.value = "";
+  });
+  byId("until").addEventListener("change", move);
+  byId("format").addEventListener("click", editor.format);
+  byId("share").addEventListener("click", async () => {
+    const span = Number(byId("until").value);
+    const fragment = await toFragment({ text: editor.text(), ...controls.asked(), ...(span > 0 ? { until: span } : {}) });
+    history.replaceState(null, "", fragment);
+    const copied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
+    say(copied ? "the address of this model is copied" : "the address of the page now holds this model: copy it", "good");
+  });
+  byId("save").addEventListener("change", (event) => {
+    const kind = event.target.value, name = model?.name || "model";
+    event.target.value = "";
+    if (kind === "model") saveModel(name, editor.text());
+    if (kind === "svg" && shown) savePicture(name, byId("motion").querySelector("#stage"));
+    if (kind === "csv" && latest) saveTable(name, latest);
+  });
+  byId("stop").addEventListener("click", () => { motions.drop(); say("stopped", "warning"); });
+  byId("equations").addEventListener("click", async () => {
+    const answer = await words.ask({ ask: "equations", text: editor.text(), derivation }, { limit: 8000 });
+    if (!answer?.page) return say(answer?.fault || "no equations", "warning");
+    const frame = byId("equations-frame");
+    frame.srcdoc = answer.page;
+    byId("equations-box").showModal();
+  });
+  byId("equations").hidden = !derivation;
+  byId("close").addEventListener("click", () => byId("equations-box").close());
+  addEventListener("hashchange", async () => {
+    const other = await fromFragment(location.hash);
+    if (other && other.text !== editor.text()) { controls.take(other); editor.replace(other.text); }
+  });
+  globalThis.hodograph = { words, motions, editor, latest: () => latest };
+  await check();
+}
+
+begin().catch((error) => say(`the page cannot begin: ${error.message || error}`, "error"));
