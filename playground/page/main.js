@@ -22,7 +22,12 @@ const later = (wait, run) => {
 };
 
 async function begin() {
-  const served = watchFile((file) => { derivation = file.derivation || ""; editor.replace(file.text); });
+  const served = watchFile((file) => {
+    if (file.fault) return say(file.fault, "error");
+    derivation = file.derivation || "";
+    byId("equations").hidden = !derivation;
+    if (file.text === editor.text()) move(); else editor.replace(file.text);
+  });
   const [module, shared, file] = await Promise.all([loadModule(), fromFragment(location.hash), served]);
   const words = asker(WORKER, module), motions = asker(WORKER, module);
   let derivation = file?.derivation || "", model = null, shown = null, latest = null, round = 0, course = -2;
@@ -78,11 +83,11 @@ async function begin() {
     motions.drop();
     const span = Number(byId("until").value);
     const question = { ask: "move", text, derivation, ...controls.asked(), ...(span > 0 ? { until: span } : {}) };
-    say("computing");
+    say("computing", "busy");
     const began = performance.now();
     const answer = await motions.ask(question, {
       limit: LIMIT,
-      progress: (time) => { if (mine === round) say(`computing: t = ${time.toFixed(2)} s`); },
+      progress: (time) => { if (mine === round) say(`computing: t = ${time.toFixed(2)} s`, "busy"); },
     });
     if (!answer || mine !== round) return;
     if (answer.fault) return say(answer.fault, "error");

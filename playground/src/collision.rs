@@ -32,7 +32,8 @@ pub fn course(question: &Value) -> Result<Value, String> {
         list.ok_or_else(|| format!("the question has no `{name}`"))
     };
     let number = |name: &str| question[name].as_f64().ok_or_else(|| format!("the question has no `{name}`"));
-    let matrix: [f64; 6] = numbers("matrix")?.try_into().map_err(|_| "`matrix` has six numbers".to_owned())?;
+    let matrix: [f64; 6] =
+        numbers("matrix")?.try_into().map_err(|_| "`matrix` has six numbers".to_owned())?;
     let approach: [f64; 3] =
         numbers("approach")?.try_into().map_err(|_| "`approach` has three numbers".to_owned())?;
     let law = law(question["law"].as_str().unwrap_or(""))?;

@@ -1,10 +1,10 @@
 //! Reads a model, and its derivation where there is one.
 
 use hodograph_model::check::{self, UNIT_QUATERNION, impossible_bodies};
+use hodograph_model::diagnostics::Severity;
 use hodograph_model::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_model::numeric::start::{self, Given};
 use hodograph_model::numeric::{self, State};
-use hodograph_model::rendering;
 use hodograph_model::source::Source;
 use hodograph_program::artifact::{self, Loaded};
 use hodograph_program::explain::{self, Format};
@@ -14,11 +14,17 @@ use serde_json::{Map, Value, json};
 ///
 /// # Errors
 ///
-/// The mistakes, as `check` prints them.
+/// The first mistake, with its line.
 pub fn read(text: &str) -> Result<Mechanism, String> {
     let source = Source::file("model.mech", text);
     let checked = check::check(&source);
-    checked.mechanism.ok_or_else(|| rendering::render(&checked.diagnostics, &source))
+    let first = || {
+        let error = checked.diagnostics.iter().find(|found| found.severity == Severity::Error)?;
+        let before = text.get(..error.primary.span.start as usize)?;
+        Some(format!("{}, line {}: {}", error.code.0, before.matches('\n').count() + 1, error.message))
+    };
+    let first = first();
+    checked.mechanism.ok_or_else(|| first.unwrap_or_else(|| "the model has mistakes".to_owned()))
 }
 
 /// Whether a model depends on time by itself.

@@ -7,9 +7,7 @@ use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_model::numeric::State;
 use hodograph_program::artifact::Loaded;
-use hodograph_simulation::{
-    ContactLaw, Event, EventKind, Options, Simulation, SimulationError,
-};
+use hodograph_simulation::{ContactLaw, Event, EventKind, Options, Simulation, SimulationError};
 use serde_json::{Value, json};
 
 use crate::collision::law;

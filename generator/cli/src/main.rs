@@ -31,7 +31,7 @@ mod table;
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
     export as export_library, fmt, import as import_urdf, lsp as language_server, new, plot as draw,
-    simulate, solve,
+    serve, simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -51,6 +51,7 @@ enum Command {
     Check(check::Arguments),
     Fmt(fmt::Arguments),
     Lsp(language_server::Arguments),
+    Serve(serve::Arguments),
     Simulate(Box<simulate::Arguments>),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
@@ -89,6 +90,7 @@ fn main() -> ExitCode {
         Command::Expand(arguments) => expand::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Export(arguments) => export_library::run(&arguments),
+        Command::Serve(arguments) => serve::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),

@@ -15,5 +15,6 @@ pub mod import;
 pub mod lsp;
 pub mod new;
 pub mod plot;
+pub mod serve;
 pub mod simulate;
 pub mod solve;

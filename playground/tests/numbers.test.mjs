@@ -1,0 +1,101 @@
+// The numbers of the page are those of the tool.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { load } from "./module.mjs";
+
+const models = new URL("../../models/", import.meta.url);
+const tool = process.env.HODOGRAPH_TOOL || "../target/debug/hodograph";
+const surface = { mu: 0.3, e: 0.5, law: "stronge" };
+const UNTIL = 0.5, STEP = 0.01;
+
+/** Without a derivation the equations are another computation: states differ by no more than this, of their size above 1. */
+const BOUND = 1e-8;
+
+// Motions with loops, quaternions, rolling, time, lasting contact and impacts.
+const CASES = ["two_sleds", "planar_double_pendulum", "four_bar", "free_box_quaternion", "rolling_disc", "chaplygin_sleigh", "spring_damper_cart_rod", "driven_rotary_pendulum"];
+
+const byTool = (name) => {
+  const options = ["--until", UNTIL, "--step", STEP, "--mu", surface.mu, "--e", surface.e, "--law", surface.law, "--format", "json"].map(String);
+  const path = new URL(`${name}.mech`, models).pathname;
+  const lines = execFileSync(tool, ["simulate", path, ...options], { stdio: ["ignore", "pipe", "ignore"], encoding: "utf8" });
+  const all = lines.trim().split("\n").map((line) => JSON.parse(line));
+  return { states: all.filter((line) => line.q && !line.event), events: all.filter((line) => line.event) };
+};
+const text = (name) => readFileSync(new URL(name, models), "utf8");
+
+// The page's states at the times of the tool's samples: after an event, where there are two.
+const sampled = (answer, times) => {
+  const at = new Map(answer.times.map((t, index) => [t, index]));
+  const of = (panel, index) => Object.fromEntries(answer.states.filter((one) => one.panel === panel).map((one) => [one.name, one.values[index]]));
+  return times.map((t) => {
+    assert.ok(at.has(t), `the page has no sample at ${t}`);
+    return { t, q: of("coordinates", at.get(t)), u: of("speeds", at.get(t)) };
+  });
+};
+
+for (const name of CASES) {
+  test(`${name}: by its derivation the same bits as the tool, without it within ${BOUND}`, async () => {
+    const ask = await load(), known = byTool(name);
+    assert.ok(known.states.length > 40);
+    const times = known.states.map((state) => state.t);
+    const question = { ask: "move", text: text(`${name}.mech`), until: UNTIL, step: STEP, surface };
+    const exact = ask({ ...question, derivation: text(`${name}.derivation`) });
+    assert.equal(exact.fault, undefined, exact.fault);
+    assert.equal(exact.road, "derivation");
+    sampled(exact, times).forEach((state, index) => assert.deepEqual(state, { t: known.states[index].t, q: known.states[index].q, u: known.states[index].u }));
+    assert.deepEqual(exact.events.map((one) => [one.event, one.t]), known.events.map((one) => [one.event, one.t]));
+
+    const near = ask(question);
+    assert.equal(near.fault, undefined, near.fault);
+    assert.equal(near.road, "numeric");
+    assert.deepEqual(near.events.map((one) => one.event), known.events.map((one) => one.event));
+    let worst = 0;
+    sampled(near, times).forEach((state, index) => {
+      for (const part of ["q", "u"]) for (const key in state[part]) {
+        const expected = known.states[index][part][key];
+        worst = Math.max(worst, Math.abs(state[part][key] - expected) / Math.max(1, Math.abs(expected)));
+      }
+    });
+    assert.ok(worst <= BOUND, `${name}: off by ${worst}`);
+  });
+}
+
+test("every model of the gallery is described, checked without mistakes, and moves", async () => {
+  const ask = await load();
+  const { examples } = await import("./built.mjs");
+  for (const { name, text } of examples) {
+    const checked = ask({ ask: "check", text });
+    assert.equal(checked.errors, false, name);
+    assert.ok(ask({ ask: "describe", text }).quantities.length > 0, name);
+    const moved = ask({ ask: "move", text, until: 0.02, tolerance: 1e-6, surface });
+    assert.equal(moved.fault, undefined, `${name}: ${moved.fault}`);
+    assert.ok(moved.times.length >= 3, name);
+  }
+});
+
+test("a motion that is told to end says where it did, and what is no question is answered by a fault", async () => {
+  let calls = 0;
+  const ask = await load(() => ++calls < 20);
+  const pendulum = readFileSync(new URL("../page/pendulum.mech", import.meta.url), "utf8");
+  const answer = ask({ ask: "move", text: pendulum, until: 10 });
+  assert.ok(answer.stopped > 0 && answer.stopped < 1, String(answer.stopped));
+  assert.ok(answer.times.length >= 19);
+  for (const wrong of ["", "{", "[]", '{"ask":"fly"}', '{"ask":"move"}', '{"ask":"check","text":7}', '{"ask":"move","text":"mechanism"}']) {
+    assert.equal(typeof ask(wrong).fault, "string", wrong);
+  }
+  const numbers = { ask: "move", text: pendulum, values: { m: -1 } };
+  assert.match(ask(numbers).fault, /Rod/);
+  assert.match(ask({ ask: "move", text: pendulum, surface: { e: 2 } }).fault, /restitution/);
+});
+
+test("the language service counts as JavaScript does", async () => {
+  const ask = await load();
+  const text = "//! \u{1f600}\nmechanism A;\nparameters { \u03b1: kg = 1, b: m = qq }\n";
+  const { findings } = ask({ ask: "check", text });
+  assert.ok(findings.some((found) => text.slice(found.from, found.to) === "qq"), JSON.stringify(findings));
+  const hover = ask({ ask: "hover", text, at: text.indexOf("\u03b1") });
+  assert.equal(text.slice(hover.from, hover.to), "\u03b1");
+});
