@@ -29,7 +29,7 @@ const bundle = await esbuild.build({
   plugins: [given], legalComments: "none", metafile: true,
 });
 const script = bundle.outputFiles[0].text.replaceAll("</script", "<\\/script");
-const style = (await esbuild.transform(shared("style.css") + read(here, "page", "page.css"), { loader: "css", minify: true })).code;
+const style = (await esbuild.transform(read(root, "generator", "model", "src", "page.css") + shared("style.css") + read(here, "page", "page.css"), { loader: "css", minify: true })).code;
 
 // The models of the menu: small ones first, then those of the gallery.
 const models = join(root, "models");

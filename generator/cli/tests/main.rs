@@ -31,6 +31,7 @@ mod paper;
 mod recordings;
 mod reference;
 mod rolling;
+mod serve;
 mod solve;
 mod state;
 mod stated;

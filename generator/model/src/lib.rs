@@ -9,7 +9,7 @@
 //! ```
 //!
 //! A mistake is a [`diagnostics::Diagnostic`]; `rendering` shows it with its line, `explanations` explains its
-//! code.
+//! code. `page` is what all written pages have in common.
 
 pub mod arithmetic;
 pub mod check;
@@ -21,6 +21,7 @@ pub mod graph;
 pub mod model;
 pub mod number;
 pub mod numeric;
+pub mod page;
 pub mod parts;
 pub mod rendering;
 pub mod rust_names;

@@ -17,12 +17,13 @@ mod solids;
 #[cfg(test)]
 mod tests;
 
+use hodograph_model::page::{self, escaped};
 use serde::Serialize;
 
 pub use energies::missing;
 pub use follow::{Span, Watch, follow};
 pub use gap::gap;
-pub use number::{escaped, number};
+pub use number::number;
 pub use recording::{Recorded, Recording, numbers};
 pub use segments::segments;
 pub use setup::{Setup, Value};
@@ -149,9 +150,10 @@ pub fn page(animation: &Animation) -> String {
     let (title, line, setup) = (escaped(&animation.title), animation.setup.line(), animation.setup.html());
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\">\n<title>{title}: motion</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         content=\"width=device-width, initial-scale=1\">\n<title>{title}: motion</title>\n<style>\n{}{STYLE}</style>\n</head>\n<body>\n\
          <header><h1>{title}</h1>{line}</header>\n<main>\n{BODY}{setup}</main>\n<script type=\"application/json\" id=\"data\">{data}</script>\n\
-         <script>\n{SCRIPT}{SHOW}\n</script>\n</body>\n</html>\n"
+         <script>\n{SCRIPT}{SHOW}\n</script>\n</body>\n</html>\n",
+        page::STYLE,
     )
 }
 

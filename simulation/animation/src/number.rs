@@ -1,4 +1,4 @@
-//! Numbers and texts as pages write them.
+//! Numbers as pages and tables write them.
 
 /// A number to six digits, as short as it can be.
 pub fn number(value: f64) -> String {
@@ -28,24 +28,6 @@ fn shortened(digits: &str, rest: &str) -> String {
         "-0" => format!("0{rest}"),
         short => format!("{short}{rest}"),
     }
-}
-
-/// Text as SVG and HTML want it.
-pub fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        match letter {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\'' => out.push_str("&#39;"),
-            '\t' | '\n' | '\r' => out.push(' '),
-            letter if letter.is_control() => {}
-            _ => out.push(letter),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Writes what a motion is the motion of: surfaces, parameters, initial values, and the text of the model.
 
-use crate::number::{escaped, number};
+use hodograph_model::page::escaped;
+
+use crate::number::number;
 
 /// What was simulated.
 #[derive(Clone, Debug, Default)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use hodograph_animation::escaped;
+use hodograph_generator::page::escaped;
 
 use super::canvas::{Anchor, Colour, Shape, Sheet};
 use super::font::{FAMILY, LOWER, RAISE, SMALL};

@@ -8,6 +8,7 @@ mod escape;
 mod mathml;
 
 use escape::plain;
+use hodograph_model::page;
 use mathml::{Writer, identifier, math};
 
 use super::symbols::{Form, form, unit};
@@ -20,8 +21,9 @@ pub fn write(document: &Document) -> String {
     let writer = Writer { symbols: &document.symbols };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n<meta name=\"viewport\" \
-         content=\"width=device-width, initial-scale=1\"/>\n<title>{title}: equations</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         content=\"width=device-width, initial-scale=1\"/>\n<title>{title}: equations</title>\n<style>\n{}{STYLE}</style>\n</head>\n<body>\n\
          <div class=\"page\">\n<header>\n<h1>{title}</h1>\n{}</header>\n{}<main>\n{}{}</main>\n</div>\n</body>\n</html>\n",
+        page::STYLE,
         paragraphs(&document.docs),
         contents(document),
         names(document, &writer),
