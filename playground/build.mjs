@@ -3,7 +3,7 @@
 //   node build.mjs WASM FOLDER
 
 import { brotliCompressSync, gzipSync } from "node:zlib";
-import { mkdirSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
+import { copyFileSync, mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import * as esbuild from "esbuild";
@@ -63,7 +63,8 @@ const single = page({
 });
 const apart = page({ style: '<link rel="stylesheet" href="style.css">', module: "", script: '<script src="page.js" defer></script>' });
 
-mkdirSync(join(folder, "site"), { recursive: true });
+rmSync(folder, { recursive: true, force: true });
+mkdirSync(join(folder, "site", "models"), { recursive: true });
 const put = (name, content) => writeFileSync(join(folder, name), content);
 put("hodograph.html", single);
 put("LICENCES.txt", licences);
@@ -72,6 +73,8 @@ put("site/style.css", style);
 put("site/page.js", script);
 put("site/hodograph.wasm", wasm);
 put("site/LICENCES.txt", licences);
+// The folder has the derivations of the examples: these then have the numbers and equations of the tool.
+for (const name of order) copyFileSync(join(models, `${name}.derivation`), join(folder, "site", "models", `${name}.derivation`));
 
 const size = (name, bytes) => {
   const buffer = Buffer.from(bytes);

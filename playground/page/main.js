@@ -6,7 +6,7 @@ import { asker } from "./asker.js";
 import { makeControls } from "./controls.js";
 import { showCourse } from "./course.js";
 import { makeEditor } from "./editor.js";
-import { loadModule } from "./module.js";
+import { derivationOf, loadModule } from "./module.js";
 import { saveModel, savePicture, saveTable } from "./save.js";
 import { fromFragment, toFragment } from "./share.js";
 import { watchFile } from "./watch.js";
@@ -24,14 +24,15 @@ const later = (wait, run) => {
 async function begin() {
   const served = watchFile((file) => {
     if (file.fault) return say(file.fault, "error");
-    derivation = file.derivation || "";
-    byId("equations").hidden = !derivation;
+    derive(file.derivation || "");
     if (file.text === editor.text()) move(); else editor.replace(file.text);
   });
+  const derive = (text) => { derivation = text; byId("equations").hidden = !text; };
   const [module, shared, file] = await Promise.all([loadModule(), fromFragment(location.hash), served]);
   const words = asker(WORKER, module), motions = asker(WORKER, module);
-  let derivation = file?.derivation || "", model = null, shown = null, latest = null, round = 0, course = -2;
+  let derivation = "", model = null, shown = null, latest = null, round = 0, course = -2;
 
+  derive(file?.derivation || "");
   const first = file?.text ?? shared?.text ?? examples[0].text;
   const editor = makeEditor(byId("editor"), first, (question) => words.ask(question, { limit: 5000 }), () => checkSoon());
   editor.onAnnounce((text) => say(text, "warning"));
@@ -125,10 +126,10 @@ async function begin() {
 
   // The menu, the buttons.
   examples.forEach((one, index) => byId("examples").append(new Option(one.name, index)));
-  byId("examples").addEventListener("change", (event) => {
+  byId("examples").addEventListener("change", async (event) => {
     const chosen = examples[event.target.value];
     if (!chosen) return;
-    derivation = "";
+    derive(await derivationOf(chosen.name));
     controls.clear();
     history.replaceState(null, "", location.pathname + location.search);
     editor.replace(chosen.text);
@@ -158,7 +159,6 @@ async function begin() {
     frame.srcdoc = answer.page;
     byId("equations-box").showModal();
   });
-  byId("equations").hidden = !derivation;
   byId("close").addEventListener("click", () => byId("equations-box").close());
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);
