@@ -80,9 +80,10 @@ const size = (name, bytes) => {
   const buffer = Buffer.from(bytes);
   const [gzip, brotli] = [gzipSync(buffer, { level: 9 }).length, brotliCompressSync(buffer).length];
   console.log(`${name.padEnd(24)} ${String(buffer.length).padStart(8)} bytes, gzip ${String(gzip).padStart(7)}, brotli ${String(brotli).padStart(7)}`);
-  return { gzip, brotli };
+  return { name, bytes: buffer.length, gzip, brotli };
 };
 const parts = [["module (wasm)", wasm], ["script", script], ["style", style], ["page", apart]].map(([name, bytes]) => size(name, bytes));
 const sum = (kind) => parts.reduce((all, part) => all + part[kind], 0);
 console.log(`${"folder, all of it".padEnd(24)} ${" ".repeat(15)} gzip ${String(sum("gzip")).padStart(7)}, brotli ${String(sum("brotli")).padStart(7)}`);
-size("one file (hodograph.html)", single);
+console.log(`one file (hodograph.html)  ${single.length} bytes`);
+put("sizes.json", JSON.stringify({ parts, folder: { gzip: sum("gzip"), brotli: sum("brotli") }, file: single.length }));

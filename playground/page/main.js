@@ -13,6 +13,8 @@ import { watchFile } from "./watch.js";
 
 /** A motion is computed for so long at most, in milliseconds. */
 const LIMIT = 10_000;
+/** What is done of it after so long is shown before the whole. */
+const QUICK = 700;
 const byId = (id) => document.getElementById(id);
 const examples = JSON.parse(byId("examples-data").textContent);
 const say = (text, kind = "") => { const node = byId("status"); node.textContent = text; node.className = kind; };
@@ -30,7 +32,7 @@ async function begin() {
   const derive = (text) => { derivation = text; byId("equations").hidden = !text; };
   const [module, shared, file] = await Promise.all([loadModule(), fromFragment(location.hash), served]);
   const words = asker(WORKER, module), motions = asker(WORKER, module);
-  let derivation = "", model = null, shown = null, latest = null, round = 0, course = -2;
+  let derivation = "", model = null, shown = null, latest = null, round = 0, course = -2, begun = null;
 
   derive(file?.derivation || "");
   const first = file?.text ?? shared?.text ?? examples[0].text;
@@ -82,30 +84,44 @@ async function begin() {
     const mine = ++round, text = editor.text();
     if (!model) return;
     motions.drop();
+    begun = null;
     const span = Number(byId("until").value);
     const question = { ask: "move", text, derivation, ...controls.asked(), ...(span > 0 ? { until: span } : {}) };
+    const progress = (time) => { if (mine === round) say(`computing: t = ${time.toFixed(2)} s`, "busy"); };
     say("computing", "busy");
     const began = performance.now();
-    const answer = await motions.ask(question, {
-      limit: LIMIT,
-      progress: (time) => { if (mine === round) say(`computing: t = ${time.toFixed(2)} s`, "busy"); },
-    });
-    if (!answer || mine !== round) return;
-    if (answer.fault) return say(answer.fault, "error");
+    for (const limit of [QUICK, LIMIT]) {
+      const answer = await motions.ask(question, { limit, progress });
+      if (!answer || mine !== round) return;
+      if (answer.fault) return say(answer.fault, "error");
+      const done = answer.stopped === null || limit === LIMIT;
+      present(answer, done);
+      if (!done) continue;
+      const spent = ((performance.now() - began) / 1000).toFixed(2);
+      const road = answer.road === "derivation" ? "from its derivation" : "evaluated numerically";
+      if (answer.stopped !== null) say(`stopped at t = ${answer.stopped.toFixed(3)} s: this motion takes longer than ${LIMIT / 1000} s to compute`, "warning");
+      else if (answer.ended) say(`the motion ends: ${answer.ended}`, "warning");
+      else say(`${answer.times.length} moments, ${answer.events.length} events in ${spent} s, ${road}`);
+      document.body.dataset.moved = String(Number(document.body.dataset.moved || 0) + 1);
+      return;
+    }
+  };
+
+  // Shows a motion in the place of the one before it, as that was looked at; of one that is not done yet the whole
+  // takes its place next.
+  const present = (answer, done) => {
     latest = answer;
     latest.curves = answer.animation.series.filter((one) => one.values.length === answer.times.length);
-    const kept = shown ? shown.keep() : {};
+    const last = shown?.keep();
+    const kept = begun || last || {};
     // Another model is looked at anew.
     if (kept.name !== model.name) for (const key of ["view", "now", "speed", "running"]) delete kept[key];
+    if (begun && last) { kept.view = last.view; kept.now ??= last.now; }
+    kept.name = model.name;
+    begun = done ? null : { ...kept };
     shown?.end();
     course = -2;
-    shown = showMotion(byId("motion"), answer.animation, { ...kept, name: model.name, onTime: (time, event) => follow(event) });
-    const spent = ((performance.now() - began) / 1000).toFixed(2);
-    const road = answer.road === "derivation" ? "from its derivation" : "evaluated numerically";
-    if (answer.stopped !== null) say(`stopped at t = ${answer.stopped.toFixed(3)} s: this motion takes longer than ${LIMIT / 1000} s to compute`, "warning");
-    else if (answer.ended) say(`the motion ends: ${answer.ended}`, "warning");
-    else say(`${answer.times.length} moments, ${answer.events.length} events in ${spent} s, ${road}`);
-    document.body.dataset.moved = String(Number(document.body.dataset.moved || 0) + 1);
+    shown = showMotion(byId("motion"), answer.animation, { ...kept, onTime: (time, event) => follow(event) });
     performance.mark("moved");
   };
   const moveSoon = later(40, move);

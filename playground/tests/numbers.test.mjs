@@ -11,8 +11,12 @@ const tool = process.env.HODOGRAPH_TOOL || "../target/debug/hodograph";
 const surface = { mu: 0.3, e: 0.5, law: "stronge" };
 const UNTIL = 0.5, STEP = 0.01;
 
-/** Without a derivation the equations are another computation: states differ by no more than this, of their size above 1. */
-const BOUND = 1e-8;
+/**
+ * How far states and times of events may differ, of their size above 1. With a derivation equations and collisions
+ * have the same bits; the integrator chooses its steps by the platform's `pow`, whose last bit differs in WebAssembly.
+ * Without one the equations are another computation.
+ */
+const BOUND = { derivation: 1e-12, numeric: 1e-9 };
 
 // Motions with loops, quaternions, rolling, time, lasting contact and impacts.
 const CASES = ["two_sleds", "planar_double_pendulum", "four_bar", "free_box_quaternion", "rolling_disc", "chaplygin_sleigh", "spring_damper_cart_rod", "driven_rotary_pendulum"];
@@ -37,29 +41,25 @@ const sampled = (answer, times) => {
 };
 
 for (const name of CASES) {
-  test(`${name}: by its derivation the same bits as the tool, without it within ${BOUND}`, async () => {
-    const ask = await load(), known = byTool(name);
+  test(`${name}: states and events are those of the tool, with and without its derivation`, async () => {
+    const ask = await load(), known = byTool(name), models = { derivation: text(`${name}.derivation`), numeric: "" };
     assert.ok(known.states.length > 40);
-    const times = known.states.map((state) => state.t);
-    const question = { ask: "move", text: text(`${name}.mech`), until: UNTIL, step: STEP, surface };
-    const exact = ask({ ...question, derivation: text(`${name}.derivation`) });
-    assert.equal(exact.fault, undefined, exact.fault);
-    assert.equal(exact.road, "derivation");
-    sampled(exact, times).forEach((state, index) => assert.deepEqual(state, { t: known.states[index].t, q: known.states[index].q, u: known.states[index].u }));
-    assert.deepEqual(exact.events.map((one) => [one.event, one.t]), known.events.map((one) => [one.event, one.t]));
-
-    const near = ask(question);
-    assert.equal(near.fault, undefined, near.fault);
-    assert.equal(near.road, "numeric");
-    assert.deepEqual(near.events.map((one) => one.event), known.events.map((one) => one.event));
-    let worst = 0;
-    sampled(near, times).forEach((state, index) => {
-      for (const part of ["q", "u"]) for (const key in state[part]) {
-        const expected = known.states[index][part][key];
-        worst = Math.max(worst, Math.abs(state[part][key] - expected) / Math.max(1, Math.abs(expected)));
-      }
-    });
-    assert.ok(worst <= BOUND, `${name}: off by ${worst}`);
+    const off = {};
+    for (const road in models) {
+      const answer = ask({ ask: "move", text: text(`${name}.mech`), derivation: models[road], until: UNTIL, step: STEP, surface });
+      assert.equal(answer.fault, undefined, answer.fault);
+      assert.equal(answer.road, road);
+      assert.deepEqual(answer.events.map((one) => one.event), known.events.map((one) => one.event));
+      let worst = 0;
+      const compare = (value, expected) => { worst = Math.max(worst, Math.abs(value - expected) / Math.max(1, Math.abs(expected))); };
+      answer.events.forEach((one, index) => compare(one.t, known.events[index].t));
+      sampled(answer, known.states.map((state) => state.t)).forEach((state, index) => {
+        for (const part of ["q", "u"]) for (const key in known.states[index][part]) compare(state[part][key], known.states[index][part][key]);
+      });
+      off[road] = worst;
+      assert.ok(worst <= BOUND[road], `${name}, ${road}: off by ${worst}`);
+    }
+    console.log(`${name}: off by ${off.derivation.toExponential(1)} with its derivation, ${off.numeric.toExponential(1)} without`);
   });
 }
 

@@ -30,8 +30,8 @@ mod table;
 
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
-    export as export_library, fmt, import as import_urdf, lsp as language_server, new, plot as draw,
-    serve, simulate, solve,
+    export as export_library, fmt, import as import_urdf, lsp as language_server, new, plot as draw, serve,
+    simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files

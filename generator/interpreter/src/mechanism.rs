@@ -6,8 +6,8 @@ use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
 use hodograph_model::numeric;
 use hodograph_program::program::{PointQuantity, Quantity};
 
-use crate::{InterpretedMechanism, description, parameters};
 use crate::routines::Request;
+use crate::{InterpretedMechanism, description, parameters};
 
 impl InterpretedMechanism {
     /// The quantities that the program has and that are offered by name.

@@ -1,7 +1,8 @@
 "use strict";
 // Vectors, paths and numbers of drawings. A written page and the playground join these files to one script.
 
-const SVG = "http://www.w3.org/2000/svg";
+// A written page names no address: the parser knows this one.
+const SVG = new DOMParser().parseFromString("<svg></svg>", "text/html").body.firstChild.namespaceURI;
 const finite = (v) => v !== null && v.every((x) => x !== null);
 const make = (parent, tag, kind, attributes) => {
   const node = document.createElementNS(SVG, tag);

@@ -39,8 +39,7 @@ const SCRIPT: &str = concat!(
 /// Where a written page has its motion.
 const BODY: &str = "<div id=\"motion\"></div>\n<noscript><p>This page needs JavaScript, which stands in the page itself.</p></noscript>\n";
 /// Shows it.
-const SHOW: &str =
-    "showMotion(document.getElementById(\"motion\"), JSON.parse(document.getElementById(\"data\").textContent));";
+const SHOW: &str = "showMotion(document.getElementById(\"motion\"), JSON.parse(document.getElementById(\"data\").textContent));";
 /// A page holds this many instants at most, about; of more, every second or third .. is kept, and those of
 /// events.
 const MOMENTS: usize = 6000;

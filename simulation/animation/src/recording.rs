@@ -41,12 +41,7 @@ pub struct Recorded {
 
 impl<'m> Recording<'m> {
     /// Nothing yet, of a motion from a state; `setup` says of which.
-    pub fn new(
-        mechanism: &'m dyn Contacts<f64>,
-        model: &'m Model,
-        state: &State,
-        setup: Setup,
-    ) -> Self {
+    pub fn new(mechanism: &'m dyn Contacts<f64>, model: &'m Model, state: &State, setup: Setup) -> Self {
         let from: Vec<Option<usize>> = model
             .points
             .iter()

@@ -1,9 +1,7 @@
 //! The shapes of a model as outlines, and the planes of contacts that have none.
 
 use hodograph::{Contacts, State as Borrowed};
-use hodograph_model::model::mechanism::{
-    Against, FrameId, Height, Kind, Mechanism as Model, PointId, Shape,
-};
+use hodograph_model::model::mechanism::{Against, FrameId, Height, Kind, Mechanism as Model, PointId, Shape};
 use hodograph_model::numeric::hyper_dual::HyperDual;
 use hodograph_model::numeric::{Evaluator, Level, State, Views};
 use nalgebra::{Matrix3, Vector3};

@@ -110,8 +110,8 @@ impl Mechanism for NumericMechanism {
         check_length(accelerations, p, "the accelerations")?;
         let known = self.snapshot(state)?;
         let matrix = DMatrix::from_fn(p, p, |i, j| known.values.mass_matrix[i][j]);
-        let all =
-            matrix * DVector::from_column_slice(accelerations) - DVector::from_column_slice(&known.values.forcing);
+        let all = matrix * DVector::from_column_slice(accelerations)
+            - DVector::from_column_slice(&known.values.forcing);
         write(forces, all.as_slice(), "the generalized forces")
     }
 
@@ -120,10 +120,7 @@ impl Mechanism for NumericMechanism {
     }
 
     fn potential_energy(&self, state: &State<'_>) -> Result<Option<f64>, StateError> {
-        use hodograph_model::model::mechanism::LoadKind::{Gravity, Spring, Torsion};
-        let has = |kind: &_| matches!(kind, Gravity(_) | Spring { .. } | Torsion { .. });
-        let energy = self.snapshot(state)?.values.potential_energy;
-        Ok(energy.filter(|_| self.model().loads.iter().any(|load| has(&load.kind))))
+        Ok(self.snapshot(state)?.values.potential_energy)
     }
 
     fn configuration(

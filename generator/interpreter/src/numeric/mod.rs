@@ -145,8 +145,7 @@ impl NumericMechanism {
         let coordinates = state.coordinates.iter().map(|q| HyperDual::constant(*q)).collect();
         let speeds = vec![HyperDual::ZERO; self.model.speeds.len()];
         let time = HyperDual::constant(state.time);
-        let values =
-            Evaluator::new(&self.model, &self.parameters, state.inputs, time, coordinates, speeds);
+        let values = Evaluator::new(&self.model, &self.parameters, state.inputs, time, coordinates, speeds);
         ask(&values).map_err(state_error)
     }
 }

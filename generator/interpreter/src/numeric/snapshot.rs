@@ -135,8 +135,7 @@ fn known(
 ) -> Known {
     let (normal, normal_rate) = (Vector3::from(contact.normal), Vector3::from(contact.normal_rate));
     let [[first, second], [first_rate, second_rate]] = basis.axes(normal, normal_rate);
-    let along =
-        |v: [f64; 3]| Vector3::from([normal, first, second].map(|axis| axis.dot(&Vector3::from(v))));
+    let along = |v: [f64; 3]| Vector3::from([normal, first, second].map(|axis| axis.dot(&Vector3::from(v))));
     let columns: Vec<Vector3<f64>> = contact.partial_velocities.iter().map(|v| along(*v)).collect();
     let partial = Matrix3xX::from_columns(&columns);
     let response = factors.solve(&partial.transpose());

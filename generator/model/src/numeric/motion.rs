@@ -94,10 +94,7 @@ impl<'m> Instant<'m> {
     pub fn maps(&self) -> Result<Maps, Failure> {
         let rates = self.solve_rates()?;
         let count = self.m.speeds.len();
-        let identity: Vec<Vec<HyperDual>> = (0..count)
-            .map(|i| (0..=count).map(|j| if i == j { HyperDual::ONE } else { HyperDual::ZERO }).collect())
-            .collect();
-        let mut maps = Maps { rates, speeds: identity };
+        let mut maps = Maps { rates, speeds: units(count) };
         maps.speeds = self.solve_speeds(&maps)?;
         Ok(maps)
     }
@@ -128,6 +125,9 @@ impl<'m> Instant<'m> {
     }
 
     fn solve_rates(&self) -> Result<Vec<Vec<HyperDual>>, Failure> {
+        if let Some(rates) = stated_rates(self.m) {
+            return Ok(rates);
+        }
         let (q, u) = (self.m.coordinates.len(), self.m.speeds.len());
         let (rows, spans) = self.coefficients(q + u, |arguments| {
             let (rates, speeds) = arguments.split_at(q);
@@ -183,6 +183,9 @@ impl<'m> Instant<'m> {
         let count = self.m.speeds.len();
         let independent = self.m.speeds.iter().filter(|u| !u.dependent).count();
         let dependent = count - independent;
+        if dependent == 0 && self.m.constraints.is_empty() {
+            return Ok(units(independent));
+        }
         let (rows, spans) = self.constraint_rows(maps, dependent)?;
         let rows: Vec<Vec<HyperDual>> = rows.into_iter().map(|row| negate_from(row, dependent)).collect();
         let (own, others) = self.m.speeds.split_at(independent);
@@ -192,10 +195,7 @@ impl<'m> Instant<'m> {
         if solved.contradiction.1 > CONSISTENT {
             return Err(Failure::ConstraintsInconsistent(spans[solved.contradiction.0]));
         }
-        let units = (0..independent).map(|i| {
-            (0..=independent).map(|j| if i == j { HyperDual::ONE } else { HyperDual::ZERO }).collect()
-        });
-        Ok(units.chain(solved.unknowns).collect())
+        Ok(units(independent).into_iter().chain(solved.unknowns).collect())
     }
 
     /// The constraints by their coefficients: dependent speeds, independent speeds, the constant.
@@ -226,6 +226,36 @@ impl<'m> Instant<'m> {
         let in_si = |row: &Vec<HyperDual>| row.iter().zip(sizes()).map(|(c, size)| c.re / size).collect();
         Ok(rows.iter().map(in_si).collect())
     }
+}
+
+/// The affine maps that are their arguments.
+fn units(count: usize) -> Vec<Vec<HyperDual>> {
+    let entry = |i, j| if i == j { HyperDual::ONE } else { HyperDual::ZERO };
+    (0..count).map(|i| (0..=count).map(|j| entry(i, j)).collect()).collect()
+}
+
+/// The rates of the coordinates where each is stated to be one speed, and nothing else is said of rates: the
+/// usual case, in which nothing is to be solved.
+fn stated_rates(m: &Mechanism) -> Option<Vec<Vec<HyperDual>>> {
+    let of_frame =
+        |f: &Frame| f.angular_velocity.is_some() || matches!(f.orientation, Orientation::Quaternion(_));
+    let moves = |place: &Place| matches!(place, Place::Offset { .. } | Place::Material { .. });
+    let of_point = |point: &Point| point.velocity.is_some() && moves(&point.place);
+    let count = m.coordinates.len();
+    if m.kinematics.len() != count || m.frames.iter().any(of_frame) || m.points.iter().any(of_point) {
+        return None;
+    }
+    let mut rates = vec![Vec::new(); count];
+    for equation in &m.kinematics {
+        let EquationSides::Scalar(Scalar::Rate(rate), Scalar::Speed(speed)) = &equation.sides else {
+            return None;
+        };
+        let Scalar::Coordinate(coordinate) = **rate else { return None };
+        let mut row = vec![HyperDual::ZERO; m.speeds.len() + 1];
+        row[speed.0] = HyperDual::ONE;
+        rates[coordinate.0] = row;
+    }
+    rates.iter().all(|row| !row.is_empty()).then_some(rates)
 }
 
 /// Moves all but the unknowns to the right side.

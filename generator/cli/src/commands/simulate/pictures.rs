@@ -84,7 +84,9 @@ impl<'m> Pictures<'m> {
         state: &State,
         setup: impl FnOnce() -> Setup,
     ) -> Self {
-        let recording = files.wanted().then(|| Recording::new(mechanism, mechanism.model(), &state.to_numeric(), setup()));
+        let recording = files
+            .wanted()
+            .then(|| Recording::new(mechanism, mechanism.model(), &state.to_numeric(), setup()));
         Pictures { recording, begun: false }
     }
 
