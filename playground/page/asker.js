@@ -2,7 +2,9 @@
 
 /** A worker with the module; `code` is its script. */
 export function asker(code, module) {
-  let worker, ready, number = 0;
+  let worker,
+    ready,
+    number = 0;
   const open = new Map();
   const begin = () => {
     const url = URL.createObjectURL(new Blob([code], { type: "text/javascript" }));
@@ -14,7 +16,12 @@ export function asker(code, module) {
         if (!asked) return;
         if (data.progress !== undefined) return asked.progress?.(data.progress);
         if (data.broken) restart();
-        settle(data.id, data.broken ? { fault: `the computation broke off (${data.broken}): please report this model` } : data.answer);
+        settle(
+          data.id,
+          data.broken
+            ? { fault: `the computation broke off (${data.broken}): please report this model` }
+            : data.answer,
+        );
       };
     });
     worker.postMessage({ module });
@@ -26,14 +33,20 @@ export function asker(code, module) {
     clearTimeout(asked?.timer);
     asked?.done(answer);
   };
-  const restart = () => { worker.terminate(); begin(); };
+  const restart = () => {
+    worker.terminate();
+    begin();
+  };
   begin();
   return {
     /** The answer. After `limit` milliseconds a motion is told to end; where it does not, the worker is ended a while later. */
     async ask(question, { limit = 0, progress } = {}) {
       const id = ++number;
       const answer = new Promise((done) => {
-        const late = () => { restart(); settle(id, { fault: "this took too long and was stopped" }); };
+        const late = () => {
+          restart();
+          settle(id, { fault: "this took too long and was stopped" });
+        };
         open.set(id, { done, progress, timer: limit ? setTimeout(late, 1.5 * limit + 2000) : 0 });
       });
       await ready;

@@ -17,26 +17,49 @@ const LIMIT = 10_000;
 const QUICK = 700;
 const byId = (id) => document.getElementById(id);
 const examples = JSON.parse(byId("examples-data").textContent);
-const say = (text, kind = "") => { const node = byId("status"); node.textContent = text; node.className = kind; };
+const say = (text, kind = "") => {
+  const node = byId("status");
+  node.textContent = text;
+  node.className = kind;
+};
 const later = (wait, run) => {
   let timer = 0;
-  return () => { clearTimeout(timer); timer = setTimeout(run, wait); };
+  return () => {
+    clearTimeout(timer);
+    timer = setTimeout(run, wait);
+  };
 };
 
 async function begin() {
   const served = watchFile((file) => {
     if (file.fault) return say(file.fault, "error");
     derive(file.derivation || "");
-    if (file.text === editor.text()) move(); else editor.replace(file.text);
+    if (file.text === editor.text()) move();
+    else editor.replace(file.text);
   });
-  const derive = (text) => { derivation = text; byId("equations").hidden = !text; };
+  const derive = (text) => {
+    derivation = text;
+    byId("equations").hidden = !text;
+  };
   const [module, shared, file] = await Promise.all([loadModule(), fromFragment(location.hash), served]);
-  const words = asker(WORKER, module), motions = asker(WORKER, module);
-  let derivation = "", model = null, shown = null, latest = null, round = 0, course = -2, begun = null;
+  const words = asker(WORKER, module),
+    motions = asker(WORKER, module);
+  let derivation = "",
+    model = null,
+    shown = null,
+    latest = null,
+    round = 0,
+    course = -2,
+    begun = null;
 
   derive(file?.derivation || "");
   const first = file?.text ?? shared?.text ?? examples[0].text;
-  const editor = makeEditor(byId("editor"), first, (question) => words.ask(question, { limit: 5000 }), () => checkSoon());
+  const editor = makeEditor(
+    byId("editor"),
+    first,
+    (question) => words.ask(question, { limit: 5000 }),
+    () => checkSoon(),
+  );
   editor.onAnnounce((text) => say(text, "warning"));
   const controls = makeControls(byId("controls"), () => moveSoon());
   controls.take(shared);
@@ -45,16 +68,21 @@ async function begin() {
 
   const problems = (answer) => {
     const list = byId("problems");
-    list.replaceChildren(...answer.findings.slice(0, 30).map((found) => {
-      const item = document.createElement("li"), button = document.createElement("button");
-      button.type = "button";
-      button.className = found.error ? "error" : "warning";
-      const line = editor.view.state.doc.lineAt(Math.min(found.from, editor.view.state.doc.length)).number;
-      button.textContent = `${found.code}, line ${line}: ${found.message.split("\n")[0]}`;
-      button.addEventListener("click", () => editor.select(found.from, found.to));
-      item.append(button);
-      return item;
-    }));
+    list.replaceChildren(
+      ...answer.findings.slice(0, 30).map((found) => {
+        const item = document.createElement("li"),
+          button = document.createElement("button");
+        button.type = "button";
+        button.className = found.error ? "error" : "warning";
+        const line = editor.view.state.doc.lineAt(
+          Math.min(found.from, editor.view.state.doc.length),
+        ).number;
+        button.textContent = `${found.code}, line ${line}: ${found.message.split("\n")[0]}`;
+        button.addEventListener("click", () => editor.select(found.from, found.to));
+        item.append(button);
+        return item;
+      }),
+    );
     list.hidden = !answer.findings.length;
   };
 
@@ -69,7 +97,12 @@ async function begin() {
     document.body.dataset.errors = count;
     if (answer.errors) {
       motions.drop();
-      return say(count === 1 ? "1 mistake: the motion is that of the model before it" : `${count} mistakes: the motion is that of the model before them`, "error");
+      return say(
+        count === 1
+          ? "1 mistake: the motion is that of the model before it"
+          : `${count} mistakes: the motion is that of the model before them`,
+        "error",
+      );
     }
     const described = await words.ask({ ask: "describe", text }, { limit: 5000 });
     if (!described || described.fault || editor.text() !== text) return;
@@ -81,13 +114,22 @@ async function begin() {
   const checkSoon = later(60, check);
 
   const move = async () => {
-    const mine = ++round, text = editor.text();
+    const mine = ++round,
+      text = editor.text();
     if (!model) return;
     motions.drop();
     begun = null;
     const span = Number(byId("until").value);
-    const question = { ask: "move", text, derivation, ...controls.asked(), ...(span > 0 ? { until: span } : {}) };
-    const progress = (time) => { if (mine === round) say(`computing: t = ${time.toFixed(2)} s`, "busy"); };
+    const question = {
+      ask: "move",
+      text,
+      derivation,
+      ...controls.asked(),
+      ...(span > 0 ? { until: span } : {}),
+    };
+    const progress = (time) => {
+      if (mine === round) say(`computing: t = ${time.toFixed(2)} s`, "busy");
+    };
     say("computing", "busy");
     const began = performance.now();
     for (const limit of [QUICK, LIMIT]) {
@@ -99,7 +141,11 @@ async function begin() {
       if (!done) continue;
       const spent = ((performance.now() - began) / 1000).toFixed(2);
       const road = answer.road === "derivation" ? "from its derivation" : "evaluated numerically";
-      if (answer.stopped !== null) say(`stopped at t = ${answer.stopped.toFixed(3)} s: this motion takes longer than ${LIMIT / 1000} s to compute`, "warning");
+      if (answer.stopped !== null)
+        say(
+          `stopped at t = ${answer.stopped.toFixed(3)} s: this motion takes longer than ${LIMIT / 1000} s to compute`,
+          "warning",
+        );
       else if (answer.ended) say(`the motion ends: ${answer.ended}`, "warning");
       else say(`${answer.times.length} moments, ${answer.events.length} events in ${spent} s, ${road}`);
       document.body.dataset.moved = String(Number(document.body.dataset.moved || 0) + 1);
@@ -116,12 +162,18 @@ async function begin() {
     const kept = begun || last || {};
     // Another model is looked at anew.
     if (kept.name !== model.name) for (const key of ["view", "now", "speed", "running"]) delete kept[key];
-    if (begun && last) { kept.view = last.view; kept.now ??= last.now; }
+    if (begun && last) {
+      kept.view = last.view;
+      kept.now ??= last.now;
+    }
     kept.name = model.name;
     begun = done ? null : { ...kept };
     shown?.end();
     course = -2;
-    shown = showMotion(byId("motion"), answer.animation, { ...kept, onTime: (time, event) => follow(event) });
+    shown = showMotion(byId("motion"), answer.animation, {
+      ...kept,
+      onTime: (time, event) => follow(event),
+    });
     performance.mark("moved");
   };
   const moveSoon = later(40, move);
@@ -155,19 +207,35 @@ async function begin() {
   byId("format").addEventListener("click", editor.format);
   byId("share").addEventListener("click", async () => {
     const span = Number(byId("until").value);
-    const fragment = await toFragment({ text: editor.text(), ...controls.asked(), ...(span > 0 ? { until: span } : {}) });
+    const fragment = await toFragment({
+      text: editor.text(),
+      ...controls.asked(),
+      ...(span > 0 ? { until: span } : {}),
+    });
     history.replaceState(null, "", fragment);
-    const copied = await navigator.clipboard?.writeText(location.href).then(() => true, () => false);
-    say(copied ? "the address of this model is copied" : "the address of the page now holds this model: copy it", "good");
+    const copied = await navigator.clipboard?.writeText(location.href).then(
+      () => true,
+      () => false,
+    );
+    say(
+      copied
+        ? "the address of this model is copied"
+        : "the address of the page now holds this model: copy it",
+      "good",
+    );
   });
   byId("save").addEventListener("change", (event) => {
-    const kind = event.target.value, name = model?.name || "model";
+    const kind = event.target.value,
+      name = model?.name || "model";
     event.target.value = "";
     if (kind === "model") saveModel(name, editor.text());
     if (kind === "svg" && shown) savePicture(name, byId("motion").querySelector("#stage"));
     if (kind === "csv" && latest) saveTable(name, latest);
   });
-  byId("stop").addEventListener("click", () => { motions.drop(); say("stopped", "warning"); });
+  byId("stop").addEventListener("click", () => {
+    motions.drop();
+    say("stopped", "warning");
+  });
   byId("equations").addEventListener("click", async () => {
     const answer = await words.ask({ ask: "equations", text: editor.text(), derivation }, { limit: 8000 });
     if (!answer?.page) return say(answer?.fault || "no equations", "warning");
@@ -178,7 +246,10 @@ async function begin() {
   byId("close").addEventListener("click", () => byId("equations-box").close());
   addEventListener("hashchange", async () => {
     const other = await fromFragment(location.hash);
-    if (other && other.text !== editor.text()) { controls.take(other); editor.replace(other.text); }
+    if (other && other.text !== editor.text()) {
+      controls.take(other);
+      editor.replace(other.text);
+    }
   });
   globalThis.hodograph = { words, motions, editor, latest: () => latest };
   await check();

@@ -2,7 +2,9 @@
 
 const unpacked = (text) => {
   const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
+  return new Response(
+    new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip")),
+  ).arrayBuffer();
 };
 
 const packed = document.getElementById("wasm");
@@ -15,7 +17,9 @@ export async function derivationOf(name) {
 }
 
 export async function loadModule() {
-  const bytes = packed ? await unpacked(packed.textContent.trim()) : await (await fetch("hodograph.wasm")).arrayBuffer();
+  const bytes = packed
+    ? await unpacked(packed.textContent.trim())
+    : await (await fetch("hodograph.wasm")).arrayBuffer();
   packed?.remove();
   return WebAssembly.compile(bytes);
 }

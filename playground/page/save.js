@@ -12,7 +12,15 @@ const save = (name, type, text) => {
 export function table(answer) {
   const columns = [...answer.states, ...answer.curves];
   const quoted = (text) => (/[",\n]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
-  const head = ["t [s]", ...columns.map((one) => (one.panel === "coordinates" || one.panel === "speeds" ? "" : `${one.panel} `) + one.name + (one.unit && one.unit !== "1" ? ` [${one.unit}]` : ""))];
+  const head = [
+    "t [s]",
+    ...columns.map(
+      (one) =>
+        (one.panel === "coordinates" || one.panel === "speeds" ? "" : `${one.panel} `) +
+        one.name +
+        (one.unit && one.unit !== "1" ? ` [${one.unit}]` : ""),
+    ),
+  ];
   const lines = answer.times.map((t, row) => [t, ...columns.map((one) => one.values[row] ?? "")].join(","));
   return [head.map(quoted).join(","), ...lines].join("\n") + "\n";
 }
@@ -20,12 +28,30 @@ export function table(answer) {
 /** The stage as a file of its own: with the colours that the style sheet gives. */
 export function picture(stage) {
   const copy = stage.cloneNode(true);
-  const kept = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linecap", "stroke-linejoin", "fill-opacity", "stroke-opacity", "opacity", "display", "font-family", "font-size", "paint-order"];
-  const from = [stage, ...stage.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
+  const kept = [
+    "fill",
+    "stroke",
+    "stroke-width",
+    "stroke-dasharray",
+    "stroke-linecap",
+    "stroke-linejoin",
+    "fill-opacity",
+    "stroke-opacity",
+    "opacity",
+    "display",
+    "font-family",
+    "font-size",
+    "paint-order",
+  ];
+  const from = [stage, ...stage.querySelectorAll("*")],
+    to = [copy, ...copy.querySelectorAll("*")];
   from.forEach((node, index) => {
     const style = getComputedStyle(node);
     to[index].removeAttribute("class");
-    to[index].setAttribute("style", kept.map((name) => `${name}:${style.getPropertyValue(name)}`).join(";"));
+    to[index].setAttribute(
+      "style",
+      kept.map((name) => `${name}:${style.getPropertyValue(name)}`).join(";"),
+    );
   });
   copy.querySelectorAll('[style*="display:none"]').forEach((node) => node.remove());
   copy.removeAttribute("id");

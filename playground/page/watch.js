@@ -15,7 +15,10 @@ export async function watchFile(onChange) {
   const look = async () => {
     try {
       const next = document.hidden ? null : await get(version);
-      if (next) { version = next.version; onChange(next); }
+      if (next) {
+        version = next.version;
+        onChange(next);
+      }
     } catch {
       // The server has ended, or begins anew: the page stays as it is.
     }

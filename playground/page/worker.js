@@ -1,6 +1,9 @@
 // The worker: one WebAssembly module that answers questions, one after another.
 
-let exports, deadline = Infinity, told = 0, current = 0;
+let exports,
+  deadline = Infinity,
+  told = 0,
+  current = 0;
 
 const host = {
   // A motion says how far it is; the answer is whether to go on.
@@ -19,7 +22,9 @@ const ask = (question) => {
   const place = exports.room(bytes.length);
   new Uint8Array(exports.memory.buffer, place, bytes.length).set(bytes);
   const length = exports.ask(place, bytes.length);
-  return JSON.parse(new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.answer(), length)));
+  return JSON.parse(
+    new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.answer(), length)),
+  );
 };
 
 onmessage = async ({ data }) => {

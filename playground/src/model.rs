@@ -110,7 +110,7 @@ pub fn start(model: &Mechanism, question: &Value) -> Result<State, String> {
         let Orientation::Quaternion(parts) = frame.orientation else { continue };
         let numbers = parts.map(|part| state.coordinates[part.0]);
         let norm = numbers.iter().map(|number| number * number).sum::<f64>().sqrt();
-        if !(norm > 0.0) {
+        if norm.is_nan() || norm <= 0.0 {
             return Err(format!("the quaternion of frame {} has length 0: it is no rotation", frame.name));
         }
         if (norm - 1.0).abs() > UNIT_QUATERNION {

@@ -9,7 +9,8 @@ import { load } from "./module.mjs";
 const models = new URL("../../models/", import.meta.url);
 const tool = process.env.HODOGRAPH_TOOL || "../target/debug/hodograph";
 const surface = { mu: 0.3, e: 0.5, law: "stronge" };
-const UNTIL = 0.5, STEP = 0.01;
+const UNTIL = 0.5,
+  STEP = 0.01;
 
 /**
  * How far states and times of events may differ, of their size above 1. With a derivation equations and collisions
@@ -19,13 +20,41 @@ const UNTIL = 0.5, STEP = 0.01;
 const BOUND = { derivation: 1e-12, numeric: 1e-9 };
 
 // Motions with loops, quaternions, rolling, time, lasting contact and impacts.
-const CASES = ["two_sleds", "planar_double_pendulum", "four_bar", "free_box_quaternion", "rolling_disc", "chaplygin_sleigh", "spring_damper_cart_rod", "driven_rotary_pendulum"];
+const CASES = [
+  "two_sleds",
+  "planar_double_pendulum",
+  "four_bar",
+  "free_box_quaternion",
+  "rolling_disc",
+  "chaplygin_sleigh",
+  "spring_damper_cart_rod",
+  "driven_rotary_pendulum",
+];
 
 const byTool = (name) => {
-  const options = ["--until", UNTIL, "--step", STEP, "--mu", surface.mu, "--e", surface.e, "--law", surface.law, "--format", "json"].map(String);
+  const options = [
+    "--until",
+    UNTIL,
+    "--step",
+    STEP,
+    "--mu",
+    surface.mu,
+    "--e",
+    surface.e,
+    "--law",
+    surface.law,
+    "--format",
+    "json",
+  ].map(String);
   const path = new URL(`${name}.mech`, models).pathname;
-  const lines = execFileSync(tool, ["simulate", path, ...options], { stdio: ["ignore", "pipe", "ignore"], encoding: "utf8" });
-  const all = lines.trim().split("\n").map((line) => JSON.parse(line));
+  const lines = execFileSync(tool, ["simulate", path, ...options], {
+    stdio: ["ignore", "pipe", "ignore"],
+    encoding: "utf8",
+  });
+  const all = lines
+    .trim()
+    .split("\n")
+    .map((line) => JSON.parse(line));
   return { states: all.filter((line) => line.q && !line.event), events: all.filter((line) => line.event) };
 };
 const text = (name) => readFileSync(new URL(name, models), "utf8");
@@ -33,7 +62,10 @@ const text = (name) => readFileSync(new URL(name, models), "utf8");
 // The page's states at the times of the tool's samples: after an event, where there are two.
 const sampled = (answer, times) => {
   const at = new Map(answer.times.map((t, index) => [t, index]));
-  const of = (panel, index) => Object.fromEntries(answer.states.filter((one) => one.panel === panel).map((one) => [one.name, one.values[index]]));
+  const of = (panel, index) =>
+    Object.fromEntries(
+      answer.states.filter((one) => one.panel === panel).map((one) => [one.name, one.values[index]]),
+    );
   return times.map((t) => {
     assert.ok(at.has(t), `the page has no sample at ${t}`);
     return { t, q: of("coordinates", at.get(t)), u: of("speeds", at.get(t)) };
@@ -42,24 +74,45 @@ const sampled = (answer, times) => {
 
 for (const name of CASES) {
   test(`${name}: states and events are those of the tool, with and without its derivation`, async () => {
-    const ask = await load(), known = byTool(name), models = { derivation: text(`${name}.derivation`), numeric: "" };
+    const ask = await load(),
+      known = byTool(name),
+      models = { derivation: text(`${name}.derivation`), numeric: "" };
     assert.ok(known.states.length > 40);
     const off = {};
     for (const road in models) {
-      const answer = ask({ ask: "move", text: text(`${name}.mech`), derivation: models[road], until: UNTIL, step: STEP, surface });
+      const answer = ask({
+        ask: "move",
+        text: text(`${name}.mech`),
+        derivation: models[road],
+        until: UNTIL,
+        step: STEP,
+        surface,
+      });
       assert.equal(answer.fault, undefined, answer.fault);
       assert.equal(answer.road, road);
-      assert.deepEqual(answer.events.map((one) => one.event), known.events.map((one) => one.event));
+      assert.deepEqual(
+        answer.events.map((one) => one.event),
+        known.events.map((one) => one.event),
+      );
       let worst = 0;
-      const compare = (value, expected) => { worst = Math.max(worst, Math.abs(value - expected) / Math.max(1, Math.abs(expected))); };
+      const compare = (value, expected) => {
+        worst = Math.max(worst, Math.abs(value - expected) / Math.max(1, Math.abs(expected)));
+      };
       answer.events.forEach((one, index) => compare(one.t, known.events[index].t));
-      sampled(answer, known.states.map((state) => state.t)).forEach((state, index) => {
-        for (const part of ["q", "u"]) for (const key in known.states[index][part]) compare(state[part][key], known.states[index][part][key]);
+      sampled(
+        answer,
+        known.states.map((state) => state.t),
+      ).forEach((state, index) => {
+        for (const part of ["q", "u"])
+          for (const key in known.states[index][part])
+            compare(state[part][key], known.states[index][part][key]);
       });
       off[road] = worst;
       assert.ok(worst <= BOUND[road], `${name}, ${road}: off by ${worst}`);
     }
-    console.log(`${name}: off by ${off.derivation.toExponential(1)} with its derivation, ${off.numeric.toExponential(1)} without`);
+    console.log(
+      `${name}: off by ${off.derivation.toExponential(1)} with its derivation, ${off.numeric.toExponential(1)} without`,
+    );
   });
 }
 
@@ -83,7 +136,15 @@ test("a motion that is told to end says where it did, and what is no question is
   const answer = ask({ ask: "move", text: pendulum, until: 10 });
   assert.ok(answer.stopped > 0 && answer.stopped < 1, String(answer.stopped));
   assert.ok(answer.times.length >= 19);
-  for (const wrong of ["", "{", "[]", '{"ask":"fly"}', '{"ask":"move"}', '{"ask":"check","text":7}', '{"ask":"move","text":"mechanism"}']) {
+  for (const wrong of [
+    "",
+    "{",
+    "[]",
+    '{"ask":"fly"}',
+    '{"ask":"move"}',
+    '{"ask":"check","text":7}',
+    '{"ask":"move","text":"mechanism"}',
+  ]) {
     assert.equal(typeof ask(wrong).fault, "string", wrong);
   }
   const numbers = { ask: "move", text: pendulum, values: { m: -1 } };
@@ -95,7 +156,10 @@ test("the language service counts as JavaScript does", async () => {
   const ask = await load();
   const text = "//! \u{1f600}\nmechanism A;\nparameters { \u03b1: kg = 1, b: m = qq }\n";
   const { findings } = ask({ ask: "check", text });
-  assert.ok(findings.some((found) => text.slice(found.from, found.to) === "qq"), JSON.stringify(findings));
+  assert.ok(
+    findings.some((found) => text.slice(found.from, found.to) === "qq"),
+    JSON.stringify(findings),
+  );
   const hover = ask({ ask: "hover", text, at: text.indexOf("\u03b1") });
   assert.equal(text.slice(hover.from, hover.to), "\u03b1");
 });

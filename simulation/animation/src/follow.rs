@@ -37,8 +37,8 @@ pub trait Watch<E> {
     fn event(&mut self, event: &Event, simulation: &Simulation<'_>) -> Result<(), E>;
 }
 
-/// Follows a motion that stands at its start, of which there is no sample: samples at `start + k step`, at the end,
-/// and where the motion ends by itself.
+/// Follows a motion that stands at its start, of which there is no sample: samples at `start + k step`, at
+/// the end, and where the motion ends by itself.
 ///
 /// # Errors
 ///

@@ -216,7 +216,7 @@ fn independent(slopes: &[Vec<f64>], unknowns: &[usize], count: usize) -> Option<
         let size = |(row, column): &(usize, usize)| left[*row].1[*column].abs();
         let places = (0..left.len()).flat_map(|row| free.iter().map(move |&column| (row, column)));
         let best = places.max_by(|a, b| size(a).total_cmp(&size(b)))?;
-        if !(size(&best) > 0.0) {
+        if size(&best).is_nan() || size(&best) <= 0.0 {
             return None;
         }
         let (row, pivot) = left.remove(best.0);
