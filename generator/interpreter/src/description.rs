@@ -1,38 +1,38 @@
 //! What a model declares, as the trait `Mechanism` describes it.
 
-use hodograph::{Component, Kind};
+use hodograph::{Component, ComponentKind};
 use hodograph_model::model::mechanism::{Mechanism, Orientation, Variable};
 
 /// The quantities of a kind that a model declares with units.
-pub fn declared(model: &Mechanism, kind: Kind) -> Box<dyn Iterator<Item = &Variable> + '_> {
+pub fn declared(model: &Mechanism, kind: ComponentKind) -> Box<dyn Iterator<Item = &Variable> + '_> {
     match kind {
-        Kind::Parameter => Box::new(model.parameters.iter().filter(|parameter| !parameter.fixed)),
-        Kind::Coordinate => Box::new(model.coordinates.iter()),
-        Kind::DependentCoordinate => Box::new(model.coordinates.iter().filter(|q| q.dependent)),
-        Kind::Speed => Box::new(model.speeds.iter().filter(|speed| !speed.dependent)),
-        Kind::DependentSpeed => Box::new(model.speeds.iter().filter(|speed| speed.dependent)),
-        Kind::Input => Box::new(model.inputs.iter()),
+        ComponentKind::Parameter => Box::new(model.parameters.iter().filter(|parameter| !parameter.fixed)),
+        ComponentKind::Coordinate => Box::new(model.coordinates.iter()),
+        ComponentKind::DependentCoordinate => Box::new(model.coordinates.iter().filter(|q| q.dependent)),
+        ComponentKind::Speed => Box::new(model.speeds.iter().filter(|speed| !speed.dependent)),
+        ComponentKind::DependentSpeed => Box::new(model.speeds.iter().filter(|speed| speed.dependent)),
+        ComponentKind::Input => Box::new(model.inputs.iter()),
         _ => Box::new(std::iter::empty()),
     }
 }
 
 /// How many of a kind a model has; of named quantities it knows nothing.
-pub fn count(model: &Mechanism, kind: Kind) -> usize {
+pub fn count(model: &Mechanism, kind: ComponentKind) -> usize {
     match kind {
-        Kind::Point => model.points.len(),
-        Kind::Frame => model.frames.len(),
-        Kind::Contact => model.contacts.len(),
+        ComponentKind::Point => model.points.len(),
+        ComponentKind::Frame => model.frames.len(),
+        ComponentKind::Contact => model.contacts.len(),
         kind => declared(model, kind).count(),
     }
 }
 
 /// Name and unit of one of a kind.
-pub fn component(model: &Mechanism, kind: Kind, index: usize) -> Option<Component<'_>> {
+pub fn component(model: &Mechanism, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
     let named = |name| Component { name, unit: "" };
     match kind {
-        Kind::Point => model.points.get(index).map(|point| named(point.name.as_str())),
-        Kind::Frame => model.frames.get(index).map(|frame| named(frame.name.as_str())),
-        Kind::Contact => model.contacts.get(index).map(|contact| named(contact.name.as_str())),
+        ComponentKind::Point => model.points.get(index).map(|point| named(point.name.as_str())),
+        ComponentKind::Frame => model.frames.get(index).map(|frame| named(frame.name.as_str())),
+        ComponentKind::Contact => model.contacts.get(index).map(|contact| named(contact.name.as_str())),
         kind => declared(model, kind).nth(index).map(|quantity| Component {
             name: &quantity.name,
             unit: if quantity.unit.is_empty() { "1" } else { &quantity.unit },

@@ -2,7 +2,7 @@
 
 use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{Matrix3, Vector3};
-use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
+use hodograph::{Component, ComponentKind, Mechanism, ParameterError, State, StateError};
 use hodograph_model::numeric;
 use hodograph_program::program::{PointQuantity, Quantity};
 
@@ -19,7 +19,7 @@ impl InterpretedMechanism {
     }
 
     /// Whether there is one of this number.
-    pub(crate) fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
+    pub(crate) fn exists(&self, kind: ComponentKind, index: usize) -> Result<(), StateError> {
         if index < Mechanism::count(self, kind) { Ok(()) } else { Err(StateError::Missing { kind, index }) }
     }
 
@@ -31,7 +31,7 @@ impl InterpretedMechanism {
         accelerations: &[f64],
         what: &'static str,
     ) -> Result<Vector3<f64>, StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         let request = Request::Point(point, quantity);
         if point == 0 {
             self.check(state)?;
@@ -49,16 +49,16 @@ impl Mechanism for InterpretedMechanism {
         &self.model().name
     }
 
-    fn count(&self, kind: Kind) -> usize {
+    fn count(&self, kind: ComponentKind) -> usize {
         match kind {
-            Kind::Quantity => self.named().count(),
+            ComponentKind::Quantity => self.named().count(),
             kind => description::count(self.model(), kind),
         }
     }
 
-    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>> {
+    fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
         match kind {
-            Kind::Quantity => {
+            ComponentKind::Quantity => {
                 let row = self.named().nth(index)?.description();
                 Some(Component { name: row.word, unit: row.unit })
             }
@@ -166,8 +166,8 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn quantity(&self, quantity: usize, state: &State<'_>, values: &mut [f64]) -> Result<(), StateError> {
-        self.exists(Kind::Quantity, quantity)?;
-        let missing = StateError::Missing { kind: Kind::Quantity, index: quantity };
+        self.exists(ComponentKind::Quantity, quantity)?;
+        let missing = StateError::Missing { kind: ComponentKind::Quantity, index: quantity };
         let quantity = self.named().nth(quantity).ok_or(missing)?;
         self.write(Request::Whole(quantity), state, &[], values, quantity.description().word)
     }
@@ -192,7 +192,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn jacobian(&self, point: usize, state: &State<'_>, jacobian: &mut [f64]) -> Result<(), StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         if point == 0 {
             self.check(state)?;
             check_length(jacobian, 3 * self.freedom(), "the partial velocities")?;
@@ -204,7 +204,7 @@ impl Mechanism for InterpretedMechanism {
     }
 
     fn orientation(&self, frame: usize, state: &State<'_>) -> Result<Matrix3<f64>, StateError> {
-        self.exists(Kind::Frame, frame)?;
+        self.exists(ComponentKind::Frame, frame)?;
         let request = Request::Frame(frame);
         if frame == 0 {
             self.check(state)?;

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use hodograph::nalgebra::{DMatrix, Matrix3, Vector3};
-use hodograph::{ClosedContacts, ContactMode, Contacts, Kind, Law, Mechanism, State, Surface};
+use hodograph::{ClosedContacts, ComponentKind, ContactMode, Contacts, Law, Mechanism, State, Surface};
 use hodograph_interpreter::{InterpretedMechanism, NumericMechanism};
 
 const STATES: usize = 3;
@@ -50,16 +50,16 @@ fn all_quantities_agree_with_those_of_derivations() {
         let name = path.file_stem().unwrap().to_string_lossy().into_owned();
         let derived = InterpretedMechanism::read(&path).unwrap();
         let numeric = NumericMechanism::new(derived.model().clone()).unwrap();
-        let (n, p) = (derived.count(Kind::Coordinate), derived.count(Kind::Speed));
+        let (n, p) = (derived.count(ComponentKind::Coordinate), derived.count(ComponentKind::Speed));
         let mut random = Random(20_12);
         let start = written(n, |q| {
-            derived.initial_state(q, &mut vec![0.0; p], &mut vec![0.0; derived.count(Kind::Input)])
+            derived.initial_state(q, &mut vec![0.0; p], &mut vec![0.0; derived.count(ComponentKind::Input)])
         });
         let mut seen = 0;
         for _ in 0..20 * STATES {
             let mut coordinates: Vec<f64> = start.iter().map(|q| q + 0.2 * random.next()).collect();
             let speeds: Vec<f64> = (0..p).map(|_| random.next()).collect();
-            let inputs: Vec<f64> = (0..derived.count(Kind::Input)).map(|_| random.next()).collect();
+            let inputs: Vec<f64> = (0..derived.count(ComponentKind::Input)).map(|_| random.next()).collect();
             derived.normalise(&mut coordinates).unwrap();
             if !closed(&derived, &mut coordinates, &inputs, &speeds) {
                 continue;
@@ -81,7 +81,7 @@ fn all_quantities_agree_with_those_of_derivations() {
 
 /// Closes the loops by Newton's method.
 fn closed(mechanism: &dyn Mechanism, coordinates: &mut [f64], inputs: &[f64], speeds: &[f64]) -> bool {
-    let c = mechanism.count(Kind::DependentCoordinate);
+    let c = mechanism.count(ComponentKind::DependentCoordinate);
     for _ in 0..if c == 0 { 0 } else { 30 } {
         let (mut residual, mut jacobian) = (vec![0.0; c], vec![0.0; c * c]);
         let state = State { time: 0.3, coordinates, speeds, inputs };
@@ -101,9 +101,16 @@ fn closed(mechanism: &dyn Mechanism, coordinates: &mut [f64], inputs: &[f64], sp
 }
 
 fn mechanisms_agree(name: &str, a: &dyn Mechanism, b: &dyn Mechanism, state: &State<'_>) {
-    let (n, p) = (a.count(Kind::Coordinate), a.count(Kind::Speed));
-    let (c, d) = (a.count(Kind::DependentCoordinate), a.count(Kind::DependentSpeed));
-    for kind in [Kind::Parameter, Kind::Coordinate, Kind::Speed, Kind::Point, Kind::Frame, Kind::Contact] {
+    let (n, p) = (a.count(ComponentKind::Coordinate), a.count(ComponentKind::Speed));
+    let (c, d) = (a.count(ComponentKind::DependentCoordinate), a.count(ComponentKind::DependentSpeed));
+    for kind in [
+        ComponentKind::Parameter,
+        ComponentKind::Coordinate,
+        ComponentKind::Speed,
+        ComponentKind::Point,
+        ComponentKind::Frame,
+        ComponentKind::Contact,
+    ] {
         assert_eq!(a.count(kind), b.count(kind), "{name}");
         assert_eq!(a.component(kind, 0), b.component(kind, 0), "{name}");
     }
@@ -134,8 +141,8 @@ fn mechanisms_agree(name: &str, a: &dyn Mechanism, b: &dyn Mechanism, state: &St
         assert!(residual.iter().all(|r| r.abs() < 1e-9), "{name}: {residual:?}");
         assert!(DMatrix::from_row_slice(c, c, &jacobian).lu().is_invertible(), "{name}");
     }
-    for point in 0..a.count(Kind::Point) {
-        let position = |m: &dyn Mechanism| m.position(point, state).ok().map(Vector3::from);
+    for point in 0..a.count(ComponentKind::Point) {
+        let position = |m: &dyn Mechanism| m.position(point, state).ok();
         match (position(a), position(b)) {
             (Some(x), Some(y)) => close(&format!("{name}: position {point}"), x.as_slice(), y.as_slice()),
             (None, None) => {}
@@ -148,8 +155,8 @@ fn mechanisms_agree(name: &str, a: &dyn Mechanism, b: &dyn Mechanism, state: &St
             out.copy_from_slice(m.acceleration(point, state, &rates).unwrap().as_slice());
         });
     }
-    for frame in 0..a.count(Kind::Frame) {
-        let turned = |m: &dyn Mechanism| m.orientation(frame, state).ok().map(Matrix3::from);
+    for frame in 0..a.count(ComponentKind::Frame) {
+        let turned = |m: &dyn Mechanism| m.orientation(frame, state).ok();
         match (turned(a), turned(b)) {
             (Some(x), Some(y)) => close(&format!("{name}: frame {frame}"), x.as_slice(), y.as_slice()),
             (None, None) => {}
@@ -165,8 +172,8 @@ fn along(basis: [Vector3<f64>; 3], v: &Vector3<f64>) -> Vector3<f64> {
 
 /// Bases may be chosen otherwise: what is compared does not depend on them.
 fn contacts_agree(name: &str, a: &dyn Contacts<f64>, b: &dyn Contacts<f64>, state: &State<'_>) {
-    let (n, p) = (a.count(Kind::Coordinate), a.count(Kind::Speed));
-    for contact in 0..a.count(Kind::Contact) {
+    let (n, p) = (a.count(ComponentKind::Coordinate), a.count(ComponentKind::Speed));
+    for contact in 0..a.count(ComponentKind::Contact) {
         let name = format!("{name}, contact {contact}");
         let [x, y] = [a, b].map(|m| m.contact_state(contact, state).unwrap());
         let bases = [&x, &y].map(|s| [s.normal, s.first, s.second]);
@@ -240,7 +247,7 @@ fn contacts_agree(name: &str, a: &dyn Contacts<f64>, b: &dyn Contacts<f64>, stat
         }
     }
     // In one pass the same as one by one.
-    let k = a.count(Kind::Contact);
+    let k = a.count(ComponentKind::Contact);
     let contacts: Vec<usize> = (0..k).collect();
     let mut numbers = [n, p, 3 * k * p, 3 * k * p, 3 * k, 3 * k].map(|count| vec![0.0; count]);
     let [rates, accelerations, partial, responses, velocities, free] = &mut numbers;
@@ -266,7 +273,7 @@ fn wrong_parameters_states_and_numbers_are_refused() {
     let path = models().into_iter().find(|path| path.ends_with("planar_double_pendulum.mech")).unwrap();
     let derived = InterpretedMechanism::read(&path).unwrap();
     let mut numeric = NumericMechanism::new(derived.model().clone()).unwrap();
-    let count = numeric.count(Kind::Parameter);
+    let count = numeric.count(ComponentKind::Parameter);
     assert!(numeric.set_parameter_values(&vec![1.0; count + 1]).is_err());
     let before = written(count, |out| numeric.parameter_values(out));
     assert!(numeric.set_parameter_values(&vec![-1.0; count]).is_err());

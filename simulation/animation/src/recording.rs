@@ -1,6 +1,6 @@
 //! Records the states and events of a motion for its figure, its animated page and viewers of robots.
 
-use hodograph::{Contacts, Kind as Of, State as Borrowed};
+use hodograph::{ComponentKind, Contacts, State as Borrowed};
 use hodograph_model::model::mechanism::{LoadKind, Mechanism as Model, Place, Variable, Vector};
 use hodograph_model::numeric::views::values;
 use hodograph_model::numeric::{Level, State, Views};
@@ -102,11 +102,11 @@ impl<'m> Recording<'m> {
             energies: Energies::default(),
             solids,
             start: state.clone(),
-            gaps: none(Of::Contact),
-            pressures: none(Of::Contact),
-            coordinates: none(Of::Coordinate),
-            speeds: none(Of::Speed),
-            last: vec![None; mechanism.count(Of::Contact)],
+            gaps: none(ComponentKind::Contact),
+            pressures: none(ComponentKind::Contact),
+            coordinates: none(ComponentKind::Coordinate),
+            speeds: none(ComponentKind::Speed),
+            last: vec![None; mechanism.count(ComponentKind::Contact)],
         }
     }
 
@@ -190,7 +190,7 @@ impl<'m> Recording<'m> {
             time: event.time,
             coordinates: &event.coordinates,
             speeds: &event.speeds,
-            inputs: &vec![0.0; mechanism.count(Of::Input)],
+            inputs: &vec![0.0; mechanism.count(ComponentKind::Input)],
         };
         let mut show = |contact: Option<usize>, impulse: Option<Vector3<f64>>| {
             let contact = contact.and_then(|contact| model.contacts.get(contact));
@@ -262,10 +262,10 @@ pub fn numbers(mechanism: &dyn Contacts<f64>, model: &Model) -> usize {
     let count = |kind| mechanism.count(kind);
     1 + 3 * model.points.len()
         + 9 * model.bodies.len()
-        + 8 * count(Of::Contact)
+        + 8 * count(ComponentKind::Contact)
         + 3
-        + count(Of::Coordinate)
-        + count(Of::Speed)
+        + count(ComponentKind::Coordinate)
+        + count(ComponentKind::Speed)
 }
 
 /// What is to be said of points that are nowhere at any time, and so are not drawn.

@@ -1,6 +1,6 @@
 //! Which points turn about the origin O at a fixed distance, so that a line from O to them shows a link.
 
-use hodograph::{Contacts, Kind, State as Borrowed};
+use hodograph::{ComponentKind, Contacts, State as Borrowed};
 use hodograph_model::numeric::State;
 use nalgebra::Vector3;
 
@@ -12,8 +12,8 @@ const SAME: f64 = 1e-9;
 /// Whether the position of a point from O changes with the coordinates, and its length does not.
 pub fn turns_about_origin(mechanism: &dyn Contacts<f64>, point: usize, state: &State) -> bool {
     let place = |coordinates: &[f64]| -> Option<Vector3<f64>> {
-        let inputs = vec![0.0; mechanism.count(Kind::Input)];
-        let speeds = vec![0.0; mechanism.count(Kind::Speed)];
+        let inputs = vec![0.0; mechanism.count(ComponentKind::Input)];
+        let speeds = vec![0.0; mechanism.count(ComponentKind::Speed)];
         let state = Borrowed { time: state.time, coordinates, speeds: &speeds, inputs: &inputs };
         mechanism.position(point, &state).ok()
     };

@@ -11,7 +11,7 @@ mod surfaces;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use hodograph::{Kind as Of, Mechanism as _, State as Borrowed};
+use hodograph::{ComponentKind, Mechanism as _, State as Borrowed};
 use hodograph_animation::{Span, Watch};
 use hodograph_generator::artifact::place;
 use hodograph_interpreter::{InterpretedMechanism, motion};
@@ -208,7 +208,7 @@ fn check_size(
             "--step {step:e} is too short: {steps:.1e} steps; give a longer one"
         )));
     }
-    let table = if format == Format::Table { 1 + mechanism.count(Of::Coordinate) } else { 0 };
+    let table = if format == Format::Table { 1 + mechanism.count(ComponentKind::Coordinate) } else { 0 };
     let each = if pictures { hodograph_animation::numbers(mechanism, mechanism.model()) } else { table };
     let numbers = steps * each as f64;
     if numbers <= MOST_NUMBERS {

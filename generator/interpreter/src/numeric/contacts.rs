@@ -8,8 +8,8 @@ use hodograph::generated::{
 };
 use hodograph::nalgebra::{MatrixXx3, Vector3};
 use hodograph::{
-    Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ContactMode,
-    ContactOutcome, ContactState, Contacts, ImpactError, Kind, State, StateError, StatedLaw, Surface,
+    Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ComponentKind,
+    ContactMode, ContactOutcome, ContactState, Contacts, ImpactError, State, StateError, StatedLaw, Surface,
 };
 use hodograph_model::numeric::Level;
 
@@ -25,7 +25,7 @@ fn add(speeds: &mut [f64], response: &MatrixXx3<f64>, along: &Vector3<f64>) {
 
 impl NumericMechanism {
     fn contact(&self, contact: usize, state: &State<'_>) -> Result<Arc<Snapshot>, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         self.snapshot(state)
     }
 
@@ -84,7 +84,7 @@ impl Contacts for NumericMechanism {
     }
 
     fn gap(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
-        self.exists(Kind::Contact, contact)?;
+        self.exists(ComponentKind::Contact, contact)?;
         let Some(gap) = &self.model().contacts[contact].gap else { return Ok(None) };
         let gap = self.still(state, |values| Ok(values.scalar(gap, Level::Motion)?.re))?;
         finite([gap]).map(|[gap]| Some(gap))
@@ -134,7 +134,7 @@ impl Contacts for NumericMechanism {
         values.coordinate_rates.copy_from_slice(&snapshot.values.rates);
         values.accelerations.copy_from_slice(snapshot.accelerations.as_slice());
         for (place, &contact) in contacts.iter().enumerate() {
-            self.exists(Kind::Contact, contact)?;
+            self.exists(ComponentKind::Contact, contact)?;
             let known = &snapshot.contacts[contact];
             let (three, rows) = (3 * place..3 * place + 3, 3 * p * place..3 * p * (place + 1));
             values.velocities[three.clone()].copy_from_slice(known.contact.velocity.as_slice());
@@ -156,7 +156,7 @@ impl Contacts for NumericMechanism {
         self.struck(contact, state, speeds, |known| resolve(known, surface))
     }
 
-    fn collide_within(
+    fn collide_with_budget(
         &self,
         contact: usize,
         state: &State<'_>,

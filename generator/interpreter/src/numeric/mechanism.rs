@@ -2,7 +2,7 @@
 
 use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use hodograph::{Component, Kind, Mechanism, ParameterError, State, StateError};
+use hodograph::{Component, ComponentKind, Mechanism, ParameterError, State, StateError};
 use hodograph_model::model::mechanism::{FrameId, PointId};
 use hodograph_model::numeric::{self, Views, configuration_slopes, views::values};
 
@@ -12,7 +12,7 @@ use crate::{description, parameters};
 impl NumericMechanism {
     /// Partial velocities of a point, along N.
     fn partials(&self, point: usize, state: &State<'_>) -> Result<Vec<[f64; 3]>, StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         let numbers = self.numbers(state)?;
         let views = Views::at(self.model(), &numbers).map_err(state_error)?;
         views.partials(|values| values.velocity(PointId(point))).map_err(state_error)
@@ -24,11 +24,11 @@ impl Mechanism for NumericMechanism {
         &self.model().name
     }
 
-    fn count(&self, kind: Kind) -> usize {
+    fn count(&self, kind: ComponentKind) -> usize {
         description::count(self.model(), kind)
     }
 
-    fn component(&self, kind: Kind, index: usize) -> Option<Component<'_>> {
+    fn component(&self, kind: ComponentKind, index: usize) -> Option<Component<'_>> {
         description::component(self.model(), kind, index)
     }
 
@@ -162,12 +162,12 @@ impl Mechanism for NumericMechanism {
     }
 
     fn position(&self, point: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         finite(self.still(state, |values| place(values, point))?).map(Vector3::from)
     }
 
     fn velocity(&self, point: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
-        self.exists(Kind::Point, point)?;
+        self.exists(ComponentKind::Point, point)?;
         finite(self.snapshot(state)?.values.velocities[point]).map(Vector3::from)
     }
 
@@ -197,7 +197,7 @@ impl Mechanism for NumericMechanism {
     }
 
     fn orientation(&self, frame: usize, state: &State<'_>) -> Result<Matrix3<f64>, StateError> {
-        self.exists(Kind::Frame, frame)?;
+        self.exists(ComponentKind::Frame, frame)?;
         let rows = self.still(state, |found| Ok(found.orientation(FrameId(frame))?.map(values)))?;
         finite(rows.concat().try_into().unwrap_or([f64::NAN; 9])).map(|all| Matrix3::from_row_slice(&all))
     }

@@ -7,7 +7,7 @@ mod snapshot;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use hodograph::generated::check_length;
-use hodograph::{Kind, ParameterError, State, StateError};
+use hodograph::{ComponentKind, ParameterError, State, StateError};
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_model::model::mechanism::PointId;
 use hodograph_model::numeric::hyper_dual::HyperDual;
@@ -97,7 +97,7 @@ impl NumericMechanism {
         description::freedom(&self.model)
     }
 
-    fn exists(&self, kind: Kind, index: usize) -> Result<(), StateError> {
+    fn exists(&self, kind: ComponentKind, index: usize) -> Result<(), StateError> {
         if index < description::count(&self.model, kind) {
             Ok(())
         } else {
