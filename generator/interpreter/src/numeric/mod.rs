@@ -14,7 +14,6 @@ use hodograph_model::numeric::hyper_dual::HyperDual;
 use hodograph_model::numeric::{self, Evaluator, Failure};
 
 use self::snapshot::{Basis, Snapshot};
-use crate::intern::intern;
 use crate::{Error, description, parameters};
 
 /// A mechanism that is evaluated from its model alone: no derivation and no algebra engine are needed. It has
@@ -157,12 +156,19 @@ fn finite<const N: usize>(numbers: [f64; N]) -> Result<[f64; N], StateError> {
 
 /// Why there are no numbers, as the traits say it.
 fn state_error(failure: Failure) -> StateError {
-    match failure {
-        Failure::NotFinite(_) => StateError::NotFinite,
-        numeric::SINGULAR => StateError::Singular { what: "the equations of motion" },
-        Failure::Unsupported(what) => StateError::Undefined { what },
-        other => StateError::Singular { what: intern(&other.to_string()) },
-    }
+    let what = match failure {
+        numeric::SINGULAR => "the equations of motion have no finite numbers",
+        Failure::NotFinite(_) => return StateError::NotFinite,
+        Failure::Unsupported(what) => return StateError::Undefined { what },
+        Failure::DivisionByZero(_) => "a divisor is zero",
+        Failure::RatesUndetermined(_) => "the rates of the coordinates are not determined",
+        Failure::MotionInconsistent(..) => "a declared motion contradicts the positions",
+        Failure::SpeedsUndetermined(_) => "the constraints do not determine the dependent speeds",
+        Failure::ConstraintsInconsistent(_) => "the constraints contradict each other",
+        Failure::NotClosed(_) => "the configuration equations have no solution",
+        Failure::TooDeep => "names refer to names too deeply",
+    };
+    StateError::Singular { what }
 }
 
 /// The place of a point; undefined for one of which the model knows the velocity only.
