@@ -114,9 +114,9 @@ fn function(module: &Module, scalar: &str, routine: &Routine, budgeted: bool) ->
                 continue;
             }
             Form::Surface => {
-                let _ = write!(
+                let _ = writeln!(
                     read,
-                    "    let Some({name}) = surface_of(unsafe {{ {name}.read() }}) else {{ return UNKNOWN_LAW }};\n"
+                    "    let Some({name}) = surface_of(unsafe {{ {name}.read() }}) else {{ return UNKNOWN_LAW }};"
                 );
             }
             Form::Record(record) => {
