@@ -4,6 +4,7 @@
 use hodograph::{ComponentKind, Contacts, ReducedMatrix, State, StateError};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
+use crate::angles::Angles;
 use crate::contact_problem::Problem;
 
 /// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact
@@ -33,6 +34,20 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 const IDLE: f64 = 128.0;
 
 impl ClosedContacts {
+    /// Room for these contacts of a mechanism: all numbers are zero.
+    pub fn room(mechanism: &dyn Contacts<f64>, contacts: &[usize]) -> Self {
+        let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
+        Self {
+            contacts: contacts.to_vec(),
+            coupled: DMatrix::zeros(3 * k, 3 * k),
+            partials: DMatrix::zeros(p, 3 * k),
+            response: DMatrix::zeros(p, 3 * k),
+            velocity: DVector::zeros(3 * k),
+            beta: DVector::zeros(3 * k),
+            noise: DVector::zeros(3 * k),
+        }
+    }
+
     /// Evaluates the contacts; without `accelerate` the free accelerations stay zero.
     pub fn new(
         mechanism: &dyn Contacts<f64>,
@@ -40,34 +55,38 @@ impl ClosedContacts {
         contacts: &[usize],
         accelerate: bool,
     ) -> Result<Self, StateError> {
-        Self::evaluated(mechanism, state, contacts, accelerate, None)
+        let mut all = Self::room(mechanism, contacts);
+        all.evaluate(mechanism, state, accelerate, None, &mut Vec::new())?;
+        Ok(all)
     }
 
     /// Evaluates the contacts with their free accelerations, and the rates of the mechanism without contact forces:
-    /// coordinates, then speeds.
+    /// coordinates, then speeds. `numbers` is memory, used again from call to call.
     pub fn with_rates(
+        &mut self,
         mechanism: &dyn Contacts<f64>,
         state: &State<'_>,
-        contacts: &[usize],
+        angles: &Angles,
         rates: &mut [f64],
-    ) -> Result<Self, StateError> {
-        if contacts.is_empty() {
+        numbers: &mut Vec<f64>,
+    ) -> Result<(), StateError> {
+        if self.contacts.is_empty() {
             let (q, u) = rates.split_at_mut(state.coordinates.len());
             mechanism.coordinate_rates(state, q)?;
             mechanism.accelerations(state, &mut u[..state.speeds.len()])?;
-            return Self::evaluated(mechanism, state, contacts, false, None);
+            return Ok(());
         }
-        let mut all = Self::evaluated(mechanism, state, contacts, true, Some(&mut *rates))?;
-        all.weigh(mechanism, state.speeds, &rates[state.coordinates.len()..]);
-        Ok(all)
+        self.evaluate(mechanism, state, true, Some(&mut *rates), numbers)?;
+        self.weigh(angles, state.speeds, &rates[state.coordinates.len()..]);
+        Ok(())
     }
 
     /// What rounding does to the free accelerations. They are sums of the partial velocities times the accelerations of the
     /// speeds, and of those times the speeds with which directions turn.
-    fn weigh(&mut self, mechanism: &dyn Contacts<f64>, speeds: &[f64], accelerations: &[f64]) {
-        let turns: f64 =
-            speeds.iter().enumerate().filter(|(i, _)| is_angular(mechanism, *i)).map(|(_, u)| u.abs()).sum();
-        for (noise, column) in self.noise.iter_mut().zip(self.partials.column_iter()) {
+    fn weigh(&mut self, angles: &Angles, speeds: &[f64], accelerations: &[f64]) {
+        let turns = angles.speed(speeds);
+        let p = speeds.len().max(1);
+        for (noise, column) in self.noise.iter_mut().zip(self.partials.as_slice().chunks_exact(p)) {
             let term = |((v, u), a): ((&f64, &f64), &f64)| v.abs() * (a.abs() + turns * u.abs());
             *noise = ROUNDING * column.iter().zip(speeds).zip(accelerations).map(term).sum::<f64>();
         }
@@ -77,10 +96,13 @@ impl ClosedContacts {
     pub fn loaded(
         mechanism: &dyn Contacts<f64>,
         state: &State<'_>,
+        angles: &Angles,
         contacts: &[usize],
     ) -> Result<Self, StateError> {
         let mut rates = vec![0.0; state.coordinates.len() + state.speeds.len()];
-        Self::with_rates(mechanism, state, contacts, &mut rates)
+        let mut all = Self::room(mechanism, contacts);
+        all.with_rates(mechanism, state, angles, &mut rates, &mut Vec::new())?;
+        Ok(all)
     }
 
     /// Whether nothing presses these bodies together or moves them against each other: all free accelerations are
@@ -99,19 +121,17 @@ impl ClosedContacts {
         (0..self.len()).map(least).fold(0.0, f64::max)
     }
 
-    fn evaluated(
+    fn evaluate(
+        &mut self,
         mechanism: &dyn Contacts<f64>,
         state: &State<'_>,
-        contacts: &[usize],
         accelerate: bool,
         rates: Option<&mut [f64]>,
-    ) -> Result<Self, StateError> {
+        numbers: &mut Vec<f64>,
+    ) -> Result<(), StateError> {
+        let Self { contacts, coupled, partials, response, velocity, beta, .. } = self;
         let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
-        let mut partials = DMatrix::zeros(p, 3 * k);
-        let mut response = DMatrix::zeros(p, 3 * k);
-        let mut velocity = DVector::zeros(3 * k);
-        let mut beta = DVector::zeros(3 * k);
-        let mut numbers = vec![0.0; 3 * p * k];
+        numbers.resize(3 * p * k, 0.0);
         let mut known = false;
         if let Some(rates) = rates {
             let (q, u) = rates.split_at_mut(state.coordinates.len());
@@ -120,7 +140,7 @@ impl ClosedContacts {
                 accelerations: &mut u[..p],
                 // By rows V is V^T by columns.
                 partial_velocities: partials.as_mut_slice(),
-                responses: &mut numbers,
+                responses: &mut *numbers,
                 velocities: velocity.as_mut_slice(),
                 free_accelerations: beta.as_mut_slice(),
             };
@@ -141,9 +161,10 @@ impl ClosedContacts {
                 mechanism.partial_velocities(contact, state, partials)?;
                 mechanism.response(contact, state, numbers)?;
             }
+            let columns = &mut response.as_mut_slice()[3 * p * i..][..3 * p];
             for (speed, row) in numbers.chunks_exact(3).enumerate() {
                 for (axis, number) in row.iter().enumerate() {
-                    response[(speed, 3 * i + axis)] = *number;
+                    columns[p * axis + speed] = *number;
                 }
             }
             if known {
@@ -154,7 +175,6 @@ impl ClosedContacts {
                 beta.rows_mut(3 * i, 3).copy_from(&free_acceleration(mechanism, contact, state)?);
             }
         }
-        let mut coupled = DMatrix::zeros(3 * k, 3 * k);
         let product = |row: usize, column: usize| -> f64 {
             let (left, right) =
                 (&partials.as_slice()[row * p..][..p], &response.as_slice()[column * p..][..p]);
@@ -164,13 +184,12 @@ impl ClosedContacts {
             coupled[(row, row)] = product(row, row);
             for column in 0..row {
                 // Symmetric but for rounding.
-                let mean = 0.5 * (product(row, column) + product(column, row));
-                coupled[(row, column)] = mean;
-                coupled[(column, row)] = mean;
+                let both = product(row, column);
+                coupled[(row, column)] = both;
+                coupled[(column, row)] = both;
             }
         }
-        let noise = DVector::zeros(3 * k);
-        Ok(Self { contacts: contacts.to_vec(), coupled, partials, response, velocity, beta, noise })
+        Ok(())
     }
 
     /// The problem of their forces, for these coefficients of friction and directions of slip.
@@ -210,7 +229,8 @@ impl ClosedContacts {
     }
 
     fn row_size(&self, row: usize, speeds: &[f64]) -> f64 {
-        self.partials.column(row).iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum()
+        let p = speeds.len();
+        self.partials.as_slice()[row * p..][..p].iter().zip(speeds).map(|(v, u)| (v * u).abs()).sum()
     }
 
     /// The change of speeds of least kinetic energy that makes the rows of the velocity given zero.
@@ -228,12 +248,6 @@ impl ClosedContacts {
         }
         change
     }
-}
-
-/// Whether a speed is an angular one.
-pub(crate) fn is_angular(mechanism: &dyn Contacts<f64>, speed: usize) -> bool {
-    let unit = mechanism.component(ComponentKind::Speed, speed).map_or("", |component| component.unit);
-    unit.contains("rad") || unit.contains("deg")
 }
 
 /// beta of a contact. Of a mechanism that does not give it, it is the derivative of the contact's velocity

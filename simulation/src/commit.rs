@@ -87,6 +87,7 @@ impl Transition<'_> {
         }
         let motion = Motion {
             mechanism: self.mechanism,
+            angles: self.angles,
             drive: &self.options.drive,
             surfaces: self.surfaces,
             held: &modes.held,
@@ -113,9 +114,11 @@ impl Transition<'_> {
 
 /// The motion from a state on, over exactly so long.
 fn part_of(motion: &Motion<'_>, from: (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
-    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.rates(t, y) {
-        Ok(known) => rates.copy_from_slice(&known),
-        Err(_) => rates.fill(f64::NAN),
+    let mut room = motion.room();
+    let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
+        if motion.rates(t, y, rates, &mut room).is_err() {
+            rates.fill(f64::NAN);
+        }
     };
     stepper::part(&mut rates, from, h)
 }

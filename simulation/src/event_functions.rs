@@ -229,15 +229,7 @@ impl Transition<'_> {
     /// looked at in too many pieces.
     pub(crate) fn turns(&self, closed: &[Closed], step: &Step) -> Option<f64> {
         let (n, motion) = (self.mechanism.count(ComponentKind::Coordinate), self.motion(closed));
-        let angular: Vec<f64> = (0..n)
-            .map(|index| match self.mechanism.component(ComponentKind::Coordinate, index).map(|c| c.unit) {
-                Some("rad" | "deg") => 1.0,
-                // A quaternion turns by half the angle.
-                Some("1" | "") => 2.0,
-                _ => 0.0,
-            })
-            .collect();
-        if angular.iter().all(|weight| *weight == 0.0) {
+        if self.angles.are_none() {
             return Some(0.0);
         }
         let mut fastest = 0.0_f64;
@@ -247,8 +239,7 @@ impl Transition<'_> {
             let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
             let mut rates = vec![0.0; n];
             self.mechanism.coordinate_rates(&state, &mut rates).ok()?;
-            fastest =
-                fastest.max(rates.iter().zip(&angular).map(|(rate, weight)| (rate * weight).abs()).sum());
+            fastest = fastest.max(self.angles.turned(&rates));
         }
         let turns = fastest * step.h / TURN;
         (turns <= MOST_PIECES).then_some(turns)

@@ -10,6 +10,8 @@
 //! pieces, in each of which angles turn by a few radians at most, and the slope of the polynomial is compared
 //! with that of the function, which is known of gaps (docs/theory.md, section 17.12).
 
+use std::sync::LazyLock;
+
 /// Degrees tried, each twice the one before: points are used again. The first is left out where more turns than
 /// its points show.
 const DEGREES: [usize; 4] = [4, 8, 16, 32];
@@ -55,6 +57,19 @@ pub(crate) struct Crossing {
     pub place: f64,
 }
 
+/// cos(k pi / 32) over a whole turn.
+static COSINES: LazyLock<[f64; 64]> =
+    LazyLock::new(|| std::array::from_fn(|k| (k as f64 * std::f64::consts::PI / 32.0).cos()));
+
+/// cos(m pi / n) by whole turns, so that equal angles give equal bits.
+fn cosine(m: usize, n: usize) -> f64 {
+    let turn = m % (2 * n);
+    match COSINES.len() / 2 % n {
+        0 => COSINES[turn * (COSINES.len() / 2 / n)],
+        _ => (turn as f64 * std::f64::consts::PI / n as f64).cos(),
+    }
+}
+
 /// A polynomial by its Chebyshev coefficients on [-1, 1].
 struct Chebyshev {
     coefficients: Vec<f64>,
@@ -74,9 +89,7 @@ impl Chebyshev {
             let mut sum = 0.0;
             for (k, value) in values.iter().enumerate() {
                 let weight = if k == 0 || k == n { 0.5 } else { 1.0 };
-                // cos of a multiple of pi / n, by whole turns, so that equal angles give equal bits.
-                let angle = (j * k) % (2 * n);
-                sum += weight * value * (angle as f64 * std::f64::consts::PI / nf).cos();
+                sum += weight * value * cosine(j * k, n);
             }
             let half = if j == 0 || j == n { 1.0 } else { 2.0 };
             *coefficient = half * sum / nf;

@@ -29,6 +29,7 @@
 //! # Ok::<(), hodograph_simulation::SimulationError>(())
 //! ```
 
+mod angles;
 mod check;
 mod closed_contacts;
 mod commit;

@@ -154,7 +154,7 @@ impl Transition<'_> {
         let time = step.t + step.h;
         let inputs = motion.inputs(time, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
-        let support = ClosedContacts::loaded(self.mechanism, &state, contacts)
+        let support = ClosedContacts::loaded(self.mechanism, &state, self.angles, contacts)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let slips: Vec<Option<Vector2<f64>>> = contacts
             .iter()

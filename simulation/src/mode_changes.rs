@@ -166,7 +166,7 @@ impl Transition<'_> {
             speeds: &self.front.y[n..n + p],
             inputs: &inputs,
         };
-        let support = ClosedContacts::loaded(self.mechanism, &state, candidates)
+        let support = ClosedContacts::loaded(self.mechanism, &state, self.angles, candidates)
             .map_err(|error| self.failure(Failure::State(error)))?;
         let mut friction = self.frictions(candidates, &slips, &support)?;
         if held == Held::No {

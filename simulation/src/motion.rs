@@ -5,6 +5,7 @@ use hodograph::{ComponentKind, ContactError, Contacts, State, StateError};
 use nalgebra::{DVector, Vector2};
 
 use crate::Drive;
+use crate::angles::Angles;
 use crate::closed_contacts::ClosedContacts;
 use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
@@ -39,6 +40,7 @@ impl From<StateError> for Failure {
 /// The system that is integrated: coordinates, speeds, work of friction, work of inputs.
 pub(crate) struct Motion<'a> {
     pub mechanism: &'a dyn Contacts<f64>,
+    pub angles: &'a Angles,
     pub drive: &'a Drive,
     pub surfaces: &'a [Option<Pair>],
     pub held: &'a [f64],
@@ -57,13 +59,27 @@ pub(crate) struct Evaluation {
     pub forces: Option<Forces>,
 }
 
+/// Memory of evaluations of one motion.
+pub(crate) struct Room {
+    support: ClosedContacts,
+    holds: Vec<Hold>,
+    mu: Vec<f64>,
+    inputs: Vec<f64>,
+    numbers: Vec<f64>,
+}
+
 /// The direction of slip that began along `began`: its own, where it is more than rounding of the terms that make it
 /// up. `now` is their size, `ever` that of the greatest speeds so far: what projections have left of a slip that begins
 /// from none may be rounding of those, against the way it goes, although nothing else moves any more.
-fn direction(slip: Vector2<f64>, began: Vector2<f64>, now: f64, ever: f64) -> Vector2<f64> {
+fn direction(
+    slip: Vector2<f64>,
+    began: Vector2<f64>,
+    now: impl Fn() -> f64,
+    ever: impl Fn() -> f64,
+) -> Vector2<f64> {
     let speed = slip.norm();
     let forward = slip.dot(&began) > 0.0;
-    if speed > DIRECTION * now && (forward || speed > NO_SLIP * ever) { slip / speed } else { began }
+    if speed > DIRECTION * now() && (forward || speed > NO_SLIP * ever()) { slip / speed } else { began }
 }
 
 /// Numbers of the state beyond coordinates and speeds: work of friction and of inputs.
@@ -80,14 +96,20 @@ impl Motion<'_> {
     /// The inputs in a state.
     pub fn inputs(&self, t: f64, y: &[f64]) -> Result<Vec<f64>, Failure> {
         let mut inputs = self.held.to_vec();
+        self.drive_inputs(t, y, &mut inputs)?;
+        Ok(inputs)
+    }
+
+    /// Writes the inputs that follow from time and state over those that are held.
+    fn drive_inputs(&self, t: f64, y: &[f64], inputs: &mut [f64]) -> Result<(), Failure> {
         if let Drive::Continuous(function) = self.drive {
             let (q, u) = self.split(y);
-            function(t, q, u, &mut inputs);
+            function(t, q, u, inputs);
             if let Some(bad) = inputs.iter().position(|value| !value.is_finite()) {
                 return Err(Failure::Input(self.bad_input(bad, inputs[bad])));
             }
         }
-        Ok(inputs)
+        Ok(())
     }
 
     /// What is said of an input that is no number.
@@ -97,32 +119,42 @@ impl Motion<'_> {
         format!("the input {name} is {value}: what drives the mechanism must give finite numbers")
     }
 
+    /// Memory for evaluations, used again from one to the next.
+    pub fn room(&self) -> Room {
+        let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
+        Room {
+            support: ClosedContacts::room(self.mechanism, &contacts),
+            holds: Vec::new(),
+            mu: Vec::new(),
+            inputs: Vec::new(),
+            numbers: Vec::new(),
+        }
+    }
+
     /// Modes as they are at these velocities.
-    pub fn holds(&self, support: &ClosedContacts, speeds: &[f64]) -> Vec<Hold> {
-        self.closed
-            .iter()
-            .enumerate()
-            .map(|(i, closed)| match closed.slides {
-                None => Hold::Stick,
-                Some(began) => {
-                    let (now, ever) =
-                        (support.velocity_size(i, speeds), support.velocity_size(i, self.scale));
-                    Hold::Slide(direction(support.slip(i), began, now, ever))
-                }
-            })
-            .collect()
+    fn hold(&self, support: &ClosedContacts, speeds: &[f64], holds: &mut Vec<Hold>) {
+        holds.clear();
+        holds.extend(self.closed.iter().enumerate().map(|(i, closed)| match closed.slides {
+            None => Hold::Stick,
+            Some(began) => {
+                let size = |speeds: &[f64]| support.velocity_size(i, speeds);
+                Hold::Slide(direction(support.slip(i), began, || size(speeds), || size(self.scale)))
+            }
+        }));
     }
 
     /// The coefficients of friction in these modes at these velocities.
-    fn mus(&self, support: &ClosedContacts, holds: &[Hold]) -> Result<Vec<f64>, Failure> {
-        let mu = |(i, (closed, hold)): (usize, (&Closed, &Hold))| match (hold, &self.surfaces[closed.contact])
-        {
-            (Hold::Slide(_), Some(pair)) => {
-                pair.sliding(support.slip(i).norm()).map_err(|message| Failure::Law(closed.contact, message))
-            }
-            _ => Ok(closed.mu),
-        };
-        self.closed.iter().zip(holds).enumerate().map(mu).collect()
+    fn rub(&self, support: &ClosedContacts, holds: &[Hold], mus: &mut Vec<f64>) -> Result<(), Failure> {
+        mus.clear();
+        for (i, (closed, hold)) in self.closed.iter().zip(holds).enumerate() {
+            mus.push(match (hold, &self.surfaces[closed.contact]) {
+                (Hold::Slide(_), Some(pair)) => pair
+                    .sliding(support.slip(i).norm())
+                    .map_err(|message| Failure::Law(closed.contact, message))?,
+                _ => closed.mu,
+            });
+        }
+        Ok(())
     }
 
     /// Rates, and the forces of the closed contacts: where many forces give one motion, those in the middle.
@@ -135,9 +167,9 @@ impl Motion<'_> {
         self.evaluated(t, y, guess.map(|forces| &forces.lambda), Wanted::Centre)
     }
 
-    /// Rates alone.
-    pub fn rates(&self, t: f64, y: &[f64]) -> Result<Vec<f64>, Failure> {
-        self.evaluated(t, y, None, Wanted::Motion).map(|evaluation| evaluation.rates)
+    /// Rates alone, written into `rates`; `room` is that of this motion.
+    pub fn rates(&self, t: f64, y: &[f64], rates: &mut [f64], room: &mut Room) -> Result<(), Failure> {
+        self.write_rates(t, y, (None, Wanted::Motion), rates, room).map(|_| ())
     }
 
     fn evaluated(
@@ -147,33 +179,54 @@ impl Motion<'_> {
         guess: Option<&DVector<f64>>,
         wanted: Wanted,
     ) -> Result<Evaluation, Failure> {
+        let (mut rates, mut room) = (vec![0.0; y.len()], self.room());
+        let forces = self.write_rates(t, y, (guess, wanted), &mut rates, &mut room)?;
+        let Room { support, holds, .. } = room;
+        Ok(Evaluation { rates, support, holds, forces })
+    }
+
+    fn write_rates(
+        &self,
+        t: f64,
+        y: &[f64],
+        (guess, wanted): (Option<&DVector<f64>>, Wanted),
+        rates: &mut [f64],
+        room: &mut Room,
+    ) -> Result<Option<Forces>, Failure> {
         let (q, u) = self.split(y);
         let (n, p) = (q.len(), u.len());
-        let inputs = self.inputs(t, y)?;
-        let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
-        let mut rates = vec![0.0; n + p + WORKS];
-        let contacts: Vec<usize> = self.closed.iter().map(|closed| closed.contact).collect();
-        let support = ClosedContacts::with_rates(self.mechanism, &state, &contacts, &mut rates)?;
-        let mut holds = self.holds(&support, u);
+        let Room { support, holds, mu, inputs, numbers } = room;
+        inputs.clear();
+        inputs.extend_from_slice(self.held);
+        self.drive_inputs(t, y, inputs)?;
+        let state = State { time: t, coordinates: q, speeds: u, inputs };
+        rates.fill(0.0);
+        support.with_rates(self.mechanism, &state, self.angles, rates, numbers)?;
+        self.hold(support, u, holds);
         let mut found = None;
-        if !contacts.is_empty() {
-            let mu = self.mus(&support, &holds)?;
+        if !holds.is_empty() {
+            self.rub(support, holds, mu)?;
             let lacking = |lacking| match lacking {
-                Lacking::Contact(i, error) => Failure::Contact(contacts[i], error),
+                Lacking::Contact(i, error) => Failure::Contact(self.closed[i].contact, error),
                 Lacking::Common => Failure::NoForces,
             };
-            let solve = |holds: &[Hold]| forces(&support, holds, &mu, None, Wanted::Motion);
-            settle_directions(&support, self.closed, &mut holds, &solve);
-            let answer = forces(&support, &holds, &mu, guess, wanted).map_err(lacking)?;
+            let solve = |holds: &[Hold]| forces(support, holds, mu, None, Wanted::Motion);
+            settle_directions(support, self.closed, holds, &solve);
+            let answer = forces(support, holds, mu, guess, wanted).map_err(lacking)?;
             let greatest = answer.lambda.amax();
-            for (i, rate) in rates[n..n + p].iter_mut().enumerate() {
-                let mut size = rate.abs();
-                for (response, force) in support.response.row(i).iter().zip(answer.lambda.iter()) {
+            let accelerations = &mut rates[n..n + p];
+            // The sizes of the terms.
+            numbers.clear();
+            numbers.extend(accelerations.iter().map(|rate| rate.abs()));
+            for (response, force) in support.response.as_slice().chunks_exact(p.max(1)).zip(&answer.lambda) {
+                for ((rate, size), response) in accelerations.iter_mut().zip(&mut *numbers).zip(response) {
                     *rate += response * force;
-                    size += response.abs() * greatest;
+                    *size += response.abs() * greatest;
                 }
-                // What friction holds stays exactly where it is.
-                let rounding = if self.resting { 1e-11 } else { 64.0 * f64::EPSILON };
+            }
+            // What friction holds stays exactly where it is.
+            let rounding = if self.resting { 1e-11 } else { 64.0 * f64::EPSILON };
+            for (rate, size) in accelerations.iter_mut().zip(numbers.iter()) {
                 if rate.abs() <= rounding * size {
                     *rate = 0.0;
                 }
@@ -187,19 +240,21 @@ impl Motion<'_> {
             found = Some(answer);
         }
         if inputs.iter().any(|&input| input != 0.0) {
-            rates[n + p + 1] = self.input_power(&state)?;
+            rates[n + p + 1] = self.input_power(&state, numbers)?;
         }
-        Ok(Evaluation { rates, support, holds, forces: found })
+        Ok(found)
     }
 
-    /// Power of the inputs: the generalised forces they add, times the speeds.
-    fn input_power(&self, state: &State<'_>) -> Result<f64, StateError> {
-        let p = state.speeds.len();
-        let (mut with, mut without) = (vec![0.0; p], vec![0.0; p]);
-        self.mechanism.forcing(state, &mut with)?;
-        let none = vec![0.0; state.inputs.len()];
-        self.mechanism.forcing(&State { inputs: &none, ..*state }, &mut without)?;
-        Ok(with.iter().zip(&without).zip(state.speeds).map(|((a, b), u)| (a - b) * u).sum())
+    /// Power of the inputs: the generalised forces they add, times the speeds. `numbers` is memory.
+    fn input_power(&self, state: &State<'_>, numbers: &mut Vec<f64>) -> Result<f64, StateError> {
+        let (p, w) = (state.speeds.len(), state.inputs.len());
+        numbers.clear();
+        numbers.resize(2 * p + w, 0.0);
+        let (with, rest) = numbers.split_at_mut(p);
+        let (without, none) = rest.split_at_mut(p);
+        self.mechanism.forcing(state, with)?;
+        self.mechanism.forcing(&State { inputs: none, ..*state }, without)?;
+        Ok(with.iter().zip(&*without).zip(state.speeds).map(|((a, b), u)| (a - b) * u).sum())
     }
 }
 
@@ -212,12 +267,13 @@ mod tests {
     #[test]
     fn slip_goes_the_way_it_began_while_it_is_rounding() {
         let (began, left) = (Vector2::new(-1.0, 0.0), Vector2::new(1.485_565e-14, 0.0));
-        assert_eq!(direction(left, began, left.norm(), 0.7), began);
-        assert_eq!(direction(-left, began, left.norm(), 0.7), began);
+        let of = |slip, now: f64, ever: f64| direction(slip, began, || now, || ever);
+        assert_eq!(of(left, left.norm(), 0.7), began);
+        assert_eq!(of(-left, left.norm(), 0.7), began);
         // Slip that is none of itself has the way it began; what is more than rounding has its own.
-        assert_eq!(direction(-left, began, 0.7, 0.7), began);
-        assert_eq!(direction(1e3 * left, began, 1e3 * left.norm(), 0.7), -began);
+        assert_eq!(of(-left, 0.7, 0.7), began);
+        assert_eq!(of(1e3 * left, 1e3 * left.norm(), 0.7), -began);
         let across = Vector2::new(-3e-6, 4e-6);
-        assert!((direction(across, began, 1e-3, 0.7) - Vector2::new(-0.6, 0.8)).norm() < 1e-15);
+        assert!((of(across, 1e-3, 0.7) - Vector2::new(-0.6, 0.8)).norm() < 1e-15);
     }
 }

@@ -6,7 +6,8 @@
 
 use hodograph::{ComponentKind, Contacts, State};
 
-use crate::closed_contacts::{ClosedContacts, is_angular};
+use crate::angles::Angles;
+use crate::closed_contacts::ClosedContacts;
 
 /// Units of a problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +31,7 @@ const NEAR: f64 = 1e-6;
 
 impl Scales {
     /// Those of a start state; 1 where nothing tells.
-    pub fn of(mechanism: &dyn Contacts<f64>, state: &State<'_>) -> Self {
+    pub fn of(mechanism: &dyn Contacts<f64>, angles: &Angles, state: &State<'_>) -> Self {
         let place = state.coordinates.iter().fold(0.0_f64, |place, q| place.max(q.abs()));
         let (mut length, mut gaps) = (0.0_f64, 0.0_f64);
         let (mut acceleration, mut speed, mut approach) = (0.0_f64, 0.0_f64, 0.0_f64);
@@ -40,7 +41,7 @@ impl Scales {
             gaps = gaps.max(gap.abs());
             for (index, row) in alone.partials.row_iter().enumerate() {
                 // What an angular speed gives to the point is an arm.
-                if is_angular(mechanism, index) {
+                if angles.is_angular(index) {
                     length = length.max(row.norm());
                 }
             }
@@ -82,7 +83,11 @@ mod tests {
         let rod = SlenderRod5dof::<f64>::default();
         let q: [f64; 5] = Coordinates { z: 2.0, ..Coordinates::default() }.into();
         let u: [f64; 5] = Speeds::default().into();
-        let scales = Scales::of(&rod, &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] });
+        let scales = Scales::of(
+            &rod,
+            &Angles::of(&rod),
+            &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] },
+        );
         assert!(scales.length >= 1.0 && scales.length < 4.0, "{scales:?}");
         assert!((0.2..0.8).contains(&scales.time), "{scales:?}");
     }
@@ -92,7 +97,11 @@ mod tests {
         let (l, tilt) = (0.5, 0.6_f64);
         let q: [f64; 5] = Coordinates { z: l * tilt.sin(), q5: tilt, ..Coordinates::default() }.into();
         let u: [f64; 5] = Speeds { u1: 0.0, u2: 0.0, u3: -1e-3, u4: 0.0, u5: 0.0 }.into();
-        let scales = Scales::of(&rod, &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] });
+        let scales = Scales::of(
+            &rod,
+            &Angles::of(&rod),
+            &State { time: 0.0, coordinates: &q, speeds: &u, inputs: &[] },
+        );
         assert!((scales.length - l).abs() < 1e-9, "{scales:?}");
     }
 }

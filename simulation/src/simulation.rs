@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use hodograph::{ComponentKind, Contacts, State};
 use nalgebra::Vector3;
 
+use crate::angles::Angles;
 use crate::check::check;
 use crate::front::Front;
 use crate::motion::Failure;
@@ -23,6 +24,8 @@ use crate::{Drive, EnergyAccount, ErrorKind, Event, EventKind, Options, Simulati
 #[derive(Clone)]
 pub struct Simulation<'m> {
     mechanism: &'m dyn Contacts<f64>,
+    /// what turns of the mechanism
+    angles: Angles,
     options: Options,
     /// the surfaces of each contact; none where a contact has no gap
     surfaces: Vec<Option<Pair>>,
@@ -75,11 +78,13 @@ impl<'m> Simulation<'m> {
     ) -> Result<Self, SimulationError> {
         let surfaces = check(mechanism, state, &options)?;
         let sampled = matches!(options.drive, Drive::Sampled { .. });
-        let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, state));
+        let angles = Angles::of(mechanism);
+        let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, &angles, state));
         front.greatest = mechanism.kinetic_energy(state).unwrap_or(0.0);
         let view = (front.t, front.y.clone());
         let mut simulation = Self {
             mechanism,
+            angles,
             options,
             surfaces,
             start: state.time,
@@ -105,6 +110,7 @@ impl<'m> Simulation<'m> {
     fn transition(&self) -> Transition<'_> {
         Transition {
             mechanism: self.mechanism,
+            angles: &self.angles,
             options: &self.options,
             surfaces: &self.surfaces,
             front: self.front.clone(),
@@ -237,15 +243,7 @@ impl<'m> Simulation<'m> {
             _ if time >= self.front.t => Some(self.front.y.clone()),
             None => None,
             Some((step, modes)) => {
-                let transition = Transition {
-                    mechanism: self.mechanism,
-                    options: &self.options,
-                    surfaces: &self.surfaces,
-                    front: self.front.clone(),
-                    events: Vec::new(),
-                    step: None,
-                    reached: None,
-                };
+                let transition = self.transition();
                 transition.within_step(step, modes, time).or_else(|| Some(step.at((time - step.t) / step.h)))
             }
         };

@@ -142,9 +142,9 @@ impl Transition<'_> {
             let failed = RefCell::new(None);
             let made = {
                 let motion = self.motion(closed);
-                let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| match motion.rates(t, y) {
-                    Ok(known) => rates.copy_from_slice(&known),
-                    Err(failure) => {
+                let mut room = motion.room();
+                let mut rates = |t: f64, y: &[f64], rates: &mut [f64]| {
+                    if let Err(failure) = motion.rates(t, y, rates, &mut room) {
                         failed.borrow_mut().get_or_insert(failure);
                         rates.fill(f64::NAN);
                     }

@@ -5,6 +5,7 @@
 
 use hodograph::{ComponentKind, Contacts, State};
 
+use crate::angles::Angles;
 use crate::front::Front;
 use crate::motion::{Failure, Motion};
 use crate::pair::{Friction, Pair};
@@ -15,6 +16,8 @@ use crate::{ErrorKind, Event, EventKind, Options, SimulationError};
 /// A front that is being changed, and what happens to it.
 pub(crate) struct Transition<'s> {
     pub mechanism: &'s dyn Contacts<f64>,
+    /// what turns of the mechanism
+    pub angles: &'s Angles,
     pub options: &'s Options,
     /// the surfaces of each contact; none where a contact has no gap
     pub surfaces: &'s [Option<Pair>],
@@ -96,6 +99,7 @@ impl Transition<'_> {
     pub(crate) fn motion<'a>(&'a self, closed: &'a [Closed]) -> Motion<'a> {
         Motion {
             mechanism: self.mechanism,
+            angles: self.angles,
             drive: &self.options.drive,
             surfaces: self.surfaces,
             held: &self.front.held,
