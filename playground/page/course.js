@@ -7,7 +7,10 @@ const node = (parent, tag, attributes, text) => {
   if (text) made.textContent = text;
   return parent.appendChild(made);
 };
-const short = (x) => String(+x.toPrecision(3)).replace("-", "\u2212");
+const short = (x) => {
+  const small = x !== 0 && Math.abs(x) < 1e-3;
+  return (small ? x.toExponential(1) : String(+x.toPrecision(3))).replaceAll("-", "\u2212");
+};
 
 // A panel with axes; `equal`: the same scale along both.
 const panel = (label, points, names, equal, marks) => {

@@ -6,7 +6,8 @@ use hodograph::{Component, ComponentKind, Mechanism, ParameterError, State, Stat
 use hodograph_model::model::mechanism::{FrameId, PointId};
 use hodograph_model::numeric::{self, Views, configuration_slopes, views::values};
 
-use super::{NumericMechanism, finite, place, snapshot, state_error};
+use super::failure::state_error;
+use super::{NumericMechanism, finite, place, snapshot};
 use crate::{description, parameters};
 
 impl NumericMechanism {

@@ -1,6 +1,7 @@
 //! [`NumericMechanism`]: a model without its equations, evaluated numerically.
 
 mod contacts;
+mod failure;
 mod mechanism;
 mod snapshot;
 
@@ -13,6 +14,7 @@ use hodograph_model::model::mechanism::PointId;
 use hodograph_model::numeric::hyper_dual::HyperDual;
 use hodograph_model::numeric::{self, Evaluator, Failure};
 
+use self::failure::state_error;
 use self::snapshot::{Basis, Snapshot};
 use crate::{Error, description, parameters};
 
@@ -152,23 +154,6 @@ impl NumericMechanism {
 /// Numbers that must be finite.
 fn finite<const N: usize>(numbers: [f64; N]) -> Result<[f64; N], StateError> {
     if numbers.iter().all(|x| x.is_finite()) { Ok(numbers) } else { Err(StateError::NotFinite) }
-}
-
-/// Why there are no numbers, as the traits say it.
-fn state_error(failure: Failure) -> StateError {
-    let what = match failure {
-        numeric::SINGULAR => "the equations of motion have no finite numbers",
-        Failure::NotFinite(_) => return StateError::NotFinite,
-        Failure::Unsupported(what) => return StateError::Undefined { what },
-        Failure::DivisionByZero(_) => "a divisor is zero",
-        Failure::RatesUndetermined(_) => "the rates of the coordinates are not determined",
-        Failure::MotionInconsistent(..) => "a declared motion contradicts the positions",
-        Failure::SpeedsUndetermined(_) => "the constraints do not determine the dependent speeds",
-        Failure::ConstraintsInconsistent(_) => "the constraints contradict each other",
-        Failure::NotClosed(_) => "the configuration equations have no solution",
-        Failure::TooDeep => "names refer to names too deeply",
-    };
-    StateError::Singular { what }
 }
 
 /// The place of a point; undefined for one of which the model knows the velocity only.

@@ -7,7 +7,7 @@ use hodograph::nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3xX, MatrixXx3,
 use hodograph_model::model::mechanism::Mechanism;
 use hodograph_model::numeric::{ContactEvaluation, Evaluation, State, evaluate};
 
-use super::state_error;
+use super::failure::state_error;
 
 /// How the tangential axes of a contact follow from its normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
