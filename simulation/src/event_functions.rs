@@ -4,7 +4,7 @@
 use hodograph::{ComponentKind, State};
 
 use crate::closed_contacts::ClosedContacts;
-use crate::forces::{JAM, margins};
+use crate::forces::{Hold, JAM, margins};
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
 use crate::stepper::Step;
@@ -51,6 +51,8 @@ pub(crate) enum Watched {
     Normal(usize),
     /// whether friction suffices
     Cone(usize),
+    /// slip of a contact along its settled direction, beside that at which a step ends
+    Slip(usize),
     /// the least f of the sliding contacts
     Jam,
     /// a user's function, times this sign
@@ -82,6 +84,10 @@ impl Transition<'_> {
             if contact.slides.is_none() {
                 watched.push(Watched::Cone(place));
                 noise.push(0.0);
+            }
+            if contact.turning.is_some() {
+                watched.push(Watched::Slip(place));
+                noise.push(self.rounding_of_velocity(contact.contact)[0]);
             }
         }
         if closed.iter().any(|contact| contact.slides.is_some()) {
@@ -144,15 +150,20 @@ impl Transition<'_> {
     /// What rounding may do to the mean normal velocity of a contact: 4 eps of the terms of its velocity; of that
     /// no more than cannot be seen, or than 4 eps of the terms of the normal velocity itself.
     fn rounding_of_rate(&self, contact: usize) -> f64 {
+        let [all, normal] = self.rounding_of_velocity(contact);
+        all.min(normal.max(FAINT * self.front.scales.slow))
+    }
+
+    /// What rounding may do to the velocity of a contact, and to its normal velocity alone: 4 eps of their terms.
+    fn rounding_of_velocity(&self, contact: usize) -> [f64; 2] {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
         let state =
             State { time: self.front.t, coordinates: &self.front.y[..n], speeds, inputs: &self.front.held };
-        ClosedContacts::new(self.mechanism, &state, &[contact], false).map_or(0.0, |support| {
+        ClosedContacts::new(self.mechanism, &state, &[contact], false).map_or([0.0; 2], |support| {
             let all = support.velocity_size(0, speeds).max(support.velocity.amax());
             let normal = support.normal_size(0, speeds).max(support.velocity[0].abs());
-            let [all, normal] = [all, normal].map(|size| 4.0 * f64::EPSILON * size);
-            all.min(normal.max(FAINT * self.front.scales.slow))
+            [all, normal].map(|size| 4.0 * f64::EPSILON * size)
         })
     }
 
@@ -172,10 +183,11 @@ impl Transition<'_> {
         let inputs = motion.inputs(t, &y)?;
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
         let mut conditions = Vec::new();
+        let mut slips = Vec::new();
         let mut f = 1.0;
         if !closed.is_empty() {
             // Directions that follow from the state change the forces.
-            let known = here.filter(|_| after == 0.0 && closed.iter().all(|contact| contact.omega.is_none()));
+            let known = here.filter(|_| after == 0.0 && closed.iter().all(Closed::has_own_direction));
             let guess = here.and_then(|here| here.forces.as_ref());
             let evaluated = if known.is_none() { Some(motion.evaluate_near(t, &y, guess)?) } else { None };
             if let Some(evaluation) = known.or(evaluated.as_ref())
@@ -183,6 +195,7 @@ impl Transition<'_> {
             {
                 conditions = margins(forces, &evaluation.holds, &mus(closed));
                 f = forces.f;
+                slips = slips_left(closed, evaluation);
             }
         }
         watched
@@ -202,6 +215,7 @@ impl Transition<'_> {
                 }
                 Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
                 Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
+                Watched::Slip(place) => Ok(slips.get(place).copied().unwrap_or(1.0)),
                 Watched::Jam => Ok(f - JAM),
                 Watched::User(index, sign) => Ok(sign * (self.options.events[index])(t, q, u)),
             })
@@ -341,4 +355,16 @@ impl Transition<'_> {
         }
         Ok(())
     }
+}
+
+/// The slip of settled contacts along their directions, beside that at which a step ends, m/s; 1 of others.
+fn slips_left(closed: &[Closed], there: &Evaluation) -> Vec<f64> {
+    closed
+        .iter()
+        .enumerate()
+        .map(|(place, contact)| match (contact.turning, &there.holds[place]) {
+            (Some(turning), Hold::Slide(d)) => there.support.slip(place).dot(d) - turning.least,
+            _ => 1.0,
+        })
+        .collect()
 }

@@ -7,7 +7,7 @@ use crate::event_location::Crossing;
 use crate::forces::Hold;
 use crate::mode_changes::{Ending, FIRST};
 use crate::mode_selection::{Decision, choose};
-use crate::motion::{Evaluation, Failure};
+use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::pair::Friction;
 use crate::phase::{Closed, Leaving, Phase};
 use crate::slip_end::{ENDING, may_end, time_of_slip};
@@ -15,6 +15,8 @@ use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{EventKind, SimulationError};
 
+/// The step after an event is no more than so many times as long as the part of the step before it.
+const AFTER: f64 = 10.0;
 /// The greatest number of events without progress in time.
 const CROWD: usize = 1000;
 /// So many events must advance the motion by this part of the time of the problem.
@@ -31,9 +33,15 @@ impl Transition<'_> {
         crossing: Crossing,
     ) -> Result<(), SimulationError> {
         let mut step = self.at_event(closed, &whole, watched, &crossing)?;
-        self.front.next = whole.next.min((10.0 * step.h).max(FIRST * self.front.scales.time));
+        self.front.next_settled = whole.next;
+        self.front.next = match watched {
+            // The step goes on as it would have.
+            Watched::Slip(_) => whole.next,
+            _ => whole.next.min((AFTER * step.h).max(FIRST * self.front.scales.time)),
+        };
         let start = self.front.t;
         self.commit(&mut step)?;
+        self.front.turnings.fill(None);
         self.reached = Some(self.front.clone());
         self.crowded(start)?;
         match watched {
@@ -51,6 +59,7 @@ impl Transition<'_> {
             }
             Watched::Normal(place) => self.modes_ended(closed[place].contact, Ending::NormalForce),
             Watched::Cone(place) => self.modes_ended(closed[place].contact, Ending::Friction),
+            Watched::Slip(place) => self.settled_slip_ends(closed, place),
             Watched::Jam => self.jammed(closed),
             Watched::User(index, _) => {
                 self.push(None, EventKind::Zero(index));
@@ -125,6 +134,25 @@ impl Transition<'_> {
             }
         }
         if friction == sliding { Vec::new() } else { sticking(&friction) }
+    }
+
+    /// Settled slip is about to end, as its rate at the start of the step told. Where it neither sticks nor has longer to
+    /// go its direction is integrated from here on: it passes zero by.
+    fn settled_slip_ends(&mut self, closed: &[Closed], place: usize) -> Result<(), SimulationError> {
+        let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
+        let here = here.map_err(|failure| self.failure(failure))?;
+        let ending = ENDING * self.front.scales.time;
+        let left = time_of_slip(&here, place, &self.front.scale);
+        if left.is_some_and(|left| left >= 2.0 * ending) {
+            return Ok(());
+        }
+        let stopped = self.stops(closed, &here, self.here().speeds);
+        if stopped.contains(&place) {
+            return self.end_slip(closed, &here, &stopped, left.unwrap_or(0.0).min(ending));
+        }
+        let least = DIRECTION * here.support.velocity_size(place, self.here().speeds);
+        self.front.barred[closed[place].contact] = here.support.slip(place).norm().max(least);
+        Ok(())
     }
 
     /// Slip of contacts ends after a short time.

@@ -10,6 +10,8 @@ use crate::transition::Transition;
 
 /// The most trials of a time. Secants need three to five; where an input bends, intervals are halved.
 const TRIALS: usize = 80;
+/// By this part the slip at which a step with a settled direction ends may differ from that which was asked for.
+const NEARLY: f64 = 0.2;
 /// After this many trials intervals are halved.
 const SECANTS: usize = 8;
 
@@ -73,6 +75,17 @@ impl Transition<'_> {
             let value = self.values(closed, &[watched], h, None, &mut at).ok()?[0];
             Some((step, value))
         };
+        // Settled slip is about to end there: its end is found by itself.
+        let enough = match watched {
+            Watched::Slip(place) => closed[place].turning.map_or(0.0, |turning| NEARLY * turning.least),
+            _ => 0.0,
+        };
+        if enough > 0.0
+            && let Some((step, value)) = trial(after)
+            && value.abs() <= enough
+        {
+            return step;
+        }
         let (mut positive, mut negative) = (None, None);
         let mut last = whole.clone();
         // The first secant is a short one. It may lie across a bend of an input.
@@ -105,7 +118,7 @@ impl Transition<'_> {
                 }
             };
             let next = next.clamp(0.0, whole.h);
-            if settled(next, after) || (next - after).abs() > 0.1 * whole.h {
+            if value.abs() <= enough || settled(next, after) || (next - after).abs() > 0.1 * whole.h {
                 break;
             }
             after = next;

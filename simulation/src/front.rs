@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::EnergyAccount;
 use crate::motion::WORKS;
-use crate::phase::{Leaving, Phase};
+use crate::phase::{Leaving, Phase, Turned, Turning};
 use crate::scales::Scales;
 
 /// The first step, beside the time of the problem.
@@ -29,12 +29,20 @@ pub(crate) struct Front {
     pub forces: Vec<Vector3<f64>>,
     /// rate at which the direction of small slip turns where it follows from the state, rad/s
     pub omegas: Vec<Option<f64>>,
+    /// how it turned through the last step, where slip was followed as a signed number
+    pub turnings: Vec<Option<Turning>>,
+    /// at which rates that direction turned so far
+    pub turned: Vec<Turned>,
+    /// slip of each contact, m/s, up to which its direction is integrated, since it did not end as it settled
+    pub barred: Vec<f64>,
     /// whether nothing moves
     pub resting: bool,
     /// contacts whose bounces end at a time
     pub chatter: Vec<(f64, usize)>,
     /// size of the next step that the error of the last one allows, s
     pub next: f64,
+    /// the same of a step in which directions of slip follow from the state, s
+    pub next_settled: f64,
     /// the next sampling time of a controller, s
     pub next_sample: Option<f64>,
     /// samples so far
@@ -70,9 +78,13 @@ impl Front {
             phases: vec![Phase::Open(Leaving::Apart); contacts],
             forces: vec![Vector3::zeros(); contacts],
             omegas: vec![None; contacts],
+            turnings: vec![None; contacts],
+            turned: vec![Turned::default(); contacts],
+            barred: vec![0.0; contacts],
             resting: false,
             chatter: Vec::new(),
             next: BEGIN * scales.time,
+            next_settled: BEGIN * scales.time,
             next_sample: sampled.then_some(state.time),
             samples: 0,
             scale: state.speeds.iter().map(|speed| speed.abs()).collect(),

@@ -63,6 +63,7 @@ mod rattling;
 mod scales;
 mod scheduled_events;
 mod settled_slip;
+mod signed_slip;
 mod simulation;
 mod simultaneous_impacts;
 mod single_impact;

@@ -10,7 +10,6 @@ use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Lacking, margins};
-use crate::mode_changes::FIRST as AFTER;
 use crate::mode_selection::{Choice, Decision, choose};
 use crate::motion::{Evaluation, Failure, NO_SLIP};
 use crate::phase::{Closed, Phase, mus};
@@ -61,7 +60,6 @@ impl Transition<'_> {
                 Ok(choice) => {
                     self.begin_from_rest(contacts, &choice)?;
                     self.apply(contacts, &was, &choice);
-                    self.front.next = self.front.next.min(AFTER * self.front.scales.time);
                     self.confirm(contacts, &was)
                 }
                 Err(lacking) => self.without_forces(contacts, lacking),

@@ -11,6 +11,7 @@ use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::pair::Pair;
 use crate::phase::Closed;
+use crate::signed_slip;
 use crate::slip_direction::settle_directions;
 
 /// Slip below this, relative to the speeds that make it up, is none.
@@ -132,10 +133,18 @@ impl Motion<'_> {
     }
 
     /// Modes as they are at these velocities.
+    pub fn holds(&self, support: &ClosedContacts, speeds: &[f64]) -> Vec<Hold> {
+        let mut holds = Vec::with_capacity(self.closed.len());
+        self.hold(support, speeds, &mut holds);
+        holds
+    }
+
     fn hold(&self, support: &ClosedContacts, speeds: &[f64], holds: &mut Vec<Hold>) {
         holds.clear();
         holds.extend(self.closed.iter().enumerate().map(|(i, closed)| match closed.slides {
             None => Hold::Stick,
+            // Its direction follows from the state.
+            Some(began) if closed.turning.is_some() => Hold::Slide(began),
             Some(began) => {
                 let size = |speeds: &[f64]| support.velocity_size(i, speeds);
                 Hold::Slide(direction(support.slip(i), began, || size(speeds), || size(self.scale)))
@@ -144,7 +153,7 @@ impl Motion<'_> {
     }
 
     /// The coefficients of friction in these modes at these velocities.
-    fn rub(&self, support: &ClosedContacts, holds: &[Hold], mus: &mut Vec<f64>) -> Result<(), Failure> {
+    pub fn rub(&self, support: &ClosedContacts, holds: &[Hold], mus: &mut Vec<f64>) -> Result<(), Failure> {
         mus.clear();
         for (i, (closed, hold)) in self.closed.iter().zip(holds).enumerate() {
             mus.push(match (hold, &self.surfaces[closed.contact]) {
@@ -212,6 +221,7 @@ impl Motion<'_> {
             };
             let solve = |holds: &[Hold]| forces(support, holds, mu, None, Wanted::Motion);
             settle_directions(support, self.closed, holds, &solve);
+            signed_slip::settle(support, self.closed, t, holds, &solve).ok_or(Failure::NoForces)?;
             let answer = forces(support, holds, mu, guess, wanted).map_err(lacking)?;
             let greatest = answer.lambda.amax();
             let accelerations = &mut rates[n..n + p];

@@ -58,6 +58,8 @@ pub(crate) struct Closed {
     pub slides: Option<Vector2<f64>>,
     /// rate at which its direction of slip turns, rad/s, where that follows from the state
     pub omega: Option<f64>,
+    /// how its direction turns through this step, where its slip is followed as a signed number
+    pub turning: Option<Turning>,
 }
 
 impl Closed {
@@ -65,7 +67,55 @@ impl Closed {
     pub fn rubs(&self) -> bool {
         self.slides.is_some() && self.mu > 0.0
     }
+
+    /// Whether the direction of slip is that of its velocity.
+    pub fn has_own_direction(&self) -> bool {
+        self.omega.is_none() && self.turning.is_none()
+    }
 }
+
+/// How the direction of settled slip turns, from the direction that it had at a time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turning {
+    pub since: f64,
+    /// its rate, as a polynomial of the time since then: rad/s, rad/s^2, rad/s^3
+    pub rates: [f64; 3],
+    /// slip across the direction at that time, m/s, and the time within which it vanishes, s
+    pub across: f64,
+    pub within: f64,
+    /// change of the acceleration across the direction by its angle, m/s^2
+    pub slope: f64,
+    /// slip along the direction, m/s, at which a step ends
+    pub least: f64,
+}
+
+impl Turning {
+    /// The rate at a time.
+    pub fn rate(&self, t: f64) -> f64 {
+        let ([rate, change, bend], t) = (self.rates, t - self.since);
+        rate + (change + bend * t) * t
+    }
+
+    /// The slip across the direction at a time: it falls to zero by a square.
+    pub fn across(&self, t: f64) -> f64 {
+        let left = (1.0 - (t - self.since) / self.within).max(0.0);
+        self.across * left * left
+    }
+
+    /// The rate of that slip.
+    pub fn fading(&self, t: f64) -> f64 {
+        -2.0 * self.across / self.within * (1.0 - (t - self.since) / self.within).max(0.0)
+    }
+
+    /// The angle up to a time.
+    pub fn angle(&self, t: f64) -> f64 {
+        let ([rate, change, bend], t) = (self.rates, t - self.since);
+        (rate + (change / 2.0 + bend / 3.0 * t) * t) * t
+    }
+}
+
+/// The rates at which a settled direction of slip turned, rad/s, with their times; the last one first.
+pub(crate) type Turned = [Option<(f64, f64)>; 2];
 
 /// What stays the same during a step.
 #[derive(Clone, Debug, Default)]

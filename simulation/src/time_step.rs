@@ -9,15 +9,16 @@ use crate::event_functions::Watched;
 use crate::event_location::{Crossing, Functions, first_crossing};
 use crate::forces::Hold;
 use crate::motion::{DIRECTION, Evaluation, Failure};
-use crate::phase::{Closed, Phase, mus};
+use crate::phase::{Closed, Phase, Turned, Turning, mus};
 use crate::settled_slip::settled;
+use crate::signed_slip::{self, EXPLICIT, Search, inconsistent};
 use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
 /// A share of the time to the end of slip that a step may take.
-const SHARE: f64 = 0.5;
+const SHARE: f64 = 0.75;
 
 /// So many steps without an event must advance the motion by this part of the longest step so far, or of half the time of
 /// the problem.
@@ -29,6 +30,35 @@ const STUCK: usize = 1200;
 const CONTACTS: usize = 4;
 const NOTHING: f64 = 2e-8;
 
+/// Steps with settled directions that are tried before directions are integrated.
+const TRIALS: usize = 4;
+/// Such a step is followed up to the slip that is left at this part of [`ENDING`].
+const LAST: f64 = 0.5;
+/// Slip that did not end as it settled is integrated until it is so many times as fast.
+const BARRED: f64 = 100.0;
+/// They do not follow from the state where so many events are at one time.
+const CROWD: usize = 4;
+/// Directions follow from the state while f / m_nn is above this: next to a jam f depends on them too much.
+const FAR: f64 = 0.1;
+/// Places of a step at which slip is compared with its settled direction.
+const LOOKED_AT: [f64; 2] = [0.4, 0.8];
+/// The next one aims at this part of the size that the error allows, and is not shorter or longer by more than these
+/// factors.
+const SAFETY: f64 = 0.9;
+const LEAST_FACTOR: f64 = 0.01;
+const GREATEST_FACTOR: f64 = 5.0;
+/// After a step in which directions were integrated, a longer one with settled directions is tried.
+const LONGER: f64 = 2.0;
+const LONGEST: f64 = 50.0;
+
+/// What came of the attempt to make a step.
+pub(crate) enum Attempt {
+    /// A step, and the first event in it.
+    Made(Step, Option<(Watched, Crossing)>),
+    /// The integration cannot continue.
+    Stuck(Option<Failure>),
+}
+
 /// Evaluations of the functions of a step after which it is not halved any more.
 const LOOKS: usize = 30_000;
 
@@ -36,6 +66,12 @@ impl Transition<'_> {
     /// Makes one step.
     pub(crate) fn step(&mut self) -> Result<(), SimulationError> {
         self.front.omegas.fill(None);
+        self.front.turnings.fill(None);
+        for (barred, phase) in self.front.barred.iter_mut().zip(&self.front.phases) {
+            if !matches!(phase, Phase::Slide(_)) {
+                *barred = 0.0;
+            }
+        }
         let mut closed = self.closed();
         let here = self
             .motion(&closed)
@@ -48,54 +84,167 @@ impl Transition<'_> {
                 self.front.phases[contact.contact] = Phase::Slide(*direction);
             }
         }
-        let mut most = self.front.next.min(self.options.max_step);
-        if let Some(limit) = self.limit() {
-            most = most.min(limit - self.front.t);
-        }
+        let most =
+            self.limit().map_or(f64::INFINITY, |limit| limit - self.front.t).min(self.options.max_step);
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let speeds = &self.front.y[n..n + self.mechanism.count(ComponentKind::Speed)];
         let ending = ENDING * self.front.scales.time;
+        let mut left = vec![None; closed.len()];
         for (i, contact) in closed.iter().enumerate() {
             if !contact.rubs() {
                 continue;
             }
-            let left = time_of_slip(&here, i, &self.front.scale);
-            if left.is_some_and(|left| left < ending) || may_end(&here, i, speeds, &self.front.scale, ending)
+            left[i] = time_of_slip(&here, i, &self.front.scale);
+            if left[i].is_some_and(|left| left < ending)
+                || may_end(&here, i, speeds, &self.front.scale, ending)
             {
                 if closed.len() > 1 {
                     let stopped = self.stops(&closed, &here, speeds);
                     if !stopped.is_empty() {
-                        return self.end_slip(&closed, &here, &stopped, left.unwrap_or(0.0).min(ending));
+                        return self.end_slip(&closed, &here, &stopped, left[i].unwrap_or(0.0).min(ending));
                     }
                 } else if let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i) {
                     return self.end_slip(&closed, &here, &[i], time);
                 }
             }
-            if let Some(left) = left {
-                most = most.min(SHARE * left.max(ending));
+        }
+        let (made, signed) = match self.settled_step(&mut closed, &here, most, &left) {
+            Some(made) => (made, true),
+            None => {
+                let ends = left.iter().flatten().map(|left| SHARE * left.max(ending));
+                let free = most.min(self.front.next);
+                let most = ends.fold(free, f64::min);
+                let omegas =
+                    settled(&self.motion(&closed), self.front.t, &self.front.y, &here, &self.front.scales);
+                for (contact, omega) in closed.iter_mut().zip(omegas) {
+                    contact.omega = omega;
+                    self.front.omegas[contact.contact] = omega;
+                }
+                match self.attempt(&closed, &here, most)? {
+                    Attempt::Made(mut step, crossing) => {
+                        // One that ends with the slip tells nothing of the size that the error allows.
+                        if step.h == most && most < free {
+                            step.next = step.next.max(self.front.next);
+                        }
+                        ((step, crossing), false)
+                    }
+                    Attempt::Stuck(failure) => return self.stuck_integration(failure),
+                }
             }
-        }
-        let omegas = settled(&self.motion(&closed), self.front.t, &self.front.y, &here, &self.front.scales);
-        for (contact, omega) in closed.iter_mut().zip(omegas) {
-            contact.omega = omega;
-            self.front.omegas[contact.contact] = omega;
-        }
-        let Some((mut step, crossing)) = self.attempt(&closed, &here, most)? else { return Ok(()) };
+        };
+        let (mut step, crossing) = made;
         if let Some(contact) = self.singular(&closed, &step) {
             return self.end_with(contact, &step);
         }
         match crossing {
             None => {
                 self.front.next = step.next;
+                self.front.next_settled = match signed {
+                    true => self.front.next_settled.min(step.next),
+                    false => step.next.max((LONGER * self.front.next_settled).min(LONGEST * step.next)),
+                };
                 self.commit(&mut step)?;
                 self.progress(step.h)?;
                 self.on_time()
             }
             Some((watched, crossing)) => {
                 self.front.steps = (0, self.front.t, self.front.steps.2);
+                self.front.turned.fill(Turned::default());
                 self.handle_event(&closed, step, watched, crossing)
             }
         }
+    }
+
+    /// A step in which contacts whose slip has settled have the directions that follow from the state; `left` are the
+    /// times to the end of each slip if its rate stayed. `None` where no such step is as long as an explicit integration
+    /// of the directions allows, and nothing has changed then but the sizes of steps that are tried.
+    fn settled_step(
+        &mut self,
+        closed: &mut [Closed],
+        here: &Evaluation,
+        most: f64,
+        left: &[Option<f64>],
+    ) -> Option<(Step, Option<(Watched, Crossing)>)> {
+        let ending = ENDING * self.front.scales.time;
+        let asked: Vec<usize> = (0..closed.len())
+            .filter(|&place| {
+                let slip = here.support.slip(place).norm();
+                closed[place].rubs()
+                    && left[place].is_none_or(|left| left >= ending)
+                    && slip >= BARRED * self.front.barred[closed[place].contact]
+            })
+            .collect();
+        let far = here.forces.as_ref().is_some_and(|forces| forces.f > FAR);
+        if asked.is_empty() || !far || self.front.crowd >= CROWD {
+            return None;
+        }
+        let before: Vec<Turned> = closed.iter().map(|contact| self.front.turned[contact.contact]).collect();
+        let mut reach = most.min(self.front.next_settled);
+        for _ in 0..TRIALS {
+            let search =
+                Search { asked: &asked, left, before: &before, reach, tolerances: self.tolerances() };
+            let start = (self.front.t, &self.front.y[..]);
+            let found = signed_slip::settled(&self.motion(closed), start, here, &search)?;
+            let (place, contact) = (found.place, closed[found.place].contact);
+            self.front.turned[contact] = [Some((self.front.t, found.rates[0])), before[place][0]];
+            let others = (0..closed.len()).filter(|other| *other != place);
+            let ends = others.filter_map(|place| left[place]).map(|left| SHARE * left.max(ending));
+            let h = ends.fold(reach, f64::min);
+            let worth = EXPLICIT * found.relaxation < h || left[place].is_some_and(|left| left < h);
+            if !found.has_settled || !worth {
+                return None;
+            }
+            let mut trial = closed.to_vec();
+            trial[place].slides = Some(found.direction);
+            // The end of slip is followed by itself.
+            let least =
+                left[place].map_or(0.0, |left| LAST * ending / left * here.support.slip(place).norm());
+            trial[place].turning = Some(Turning {
+                since: self.front.t,
+                rates: found.rates,
+                across: found.across,
+                within: h,
+                slope: found.slope,
+                least,
+            });
+            if let Ok(Attempt::Made(step, crossing)) = self.attempt(&trial, here, h) {
+                if crossing.is_some_and(|(watched, _)| watched == Watched::Jam) {
+                    return None;
+                }
+                let part = crossing.map_or(1.0, |(_, crossing)| crossing.place);
+                let error = self.inconsistency(&trial, &step, part);
+                reach = part * step.h * (SAFETY / error.cbrt()).clamp(LEAST_FACTOR, GREATEST_FACTOR);
+                if error <= 1.0 {
+                    self.front.phases[contact] = Phase::Slide(found.direction);
+                    self.front.turnings[contact] = trial[place].turning;
+                    self.front.next_settled = reach;
+                    closed.copy_from_slice(&trial);
+                    return Some((step, crossing));
+                }
+            } else {
+                reach = LEAST_FACTOR * h;
+            }
+            self.front.next_settled = reach;
+        }
+        None
+    }
+
+    /// By how much slip differs from its settled directions in the first part of a step, beside what the tolerances
+    /// allow.
+    fn inconsistency(&self, closed: &[Closed], step: &Step, part: f64) -> f64 {
+        let motion = self.motion(closed);
+        let at = |share: f64| {
+            let fraction = share * part;
+            let time = step.t + fraction * step.h;
+            let there = motion.evaluate_near(time, &step.at(fraction), None);
+            let (_, u) = motion.split(&step.end);
+            there.map_or(f64::INFINITY, |there| inconsistent(closed, (time, &there), u, &self.tolerances()))
+        };
+        LOOKED_AT.into_iter().map(at).fold(0.0, f64::max)
+    }
+
+    fn tolerances(&self) -> Tolerances {
+        Tolerances { relative: self.options.relative_tolerance, absolute: self.options.absolute_tolerance }
     }
 
     /// Counts steps without an event, and refuses to go on where they hardly advance the motion.
@@ -121,18 +270,14 @@ impl Transition<'_> {
         Ok(())
     }
 
-    /// A step that was integrated, and the first event in it.
-    #[allow(clippy::type_complexity)]
+    /// A step of at most this size, and the first event in it.
     fn attempt(
-        &mut self,
+        &self,
         closed: &[Closed],
         here: &Evaluation,
         mut most: f64,
-    ) -> Result<Option<(Step, Option<(Watched, Crossing)>)>, SimulationError> {
-        let tolerances = Tolerances {
-            relative: self.options.relative_tolerance,
-            absolute: self.options.absolute_tolerance,
-        };
+    ) -> Result<Attempt, SimulationError> {
+        let tolerances = self.tolerances();
         let looks = Cell::new(0);
         for _ in 0..80 {
             if looks.get() > LOOKS {
@@ -150,11 +295,11 @@ impl Transition<'_> {
                     }
                 };
                 // Directions that follow from the state change the rates.
-                let first = closed.iter().all(|contact| contact.omega.is_none()).then_some(&here.rates[..]);
+                let first = closed.iter().all(Closed::has_own_direction).then_some(&here.rates[..]);
                 stepper::step(&mut rates, (self.front.t, &self.front.y, first), most, &tolerances)
             };
             let Some(step) = made else {
-                return self.stuck_integration(failed.into_inner()).map(|()| None);
+                return Ok(Attempt::Stuck(failed.into_inner()));
             };
             if !self.keeps_direction(closed, here, &step)? {
                 most = 0.5 * step.h;
@@ -190,7 +335,7 @@ impl Transition<'_> {
                 continue;
             };
             let found = found.map(|crossing| (watched[crossing.function], crossing));
-            return Ok(Some((step, found)));
+            return Ok(Attempt::Made(step, found));
         }
         Err(self.error(None, ErrorKind::Stalled))
     }
@@ -225,7 +370,7 @@ impl Transition<'_> {
         let inputs = motion.inputs(step.t + step.h, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &inputs };
         for (place, (contact, hold)) in closed.iter().zip(&here.holds).enumerate() {
-            if let (Hold::Slide(d), true) = (hold, contact.rubs()) {
+            if let (Hold::Slide(d), true, None) = (hold, contact.rubs(), contact.turning) {
                 let velocity = self
                     .mechanism
                     .contact_velocity(contact.contact, &state)

@@ -1,5 +1,6 @@
-//! Counts the instructions of every routine in `measured`, and holds them against `counts.txt`: more than 3 %
-//! above it is an error. With `HODOGRAPH_UPDATE=1` the table is written anew instead.
+//! Counts the instructions of every routine in `measured` and of every motion in `motions`, and holds them against
+//! `counts.txt`: more than 3 % above it (of a motion 10 %) is an error. With `HODOGRAPH_UPDATE=1` the table is written
+//! anew instead.
 //!
 //! With the argument `specialised` it prints what collisions that are one routine bring, as a table of a document.
 
@@ -12,12 +13,20 @@ use std::process::{Command, ExitCode};
 
 /// A routine may take this much more than the table says: compilers and their versions differ a little.
 const SLACK: f64 = 0.03;
+/// A motion may take this much more: the numbers of its steps depend on rounding, which the C library's functions
+/// differ in.
+const SLACK_OF_MOTIONS: f64 = 0.10;
+/// How names of motions begin.
+const MOTION: &str = "motion::";
 /// A few instructions are no matter, however short the routine.
 const FEW: f64 = 8.0;
 
 /// So many routines may be left out because valgrind does not know one of their instructions: which, changes
 /// with the compiler's choices.
 const MISSING: usize = 12;
+
+/// Flags of the compiler for what is counted: valgrind executes no AVX-512.
+const FLAGS: &str = "-C target-cpu=x86-64-v3";
 
 type Counts = BTreeMap<String, f64>;
 
@@ -40,7 +49,8 @@ fn main() -> ExitCode {
 /// Whether nothing is above the table.
 fn run() -> Result<bool, String> {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("counts.txt");
-    let (counted, in_part) = count()?;
+    let (mut counted, in_part) = count()?;
+    counted.extend(motions()?);
     let stored = std::fs::read_to_string(&table).map_err(|error| format!("{}: {error}", table.display()))?;
     let stored: Counts = stored.lines().filter_map(entry).collect();
     if expectations::are_written_anew() {
@@ -67,17 +77,21 @@ fn run() -> Result<bool, String> {
             continue;
         };
         let more = now - before;
-        if more > FEW && more > SLACK * before {
+        let slack = if name.starts_with(MOTION) { SLACK_OF_MOTIONS } else { SLACK };
+        if more > FEW && more > slack * before {
             println!("{name}: {now:.0}, {:.1} % above {before:.0}", 100.0 * more / before);
             right = false;
         }
     }
-    let sum = |counts: &Counts| counts.values().sum::<f64>();
-    println!(
-        "{} routines, together {:.2} % of the table",
-        counted.len(),
-        100.0 * sum(&counted) / sum(&stored)
-    );
+    for (what, of_motions) in [("routines", false), ("motions", true)] {
+        let here = |counts: &&(&String, &f64)| counts.0.starts_with(MOTION) == of_motions;
+        let sum = |counts: &Counts| counts.iter().filter(here).map(|(_, count)| count).sum::<f64>();
+        println!(
+            "{} {what}, together {:.2} % of the table",
+            counted.iter().filter(here).count(),
+            100.0 * sum(&counted) / sum(&stored)
+        );
+    }
     if !right {
         println!("where this is meant: HODOGRAPH_UPDATE=1 writes the table anew");
     }
@@ -93,7 +107,7 @@ fn entry(line: &str) -> Option<(String, f64)> {
 /// Prints instructions and times of the usual collisions and of specialised ones.
 fn specialised() -> Result<(), String> {
     // As programs are built that ask for nothing.
-    let measured = build("plain", "")?;
+    let measured = build("plain", "", &["measured"])?;
     let (counts, unfinished) = profile(&measured, "specialised")?;
     if !unfinished.is_empty() {
         return Err(format!("valgrind does not know an instruction of {}", unfinished.join(", ")));
@@ -122,13 +136,38 @@ fn specialised() -> Result<(), String> {
     Ok(())
 }
 
-/// Builds the program that is measured, in a folder of its own for these flags of the compiler.
-fn build(folder: &str, flags: &str) -> Result<PathBuf, String> {
+/// Instructions of the motions.
+fn motions() -> Result<Counts, String> {
+    let program = build("measured", FLAGS, &["measured", "motions"])?.with_file_name("motions");
+    let profile = program.with_file_name("callgrind.motion.out");
+    let mut counts = Counts::new();
+    for motion in execute(&mut Command::new(&program))?.lines() {
+        execute(
+            Command::new("valgrind")
+                .args(["--tool=callgrind", "--toggle-collect=motions::follow*"])
+                .arg(format!("--callgrind-out-file={}", profile.display()))
+                .arg(&program)
+                .args(motion.split(',')),
+        )?;
+        let text =
+            std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
+        let total = text.lines().find_map(|line| line.strip_prefix("totals: ")?.trim().parse().ok());
+        let total: f64 =
+            total.filter(|total| *total > 0.0).ok_or(format!("{motion}: nothing was counted"))?;
+        counts.insert(format!("{MOTION}{}", motion.replace([' ', ','], "_")), total);
+    }
+    Ok(counts)
+}
+
+/// Builds the programs that are measured, in a folder of their own for these flags of the compiler.
+fn build(folder: &str, flags: &str, packages: &[&str]) -> Result<PathBuf, String> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR"));
     let target = here.join("target").join(folder);
     execute(
         Command::new("cargo")
-            .args(["build", "--release", "--locked", "--package", "measured", "--manifest-path"])
+            .args(["build", "--release", "--locked"])
+            .args(packages.iter().flat_map(|package| ["--package", package]))
+            .arg("--manifest-path")
             .arg(here.join("Cargo.toml"))
             .arg("--target-dir")
             .arg(&target)
@@ -139,8 +178,7 @@ fn build(folder: &str, flags: &str) -> Result<PathBuf, String> {
 
 /// Instructions of the routines, and the subjects of which not all were counted.
 fn count() -> Result<(Counts, Vec<String>), String> {
-    // valgrind executes no AVX-512.
-    let measured = build("measured", "-C target-cpu=x86-64-v3")?;
+    let measured = build("measured", FLAGS, &["measured", "motions"])?;
     let subjects = execute(&mut Command::new(&measured))?;
     let (mut counts, mut in_part) = (Counts::new(), Vec::new());
     for subject in subjects.lines() {
