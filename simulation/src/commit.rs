@@ -38,13 +38,6 @@ impl Transition<'_> {
         let mut y = std::mem::take(&mut self.front.y);
         let modes = self.modes();
         let done = self.project_onto_constraints(&modes, self.front.t, &mut y);
-        let n = self.mechanism.count(ComponentKind::Coordinate);
-        for (speed, scale) in y[n..].iter_mut().zip(&self.front.scale) {
-            // Repeated corrections of a speed that is zero leave numbers so small that their squares underflow.
-            if speed.abs() < NOTHING * scale {
-                *speed = 0.0;
-            }
-        }
         self.front.y = y;
         done
     }
@@ -73,6 +66,12 @@ impl Transition<'_> {
         })();
         if let Some(left) = moved.map_err(|error| self.failure(Failure::State(error)))? {
             return Err(self.error(Some(left.contact), ErrorKind::Drift(left.gap)));
+        }
+        for (speed, scale) in u.iter_mut().zip(&self.front.scale) {
+            // Repeated corrections of a speed that is zero leave numbers so small that their squares underflow.
+            if speed.abs() < NOTHING * scale {
+                *speed = 0.0;
+            }
         }
         y[..n].copy_from_slice(&q);
         y[n..n + p].copy_from_slice(&u);
