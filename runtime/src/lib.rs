@@ -97,7 +97,8 @@ pub use crate::{
     law::{Law, UnknownName},
     mechanism::{
         ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, Component, ComponentKind,
-        ContactOutcome, ContactState, Contacts, Mechanism, ParameterError, State, StateError,
+        ContactOutcome, ContactState, Contacts, Mechanism, ParameterError, RelativeRotation, State,
+        StateError,
     },
     phases::{Motion, Phases, Snapshot},
     phi_bar::{invariant_directions, phi_bar},

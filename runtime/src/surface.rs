@@ -31,6 +31,10 @@ pub struct StatedLaw<'a> {
     pub sliding: Option<(&'a str, &'a [f64])>,
     /// restitution as a function of the speed of approach: name and numbers
     pub restitution: Option<(&'a str, &'a [f64])>,
+    /// lever arm of rolling friction, m
+    pub rolling: Option<f64>,
+    /// lever arm of spinning friction, m
+    pub spinning: Option<f64>,
 }
 
 impl<T> Surface<T> {

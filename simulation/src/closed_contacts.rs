@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
 use crate::angles::Angles;
 use crate::contact_problem::Problem;
+use crate::torques::WithTorques;
 
 /// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact
 /// basis.
@@ -35,7 +36,7 @@ const IDLE: f64 = 128.0;
 
 impl ClosedContacts {
     /// Room for these contacts of a mechanism: all numbers are zero.
-    pub fn room(mechanism: &dyn Contacts<f64>, contacts: &[usize]) -> Self {
+    pub fn room(mechanism: WithTorques<'_>, contacts: &[usize]) -> Self {
         let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
         Self {
             contacts: contacts.to_vec(),
@@ -50,7 +51,7 @@ impl ClosedContacts {
 
     /// Evaluates the contacts; without `accelerate` the free accelerations stay zero.
     pub fn new(
-        mechanism: &dyn Contacts<f64>,
+        mechanism: WithTorques<'_>,
         state: &State<'_>,
         contacts: &[usize],
         accelerate: bool,
@@ -64,7 +65,7 @@ impl ClosedContacts {
     /// coordinates, then speeds. `numbers` is memory, used again from call to call.
     pub fn with_rates(
         &mut self,
-        mechanism: &dyn Contacts<f64>,
+        mechanism: WithTorques<'_>,
         state: &State<'_>,
         angles: &Angles,
         rates: &mut [f64],
@@ -94,7 +95,7 @@ impl ClosedContacts {
 
     /// The same without the rates.
     pub fn loaded(
-        mechanism: &dyn Contacts<f64>,
+        mechanism: WithTorques<'_>,
         state: &State<'_>,
         angles: &Angles,
         contacts: &[usize],
@@ -123,7 +124,7 @@ impl ClosedContacts {
 
     fn evaluate(
         &mut self,
-        mechanism: &dyn Contacts<f64>,
+        mechanism: WithTorques<'_>,
         state: &State<'_>,
         accelerate: bool,
         rates: Option<&mut [f64]>,
@@ -131,7 +132,9 @@ impl ClosedContacts {
     ) -> Result<(), StateError> {
         let Self { contacts, coupled, partials, response, velocity, beta, .. } = self;
         let (k, p) = (contacts.len(), mechanism.count(ComponentKind::Speed));
-        numbers.resize(3 * p * k, 0.0);
+        // Torques stand last.
+        let own = contacts.iter().take_while(|&&contact| mechanism.torque(contact).is_none()).count();
+        numbers.resize(3 * p * own, 0.0);
         let mut known = false;
         if let Some(rates) = rates {
             let (q, u) = rates.split_at_mut(state.coordinates.len());
@@ -139,12 +142,12 @@ impl ClosedContacts {
                 coordinate_rates: &mut *q,
                 accelerations: &mut u[..p],
                 // By rows V is V^T by columns.
-                partial_velocities: partials.as_mut_slice(),
+                partial_velocities: &mut partials.as_mut_slice()[..3 * p * own],
                 responses: &mut *numbers,
-                velocities: velocity.as_mut_slice(),
-                free_accelerations: beta.as_mut_slice(),
+                velocities: &mut velocity.as_mut_slice()[..3 * own],
+                free_accelerations: &mut beta.as_mut_slice()[..3 * own],
             };
-            match mechanism.closed_contacts(contacts, state, &mut values) {
+            match mechanism.closed_contacts(&contacts[..own], state, &mut values) {
                 Ok(()) => known = true,
                 // Of one that does not tell all of it.
                 Err(StateError::Undefined { .. }) => {
@@ -154,7 +157,7 @@ impl ClosedContacts {
                 Err(error) => return Err(error),
             }
         }
-        for (i, &contact) in contacts.iter().enumerate() {
+        for (i, &contact) in contacts[..own].iter().enumerate() {
             let numbers = &mut numbers[3 * p * i..][..3 * p];
             if !known {
                 let partials = &mut partials.as_mut_slice()[3 * p * i..][..3 * p];
@@ -172,8 +175,19 @@ impl ClosedContacts {
             }
             velocity.rows_mut(3 * i, 3).copy_from(&mechanism.contact_velocity(contact, state)?);
             if accelerate {
-                beta.rows_mut(3 * i, 3).copy_from(&free_acceleration(mechanism, contact, state)?);
+                beta.rows_mut(3 * i, 3).copy_from(&free_acceleration(mechanism.mechanism, contact, state)?);
             }
+        }
+        for (i, &torque) in contacts.iter().enumerate().skip(own) {
+            let Some(rows) = mechanism.rows(torque, state)? else { continue };
+            for (speed, (partial, answer)) in rows.partials.iter().zip(&rows.responses).enumerate() {
+                for axis in 0..3 {
+                    partials[(speed, 3 * i + axis)] = partial[axis];
+                    response[(speed, 3 * i + axis)] = answer[axis];
+                }
+            }
+            velocity.rows_mut(3 * i, 3).copy_from(&rows.velocity);
+            beta.rows_mut(3 * i, 3).copy_from(&rows.free);
         }
         let product = |row: usize, column: usize| -> f64 {
             let (left, right) =
@@ -188,6 +202,9 @@ impl ClosedContacts {
                 coupled[(row, column)] = both;
                 coupled[(column, row)] = both;
             }
+        }
+        if own < k {
+            mechanism.share_normal_forces(contacts, own, coupled, velocity, beta);
         }
         Ok(())
     }

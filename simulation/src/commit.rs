@@ -55,7 +55,7 @@ impl Transition<'_> {
         let mut q = y[..n].to_vec();
         let mut u = y[n..n + p].to_vec();
         let moved = (|| {
-            drift::close_loops(self.mechanism, t, &mut q, &u, &modes.held)?;
+            drift::close_loops(self.mechanism.mechanism, t, &mut q, &u, &modes.held)?;
             let contacts: Vec<usize> = closed.iter().map(|(contact, _)| *contact).collect();
             let least = SIZE * self.front.scales.length;
             let (left, known) =

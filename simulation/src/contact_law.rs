@@ -4,7 +4,7 @@
 //! leaves open is that of the [`hodograph::Surface`]: a static coefficient equal to the sliding one, the same friction in
 //! impacts, a constant e.
 //!
-//! Theory: docs/theory.md, section 17.15.
+//! Theory: docs/theory.md, sections 17.15 and 17.17.
 
 use std::fmt;
 use std::str::FromStr;
@@ -42,6 +42,12 @@ pub struct ContactLaw {
     pub sliding: Sliding,
     /// The coefficient of restitution as a function of the speed of approach.
     pub restitution: Restitution,
+    /// Lever arm of rolling friction, m, not negative: a torque of at most this times the normal force resists
+    /// rotation about axes in the tangent plane. `None`: no such torque.
+    pub rolling: Option<f64>,
+    /// Lever arm of spinning friction, m, not negative: a torque of at most this times the normal force resists
+    /// rotation about the normal. `None`: no such torque.
+    pub spinning: Option<f64>,
 }
 
 impl ContactLaw {
@@ -65,7 +71,14 @@ impl ContactLaw {
             Some((name, numbers)) => Restitution::named(name, numbers)
                 .ok_or_else(|| none("restitution", name, Restitution::FORMS))?,
         };
-        Ok(Self { mu_static: law.mu_static, mu_impact: law.mu_impact, sliding, restitution })
+        Ok(Self {
+            mu_static: law.mu_static,
+            mu_impact: law.mu_impact,
+            sliding,
+            restitution,
+            rolling: law.rolling,
+            spinning: law.spinning,
+        })
     }
 }
 

@@ -5,6 +5,7 @@ use hodograph::{ComponentKind, Contacts, State, StateError};
 use nalgebra::{DMatrix, DVector};
 
 use crate::closed_contacts::{ClosedContacts, least_squares};
+use crate::torques::WithTorques;
 
 /// Steps of Newton's method at most.
 const STEPS: usize = 4;
@@ -54,7 +55,7 @@ const CLOSED: f64 = 1e-10;
 /// mass matrix; the first gap that it does not close, if there is one, and what it knows of the contacts. `least`
 /// is a length that is small in the problem: 1e-13 of it is rounding.
 pub(crate) fn close_gaps(
-    mechanism: &dyn Contacts<f64>,
+    mechanism: WithTorques<'_>,
     time: f64,
     coordinates: &mut [f64],
     speeds: &[f64],
@@ -105,7 +106,7 @@ pub(crate) fn close_gaps(
         for (coordinate, (here, there)) in coordinates.iter_mut().zip(here.iter().zip(&there)) {
             *coordinate += there - here;
         }
-        close_loops(mechanism, time, coordinates, speeds, inputs)?;
+        close_loops(mechanism.mechanism, time, coordinates, speeds, inputs)?;
         if largest <= 1e-12 * least {
             break;
         }
@@ -116,7 +117,7 @@ pub(crate) fn close_gaps(
 /// The speeds changed so that closed contacts do not part, and those that stick do not slip, by the least
 /// change of kinetic energy, with what is `known` of the contacts close by.
 pub(crate) fn hold_velocities(
-    mechanism: &dyn Contacts<f64>,
+    mechanism: WithTorques<'_>,
     time: f64,
     coordinates: &[f64],
     speeds: &mut [f64],

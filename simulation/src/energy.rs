@@ -11,7 +11,7 @@ pub struct EnergyAccount {
     /// potential energy of gravity and springs; `None` where the model has neither, or where it is not a
     /// function of the coordinates
     pub potential: Option<f64>,
-    /// work of friction in contact that lasts, not positive
+    /// work of friction in contact that lasts, that of its torques among it, not positive
     pub friction: f64,
     /// change of kinetic energy in impacts
     pub impacts: f64,

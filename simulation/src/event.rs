@@ -55,6 +55,30 @@ pub enum EventKind {
         /// whether this was the only possibility
         selection: Selection,
     },
+    /// Bodies that rolling friction held begin to roll on each other.
+    Roll {
+        /// direction of the relative angular velocity along the two tangential axes of the contact basis
+        direction: [f64; 2],
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// Rolling ended and rolling friction holds the bodies.
+    RollEnds {
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// Bodies that spinning friction held begin to turn about the normal.
+    Spin {
+        /// whether what strikes turns right-handed about the normal
+        positive: bool,
+        /// whether this was the only possibility
+        selection: Selection,
+    },
+    /// Turning about the normal ended and spinning friction holds the bodies.
+    SpinEnds {
+        /// whether this was the only possibility
+        selection: Selection,
+    },
     /// Nothing moves any more.
     Rest,
     /// The motion ends: the coordinates no longer determine the point at which the bodies touch (a disc that
@@ -75,6 +99,10 @@ impl EventKind {
             Self::LiftOff { .. } => "lift_off",
             Self::Slip { .. } => "slip",
             Self::Stick { .. } => "stick",
+            Self::Roll { .. } => "roll",
+            Self::RollEnds { .. } => "roll_ends",
+            Self::Spin { .. } => "spin",
+            Self::SpinEnds { .. } => "spin_ends",
             Self::Rest => "rest",
             Self::Singular => "singular",
             Self::Zero(_) => "zero",
@@ -87,7 +115,11 @@ impl EventKind {
             Self::Contact { selection, .. }
             | Self::LiftOff { selection }
             | Self::Slip { selection, .. }
-            | Self::Stick { selection } => Some(*selection),
+            | Self::Stick { selection }
+            | Self::Roll { selection, .. }
+            | Self::RollEnds { selection }
+            | Self::Spin { selection, .. }
+            | Self::SpinEnds { selection } => Some(*selection),
             _ => None,
         }
     }

@@ -79,8 +79,11 @@ impl Transition<'_> {
             }
         }
         for (place, contact) in closed.iter().enumerate() {
-            watched.push(Watched::Normal(place));
-            noise.push(0.0);
+            // A torque has the normal force of its contact.
+            if self.mechanism.torque(contact.contact).is_none() {
+                watched.push(Watched::Normal(place));
+                noise.push(0.0);
+            }
             if contact.slides.is_none() {
                 watched.push(Watched::Cone(place));
                 noise.push(0.0);

@@ -91,7 +91,7 @@ impl Transition<'_> {
             }
             Err(_) => 0,
         };
-        self.impact_without_collision(closed[place].contact)
+        self.jams(closed[place].contact)
     }
 
     /// The contacts, by place, whose slip is so small that it ends now: all that may end within 3 ns are

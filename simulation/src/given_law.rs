@@ -13,11 +13,16 @@ pub struct GivenLaw {
     pub sliding: Option<Sliding>,
     /// restitution as a function of the speed of approach
     pub restitution: Option<Restitution>,
+    /// lever arm of rolling friction, m
+    pub rolling: Option<f64>,
+    /// lever arm of spinning friction, m
+    pub spinning: Option<f64>,
 }
 
 impl GivenLaw {
     /// The names of the parts.
-    pub const PARTS: [&'static str; 4] = ["mu_static", "mu_impact", "sliding", "restitution"];
+    pub const PARTS: [&'static str; 6] =
+        ["mu_static", "mu_impact", "sliding", "restitution", "rolling", "spinning"];
 
     /// What is not given here is taken from another.
     #[must_use]
@@ -27,6 +32,8 @@ impl GivenLaw {
             mu_impact: self.mu_impact.or(other.mu_impact),
             sliding: self.sliding.or(other.sliding),
             restitution: self.restitution.or(other.restitution),
+            rolling: self.rolling.or(other.rolling),
+            spinning: self.spinning.or(other.spinning),
         }
     }
 
@@ -42,6 +49,8 @@ impl GivenLaw {
             "mu_impact" => self.mu_impact = Some(number()?),
             "sliding" => self.sliding = Some(text.parse()?),
             "restitution" => self.restitution = Some(text.parse()?),
+            "rolling" => self.rolling = Some(number()?),
+            "spinning" => self.spinning = Some(number()?),
             _ => return Err(format!("a surface has no `{part}`: its parts are {}", Self::PARTS.join(", "))),
         }
         Ok(())
@@ -54,6 +63,8 @@ impl GivenLaw {
             self.mu_impact.map(|mu| mu.to_string()),
             self.sliding.as_ref().map(Sliding::to_string),
             self.restitution.as_ref().map(Restitution::to_string),
+            self.rolling.map(|arm| arm.to_string()),
+            self.spinning.map(|arm| arm.to_string()),
         ];
         Self::PARTS.into_iter().zip(texts).filter_map(|(part, text)| Some((part, text?))).collect()
     }
@@ -65,6 +76,8 @@ impl GivenLaw {
             mu_impact: self.mu_impact,
             sliding: self.sliding.unwrap_or_default(),
             restitution: self.restitution.unwrap_or_default(),
+            rolling: self.rolling,
+            spinning: self.spinning,
         }
     }
 }
@@ -72,12 +85,14 @@ impl GivenLaw {
 /// A law, of which constant parts count as not given.
 impl From<ContactLaw> for GivenLaw {
     fn from(law: ContactLaw) -> Self {
-        let ContactLaw { mu_static, mu_impact, sliding, restitution } = law;
+        let ContactLaw { mu_static, mu_impact, sliding, restitution, rolling, spinning } = law;
         Self {
             mu_static,
             mu_impact,
             sliding: Some(sliding).filter(|sliding| *sliding != Sliding::Constant),
             restitution: Some(restitution).filter(|restitution| *restitution != Restitution::Constant),
+            rolling,
+            spinning,
         }
     }
 }
@@ -92,13 +107,17 @@ mod tests {
         given.set("mu_static", "0.4").unwrap();
         given.set("restitution", "power(1, 0.25)").unwrap();
         assert!(given.set("mu_static", "much").unwrap_err().contains("give a number"));
-        assert!(given.set("rolling", "0.01").unwrap_err().contains("mu_static, mu_impact"));
+        assert!(given.set("rolling_mu", "0.01").unwrap_err().contains("mu_static, mu_impact"));
+        given.set("rolling", "0.01").unwrap();
         let mut other = GivenLaw::default();
         other.set("mu_static", "0.9").unwrap();
         other.set("sliding", "stribeck(0.1)").unwrap();
         let both = given.clone().or(other);
         let texts: Vec<String> = both.parts().iter().map(|(part, text)| format!("{part}={text}")).collect();
-        assert_eq!(texts, ["mu_static=0.4", "sliding=stribeck(0.1)", "restitution=power(1, 0.25)"]);
+        assert_eq!(
+            texts,
+            ["mu_static=0.4", "sliding=stribeck(0.1)", "restitution=power(1, 0.25)", "rolling=0.01"]
+        );
         assert_eq!(GivenLaw::from(both.clone().law()), both);
     }
 }

@@ -119,6 +119,9 @@ impl Transition<'_> {
                 stay.push(contact);
             }
         }
+        for torque in self.mechanism.torques_of(touching) {
+            phases[torque] = Phase::Open(Leaving::Apart);
+        }
         for (contact, phase) in phases.iter().enumerate() {
             if was[contact].is_closed() && matches!(phase, Phase::Open(Leaving::Bounced)) {
                 self.front.forces[contact] = nalgebra::Vector3::zeros();

@@ -73,6 +73,8 @@ mod slip_end;
 mod start;
 mod stepper;
 mod time_step;
+mod torque_modes;
+mod torques;
 mod transition;
 
 pub use crate::{

@@ -181,6 +181,10 @@ impl Transition<'_> {
                     | EventKind::Stick { .. }
                     | EventKind::LiftOff { .. }
                     | EventKind::Contact { .. }
+                    | EventKind::Roll { .. }
+                    | EventKind::RollEnds { .. }
+                    | EventKind::Spin { .. }
+                    | EventKind::SpinEnds { .. }
             );
             !(of_mode
                 && event.time == now

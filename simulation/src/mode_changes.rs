@@ -149,6 +149,7 @@ impl Transition<'_> {
         if candidates.is_empty() {
             return Ok(());
         }
+        let candidates = &self.mechanism.with_torques(candidates)[..];
         self.front.resting = false;
         // Contacts without slip are held so, that it is none exactly.
         let slips = self.slips_of(candidates)?;
@@ -192,7 +193,7 @@ impl Transition<'_> {
             Lacking::Contact(
                 place,
                 ContactError::ImpactWithoutCollision { .. } | ContactError::Jam { .. },
-            ) => self.impact_without_collision(candidates[place]),
+            ) => self.jams(candidates[place]),
             Lacking::Contact(place, error) => {
                 Err(self.error(Some(candidates[place]), ErrorKind::Contact(error)))
             }
@@ -252,6 +253,10 @@ impl Transition<'_> {
         for (place, &contact) in candidates.iter().enumerate() {
             let selection = choice.selection[place];
             self.front.forces[contact] = choice.forces[place];
+            if let Some(torque) = self.mechanism.torque(contact) {
+                self.apply_to_torque(contact, torque, was[contact], choice.decisions[place], selection);
+                continue;
+            }
             match choice.decisions[place] {
                 Decision::Separate => {
                     self.front.phases[contact] = Phase::Open(Leaving::NOW);
@@ -295,7 +300,7 @@ impl Transition<'_> {
     }
 
     /// Whether the bounces of a contact, which now are lower than the tolerance, have not yet ended.
-    fn bounces(&self, contact: usize) -> bool {
+    pub(crate) fn bounces(&self, contact: usize) -> bool {
         self.front.chatter.iter().any(|&(time, other)| other == contact && time > self.front.t)
     }
 

@@ -1,7 +1,7 @@
 //! The right-hand side of the integration: the rates of the state while the modes of all contacts stay the
 //! same.
 
-use hodograph::{ComponentKind, ContactError, Contacts, State, StateError};
+use hodograph::{ComponentKind, ContactError, State, StateError};
 use nalgebra::{DVector, Vector2};
 
 use crate::Drive;
@@ -13,6 +13,7 @@ use crate::pair::Pair;
 use crate::phase::Closed;
 use crate::signed_slip;
 use crate::slip_direction::settle_directions;
+use crate::torques::WithTorques;
 
 /// Slip below this, relative to the speeds that make it up, is none.
 pub(crate) const NO_SLIP: f64 = 1e-11;
@@ -40,7 +41,7 @@ impl From<StateError> for Failure {
 
 /// The system that is integrated: coordinates, speeds, work of friction, work of inputs.
 pub(crate) struct Motion<'a> {
-    pub mechanism: &'a dyn Contacts<f64>,
+    pub mechanism: WithTorques<'a>,
     pub angles: &'a Angles,
     pub drive: &'a Drive,
     pub surfaces: &'a [Option<Pair>],

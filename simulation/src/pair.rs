@@ -133,6 +133,13 @@ impl Pair {
                 return Err(format!("the coefficient of {what} is {mu}: it must be finite and not negative"));
             }
         }
+        for (what, value) in [("rolling", law.rolling), ("spinning", law.spinning)] {
+            if let Some(arm) = value.filter(|arm| !(arm.is_finite() && *arm >= 0.0)) {
+                return Err(format!(
+                    "the lever arm of {what} friction is {arm} m: it must be finite and not negative"
+                ));
+            }
+        }
         if let Sliding::Stribeck { speed } = law.sliding {
             positive("the speed of sliding friction", speed)?;
             if law.mu_static.is_none() {

@@ -32,6 +32,15 @@ impl Phase {
     pub fn is_closed(&self) -> bool {
         !matches!(self, Phase::Open(_))
     }
+
+    /// What is told of it.
+    pub fn of_contact(&self) -> ContactPhase {
+        match self {
+            Self::Open(_) => ContactPhase::Open,
+            Self::Stick => ContactPhase::Stick,
+            Self::Slide(_) => ContactPhase::Slide,
+        }
+    }
 }
 
 /// The phase of a contact.

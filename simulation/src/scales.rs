@@ -8,6 +8,7 @@ use hodograph::{ComponentKind, Contacts, State};
 
 use crate::angles::Angles;
 use crate::closed_contacts::ClosedContacts;
+use crate::torques::WithTorques;
 
 /// Units of a problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +38,8 @@ impl Scales {
         let (mut acceleration, mut speed, mut approach) = (0.0_f64, 0.0_f64, 0.0_f64);
         for contact in 0..mechanism.count(ComponentKind::Contact) {
             let Ok(Some(gap)) = mechanism.gap(contact, state) else { continue };
-            let Ok(alone) = ClosedContacts::new(mechanism, state, &[contact], true) else { continue };
+            let plain = WithTorques::new(mechanism, &[]);
+            let Ok(alone) = ClosedContacts::new(plain, state, &[contact], true) else { continue };
             gaps = gaps.max(gap.abs());
             for (index, row) in alone.partials.row_iter().enumerate() {
                 // What an angular speed gives to the point is an arm.

@@ -10,9 +10,10 @@ use crate::check::check;
 use crate::front::Front;
 use crate::motion::Failure;
 use crate::pair::Pair;
-use crate::phase::{ContactPhase, Modes, Phase};
+use crate::phase::{ContactPhase, Modes};
 use crate::scales::Scales;
 use crate::stepper::Step;
+use crate::torques::{Lacking, Torque, Turning, WithTorques, torques};
 use crate::transition::Transition;
 use crate::{Drive, EnergyAccount, ErrorKind, Event, EventKind, Options, SimulationError};
 
@@ -26,6 +27,8 @@ pub struct Simulation<'m> {
     mechanism: &'m dyn Contacts<f64>,
     /// what turns of the mechanism
     angles: Angles,
+    /// friction of rolling and spinning
+    torques: Vec<Torque>,
     options: Options,
     /// the surfaces of each contact; none where a contact has no gap
     surfaces: Vec<Option<Pair>>,
@@ -49,6 +52,9 @@ impl std::fmt::Debug for Simulation<'_> {
             .finish_non_exhaustive()
     }
 }
+
+/// What is said of a mechanism that does not tell the relative rotation at a contact.
+const NO_ROTATION: &str = "it has rolling or spinning friction, but the equations of the mechanism do not hold the relative rotation of the two bodies there: state `rolling: 0` or `spinning: 0`, or more, in the surface of this contact in the model, and derive it anew";
 
 /// Numbers of contacts and their forces (n, t, s), N.
 pub type ContactForces = Vec<(usize, Vector3<f64>)>;
@@ -76,7 +82,16 @@ impl<'m> Simulation<'m> {
         state: &State<'_>,
         options: Options,
     ) -> Result<Self, SimulationError> {
-        let surfaces = check(mechanism, state, &options)?;
+        let mut surfaces = check(mechanism, state, &options)?;
+        let torques = torques(mechanism, &surfaces, state).map_err(|(contact, lacking)| {
+            let kind = match lacking {
+                Lacking::Rotation => ErrorKind::BadOption(NO_ROTATION.to_owned()),
+                Lacking::State(error) => ErrorKind::State(error),
+            };
+            SimulationError::new(mechanism, state.time, Some(contact), kind)
+        })?;
+        // A torque has no gap.
+        surfaces.resize(surfaces.len() + torques.len(), None);
         let sampled = matches!(options.drive, Drive::Sampled { .. });
         let angles = Angles::of(mechanism);
         let mut front = Front::new(state, surfaces.len(), sampled, Scales::of(mechanism, &angles, state));
@@ -85,6 +100,7 @@ impl<'m> Simulation<'m> {
         let mut simulation = Self {
             mechanism,
             angles,
+            torques,
             options,
             surfaces,
             start: state.time,
@@ -106,10 +122,14 @@ impl<'m> Simulation<'m> {
         Ok(simulation)
     }
 
+    fn with_torques(&self) -> WithTorques<'_> {
+        WithTorques::new(self.mechanism, &self.torques)
+    }
+
     /// A transition from the front.
     fn transition(&self) -> Transition<'_> {
         Transition {
-            mechanism: self.mechanism,
+            mechanism: self.with_torques(),
             angles: &self.angles,
             options: &self.options,
             surfaces: &self.surfaces,
@@ -289,11 +309,26 @@ impl<'m> Simulation<'m> {
     /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`],
     /// by less than a step of the integration.
     pub fn phase(&self, contact: usize) -> Option<ContactPhase> {
-        self.front.phases.get(contact).map(|phase| match phase {
-            Phase::Open(_) => ContactPhase::Open,
-            Phase::Stick => ContactPhase::Stick,
-            Phase::Slide(_) => ContactPhase::Slide,
-        })
+        let own = self.with_torques().torque(contact).is_none();
+        self.front.phases.get(contact).filter(|_| own).map(|phase| phase.of_contact())
+    }
+
+    /// Whether the bodies roll on each other against rolling friction, after the last event: `Slide` where they do,
+    /// `Stick` where it holds them. `None` where the contact has no rolling friction.
+    pub fn rolling_phase(&self, contact: usize) -> Option<ContactPhase> {
+        self.phase_of_torque(contact, Turning::Rolling)
+    }
+
+    /// As [`Simulation::rolling_phase`], of spinning about the normal.
+    pub fn spinning_phase(&self, contact: usize) -> Option<ContactPhase> {
+        self.phase_of_torque(contact, Turning::Spinning)
+    }
+
+    fn phase_of_torque(&self, contact: usize, turning: Turning) -> Option<ContactPhase> {
+        let all = self.with_torques();
+        let is_it = |torque: &usize| all.torque(*torque).is_some_and(|torque| torque.turning == turning);
+        let torque = all.torques_of(&[contact]).find(is_it)?;
+        self.front.phases.get(torque).map(|phase| phase.of_contact())
     }
 
     /// Forces of the closed contacts at [`Simulation::time`], along n, t, s of their contact bases, N, and
@@ -303,6 +338,35 @@ impl<'m> Simulation<'m> {
     ///
     /// The forces cannot be evaluated.
     pub fn contact_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
+        let (mut forces, unique) = self.closed_forces()?;
+        let all = self.with_torques();
+        forces.retain(|(contact, _)| all.torque(*contact).is_none());
+        Ok((forces, unique))
+    }
+
+    /// Torques of rolling and spinning friction at [`Simulation::time`], along n, t, s of the contact bases, N m, on
+    /// the bodies that strike; of closed contacts that have such friction. Whether they are unique is told with the
+    /// forces.
+    ///
+    /// # Errors
+    ///
+    /// They cannot be evaluated.
+    pub fn contact_torques(&self) -> Result<ContactForces, SimulationError> {
+        let mut torques = ContactForces::new();
+        let all = self.with_torques();
+        for (contact, force) in self.closed_forces()?.0 {
+            let Some(torque) = all.torque(contact) else { continue };
+            let own = torque.torque(&force);
+            match torques.iter_mut().find(|(contact, _)| *contact == torque.contact) {
+                Some((_, sum)) => *sum += own,
+                None => torques.push((torque.contact, own)),
+            }
+        }
+        Ok(torques)
+    }
+
+    /// Forces of the closed contacts and their torques.
+    fn closed_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
         let transition = self.transition();
         let closed = transition.closed();
         if closed.is_empty() {

@@ -125,7 +125,7 @@ impl Transition<'_> {
         let inputs = self.motion(&[]).inputs(self.front.t, &y).map_err(|failure| self.failure(failure))?;
         let state = State { time: self.front.t, coordinates: &y[..n], speeds, inputs: &inputs };
         let fault = |error| self.failure(Failure::State(error));
-        let beta = free_acceleration(self.mechanism, contact, &state).map_err(fault)?.x;
+        let beta = free_acceleration(self.mechanism.mechanism, contact, &state).map_err(fault)?.x;
         let others: Vec<_> = self.closed().into_iter().filter(|closed| closed.contact != contact).collect();
         if others.is_empty() {
             return Ok(beta);

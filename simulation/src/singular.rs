@@ -39,7 +39,8 @@ impl Transition<'_> {
     /// way from the state before.
     fn undefined(&self, closed: &[Closed], t: f64, y: &[f64], before: Option<&[f64]>) -> Option<usize> {
         let motion = self.motion(&[]);
-        closed.iter().map(|closed| closed.contact).find(|&contact| {
+        let own = |contact: &usize| self.mechanism.torque(*contact).is_none();
+        closed.iter().map(|closed| closed.contact).filter(own).find(|&contact| {
             self.changes(&motion, contact, t, y, before).is_ok_and(|changes| changes > CHANGED)
         })
     }

@@ -346,7 +346,7 @@ impl Transition<'_> {
             Some(Failure::Contact(
                 contact,
                 ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. },
-            )) => self.impact_without_collision(contact),
+            )) => self.jams(contact),
             Some(failure) => Err(self.failure(failure)),
             None => match self.singular_here(&self.closed()) {
                 Some(contact) => self.end_at(contact),

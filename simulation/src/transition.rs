@@ -3,7 +3,7 @@
 //! Everything that changes a motion is a method of [`Transition`]. [`crate::Simulation`] makes one from its
 //! front, and takes its front and its events only when all of it has succeeded.
 
-use hodograph::{ComponentKind, Contacts, State};
+use hodograph::{ComponentKind, State};
 
 use crate::angles::Angles;
 use crate::front::Front;
@@ -11,11 +11,12 @@ use crate::motion::{Failure, Motion};
 use crate::pair::{Friction, Pair};
 use crate::phase::{Closed, Modes, Phase};
 use crate::stepper::Step;
+use crate::torques::WithTorques;
 use crate::{ErrorKind, Event, EventKind, Options, SimulationError};
 
 /// A front that is being changed, and what happens to it.
 pub(crate) struct Transition<'s> {
-    pub mechanism: &'s dyn Contacts<f64>,
+    pub mechanism: WithTorques<'s>,
     /// what turns of the mechanism
     pub angles: &'s Angles,
     pub options: &'s Options,
@@ -53,6 +54,7 @@ impl Transition<'_> {
     pub(crate) fn push(&mut self, contact: Option<usize>, kind: EventKind) {
         let here = self.here();
         let (coordinates, speeds) = (here.coordinates.to_vec(), here.speeds.to_vec());
+        let contact = contact.map(|contact| self.mechanism.contact(contact));
         self.events.push(Event { time: self.front.t, contact, kind, coordinates, speeds });
     }
 
@@ -86,12 +88,18 @@ impl Transition<'_> {
 
     /// The coefficients of friction of a contact at a speed of slip, 0 without slip.
     pub(crate) fn friction(&self, contact: usize, slip: f64) -> Result<Friction, SimulationError> {
+        if let Some(torque) = self.mechanism.torque(contact) {
+            return Ok(torque.friction());
+        }
         let found = self.pair(contact).map_or(Ok(Friction::NONE), |pair| pair.friction(slip));
         found.map_err(|message| self.error(Some(contact), ErrorKind::BadOption(message)))
     }
 
     /// The coefficient of a contact that sticks, or of one whose slip is small.
     fn mu_in_mode(&self, contact: usize, slides: bool) -> f64 {
+        if let Some(torque) = self.mechanism.torque(contact) {
+            return torque.mu;
+        }
         // Functions that fail at no slip are refused at the start.
         let friction = self.pair(contact).and_then(|pair| pair.friction(0.0).ok()).unwrap_or(Friction::NONE);
         if slides { friction.slips } else { friction.sticks }
@@ -119,8 +127,8 @@ impl Transition<'_> {
             .closed()
             .iter()
             .map(|closed| {
-                let what = if closed.slides.is_some() { "slides" } else { "sticks" };
-                format!("{} {what}", name(closed.contact))
+                let what = self.mode_in_words(closed);
+                format!("{} {what}", name(self.mechanism.contact(closed.contact)))
             })
             .collect();
         if modes.is_empty() { "no contact".to_owned() } else { modes.join(", ") }
@@ -133,7 +141,8 @@ impl Transition<'_> {
 
     /// An error here and now.
     pub(crate) fn error(&self, contact: Option<usize>, kind: ErrorKind) -> SimulationError {
-        SimulationError::new(self.mechanism, self.front.t, contact, kind)
+        let contact = contact.map(|contact| self.mechanism.contact(contact));
+        SimulationError::new(self.mechanism.mechanism, self.front.t, contact, kind)
     }
 
     pub(crate) fn failure(&self, failure: Failure) -> SimulationError {

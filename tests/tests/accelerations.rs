@@ -2,7 +2,7 @@
 //! program, by numbers that carry derivatives, and by differences along the motion.
 
 use crate::common::random::{Sample, samples};
-use crate::common::{Model, models};
+use crate::common::{Model, models, models_of_shapes};
 use hodograph_generator::program::{ContactQuantity as C, Inputs, PointQuantity as P, Quantity as Q};
 use nalgebra::Vector3;
 
@@ -89,8 +89,23 @@ fn contacts(model: &Model, sample: &Sample) -> Vec<String> {
         let ours = [beta[0], components[1] * beta[1] + components[2] * beta[2]];
         let size = scale(&[a.norm(), v.norm() * a.norm(), n_rate.norm() * v.norm()]);
         faults.extend(close(&format!("{}: numbers", contact.name), &ours, &[normal, slip], size, 1e-9));
-        let difference = difference(model, at, &accelerations, of(C::Velocity));
-        faults.extend(close(&format!("{}: differences", contact.name), &beta, &difference, size, 1e-6));
+        let there = difference(model, at, &accelerations, of(C::Velocity));
+        faults.extend(close(&format!("{}: differences", contact.name), &beta, &there, size, 1e-6));
+        let Some(turning) = &known.turning else { continue };
+        // The same of the relative rotation.
+        let o = vector(&turning.angular_velocity);
+        let partials = turning.partial_velocities.iter().zip(&accelerations);
+        let a = partials
+            .fold(vector(&turning.acceleration), |sum, (partial, rate)| sum + vector(partial) * *rate);
+        let beta = model.get(at, of(C::FreeAngularAcceleration)).values;
+        let components = model.get(at, of(C::AngularVelocity)).values;
+        let normal = n_rate.dot(&o) + n.dot(&a);
+        let rolls = o.dot(&a) - n.dot(&o) * normal;
+        let ours = [beta[0], components[1] * beta[1] + components[2] * beta[2]];
+        let size = scale(&[a.norm(), o.norm() * a.norm(), n_rate.norm() * o.norm()]);
+        faults.extend(close(&format!("{}: rotation", contact.name), &ours, &[normal, rolls], size, 1e-9));
+        let there = difference(model, at, &accelerations, of(C::AngularVelocity));
+        faults.extend(close(&format!("{}: rotation", contact.name), &beta, &there, size, 1e-6));
     }
     faults
 }
@@ -98,7 +113,8 @@ fn contacts(model: &Model, sample: &Sample) -> Vec<String> {
 #[test]
 fn velocities_change_as_the_accelerations_say() {
     let (mut faults, mut tried) = (Vec::new(), [0, 0]);
-    for model in models() {
+    let turn = |model: &Model| model.mechanism.contacts.iter().any(|contact| contact.turning.is_some());
+    for model in models().into_iter().chain(models_of_shapes().into_iter().filter(turn)) {
         for sample in samples(&model, 4) {
             let all = [points(&model, &sample), contacts(&model, &sample)].concat();
             faults.extend(all.into_iter().map(|fault| format!("{}: {fault}", model.name)));

@@ -30,6 +30,7 @@ mod peers;
 mod records;
 mod reference;
 mod rolling;
+mod rotation;
 mod rounding;
 mod saltation;
 mod second_road;

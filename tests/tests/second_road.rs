@@ -8,7 +8,7 @@ use crate::common::{Model, models, models_of_shapes};
 use hodograph::{ComponentKind, Mechanism, State};
 use hodograph_generator::interpret::Array;
 use hodograph_generator::model::mechanism::{LoadKind, Place, PointId};
-use hodograph_generator::numeric::{Level, Views, central_inertia, views};
+use hodograph_generator::numeric::{Level, TurningEvaluation, Views, central_inertia, views};
 use hodograph_generator::program::Inputs;
 use hodograph_generator::program::{ContactQuantity as C, PointQuantity as P, Quantity as Q};
 use hodograph_generator::program::{graph::Input, operation::Operation};
@@ -173,11 +173,48 @@ fn contacts() {
             let m = &v * response;
             let reduced = [m[(0, 0)], m[(0, 1)], m[(0, 2)], m[(1, 1)], m[(1, 2)], m[(2, 2)]];
             close(&format!("{name} reduced matrix"), &get(C::Reduced).values, &reduced, 1e-9)?;
+            turning(name, theirs.turning.as_ref(), &basis, &inverse, get)?;
             let gap: Vec<f64> = theirs.gap.into_iter().collect();
             close(&format!("{name} gap"), &get(C::Gap).values, &gap, 1e-12)?;
         }
         Ok(())
     });
+}
+
+/// The relative rotation of the bodies in contact, where friction resists it.
+fn turning(
+    name: &str,
+    theirs: Option<&TurningEvaluation>,
+    basis: &DMatrix<f64>,
+    inverse: &DMatrix<f64>,
+    get: impl Fn(C) -> Array,
+) -> Result<(), String> {
+    let velocity = get(C::AngularVelocity).values;
+    let Some(theirs) = theirs else {
+        let none = velocity.is_empty() && get(C::AngularResponse).values.is_empty();
+        return if none { Ok(()) } else { Err(format!("{name} has a rotation that nobody asked for")) };
+    };
+    let velocity = basis * DVector::from_vec(velocity);
+    close(&format!("{name} rotation"), velocity.as_slice(), &theirs.angular_velocity, 1e-11)?;
+    let rows = matrix(&get(C::PartialAngularVelocities));
+    let partials: Vec<_> = theirs.partial_velocities.iter().map(|v| DVector::from_column_slice(v)).collect();
+    let partials = DMatrix::from_columns(&partials);
+    close(&format!("{name} O"), (basis * &rows).as_slice(), partials.as_slice(), 1e-11)?;
+    let response = inverse * rows.transpose();
+    let ours = matrix(&get(C::AngularResponse));
+    close(&format!("{name} response to torques"), ours.as_slice(), response.as_slice(), 1e-9)
+}
+
+/// Some models ask for relative rotations, others do not.
+#[test]
+fn relative_rotations_are_there_where_friction_resists_them() {
+    let asked = models_of_shapes().into_iter().filter(|model| {
+        let contacts = &model.mechanism.contacts;
+        let outputs = |i: usize| model.program.output(Q::Contact(i as u32, C::AngularVelocity)).is_some();
+        assert!((0..contacts.len()).all(|i| outputs(i) == contacts[i].turning.is_some()), "{}", model.name);
+        contacts.iter().any(|contact| contact.turning.is_some())
+    });
+    assert_eq!(asked.map(|model| model.name).collect::<Vec<_>>(), ["shapes/billiard_balls"]);
 }
 
 #[test]

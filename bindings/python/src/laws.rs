@@ -10,8 +10,9 @@ use pyo3::prelude::*;
 
 use crate::errors;
 
-/// mu_static, mu_impact, sliding and restitution as they are given; what is not given is none.
-pub type GivenParts = (Option<f64>, Option<f64>, Option<Py<PyAny>>, Option<Py<PyAny>>);
+/// mu_static, mu_impact, sliding, restitution, rolling and spinning as they are given; what is not given is none.
+pub type GivenParts =
+    (Option<f64>, Option<f64>, Option<Py<PyAny>>, Option<Py<PyAny>>, Option<f64>, Option<f64>);
 
 /// The exception that a function of Python raised, kept until the motion ends for it.
 pub type Raised = Arc<Mutex<Option<PyErr>>>;
@@ -47,7 +48,7 @@ fn text<L: FromStr<Err = String>>(py: Python<'_>, place: &str, given: &Bound<'_,
 
 /// What is given of a law.
 pub fn given(py: Python<'_>, parts: &GivenParts, raised: &Raised) -> PyResult<GivenLaw> {
-    let (mu_static, mu_impact, sliding, restitution) = parts;
+    let (mu_static, mu_impact, sliding, restitution, rolling, spinning) = parts;
     let sliding = sliding.as_ref().map(|given| {
         let given = given.bind(py);
         if given.is_callable() {
@@ -70,6 +71,8 @@ pub fn given(py: Python<'_>, parts: &GivenParts, raised: &Raised) -> PyResult<Gi
         mu_impact: *mu_impact,
         sliding: sliding.transpose()?,
         restitution: restitution.transpose()?,
+        rolling: *rolling,
+        spinning: *spinning,
     })
 }
 

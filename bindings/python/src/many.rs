@@ -20,9 +20,9 @@ use crate::machines::Machines;
 use crate::motion::{Choices, given, own, warn_of_no_gap};
 use crate::states::States;
 
-/// Numbers that may differ from row to row: mu, e, mu_static, mu_impact.
-pub type Columns<'py> = [Option<Bound<'py, PyAny>>; 4];
-const NAMES: [&str; 4] = ["mu", "e", "mu_static", "mu_impact"];
+/// Numbers that may differ from row to row: mu, e, mu_static, mu_impact, rolling, spinning.
+pub type Columns<'py> = [Option<Bound<'py, PyAny>>; 6];
+const NAMES: [&str; 6] = ["mu", "e", "mu_static", "mu_impact", "rolling", "spinning"];
 
 /// How often Python is asked for signals, and told of the progress.
 const LOOK: Duration = Duration::from_millis(50);
@@ -121,6 +121,8 @@ pub fn simulate<'py>(
             if own.iter().all(|(other, _)| other != contact) {
                 law.mu_static = number("mu_static").or(law.mu_static);
                 law.mu_impact = number("mu_impact").or(law.mu_impact);
+                law.rolling = number("rolling").or(law.rolling);
+                law.spinning = number("spinning").or(law.spinning);
             }
         }
         Ok(Case { mechanism: Box::new(machine), time: start, coordinates, speeds, inputs, options, until })

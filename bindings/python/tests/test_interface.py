@@ -453,6 +453,27 @@ def test_stubs_name_what_there_is():
                 assert method.__doc__, name
 
 
+def test_rolling_and_spinning_friction():
+    m = model("shapes/billiard_balls")
+    v, r, rolling, spinning = 1.0, 0.0286, 0.001, 0.0005
+    q = [0, 0, r, 1, 0, 0, 0, 0, 5, r, 1, 0, 0, 0]
+    u = [v, 0, 0, 0, v / r, 20, 0, 0, 0, 0, 0, 0]
+    ends = v / (rolling / r * 9.81 / 1.4), 0.4 * r**2 * 20 / (spinning * 9.81)
+    whole = dict(mu=0.3, e=0.5, law="poisson")
+    motion = m.simulate(10.0, q=q, u=u, **whole, rolling=rolling, spinning=spinning)
+    times = [next(event.time for event in motion.events if event.kind == kind) for kind in ("roll_ends", "spin_ends")]
+    np.testing.assert_allclose(times, ends, rtol=1e-9)
+    own = {contact: dict(whole, rolling=rolling, spinning=spinning) for contact in m.contacts}
+    np.testing.assert_allclose(m.simulate(10.0, q=q, u=u, surfaces=own).q[-1], motion.q[-1], rtol=0, atol=1e-12)
+    many = m.simulate_many(10.0, q=q, u=u, **whole, rolling=np.array([rolling, 2 * rolling]), spinning=spinning)
+    np.testing.assert_allclose(many.q[0], motion.q[-1], rtol=0, atol=1e-12)
+    assert many.q[1, 0] < 0.51 * many.q[0, 0]
+    with pytest.raises(hodograph.HodographError, match="lever arm"):
+        m.simulate(1.0, **whole, rolling=-1)
+    with pytest.raises(hodograph.HodographError, match="derive it anew"):
+        model("free_box_corner").simulate(1.0, **whole, spinning=0.1)
+
+
 def test_laws_of_contact():
     m = model("free_box_corner")
     whole = dict(mu=0.3, e=0.5, law="stronge")

@@ -73,10 +73,40 @@ fn laws_that_are_none_are_refused() {
         (["--restitution", "powr(1)"], "give constant, threshold(SPEED)"),
         (["--restitution", "table(2, 0.5, 1, 0.5)"], "must be finite, not negative, and rise"),
         (["--sliding", "stribeck"], "give constant or stribeck(SPEED)"),
-        (["--surface", "foot=0.3,0.5,stronge,rolling=0.01"], "a surface has no `rolling`"),
+        (["--surface", "foot=0.3,0.5,stronge,rolls=0.01"], "a surface has no `rolls`"),
+        (["--surface", "foot=0.3,0.5,stronge,rolling=0.01"], "derive it anew"),
+        (["--spinning", "-0.01"], "the lever arm of spinning friction is -0.01 m"),
         (["--surface", "foot=0.3,0.5,stronge,0.4"], "stand parts such as mu_static=0.6"),
     ] {
         let run = simulate(&[&["--until", "1"], &arguments[..]].concat());
         assert!(run.code != 0 && run.stderr.contains(says), "{arguments:?}: {}", run.stderr);
     }
+}
+
+/// A ball that rolls and spins comes to rest at the times of its closed forms, which the options change.
+#[test]
+fn rolling_and_spinning_friction_end_a_motion() {
+    let model = root().join("simulation/tests/models/rolling_ball.mech").display().to_string();
+    let (m, r, j, g) = (0.4, 0.11, 0.002, 9.81);
+    let turn = format!("w2={}", 1.0 / r);
+    let call = ["simulate", &model, "--until", "60", "--step", "60", "--state", "ux=1", "--state", &turn];
+    let call = [&call[..], &["--state", "w3=10"]].concat();
+    for (rolling, spinning, more) in [
+        (0.002, 0.001, vec![]),
+        (0.004, 0.0005, vec!["--rolling", "0.004", "--spinning", "0.0005"]),
+        (0.003, 0.002, vec!["--surface", "plane=0.3,0.5,stronge,rolling=0.003,spinning=0.002"]),
+    ] {
+        let run = hodograph(&[&call[..], &more].concat(), "");
+        assert_eq!(run.code, 0, "{}", run.stderr);
+        let a = rolling / r * g / (1.0 + j / (m * r * r));
+        for (event, time) in [("roll_ends", 1.0 / a), ("spin_ends", j * 10.0 / (spinning * m * g))] {
+            let found = number(&first(&run, event)["t"]);
+            assert!((found - time).abs() < 1e-9, "{event}: {found} {time}");
+        }
+    }
+    // Spinning that begins tells its sense.
+    let call = ["simulate", &model, "--until", "1", "--step", "1", "--input", "Mn=-0.01*t"];
+    let run = hodograph(&call, "");
+    let spin = first(&run, "spin");
+    assert!((number(&spin["t"]) - 0.001 * m * g / 0.01).abs() < 1e-9 && spin["sense"] == -1, "{spin}");
 }

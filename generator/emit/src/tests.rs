@@ -97,6 +97,7 @@ fn mechanism() -> Mechanism {
             gap_span: span,
             surface: None,
             law: ContactLaw::default(),
+            turning: None,
             span,
         }],
     }

@@ -9,7 +9,7 @@ use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar};
 use hodograph::{
     Budgeted, ClosedContactError, ClosedContacts, CollisionError, CollisionOutcome, ComponentKind,
     ContactMode, ContactOutcome, ContactState, ContactSurface, Contacts, ImpactError, Law, ReducedMatrix,
-    State, StateError, StatedLaw, Surface,
+    RelativeRotation, State, StateError, StatedLaw, Surface,
 };
 use hodograph_model::model::mechanism::{Law as Stated, Mechanism};
 use hodograph_program::program::operation::Operation;
@@ -220,6 +220,8 @@ pub fn stated_law(model: &Mechanism, contact: usize) -> StatedLaw<'_> {
         mu_impact: law.mu_impact,
         sliding: law.sliding.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
         restitution: law.restitution.as_ref().map(|law| (law.name.as_str(), law.numbers.as_slice())),
+        rolling: law.rolling,
+        spinning: law.spinning,
     }
 }
 
@@ -300,6 +302,31 @@ impl Contacts for InterpretedMechanism {
         self.exists(ComponentKind::Contact, contact)?;
         let request = Request::Contact(contact, OfContact::One(ContactQuantity::Response));
         self.write(request, state, &[], response, "the response")
+    }
+
+    fn relative_rotation(
+        &self,
+        contact: usize,
+        state: &State<'_>,
+        values: &mut RelativeRotation<'_, f64>,
+    ) -> Result<bool, StateError> {
+        self.exists(ComponentKind::Contact, contact)?;
+        let request = |quantity| Request::Contact(contact, OfContact::One(quantity));
+        if !self.has(request(ContactQuantity::AngularVelocity)) {
+            self.check(state)?;
+            return Ok(false);
+        }
+        let RelativeRotation { angular_velocity, free_acceleration, partial_velocities, response } = values;
+        let parts: [(ContactQuantity, &mut [f64], &'static str); 4] = [
+            (ContactQuantity::AngularVelocity, angular_velocity, "the angular velocity"),
+            (ContactQuantity::FreeAngularAcceleration, free_acceleration, "the free angular acceleration"),
+            (ContactQuantity::PartialAngularVelocities, partial_velocities, "the partial angular velocities"),
+            (ContactQuantity::AngularResponse, response, "the angular response"),
+        ];
+        for (quantity, slice, what) in parts {
+            self.write(request(quantity), state, &[], slice, what)?;
+        }
+        Ok(true)
     }
 
     fn closed_contacts(

@@ -10,13 +10,17 @@ use hodograph_program::program::quantity::table::{POINT, WHOLE};
 use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
 
 /// What is asked of a contact.
-const CONTACT: [OfContact; 8] = [
+const CONTACT: [OfContact; 12] = [
     OfContact::State,
     OfContact::One(ContactQuantity::Gap),
     OfContact::One(ContactQuantity::Velocity),
     OfContact::One(ContactQuantity::FreeAcceleration),
     OfContact::One(ContactQuantity::PartialVelocities),
     OfContact::One(ContactQuantity::Response),
+    OfContact::One(ContactQuantity::AngularVelocity),
+    OfContact::One(ContactQuantity::FreeAngularAcceleration),
+    OfContact::One(ContactQuantity::PartialAngularVelocities),
+    OfContact::One(ContactQuantity::AngularResponse),
     OfContact::Collision,
     OfContact::Closed,
 ];

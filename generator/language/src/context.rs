@@ -289,7 +289,7 @@ fn field(section: Section, statement: &[Token], known: Vec<&'static str>, before
             functions: true,
             words: vec!["none"],
         },
-        ("mu" | "e" | "mu_static" | "mu_impact", _) => Context::Nothing,
+        ("mu" | "e" | "mu_static" | "mu_impact" | "rolling" | "spinning", _) => Context::Nothing,
         _ => expression(Kinds::VALUES),
     }
 }

@@ -68,7 +68,8 @@ pub const PARTICLE: [&str; 2] = ["point", "mass"];
 /// The fields of a contact.
 pub const CONTACT: [&str; 5] = ["point", "against", "normal", "gap", "surface"];
 /// The fields of the surface of a contact.
-pub const SURFACE: [&str; 7] = ["mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution"];
+pub const SURFACE: [&str; 9] =
+    ["mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution", "rolling", "spinning"];
 /// The fields of a spring.
 pub const SPRING: [&str; 3] = ["stiffness", "length", "damping"];
 /// The fields of a torsional spring.
@@ -115,6 +116,8 @@ pub const FIELDS: &[Word] = &[
     word("mu_impact", "mu_impact: 0.3", "the coefficient of friction in impacts"),
     word("sliding", "sliding: stribeck(0.1)", "friction as a function of the speed of slip"),
     word("restitution", "restitution: threshold(0.1)", "restitution as a function of the speed of approach"),
+    word("rolling", "rolling: 0.002", "the lever arm of rolling friction, m"),
+    word("spinning", "spinning: 0.001", "the lever arm of spinning friction, m"),
     word("stiffness", "stiffness: k", "the stiffness"),
     word("length", "length: l0", "the length at rest, m"),
     word("damping", "damping: c", "the damping"),

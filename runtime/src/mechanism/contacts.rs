@@ -92,6 +92,21 @@ impl<T> ClosedContacts<'_, T> {
     }
 }
 
+/// Room for the rotation of what strikes relative to what is struck, along the contact basis: what
+/// [`Contacts::relative_rotation`] gives of a mechanism with `p` independent speeds.
+#[derive(Debug)]
+pub struct RelativeRotation<'a, T = f64> {
+    /// relative angular velocity (3), rad/s
+    pub angular_velocity: &'a mut [T],
+    /// rates of its components without contact forces (3), rad/s^2, as [`Contacts::free_acceleration`]
+    pub free_acceleration: &'a mut [T],
+    /// its partial velocities (3 x `p`): a torque tau on what strikes, whose opposite acts on what is struck, has the
+    /// generalized forces given by their transpose times tau
+    pub partial_velocities: &'a mut [T],
+    /// change of the independent speeds per unit of angular impulse (`p` x 3), and of their rates per unit of torque
+    pub response: &'a mut [T],
+}
+
 /// The contacts of a mechanism, by number; [`Mechanism::index`] with [`ComponentKind::Contact`](crate::ComponentKind::Contact)
 /// gives the number of a name. A mechanism without contacts has the trait too, and its count is 0.
 ///
@@ -135,6 +150,17 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     /// M^-1 V^T (`p` x 3): change of the independent speeds per unit of impulse along the contact basis, and
     /// of their rates per unit of force.
     fn response(&self, contact: usize, state: &State<'_, T>, response: &mut [T]) -> Result<(), StateError>;
+    /// Writes the rotation of what strikes relative to what is struck, and answers whether the mechanism tells it: it
+    /// does of contacts whose surface in the model states `rolling` or `spinning`.
+    fn relative_rotation(
+        &self,
+        contact: usize,
+        state: &State<'_, T>,
+        values: &mut RelativeRotation<'_, T>,
+    ) -> Result<bool, StateError> {
+        let _ = (contact, state, values);
+        Ok(false)
+    }
     /// Solves the collision of a contact. `speeds` (`p`) receives the independent speeds after it: (12a).
     ///
     /// # Errors

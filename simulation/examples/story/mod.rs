@@ -191,6 +191,10 @@ fn line(mechanism: &dyn Contacts<f64>, event: &Event) -> String {
         EventKind::LiftOff { .. } => "lifts off".to_owned(),
         EventKind::Slip { .. } => "begins to slip".to_owned(),
         EventKind::Stick { .. } => "stops slipping".to_owned(),
+        EventKind::Roll { .. } => "begins to roll".to_owned(),
+        EventKind::RollEnds { .. } => "stops rolling".to_owned(),
+        EventKind::Spin { .. } => "begins to spin".to_owned(),
+        EventKind::SpinEnds { .. } => "stops spinning".to_owned(),
         EventKind::Rest => "everything is at rest".to_owned(),
         EventKind::ImpactWithoutCollision(struck) => format!(
             "no finite force holds it: an impact without collision, {:.3} N s upwards: {:+.4} J",

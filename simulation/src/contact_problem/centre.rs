@@ -9,24 +9,19 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A condition on the forces: the row of u_n, and those of u_tan with the factor 1 / mu.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Cone {
-    pub normal: usize,
-    pub tangential: Option<(usize, usize, f64)>,
-}
+use super::{
+    cone::{Cone, least_reserve},
+    squares::Squares,
+};
 
-impl Cone {
-    /// u_n - abs(u_tan).
-    pub fn reserve(&self, x: &DVector<f64>) -> f64 {
-        let friction = self.tangential.map_or(0.0, |(t, s, factor)| factor * x[t].hypot(x[s]));
-        x[self.normal] - friction
-    }
-}
-
-/// The least reserve of all cones.
-pub(super) fn least_reserve(cones: &[Cone], x: &DVector<f64>) -> f64 {
-    cones.iter().map(|cone| cone.reserve(x)).fold(f64::INFINITY, f64::min)
+/// How the steps of Newton's method are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum By {
+    /// from the Hessian, by Cholesky
+    Hessian,
+    /// from its squares, by orthogonal transformations: for cones of different kinds that share normal forces, whose
+    /// greatest common reserve lies in a corner that the Hessian does not see ([`super::squares`])
+    Squares,
 }
 
 /// The centre of the forces x_0 + Z y, and whether it lies within all cones. `start` is a first guess of the
@@ -37,17 +32,17 @@ pub(super) fn centre(
     basis: &DMatrix<f64>,
     load: f64,
     start: Option<&DVector<f64>>,
-    decide: bool,
+    (decide, by): (bool, By),
 ) -> (DVector<f64>, bool) {
     let project = |x: &DVector<f64>| least + basis * basis.tr_mul(&(x - least));
     let starts = start.map(project).into_iter().chain([least.clone()]);
     for x in starts {
         if least_reserve(cones, &x) > START * load {
-            return (follow(cones, basis, load, x), true);
+            return (follow(cones, basis, load, x, by), true);
         }
     }
-    match enter(cones, basis, load, least.clone(), decide) {
-        Ok(x) => (follow(cones, basis, load, x), true),
+    match enter(cones, basis, load, least.clone(), (decide, by)) {
+        Ok(x) => (follow(cones, basis, load, x, by), true),
         Err(x) => (x, false),
     }
 }
@@ -118,15 +113,22 @@ fn row_of(basis: &DMatrix<f64>, parts: &[(usize, f64)], by_s: f64) -> DVector<f6
 }
 
 /// Newton's method to the centre from forces within all cones.
-fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>) -> DVector<f64> {
+fn follow(cones: &[Cone], basis: &DMatrix<f64>, load: f64, mut x: DVector<f64>, by: By) -> DVector<f64> {
     let p = basis.ncols();
+    let newton = |x: &DVector<f64>| match by {
+        By::Hessian => {
+            let Barrier { gradient, hessian } = barrier(cones, basis, load, x, 0.0);
+            let right = -gradient.rows(0, p);
+            let factors = hessian.view((0, 0), (p, p)).into_owned().cholesky()?;
+            let step = factors.solve(&right);
+            // The length of the step in the metric of the barrier.
+            let length = right.dot(&step).max(0.0).sqrt();
+            Some((step, length))
+        }
+        By::Squares => Squares::new(cones, basis, load, x, 0.0).step(p, 0.0),
+    };
     for _ in 0..STEPS {
-        let Barrier { gradient, hessian } = barrier(cones, basis, load, &x, 0.0);
-        let right = -gradient.rows(0, p);
-        let Some(factors) = hessian.view((0, 0), (p, p)).into_owned().cholesky() else { break };
-        let step = factors.solve(&right);
-        // The length of the step in the metric of the barrier.
-        let length = right.dot(&step).max(0.0).sqrt();
+        let Some((step, length)) = newton(&x) else { break };
         let part = if length > 0.25 { 1.0 / (1.0 + length) } else { 1.0 };
         let next = &x + basis * &step * part;
         if least_reserve(cones, &next) <= 0.0 {
@@ -146,9 +148,30 @@ fn enter(
     basis: &DMatrix<f64>,
     load: f64,
     mut x: DVector<f64>,
-    decide: bool,
+    (decide, by): (bool, By),
 ) -> Result<DVector<f64>, DVector<f64>> {
     let p = basis.ncols();
+    // Besides the barrier -weight s / load, and s below the load.
+    let newton = |x: &DVector<f64>, s: f64, weight: f64| {
+        let room = load - s;
+        match by {
+            By::Hessian => {
+                let Barrier { mut gradient, mut hessian } = barrier(cones, basis, load, x, s);
+                gradient[p] += 1.0 / room - weight / load;
+                hessian[(p, p)] += 1.0 / (room * room);
+                let right = -gradient;
+                let factors = hessian.cholesky()?;
+                let step = factors.solve(&right);
+                let length = right.dot(&step).max(0.0).sqrt();
+                Some((step, length))
+            }
+            By::Squares => {
+                let mut squares = Squares::new(cones, basis, load, x, s);
+                squares.add(1.0 / room, -1.0);
+                squares.step(p + 1, -weight / load)
+            }
+        }
+    };
     let mut s = least_reserve(cones, &x) - load;
     let mut weight = 1.0;
     // On the path s is greatest but for the degree over the weight.
@@ -156,15 +179,7 @@ fn enter(
     while degree / weight > GAP {
         let mut moved = false;
         for _ in 0..INNER {
-            let Barrier { mut gradient, mut hessian } = barrier(cones, basis, load, &x, s);
-            // -weight s / load, and s below the load.
-            let room = load - s;
-            gradient[p] += 1.0 / room - weight / load;
-            hessian[(p, p)] += 1.0 / (room * room);
-            let right = -gradient;
-            let Some(factors) = hessian.cholesky() else { break };
-            let step = factors.solve(&right);
-            let length = right.dot(&step).max(0.0).sqrt();
+            let Some((step, length)) = newton(&x, s, weight) else { break };
             let change = basis * step.rows(0, p);
             let inside = |part: f64| {
                 let (next, slack) = (&x + &change * part, s + step[p] * part);

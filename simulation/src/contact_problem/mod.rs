@@ -17,6 +17,7 @@
 mod centre;
 mod certified;
 mod common_slip;
+mod cone;
 mod directions;
 mod edge;
 mod enumerate;
@@ -27,6 +28,7 @@ mod prescribed;
 mod problem;
 mod solve;
 mod sparse;
+mod squares;
 
 pub use self::{
     certified::certificate,

@@ -6,7 +6,8 @@ use nalgebra::{DVector, Vector3};
 
 use super::{
     Mode, Problem, Unsolved,
-    centre::{Cone, centre, least_reserve},
+    centre::{By, centre},
+    cone::{Cone, least_reserve},
     linear::{Elimination, Square, Vector, residual, vector},
     problem::three,
 };
@@ -136,7 +137,8 @@ pub(crate) fn found(
         load = least.norm();
         if load > 0.0 {
             let start = guess.map(|guess| unknowns.of(guess));
-            x = centre(&cones, &least, &basis, load, start.as_ref(), wanted == Wanted::Decision).0;
+            let by = if problem.shares_normal_forces() { By::Squares } else { By::Hessian };
+            x = centre(&cones, &least, &basis, load, start.as_ref(), (wanted == Wanted::Decision, by)).0;
         } else {
             x = least;
         }

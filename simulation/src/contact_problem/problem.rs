@@ -53,6 +53,13 @@ impl Problem<'_> {
         Ok(())
     }
 
+    /// Whether some contact has the normal force of another one (docs/theory.md, section 17.17): it acts on nothing else.
+    pub(super) fn shares_normal_forces(&self) -> bool {
+        let k = self.contacts();
+        let shares = |i: usize, j: usize| self.w[(3 * i, 3 * j)] != 0.0 && self.w[(3 * j, 3 * i)] == 0.0;
+        (0..k).any(|i| (0..i).any(|j| shares(i, j)))
+    }
+
     /// Rounding of a component of beta.
     pub(super) fn noise(&self, row: usize) -> f64 {
         self.noise.map_or(0.0, |noise| noise[row])

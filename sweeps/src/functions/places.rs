@@ -37,6 +37,10 @@ pub enum Place {
     MuStatic,
     /// coefficient of friction in impacts
     MuImpact,
+    /// lever arm of rolling friction, m
+    Rolling,
+    /// lever arm of spinning friction, m
+    Spinning,
     /// law of sliding friction, as `stribeck(0.01)`
     Sliding,
     /// law of restitution, as `power(1, 0.25)`
@@ -44,13 +48,15 @@ pub enum Place {
 }
 
 /// The fields that belong to a motion, not to a model.
-const MOTION: [(&str, Place); 9] = [
+const MOTION: [(&str, Place); 11] = [
     ("until", Place::Until),
     ("mu", Place::Mu),
     ("e", Place::E),
     ("law", Place::Law),
     ("mu_static", Place::MuStatic),
     ("mu_impact", Place::MuImpact),
+    ("rolling", Place::Rolling),
+    ("spinning", Place::Spinning),
     ("sliding", Place::Sliding),
     ("restitution", Place::Restitution),
     ("tolerance", Place::Tolerance),

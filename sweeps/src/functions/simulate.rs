@@ -93,6 +93,8 @@ fn case<'m>(
     let mut given = GivenLaw {
         mu_static: batch.number(Place::MuStatic, row),
         mu_impact: batch.number(Place::MuImpact, row),
+        rolling: batch.number(Place::Rolling, row),
+        spinning: batch.number(Place::Spinning, row),
         ..GivenLaw::default()
     };
     for (place, part) in [(Place::Sliding, "sliding"), (Place::Restitution, "restitution")] {

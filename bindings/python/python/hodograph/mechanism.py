@@ -276,6 +276,7 @@ class Mechanism(_native.Mechanism):
     def simulate(
         self, until, step=None, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, tolerance=None,
         surfaces=None, control=None, period=None, max_step=None, mu_static=None, mu_impact=None, sliding=None, restitution=None,
+        rolling=None, spinning=None,
     ):
         """A motion with impacts and contact that lasts, from a state to the time ``until``, told every ``step`` seconds, as :class:`Simulation`.
 
@@ -284,7 +285,8 @@ class Mechanism(_native.Mechanism):
         ``tolerance`` 1e-12, ``max_step`` 0.05 s where something depends on time by itself, else unbounded.
         ``mu_static``: up to which a contact sticks (not less than ``mu``); ``mu_impact``: friction in impacts; ``sliding``: 'stribeck(SPEED)', or a function of
         the speed of slip; ``restitution``: e by the speed of approach, as 'threshold(SPEED)', 'power(SPEED, EXPONENT)', 'loss(SPEED, EXPONENT)', pairs
-        (speed, e), or a function; also in ``surfaces``. What is left out is that of the model.
+        (speed, e), or a function; ``rolling``, ``spinning``: lever arms (m) of the torques that resist rotation in the plane of contact and about its
+        normal, for contacts whose surface in the model states them; also in ``surfaces``. What is left out is that of the model.
         ``control``: a function of time, q (n,) and u (p,) that gives the inputs (w,): with ``period`` (s) at these times and held in between, otherwise
         continuously (it must be smooth then). What it raises ends the motion, as Ctrl-C does; an exception that ends a motion under way has the attribute
         ``motion``, the :class:`Simulation` up to there. ``tolerance``: of the integration, relative and absolute; ``max_step``: s.
@@ -293,7 +295,8 @@ class Mechanism(_native.Mechanism):
         if period is not None and control is None:
             raise ArgumentError("`period` is that of `control`, which is missing", kind="bad_option", place="period")
         choices = {
-            **self._surfaces(surfaces, mu=mu, e=e, law=law, mu_static=mu_static, mu_impact=mu_impact, sliding=sliding, restitution=restitution),
+            **self._surfaces(surfaces, mu=mu, e=e, law=law, mu_static=mu_static, mu_impact=mu_impact, sliding=sliding, restitution=restitution,
+                rolling=rolling, spinning=spinning),
             "tolerance": number(tolerance, "tolerance"), "max_step": number(max_step, "max_step"), "control": control, "period": number(period, "period"),
         }  # fmt: skip
         names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
@@ -309,8 +312,11 @@ class Mechanism(_native.Mechanism):
         """What is given of the surfaces of all contacts, and of those that have one of their own."""
         number = lambda given, name: None if given.get(name) is None else float(_number(given[name], name))
         of = lambda given: (number(given, "mu"), number(given, "e"), given.get("law"))
-        law = lambda given: (number(given, "mu_static"), number(given, "mu_impact"), given.get("sliding"), given.get("restitution"))
-        known = ("mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution")
+        law = lambda given: (
+            number(given, "mu_static"), number(given, "mu_impact"), given.get("sliding"), given.get("restitution"), number(given, "rolling"),
+            number(given, "spinning"),
+        )  # fmt: skip
+        known = ("mu", "e", "law", "mu_static", "mu_impact", "sliding", "restitution", "rolling", "spinning")
         for contact, given in (own or {}).items():
             for name in given:
                 if name not in known:
@@ -323,10 +329,11 @@ class Mechanism(_native.Mechanism):
 
     def simulate_many(
         self, until, q=None, u=None, inputs=None, time=None, *, mu=None, e=None, law=None, mu_static=None, mu_impact=None, sliding=None,
-        restitution=None, tolerance=None, surfaces=None, max_step=None, threads=None, progress=None,
+        restitution=None, rolling=None, spinning=None, tolerance=None, surfaces=None, max_step=None, threads=None, progress=None,
     ):
         """Many motions to the time ``until``, one for each row of ``q`` (k, n), ``u``, ``inputs``, ``time`` (k,), of the parameters of a mechanism of
-        :meth:`with_parameters`, and of ``mu``, ``e``, ``mu_static`` and ``mu_impact`` (numbers or (k,)), as :class:`Simulations`.
+        :meth:`with_parameters`, and of ``mu``, ``e``, ``mu_static``, ``mu_impact``, ``rolling`` and ``spinning`` (numbers or (k,)), as
+        :class:`Simulations`.
 
         Rows share the cores (``threads``: so many); outcomes have the same bits in any order and on any number of threads. What is wrong with a row is
         the outcome of that row. ``progress``: a function of the rows that are done and of all rows, called now and then; what it raises ends the batch, as
@@ -339,7 +346,7 @@ class Mechanism(_native.Mechanism):
         }  # fmt: skip
         if threads is not None and (isinstance(threads, bool) or not isinstance(threads, int) or threads < 1):
             raise ArgumentError(f"`threads` is {threads!r}: expected a whole number, at least 1", kind="bad_option", place="threads")
-        columns = (mu, e, mu_static, mu_impact)
+        columns = (mu, e, mu_static, mu_impact, rolling, spinning)
         found = self._simulate_many((q, u, inputs, time), float(_number(until, "until")), columns, choices, threads, progress)
         names = [quantity.name for quantity in self.coordinates], [quantity.name for quantity in self.speeds]
         return Simulations(found, *names)

@@ -133,6 +133,8 @@ class Mechanism:
         mu_impact: Optional[float] = ...,
         sliding: Union[None, str, Callable[[float], float]] = ...,
         restitution: Union[None, str, Sequence[tuple[float, float]], Callable[[float], float]] = ...,
+        rolling: Optional[float] = ...,
+        spinning: Optional[float] = ...,
     ) -> Simulation: ...
     def simulate_many(
         self,
@@ -149,6 +151,8 @@ class Mechanism:
         mu_impact: Union[None, float, Floats] = ...,
         sliding: Union[None, str, Callable[[float], float]] = ...,
         restitution: Union[None, str, Sequence[tuple[float, float]], Callable[[float], float]] = ...,
+        rolling: Union[None, float, Floats] = ...,
+        spinning: Union[None, float, Floats] = ...,
         tolerance: Optional[float] = ...,
         surfaces: Optional[Mapping[str, Mapping[str, Any]]] = ...,
         max_step: Optional[float] = ...,

@@ -34,7 +34,7 @@ use crate::stop::{Outcome, Stop};
 ///
 /// At a terminal the answer is a set of tables and a summary, else JSON lines: {"t":..,"q":{..},"u":{..}} at each step, and {"t":..,"event":"collision","contact":..}
 /// and so on at each event: collision, impact_without_collision, contact, lift_off, slip, stick,
-/// rest; singular where the motion ends since the point of a contact is undefined there. Times of events do not depend on --step.
+/// roll, roll_ends, spin, spin_ends, rest; singular where the motion ends since the point of a contact is undefined there. Times of events do not depend on --step.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {

@@ -15,16 +15,24 @@ use hodograph_model::model::mechanism::{Against, Body, BodyId, Contact, FrameId,
 pub struct ContactForms {
     /// normal and two tangential axes, along N
     pub basis: [Triple; 3],
-    /// per axis of the basis: partial velocities of the independent speeds, by slot
-    pub partials: [BTreeMap<usize, Expr>; 3],
-    /// per axis of the basis: the remainder v_t^R
-    pub remainder: Triple,
+    /// the relative velocity
+    pub rows: Rows,
     /// distance
     pub gap: Option<Expr>,
     /// whether there is no velocity along the second tangential axis, whatever the speeds.
     pub planar: bool,
     /// unit forces along the axes of the basis, if they act on nothing but the mechanism
     pub forces: Option<[Wrenches; 3]>,
+    /// relative rotation of the two bodies, where friction resists it
+    pub turning: Option<Rows>,
+}
+
+/// A vector that is linear in the independent speeds, along the contact basis.
+pub struct Rows {
+    /// per axis of the basis: partial velocities of the independent speeds, by slot
+    pub partials: [BTreeMap<usize, Expr>; 3],
+    /// per axis of the basis: what depends on no speed
+    pub remainder: Triple,
 }
 
 /// The forms of a contact, its partial velocities found along these axes.
@@ -39,19 +47,36 @@ pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact, along: Along) ->
     let relative = without_dependent(k, &relative);
     let (first, second) = tangents(k, &normal, &relative);
     let basis: [Triple; 3] = [normal, first, second];
-    let partials: [BTreeMap<usize, Expr>; 3] = std::array::from_fn(|i| {
-        let form = relative.dot(&basis[i]).map(|c| k.z.simplify(c));
-        form.terms.into_iter().map(|(slot, c)| (slot, k.z.name(c))).collect()
+    let rows = along_basis(k, &relative, &basis);
+    let turning = contact.turning.map(|frames| {
+        let turning = relative_turning(k, frames, axes);
+        along_basis(k, &turning, &basis)
     });
-    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear_forms::dot(&relative.rest, &basis[i])));
-    let planar = partials[2].is_empty() && remainder[2].is_zero();
+    let planar = rows.partials[2].is_empty() && rows.remainder[2].is_zero();
     let forces = unit_forces(k, contact, axes, &basis);
     let basis = basis.map(|v| {
         let v = linear_forms::name(&mut k.z, v);
         k.tree.convert(&mut k.z, &v, axes, AxesTree::N)
     });
     let gap = contact.gap.as_ref().map(|gap| k.scalar(gap));
-    ContactForms { basis, partials, remainder, gap, planar, forces }
+    ContactForms { basis, rows, gap, planar, forces, turning }
+}
+
+/// A vector along the contact basis.
+fn along_basis(k: &mut Kinematics<'_>, vector: &LinearVector, basis: &[Triple; 3]) -> Rows {
+    let partials: [BTreeMap<usize, Expr>; 3] = std::array::from_fn(|i| {
+        let form = vector.dot(&basis[i]).map(|c| k.z.simplify(c));
+        form.terms.into_iter().map(|(slot, c)| (slot, k.z.name(c))).collect()
+    });
+    let remainder: Triple = std::array::from_fn(|i| k.z.name(linear_forms::dot(&vector.rest, &basis[i])));
+    Rows { partials, remainder }
+}
+
+/// The angular velocity of what strikes relative to what is struck, in independent speeds, along given axes.
+fn relative_turning(k: &mut Kinematics<'_>, [of, in_frame]: [FrameId; 2], axes: AxesId) -> LinearVector {
+    let turning = k.linear_vector(&Vector::AngularVelocity { of, in_frame });
+    let turning = k.express_linear(&turning, axes);
+    without_dependent(k, &turning)
 }
 
 /// What moves with a velocity.

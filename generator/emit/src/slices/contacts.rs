@@ -56,6 +56,7 @@ impl Emitter<'_> {
         let mode = self.closed_contacts("contact_mode", "mode of this contact", &quote!());
         let force = self.closed_contacts("contact_force", "force of this contact", &quote!(mode,));
         let laws = self.stated_laws();
+        let turning = self.turning();
         let outcome =
             quote!(::core::result::Result<#krate::ContactOutcome<T>, #krate::ClosedContactError<T>>);
         quote! {
@@ -154,6 +155,7 @@ impl Emitter<'_> {
                 }
                 #in_one_pass
                 #laws
+                #turning
             }
         }
     }
@@ -178,12 +180,13 @@ impl Emitter<'_> {
         };
         let arms = laws.iter().enumerate().filter(|(_, law)| ***law != ContactLaw::default()).map(|(index, law)| {
             let index = Literal::usize_unsuffixed(index);
-            let [mu_static, mu_impact] =
-                [law.mu_static, law.mu_impact].map(|mu| option(mu.map(|mu| quote::ToTokens::to_token_stream(&number(mu)))));
+            let [mu_static, mu_impact, rolling, spinning] =
+                [law.mu_static, law.mu_impact, law.rolling, law.spinning].map(|mu| option(mu.map(|mu| quote::ToTokens::to_token_stream(&number(mu)))));
             let [sliding, restitution] = [&law.sliding, &law.restitution].map(named);
             quote! {
                 #index => #krate::StatedLaw {
                     mu_static: #mu_static, mu_impact: #mu_impact, sliding: #sliding, restitution: #restitution,
+                    rolling: #rolling, spinning: #spinning,
                 },
             }
         });
@@ -193,6 +196,53 @@ impl Emitter<'_> {
                     #(#arms)*
                     _ => ::core::default::Default::default(),
                 }
+            }
+        })
+    }
+
+    /// The relative rotation of the bodies in contact, if the model asks for one.
+    fn turning(&self) -> Option<TokenStream> {
+        let has = |contact| self.contact_output(contact, ContactQuantity::AngularVelocity).is_some();
+        if !(0..self.mechanism.contacts.len()).any(has) {
+            return None;
+        }
+        let krate = self.krate;
+        let parts = [
+            (ContactQuantity::AngularVelocity, "angular_velocity", "the angular velocity"),
+            (ContactQuantity::FreeAngularAcceleration, "free_acceleration", "the free angular acceleration"),
+            (
+                ContactQuantity::PartialAngularVelocities,
+                "partial_velocities",
+                "the partial angular velocities",
+            ),
+            (ContactQuantity::AngularResponse, "response", "the angular response"),
+        ];
+        let body = self.by_contact(|contact| {
+            if !has(contact) {
+                return quote! {
+                    DESCRIPTION.check(state)?;
+                    ::core::result::Result::Ok(false)
+                };
+            }
+            let parts = parts.map(|(quantity, field, what)| {
+                let slice = ident(field);
+                let write = self.written_to(Quantity::Contact(contact as u32, quantity), &slice, what);
+                quote! {
+                    let #slice = &mut *values.#slice;
+                    let written: ::core::result::Result<(), #krate::StateError> = { #write };
+                    written?;
+                }
+            });
+            quote! { #(#parts)* ::core::result::Result::Ok(true) }
+        });
+        Some(quote! {
+            fn relative_rotation(
+                &self,
+                contact: usize,
+                state: &#krate::State<'_, T>,
+                values: &mut #krate::RelativeRotation<'_, T>,
+            ) -> ::core::result::Result<bool, #krate::StateError> {
+                #body
             }
         })
     }

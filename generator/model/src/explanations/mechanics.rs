@@ -319,8 +319,9 @@ pub(super) const TABLE: &[Explanation] = &[
             to 1, and `law`, one of newton, poisson and stronge, each a constant. Motions also read `mu_static`, \
             not less than mu, `mu_impact`, `sliding: stribeck(SPEED)`, which needs `mu_static`, and \
             `restitution`, one of threshold(SPEED), power(SPEED, EXPONENT), loss(SPEED, EXPONENT) and \
-            table(SPEED, E, SPEED, E, ..). What is left out is mu = 0, e = 0, law = poisson. The tool takes these where the command line does not say otherwise, and \
-            says so; equations do not depend on them.",
+            table(SPEED, E, SPEED, E, ..), and `rolling` and `spinning`, lengths in m, not negative. What is left out is mu = 0, e = 0, law = poisson. The tool takes these where the command line does not say otherwise, and \
+            says so; equations do not depend on them, but that `rolling` and \
+            `spinning` ask for the relative rotation of the two bodies.",
         wrong: Some(
             "contacts { tip { point: P of Rod, normal: -N.x, gap: l - dot(position(P), N.x), surface: { mu: -0.3, \
             e: 0.5, law: stronge } } }",

@@ -2,7 +2,7 @@
 
 use super::evaluator::{Evaluator, Level};
 use super::hyper_dual::*;
-use super::state::{ContactEvaluation, Evaluation, Failure, State};
+use super::state::{ContactEvaluation, Evaluation, Failure, State, TurningEvaluation};
 use super::views::{Vector3, Views, accelerations, cross3, dot3, values};
 use crate::model::mechanism::*;
 
@@ -229,6 +229,18 @@ fn contact_values(views: &Views<'_>, contact: &Contact) -> Result<ContactEvaluat
         },
         normal_rate: accelerations(views.onward.vector(&contact.normal, Level::Motion)?),
         acceleration: accelerations(views.onward.contact_velocity(contact)?),
+        turning: contact.turning.map(|frames| turning_values(views, frames)).transpose()?,
+    })
+}
+
+/// The relative rotation of two frames.
+fn turning_values(views: &Views<'_>, [of, within]: [FrameId; 2]) -> Result<TurningEvaluation, Failure> {
+    let turning =
+        |values: &Evaluator<'_>| Ok(sub(values.angular_velocity(of)?, values.angular_velocity(within)?));
+    Ok(TurningEvaluation {
+        angular_velocity: values(turning(&views.now)?),
+        partial_velocities: views.partials(turning)?,
+        acceleration: accelerations(turning(&views.onward)?),
     })
 }
 

@@ -23,5 +23,5 @@ pub use evaluator::{Evaluator, Level};
 pub use linear_system::{rank, singular_column};
 pub use loops::held_together;
 pub use motion::{constraint_coefficients, constraint_rank, determining_coefficients};
-pub use state::{ContactEvaluation, Evaluation, Failure, State};
+pub use state::{ContactEvaluation, Evaluation, Failure, State, TurningEvaluation};
 pub use views::Views;

@@ -102,6 +102,19 @@ pub struct ContactEvaluation {
     pub normal_rate: [f64; 3],
     /// rate of the relative velocity while the independent speeds stay, m/s^2
     pub acceleration: [f64; 3],
+    /// relative rotation of the two bodies, where friction resists it
+    pub turning: Option<TurningEvaluation>,
+}
+
+/// The relative rotation of the two bodies in contact, along N's axes.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TurningEvaluation {
+    /// angular velocity of what strikes relative to what is struck, rad/s
+    pub angular_velocity: [f64; 3],
+    /// its partial velocities, one per independent speed
+    pub partial_velocities: Vec<[f64; 3]>,
+    /// its rate while the independent speeds stay, rad/s^2
+    pub acceleration: [f64; 3],
 }
 
 /// Why there are no numbers.

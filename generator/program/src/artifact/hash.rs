@@ -8,7 +8,8 @@ use hodograph_model::syntax::tree::Section;
 
 /// A hash of all that the equations of a model depend on, as 64 hexadecimal digits: its tokens without
 /// documentation, without the values of what is not `fixed` and without the surfaces of contacts, which are
-/// defaults of the module and no part of its equations. Blanks, line ends and comments do not matter either, and a model has the same hash in a
+/// defaults of the module and no part of its equations, but for the words by which they ask for the relative
+/// rotation of two bodies. Blanks, line ends and comments do not matter either, and a model has the same hash in a
 /// file and inline.
 pub fn model_hash(source: &Source) -> String {
     let mut hash = Sha256::new();
@@ -124,6 +125,10 @@ fn surfaces(tokens: &[&Token]) -> Vec<bool> {
             end += 1;
         }
         is_surface[begin..=end].fill(true);
+        for (at, token) in tokens.iter().enumerate().take(end).skip(i + 3) {
+            let field = opens(at + 1 - i, TokenKind::Sign(':'));
+            is_surface[at] = !(field && (token.is_word("rolling") || token.is_word("spinning")));
+        }
     }
     is_surface
 }
@@ -200,6 +205,11 @@ loads { gravity: -g*N.y; force on P: F*N.x; }
         assert_eq!(contact(&format!("point: P, {surface}, normal: N.y")), plain);
         assert_eq!(contact(&format!("{surface}, point: P, normal: N.y")), plain);
         assert_eq!(contact("point: P, normal: N.y, surface: { mu: 0.4 }"), plain);
+        // But for what asks for equations.
+        let turns = contact("point: P, normal: N.y, surface: { mu: 0.4, rolling: 0.01 }");
+        assert_ne!(turns, plain);
+        assert_eq!(contact("point: P, normal: N.y, surface: { rolling: 0 }"), turns);
+        assert_ne!(contact("point: P, normal: N.y, surface: { spinning: 0 }"), plain);
         assert_ne!(contact("point: P, normal: N.x"), plain);
         assert_ne!(contact("point: P, normal: N.y, gap: l"), plain);
     }

@@ -53,6 +53,8 @@ struct Line<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    sense: Option<i8>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     several_modes: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     indeterminate: Option<bool>,
@@ -196,6 +198,7 @@ impl<'m> Lines<'m> {
             spread: None,
             mode: None,
             direction: None,
+            sense: None,
             several_modes: None,
             indeterminate: None,
             q: self.coordinates(&event.coordinates),
@@ -214,11 +217,18 @@ impl<'m> Lines<'m> {
                 certain(selection);
                 line.mode = Some(mode.name());
             }
-            EventKind::Slip { direction, selection } => {
+            EventKind::Slip { direction, selection } | EventKind::Roll { direction, selection } => {
                 certain(selection);
                 line.direction = Some(direction.map(|part| part + 0.0));
             }
-            EventKind::LiftOff { selection } | EventKind::Stick { selection } => certain(selection),
+            EventKind::Spin { positive, selection } => {
+                certain(selection);
+                line.sense = Some(if *positive { 1 } else { -1 });
+            }
+            EventKind::LiftOff { selection }
+            | EventKind::Stick { selection }
+            | EventKind::RollEnds { selection }
+            | EventKind::SpinEnds { selection } => certain(selection),
             _ => {}
         }
         json(&line)

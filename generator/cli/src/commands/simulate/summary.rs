@@ -145,6 +145,10 @@ fn plural(name: &str, count: usize) -> String {
         "struck_together" => (format!("times {words}"), format!("time {words}")),
         "slip" => ("beginnings of slip".to_owned(), "beginning of slip".to_owned()),
         "stick" => ("ends of slip".to_owned(), "end of slip".to_owned()),
+        "roll" => ("beginnings of rolling".to_owned(), "beginning of rolling".to_owned()),
+        "roll_ends" => ("ends of rolling".to_owned(), "end of rolling".to_owned()),
+        "spin" => ("beginnings of spinning".to_owned(), "beginning of spinning".to_owned()),
+        "spin_ends" => ("ends of spinning".to_owned(), "end of spinning".to_owned()),
         "lift_off" => ("lift-offs".to_owned(), "lift-off".to_owned()),
         "contact" => ("beginnings of contact".to_owned(), "beginning of contact".to_owned()),
         "impact_without_collision" => {

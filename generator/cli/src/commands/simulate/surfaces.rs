@@ -36,6 +36,13 @@ pub struct MotionSurfaces {
     /// or table(SPEED, E, SPEED, E, ..) [default: constant]
     #[arg(long, value_name = "LAW")]
     restitution: Option<String>,
+    /// lever arm of rolling friction, m: a torque of at most this times the normal force resists rolling
+    /// [default: that of the model]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    rolling: Option<f64>,
+    /// lever arm of spinning friction, m: the same about the normal [default: that of the model]
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    spinning: Option<f64>,
     /// the surface of one contact, as `tip=0.5,0.8,stronge`, with parts such as `mu_static=0.6` after
     /// these; may be given several times
     #[arg(long, value_name = "CONTACT=MU,E,LAW")]
@@ -114,6 +121,8 @@ impl MotionSurfaces {
             mu_impact: self.mu_impact,
             sliding: sliding.map_err(|message| call("--sliding", message))?,
             restitution: restitution.map_err(|message| call("--restitution", message))?,
+            rolling: self.rolling,
+            spinning: self.spinning,
         })
     }
 }

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use super::Writer;
 use crate::algebra::Expr;
 use crate::kane::articulated::Articulated;
-use crate::kane::contacts::{ContactForms, contact_forms};
+use crate::kane::contacts::{ContactForms, Rows, contact_forms};
 use crate::kane::forces::Wrenches;
 use crate::kinematics::partial_velocities::Along;
 use hodograph_model::model::mechanism::Contact;
@@ -37,17 +37,17 @@ impl Writer<'_, '_> {
         let [(cost, usual), (other_cost, other)] = [Along::Result, Along::Home].map(|along| {
             let place = format!("contact `{}`", contact.name);
             let forms = self.k.within(place, |k| contact_forms(k, contact, along));
-            let partials = forms.partials.iter().flat_map(|row| row.values());
+            let partials = forms.rows.partials.iter().flat_map(|row| row.values());
             let nodes = self.nodes(partials.chain(&forms.gap));
             (self.graph.cost(&nodes), forms)
         });
         // What is seen to vanish decides on the basis and on closed forms.
         let vanishes = |forms: &ContactForms, row: usize, slot: usize| {
-            forms.partials[row].get(&slot).is_none_or(Expr::is_zero)
+            forms.rows.partials[row].get(&slot).is_none_or(Expr::is_zero)
         };
         let mut all = (0..self.k.speeds.len()).flat_map(|slot| (0..3).map(move |row| (row, slot)));
         let sees_as_much = all.all(|(row, slot)| !vanishes(&usual, row, slot) || vanishes(&other, row, slot))
-            && (0..3).all(|row| !usual.remainder[row].is_zero() || other.remainder[row].is_zero())
+            && (0..3).all(|row| !usual.rows.remainder[row].is_zero() || other.rows.remainder[row].is_zero())
             && (!usual.planar || other.planar);
         if other_cost < cost && sees_as_much && usual.basis == other.basis { other } else { usual }
     }
@@ -96,7 +96,12 @@ impl Writer<'_, '_> {
             self.put(of(quantity), 3, 1, nodes);
         }
         let p = self.independent.len();
-        let partials = self.contact_velocity(number, forms);
+        let velocity = (ContactQuantity::Velocity, ContactQuantity::PartialVelocities);
+        let (partials, remainder) = self.contact_velocity(number, &forms.rows, velocity);
+        self.put(of(ContactQuantity::Remainder), 3, 1, remainder);
+        if let Some(turning) = &forms.turning {
+            self.contact_turning(number, turning, factor);
+        }
         let (structure, Responses { reduced, columns }) = self.contact_responses(forms, factor, &partials);
         self.put(of(ContactQuantity::Reduced), 6, 1, reduced);
         let response: Vec<Node> = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
@@ -119,12 +124,17 @@ impl Writer<'_, '_> {
         structure
     }
 
-    /// The velocity, its partial velocities and its remainder; returns the partial velocities by independent
-    /// speeds, row by row.
-    fn contact_velocity(&mut self, number: u32, forms: &ContactForms) -> Vec<Vec<Node>> {
+    /// A relative velocity, which is `named` so with its partial velocities, of its partial velocities by slot and its
+    /// remainder; returns those by independent speeds, row by row, and this.
+    fn contact_velocity(
+        &mut self,
+        number: u32,
+        rows: &Rows,
+        named: (ContactQuantity, ContactQuantity),
+    ) -> (Vec<Vec<Node>>, Vec<Node>) {
         let of = |quantity| Quantity::Contact(number, quantity);
         let p = self.independent.len();
-        let partials: Vec<Vec<Node>> = forms
+        let partials: Vec<Vec<Node>> = rows
             .partials
             .iter()
             .map(|row| {
@@ -136,7 +146,7 @@ impl Writer<'_, '_> {
                 self.nodes(&row)
             })
             .collect();
-        let remainder = self.nodes(&forms.remainder);
+        let remainder = self.nodes(&rows.remainder);
         let mut velocity = Vec::new();
         for (row, &rest) in partials.iter().zip(&remainder) {
             let mut terms = vec![rest];
@@ -146,10 +156,25 @@ impl Writer<'_, '_> {
             }
             velocity.push(self.graph.sum(terms));
         }
-        self.put(of(ContactQuantity::Velocity), 3, 1, velocity);
-        self.put(of(ContactQuantity::PartialVelocities), 3, p, partials.concat());
-        self.put(of(ContactQuantity::Remainder), 3, 1, remainder);
-        partials
+        self.put(of(named.0), 3, 1, velocity);
+        self.put(of(named.1), 3, p, partials.concat());
+        (partials, remainder)
+    }
+
+    /// The relative rotation of the bodies, and how the mechanism responds to torques between them.
+    fn contact_turning(&mut self, number: u32, rows: &Rows, factor: &Factor) {
+        let named = (ContactQuantity::AngularVelocity, ContactQuantity::PartialAngularVelocities);
+        let (partials, _) = self.contact_velocity(number, rows, named);
+        let columns: Vec<Vec<Node>> = partials
+            .iter()
+            .map(|row| {
+                let half = factor.half_solve(&mut self.graph, row);
+                factor.finish(&mut self.graph, &half)
+            })
+            .collect();
+        let p = self.independent.len();
+        let response = (0..p).flat_map(|i| columns.iter().map(move |column| column[i])).collect();
+        self.put(Quantity::Contact(number, ContactQuantity::AngularResponse), p, 3, response);
     }
 
     /// The reduced matrix with its structure and the responses, by the factorised mass matrix or by

@@ -41,15 +41,21 @@ impl Writer<'_, '_> {
         }
     }
 
-    /// Rates of the velocities of all contacts along the contact basis, without contact forces.
+    /// Rates of the velocities, and of the relative rotations, of all contacts along the contact basis, without contact
+    /// forces.
     pub(super) fn free_accelerations(&mut self) {
         let Some(accelerations) = self.written(Quantity::Accelerations) else { return };
         let motion = self.motion(&accelerations);
         for contact in 0..self.k.mechanism.contacts.len() as u32 {
             let of = |quantity| Quantity::Contact(contact, quantity);
-            let Some(velocity) = self.written(of(ContactQuantity::Velocity)) else { continue };
-            let rates = differentiate(&mut self.graph, &velocity, &motion);
-            self.put(of(ContactQuantity::FreeAcceleration), 3, 1, rates);
+            for (velocity, rate) in [
+                (ContactQuantity::Velocity, ContactQuantity::FreeAcceleration),
+                (ContactQuantity::AngularVelocity, ContactQuantity::FreeAngularAcceleration),
+            ] {
+                let Some(velocity) = self.written(of(velocity)) else { continue };
+                let rates = differentiate(&mut self.graph, &velocity, &motion);
+                self.put(of(rate), 3, 1, rates);
+            }
         }
     }
 }

@@ -78,8 +78,8 @@ impl Lowering<'_> {
                         ("a contact", "mu" | "e" | "law" | "friction" | "restitution") => {
                             "friction and restitution belong to its surface: `surface: { mu: 0.3, e: 0.5, law: stronge }`".to_owned()
                         }
-                        ("a surface", "rolling" | "spinning" | "mu_rolling" | "mu_spinning") => {
-                            "rolling and spinning friction are not covered: a contact has forces, and no torques".to_owned()
+                        ("a surface", "mu_rolling" | "mu_spinning") => {
+                            "rolling and spinning friction have lever arms, in m: `rolling: 0.002`, `spinning: 0.001`".to_owned()
                         }
                         _ => format!("its fields are {}", known.join(", ")),
                     }),

@@ -1,6 +1,6 @@
 //! Lowers contacts, and warns of names that are never used.
 
-use super::super::mechanism::{Against, BodyId, Contact, FrameId, PointId, Vector};
+use super::super::mechanism::{Against, BodyId, Contact, ContactLaw, FrameId, PointId, Vector};
 use super::super::names::Symbol;
 use super::super::pairs;
 use super::Lowering;
@@ -78,6 +78,11 @@ impl Lowering<'_> {
         if let (Some(p), Some(Against::Body(b))) = (point, &against) {
             self.coincident(p, *b, record);
         }
+        let law: ContactLaw = law.unwrap_or_default();
+        let turning = match &against {
+            Some(against) if law.asks_for_rotation() => self.turning(record, body, against),
+            _ => None,
+        };
         let gap_read = gap.as_ref().is_none_or(Option::is_some);
         let read = point.is_some() && against.is_some() && normal.is_some() && gap_read;
         self.out.contacts.push(Contact {
@@ -94,8 +99,9 @@ impl Lowering<'_> {
             without_gap,
             gap_span,
             surface,
-            law: law.unwrap_or_default(),
+            law,
             shapes: None,
+            turning,
             span: record.name.span,
         });
         read.then_some(())

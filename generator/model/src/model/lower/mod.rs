@@ -24,6 +24,7 @@ mod shapes;
 mod sums;
 mod surfaces;
 mod table;
+mod turning;
 
 use std::collections::HashSet;
 

@@ -45,7 +45,7 @@ impl Lowering<'_> {
         }
         let owner = &field.name;
         let known = words::SURFACE;
-        let [mu, e, law, mu_static, mu_impact, sliding, restitution] =
+        let [mu, e, law, mu_static, mu_impact, sliding, restitution, rolling, spinning] =
             self.record("a surface", owner, fields, known, &[]);
         if let Some(value) = mu.and_then(|mu| self.coefficient(mu, "a coefficient of friction")) {
             surface.mu = value;
@@ -84,6 +84,10 @@ impl Lowering<'_> {
         });
         more.restitution =
             restitution.and_then(|field| self.named(field, "restitution", &RESTITUTION, Named::RESTITUTION));
+        more.rolling =
+            rolling.and_then(|arm| self.coefficient(arm, "the lever arm of rolling friction, in m,"));
+        more.spinning =
+            spinning.and_then(|arm| self.coefficient(arm, "the lever arm of spinning friction, in m,"));
         (surface, more)
     }
 

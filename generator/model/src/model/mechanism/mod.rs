@@ -412,6 +412,9 @@ pub struct Contact {
     pub law: ContactLaw,
     /// the two shapes from which point, normal and gap follow
     pub shapes: Option<[ShapeId; 2]>,
+    /// the frames in which what strikes and what is struck are fixed, where the surface states friction of their
+    /// relative rotation
+    pub turning: Option<[FrameId; 2]>,
     /// where it is declared
     pub span: Span,
 }
@@ -444,6 +447,17 @@ pub struct ContactLaw {
     pub sliding: Option<Named>,
     /// restitution as a function of the speed of approach
     pub restitution: Option<Named>,
+    /// lever arm of rolling friction, m, not negative
+    pub rolling: Option<f64>,
+    /// lever arm of spinning friction, m, not negative
+    pub spinning: Option<f64>,
+}
+
+impl ContactLaw {
+    /// Whether it asks for the relative rotation of the two bodies.
+    pub fn asks_for_rotation(&self) -> bool {
+        self.rolling.is_some() || self.spinning.is_some()
+    }
 }
 
 /// A law by its name, and its numbers in SI units.

@@ -101,6 +101,15 @@ pub enum ContactQuantity {
     Gap,
     /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
     PrescribedWork,
+    /// angular velocity of what strikes relative to what is struck (3) in the contact basis, only where the
+    /// surface has friction of rotation; so those that follow
+    AngularVelocity,
+    /// its partial velocities: rows: contact basis, columns: independent speeds (3 x p)
+    PartialAngularVelocities,
+    /// its derivative (3) along (1, q', u'): its rates without contact forces
+    FreeAngularAcceleration,
+    /// change of the independent speeds per unit angular impulse along the contact basis (p x 3)
+    AngularResponse,
     /// derivatives of velocity (3), reduced matrix (6), response (3 p, by rows) and gap (1, where there is
     /// one) along a direction (inputs `Tangent`), where none of them depends on time by itself
     Tangent,

@@ -507,6 +507,66 @@ pub const CONTACT: &[(C, Description)] = &[
         },
     ),
     (
+        C::AngularVelocity,
+        Description {
+            word: "angular_velocity",
+            method: Some("relative_angular_velocity"),
+            docs: "Angular velocity of what strikes relative to what is struck, along the contact basis (rows: normal, first, second), in rad/s, at {}.",
+            title: "relative angular velocity along n, t, s",
+            symbol: "o",
+            unit: "rad/s",
+            axes: BASIS,
+            takes: MOVING,
+            offer: Offer::Answered,
+            ..PLAIN
+        },
+    ),
+    (
+        C::PartialAngularVelocities,
+        Description {
+            word: "partial_angular_velocities",
+            method: Some("partial_angular_velocities"),
+            docs: "Partial velocities of the relative angular velocity along the contact basis (rows) for the independent speeds (columns) at {}.",
+            title: "partial velocities of the relative angular velocity: rows n, t, s",
+            symbol: "O",
+            shape: [Extent::Count(3), Extent::Speeds],
+            axes: BASIS,
+            offer: Offer::Written,
+            slice: ("partial_velocities", "the partial angular velocities"),
+            ..PLAIN
+        },
+    ),
+    (
+        C::FreeAngularAcceleration,
+        Description {
+            word: "free_angular_acceleration",
+            method: Some("free_angular_acceleration"),
+            docs: "Time derivatives of the three components of the relative angular velocity (rows: normal, first, second) without contact forces and at constant named inputs, in rad/s^2, at {}.",
+            title: "rates of the relative angular velocity without contact forces, along n, t, s",
+            symbol: "a",
+            unit: "rad/s^2",
+            axes: BASIS,
+            takes: LOADED,
+            offer: Offer::Answered,
+            ..PLAIN
+        },
+    ),
+    (
+        C::AngularResponse,
+        Description {
+            word: "angular_response",
+            method: Some("angular_response"),
+            docs: "Change of the independent speeds (rows) per N m s of angular impulse along the contact basis (columns), or of their rates per N m of torque, at {}.",
+            title: "change of the speeds per unit angular impulse",
+            symbol: "S",
+            shape: [Extent::Speeds, Extent::Count(3)],
+            axes: [Axes::None, Axes::Contact],
+            offer: Offer::Written,
+            slice: ("response", "the angular response"),
+            ..PLAIN
+        },
+    ),
+    (
         C::Tangent,
         Description {
             word: "tangent",

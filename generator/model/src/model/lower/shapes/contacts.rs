@@ -32,6 +32,11 @@ impl Lowering<'_> {
         }
         let surface = fields.iter().find(|field| field.name.text == "surface");
         let (surface, law) = surface.map(|field| self.surface(field)).unzip();
+        let law = law.unwrap_or_default();
+        let turning = match &touches {
+            Some((ids, _)) if law.asks_for_rotation() => self.turning_of_shapes(record, *ids),
+            _ => None,
+        };
         let readable = touches.is_some() && self.mistakes() == before;
         let (ids, touches) = touches.map_or((None, Vec::new()), |(ids, touches)| (Some(ids), touches));
         let mut touches = touches.into_iter();
@@ -57,8 +62,9 @@ impl Lowering<'_> {
                 without_gap: ids.is_none(),
                 gap_span: pair.field.value.span.to(struck),
                 surface,
-                law: law.clone().unwrap_or_default(),
+                law: law.clone(),
                 shapes: ids,
+                turning,
                 span,
             };
             self.readable.contacts.push(readable);

@@ -1,0 +1,91 @@
+//! What becomes of torques where modes change: their phases follow those of their contacts, and their events have
+//! names of their own.
+//!
+//! Theory: docs/theory.md, section 17.17.
+
+use hodograph::Selection;
+use nalgebra::Vector2;
+
+use crate::mode_changes::FIRST;
+use crate::mode_selection::Decision;
+use crate::phase::{Closed, Leaving, Phase};
+use crate::torques::{Torque, Turning};
+use crate::transition::Transition;
+use crate::{ErrorKind, EventKind, SimulationError};
+
+impl Transition<'_> {
+    /// Takes the mode of a torque, after that of its contact, and says what changed.
+    pub(crate) fn apply_to_torque(
+        &mut self,
+        number: usize,
+        torque: &Torque,
+        was: Phase,
+        decision: Decision,
+        selection: Selection,
+    ) {
+        let phase = match decision {
+            _ if !self.front.phases[torque.contact].is_closed() => Phase::Open(Leaving::Apart),
+            Decision::Stick => Phase::Stick,
+            Decision::Slide(direction, _) => Phase::Slide(direction),
+            // Without a normal force, which is rounding, it turns or not as before.
+            Decision::Separate => self.front.phases[number],
+        };
+        self.front.phases[number] = phase;
+        let begins = matches!(decision, Decision::Slide(_, true));
+        if begins {
+            self.front.next = self.front.next.min(FIRST * self.front.scales.time);
+        }
+        if self.bounces(torque.contact) {
+            return;
+        }
+        match (was, phase) {
+            (Phase::Slide(_), Phase::Stick) => self.push(Some(number), ends(torque.turning, selection)),
+            (Phase::Stick | Phase::Slide(_), Phase::Slide(d)) if begins => {
+                self.front.resting = false;
+                self.push(Some(number), turns(torque.turning, d, selection));
+            }
+            _ => {}
+        }
+    }
+
+    /// A contact that slides, or a torque, jams: its force would grow without bound.
+    pub(crate) fn jams(&mut self, contact: usize) -> Result<(), SimulationError> {
+        let own = self.mechanism.contact(contact);
+        let touching = (0..self.front.phases.len()).filter(|&i| self.front.phases[i].is_closed());
+        if self.mechanism.torques_of(&touching.collect::<Vec<_>>()).next().is_none() {
+            return self.impact_without_collision(own);
+        }
+        let message = "it jams, and would suffer an impact without collision, while torques of rolling or spinning \
+            friction act: such impacts are not covered. Give these contacts no `rolling` and no `spinning`";
+        Err(self.error(Some(own), ErrorKind::NoForces(message.to_owned())))
+    }
+
+    /// What a closed contact or its torque does, in a word.
+    pub(crate) fn mode_in_words(&self, closed: &Closed) -> &'static str {
+        let turning = self.mechanism.torque(closed.contact).map(|torque| torque.turning);
+        match (turning, closed.slides.is_some()) {
+            (None, true) => "slides",
+            (None, false) => "sticks",
+            (Some(Turning::Rolling), true) => "rolls",
+            (Some(Turning::Rolling), false) => "does not roll",
+            (Some(Turning::Spinning), true) => "spins",
+            (Some(Turning::Spinning), false) => "does not spin",
+        }
+    }
+}
+
+/// Rotation that begins in a direction.
+fn turns(turning: Turning, direction: Vector2<f64>, selection: Selection) -> EventKind {
+    match turning {
+        Turning::Rolling => EventKind::Roll { direction: [direction.x, direction.y], selection },
+        Turning::Spinning => EventKind::Spin { positive: direction.x > 0.0, selection },
+    }
+}
+
+/// Rotation that ends.
+fn ends(turning: Turning, selection: Selection) -> EventKind {
+    match turning {
+        Turning::Rolling => EventKind::RollEnds { selection },
+        Turning::Spinning => EventKind::SpinEnds { selection },
+    }
+}
