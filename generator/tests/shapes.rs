@@ -12,6 +12,7 @@ use hodograph_generator::numeric::views::{cross3, dot3, norm3, sub3};
 use hodograph_generator::numeric::{Evaluator, Failure, Level, State, Views};
 use hodograph_generator::rendering::render;
 use hodograph_generator::source::Source;
+use hodograph_random::Random;
 
 type V = [f64; 3];
 
@@ -38,25 +39,13 @@ contacts {{ touch {{ {contact} }} }}
     checked.mechanism.unwrap_or_else(|| panic!("{said}"))
 }
 
-struct Random(u64);
-
-impl Random {
-    /// From -1 to 1.
-    fn next(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        (self.0 >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
+fn random_state(random: &mut Random, m: &Mechanism) -> State {
+    let mut state = State::of(m);
+    for (q, variable) in state.coordinates.iter_mut().zip(&m.coordinates) {
+        *q = random.number() * if variable.unit == "m" { 1.0 } else { 3.0 };
     }
-
-    fn state(&mut self, m: &Mechanism) -> State {
-        let mut state = State::of(m);
-        for (q, variable) in state.coordinates.iter_mut().zip(&m.coordinates) {
-            *q = self.next() * if variable.unit == "m" { 1.0 } else { 3.0 };
-        }
-        state.speeds.iter_mut().for_each(|u| *u = 2.0 * self.next());
-        state
-    }
+    state.speeds.iter_mut().for_each(|u| *u = 2.0 * random.number());
+    state
 }
 
 /// What the model says of a contact at a state.
@@ -131,10 +120,10 @@ fn back(v: V, axes: &[V; 3]) -> V {
 /// Looks at random poses: `looks` compares what is said with what must be, and gives the largest difference.
 /// Where it gives none the pose does not count. The rates are compared for all.
 fn compare(name: &str, m: &Mechanism, looks: impl Fn(&[Said], &Pose) -> Option<f64>) {
-    let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ name.len() as u64);
+    let mut random = Random::named(name);
     let (mut worst, mut worst_rate, mut worst_difference, mut seen) = (0.0_f64, 0.0_f64, 0.0_f64, 0);
     while seen < POSES {
-        let state = random.state(m);
+        let state = random_state(&mut random, m);
         let Some(found) = said(m, &state) else { continue };
         let Some(off) = looks(&found, &pose(m, &state)) else { continue };
         worst = worst.max(off);
@@ -157,7 +146,7 @@ fn compare(name: &str, m: &Mechanism, looks: impl Fn(&[Said], &Pose) -> Option<f
             continue;
         }
         // rates of point and normal along one direction of all coordinates, by differences of order 4
-        let direction: Vec<f64> = state.coordinates.iter().map(|_| random.next()).collect();
+        let direction: Vec<f64> = state.coordinates.iter().map(|_| random.number()).collect();
         let moved = |h: f64| {
             let mut state = state.clone();
             state.coordinates.iter_mut().zip(&direction).for_each(|(q, d)| *q += h * d);
@@ -462,10 +451,10 @@ fn vertices_on_heights() {
                 [0.3 * (3.0 * x).cos() * (2.0 * y).cos(), -0.2 * (3.0 * x).sin() * (2.0 * y).sin()]
             }
         };
-        let mut random = Random(7);
+        let mut random = Random::new(7);
         let (mut worst, mut worst_rate) = (0.0_f64, 0.0_f64);
         for _ in 0..POSES {
-            let mut state = random.state(&m);
+            let mut state = random_state(&mut random, &m);
             let pose = pose(&m, &state);
             let vertex = plus(pose.at[0], pose.axes[0][0], 0.1);
             // move A so that the vertex is on the surface

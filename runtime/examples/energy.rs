@@ -6,27 +6,17 @@
 
 use hodograph::nalgebra::{Matrix3, Vector3};
 use hodograph::{Impact, Law, ReducedMatrix, Surface, solve};
-
-/// A linear congruential generator (Knuth's constants).
-pub struct Random(pub u64);
-
-impl Random {
-    /// Between -1 and 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
+use hodograph_random::Random;
 
 /// A collision: nine entries of a B with M = B B^T, slip along t and s, the logarithm of mu, and e.
 type Place = [f64; 13];
 
 fn begin(random: &mut Random) -> Place {
     std::array::from_fn(|index| match index {
-        9 | 10 => 2.0 * random.next(),
-        11 => 1.5 * random.next(),
-        12 => 0.5 + 0.5 * random.next(),
-        _ => random.next(),
+        9 | 10 => 2.0 * random.number(),
+        11 => 1.5 * random.number(),
+        12 => 0.5 + 0.5 * random.number(),
+        _ => random.number(),
     })
 }
 
@@ -67,7 +57,7 @@ pub struct Found {
 /// takes.
 pub fn search(starts: u64) -> Found {
     let mut found = Found { solved: 0, work: f64::NEG_INFINITY, quotient: f64::NEG_INFINITY };
-    let mut random = Random(35);
+    let mut random = Random::new(35);
     for start in 0..starts {
         let aim = (start % 2) as usize;
         let mut at = begin(&mut random);
@@ -75,7 +65,7 @@ pub fn search(starts: u64) -> Found {
         let mut step = 0.5;
         for _ in 0..60 {
             let mut next = at;
-            next.iter_mut().for_each(|x| *x += step * random.next());
+            next.iter_mut().for_each(|x| *x += step * random.number());
             let Some(gain) = gains(&next) else { continue };
             found.solved += 1;
             found.work = found.work.max(gain[0]);
@@ -93,7 +83,7 @@ pub fn search(starts: u64) -> Found {
 /// Random collisions without friction for e = 1, which lose nothing, under a law: how many have a positive
 /// work, how many are said to gain, and the greatest work in roundings of its terms.
 pub fn lossless(count: u32, law: Law) -> (u32, u32, f64) {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let (mut positive, mut gain, mut most) = (0, 0, 0.0_f64);
     for _ in 0..count {
         let (matrix, approach, ..) = collision(&begin(&mut random));

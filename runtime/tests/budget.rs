@@ -1,7 +1,7 @@
 //! A budget of quadratures changes no bit of an answer, and is kept: the least budget that suffices is found
 //! by trying, and every smaller one is refused.
 
-use crate::common::random::Random;
+use crate::common::random::{Draw, Random};
 use hodograph::nalgebra::{Matrix3, Vector2, Vector3};
 use hodograph::structure::{Balanced, Planar, solve_structured};
 use hodograph::{
@@ -13,12 +13,12 @@ type Answer<T> = Result<Impact<T>, ImpactError<T>>;
 
 /// A contact of any rank, often with fast or slow slip, and steep friction.
 fn contact(random: &mut Random) -> (ReducedMatrix<f64>, Vector3<f64>, Surface<f64>) {
-    let rank = [3, 3, 3, 2, 1][random.pick(5)];
-    let b = Matrix3::from_fn(|_, j| if j < rank { random.next() } else { 0.0 });
-    let slip = if random.pick(3) == 0 { random.power(6.0) } else { 1.0 };
-    let approach = Vector3::new(-1.0 - random.next(), slip * random.next(), slip * random.next());
+    let rank = [3, 3, 3, 2, 1][random.below(5)];
+    let b = Matrix3::from_fn(|_, j| if j < rank { random.number() } else { 0.0 });
+    let slip = if random.below(3) == 0 { random.power(6.0) } else { 1.0 };
+    let approach = Vector3::new(-1.0 - random.number(), slip * random.number(), slip * random.number());
     let surface = random.surface();
-    let mu = if random.pick(4) == 0 { random.between(5.0, 1e4) } else { surface.mu };
+    let mu = if random.below(4) == 0 { random.logarithmic(5.0, 1e4) } else { surface.mu };
     (ReducedMatrix::from(b * b.transpose()), approach, Surface { mu, ..surface })
 }
 
@@ -46,7 +46,7 @@ fn least<T: Scalar>(solve: impl Fn(&Budgeted<T>) -> Answer<T>, free: &Answer<T>,
 
 #[test]
 fn an_answer_within_its_budget_has_the_bits_of_one_without() {
-    let mut random = Random(16);
+    let mut random = Random::new(16);
     let mut met = [0; 64];
     for _ in 0..1000 {
         let (matrix, approach, surface) = contact(&mut random);
@@ -65,7 +65,7 @@ fn an_answer_within_its_budget_has_the_bits_of_one_without() {
 
 #[test]
 fn singles_keep_their_budget() {
-    let mut random = Random(32);
+    let mut random = Random::new(32);
     for _ in 0..1000 {
         let (matrix, approach, surface) = contact(&mut random);
         let matrix = ReducedMatrix::<f32>::new(

@@ -47,18 +47,18 @@ fn difference(x: &Inputs, law: Law, input: usize) -> Option<SVector<f64, 6>> {
 
 #[test]
 fn agrees_with_central_differences() {
-    let mut random = Random(7);
+    let mut random = Random::new(7);
     let mut compared = 0;
     let mut worst: f64 = 0.0;
     for n in 0..300 {
-        let a = Matrix3::from_fn(|_, _| random.next());
+        let a = Matrix3::from_fn(|_, _| random.number());
         let m = a * a.transpose() + Matrix3::identity() * 0.1;
-        let mu = 1.0 + random.next() * 0.99;
-        let e = 0.5 + random.next() * 0.45;
+        let mu = 1.0 + random.number() * 0.99;
+        let e = 0.5 + random.number() * 0.45;
         let x = [
-            -1.0 + 0.8 * random.next(),
-            random.next(),
-            random.next(),
+            -1.0 + 0.8 * random.number(),
+            random.number(),
+            random.number(),
             m.m11,
             m.m21,
             m.m31,
@@ -83,7 +83,7 @@ fn agrees_with_central_differences() {
         }
     }
     println!("{compared} columns, worst {worst:e}");
-    assert!(compared > 2500, "only {compared}");
+    assert_eq!(compared, 3299);
 }
 
 /// Slip that keeps its direction: the derivative across it is what it turns into.

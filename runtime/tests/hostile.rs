@@ -5,7 +5,7 @@
 //! The laws are evaluated in numbers of twice the digits, independently of the solver's own verification.
 
 use crate::common::double_double::Double;
-use crate::common::random::Random;
+use crate::common::random::{Draw, Random};
 use crate::common::second_road::{self, condition};
 use hodograph::structure::{Balanced, Diagonal, Isotropic, Planar, solve_structured};
 use hodograph::{
@@ -81,7 +81,10 @@ fn residuals(case: &Case, hit: &Impact<f64>) -> [f64; 6] {
     let total = (i[0] * (v2[0] - d(1.0)) + across) * 0.5;
     let scale = abs(i[0]) * speed + (abs(i[1]) + abs(i[2])) * slips;
     let energy = if case.law == Law::Stronge { total.hi / scale } else { 0.0 };
-    [momentum, friction, separation, law, (total - work).hi / scale, energy]
+    // Products of numbers of 32 digits end at some 1e300.
+    let beyond = rubbed > 1e290;
+    let work = if beyond { 0.0 } else { (total - work).hi / scale };
+    [momentum, friction, separation, law, work, if beyond { 0.0 } else { energy }]
 }
 
 #[derive(Default)]
@@ -142,28 +145,28 @@ impl Tally {
 /// A contact of a rank, with all that hurts; `epsilon` is the rounding unit of the numbers, `range` the
 /// exponent of the largest.
 fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
-    let rank = 1 + random.pick(3);
+    let rank = 1 + random.below(3);
     let bound = |x: f64| x.clamp(10.0_f64.powf(-range), 10.0_f64.powf(range));
-    let wild = random.pick(2) == 0;
+    let wild = random.below(2) == 0;
     let spread = if wild { range / 40.0 } else { 0.5 };
     let scales = [random.power(spread), random.power(spread), random.power(spread)];
-    let mut b = Matrix3::from_fn(|i, j| if j < rank { random.next() * scales[i] } else { 0.0 });
+    let mut b = Matrix3::from_fn(|i, j| if j < rank { random.number() * scales[i] } else { 0.0 });
     // A direction that does not move, or by noise alone.
-    let still = random.pick(4);
+    let still = random.below(4);
     let mut noise = 0.0;
     if still == 1 || still == 2 {
         b.row_mut(still).fill(0.0);
-        if random.pick(2) == 0 {
+        if random.below(2) == 0 {
             let size = 8.0 * epsilon * b.amax();
-            b.row_mut(still).iter_mut().for_each(|x| *x = size * random.next());
+            b.row_mut(still).iter_mut().for_each(|x| *x = size * random.number());
         }
     }
-    let mut v = b * Vector3::from_fn(|_, _| random.next());
-    if random.pick(4) == 0 {
-        v = Vector3::from_fn(|_, _| random.next());
+    let mut v = b * Vector3::from_fn(|_, _| random.number());
+    if random.below(4) == 0 {
+        v = Vector3::from_fn(|_, _| random.number());
     }
     v.x = -v.x.abs();
-    match random.pick(6) {
+    match random.below(6) {
         0 => (v.y, v.z) = (0.0, 0.0),
         1 => {
             let slip = random.power(range / 20.0);
@@ -172,30 +175,30 @@ fn contact(random: &mut Random, epsilon: f64, range: f64) -> Case {
         _ => {}
     }
     let mut m = b * b.transpose();
-    if random.pick(2) == 0 {
+    if random.below(2) == 0 {
         // Rounding noise in every entry.
         noise = 16.0 * epsilon;
         let size = noise * m[(0, 0)].max(m[(1, 1)]).max(m[(2, 2)]);
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-            m[(i, j)] += size * random.next();
+            m[(i, j)] += size * random.number();
         }
     }
-    let mass = if random.pick(3) == 0 { random.power(range / 3.0) } else { 1.0 };
-    let pace = if random.pick(3) == 0 { random.power(range / 6.0) } else { 1.0 };
+    let mass = if random.below(3) == 0 { random.power(range / 3.0) } else { 1.0 };
+    let pace = if random.below(3) == 0 { random.power(range / 6.0) } else { 1.0 };
     let (m, v) = (m * mass, v * pace);
     let matrix = ReducedMatrix::from(m);
     let mu_c = Characteristics::of(&matrix, 1.0).mu_c;
-    let mu = match random.pick(8) {
+    let mu = match random.below(8) {
         0 => 0.0,
         1 => 10.0_f64.powf(-range),
         2 => bound(random.power(range)),
         3 if mu_c.is_finite() => {
-            bound(mu_c * (1.0 + random.next() * 10.0_f64.powf(8.0 * random.next() - 8.0)))
+            bound(mu_c * (1.0 + random.number() * 10.0_f64.powf(8.0 * random.number() - 8.0)))
         }
         _ => random.power(1.5),
     };
-    let e = [0.0, 1.0, 0.5 + 0.5 * random.next()][random.pick(3)];
-    let law = Law::ALL[random.pick(Law::ALL.len())];
+    let e = [0.0, 1.0, 0.5 + 0.5 * random.number()][random.below(3)];
+    let law = Law::ALL[random.below(Law::ALL.len())];
     let tame = !wild
         && rank == 3
         && m.determinant() > 1e-4 * m.trace().powi(3)
@@ -255,7 +258,7 @@ fn solved<T: Scalar>(case: &Case) -> (Case, Result<Impact<f64>, ImpactError<f64>
 
 #[test]
 fn double_precision() {
-    let mut random = Random(21);
+    let mut random = Random::new(21);
     let mut tally = Tally::default();
     for _ in 0..20_000 {
         let case = contact(&mut random, f64::EPSILON, 308.0);
@@ -269,7 +272,7 @@ fn double_precision() {
 
 #[test]
 fn single_precision() {
-    let mut random = Random(22);
+    let mut random = Random::new(22);
     let mut tally = Tally::default();
     for _ in 0..10_000 {
         let case = contact(&mut random, f64::from(f32::EPSILON), 37.0);
@@ -284,7 +287,7 @@ fn single_precision() {
 /// The closed forms are held to the same laws.
 #[test]
 fn closed_forms() {
-    let mut random = Random(23);
+    let mut random = Random::new(23);
     let mut tallies = [(); 4].map(|()| Tally::default());
     for _ in 0..6_000 {
         let case = contact(&mut random, f64::EPSILON, 308.0);
@@ -383,20 +386,20 @@ fn great_impulses_are_no_error() {
 /// structure and for every rank.
 #[test]
 fn friction_to_the_end_of_the_range() {
-    let mut random = Random(24);
+    let mut random = Random::new(24);
     let (mut compared, mut small, mut stopped) = (0, 0, 0);
     for _ in 0..400 {
-        let rank = 1 + random.pick(3);
+        let rank = 1 + random.below(3);
         let scale = random.power(3.0);
-        let b = Matrix3::from_fn(|_, j| if j < rank { scale * random.next() } else { 0.0 });
-        let mut v = b * Vector3::from_fn(|_, _| random.next());
+        let b = Matrix3::from_fn(|_, j| if j < rank { scale * random.number() } else { 0.0 });
+        let mut v = b * Vector3::from_fn(|_, _| random.number());
         v.x = -v.x.abs();
         let m = ReducedMatrix::from(b * b.transpose());
         let (n, t) = (v.x, v.y);
         if n > -1e-3 * v.norm() || m.nn < 1e-2 * m.tt.max(m.ss) || (rank == 3 && condition(&m) > 1e6) {
             continue;
         }
-        let law = Law::ALL[random.pick(Law::ALL.len())];
+        let law = Law::ALL[random.below(Law::ALL.len())];
         let variants = [
             (m, v),
             (ReducedMatrix { ns: 0.0, ts: 0.0, ..m }, Vector3::new(n, t, 0.0)),
@@ -405,6 +408,8 @@ fn friction_to_the_end_of_the_range() {
             (ReducedMatrix { tt: m.tt.max(m.ss), ts: 0.0, ss: m.tt.max(m.ss), ..m }, v),
         ];
         for (kind, (m, v)) in variants.into_iter().enumerate() {
+            // A tangential block that is regular by rounding only leaves the impulse in its directions open.
+            let is_open = kind != 1 && m.tt * m.ss - m.ts * m.ts < 1e-6 * m.tt * m.ss;
             let at = |mu: f64| {
                 let surface = Surface { mu, e: 0.5, law };
                 match kind {
@@ -432,13 +437,16 @@ fn friction_to_the_end_of_the_range() {
                 };
                 assert!((hit.impulse.x - normal).abs() <= 1e-9 * normal + 1e-320, "{kind} {mu:e} {hit:?}");
                 let (impulse, velocity) = (limit.impulse.amax(), v.amax() + limit.velocity.amax());
-                let error = ((hit.impulse - limit.impulse).amax() / impulse)
+                let apart = hit.impulse - limit.impulse;
+                let apart = if is_open { apart.x.abs() } else { apart.amax() };
+                let error = (apart / impulse)
                     .max((hit.velocity - limit.velocity).amax() / velocity)
                     .max((hit.normal_work - limit.normal_work).abs() / (impulse * velocity));
                 assert!(error < 1e-9, "{kind} {mu:e} {law:?} {error:e} {m:?} {v:?}\n{hit:?}\n{limit:?}");
                 assert_eq!(hit.path, limit.path, "{kind} {mu:e} {law:?} {m:?} {v:?}");
                 // So does slip that friction stops.
-                if let Some((end, limit)) = hit.phases.slip_end.zip(limit.phases.slip_end) {
+                let ends = hit.phases.slip_end.zip(limit.phases.slip_end);
+                if let Some((end, limit)) = ends.filter(|_| !is_open) {
                     let early = limit.impulse.x < 1e-10 * limit.impulse.amax();
                     let normal = if early { limit.impulse.x * 1e20 / mu } else { limit.impulse.x };
                     assert!(
@@ -462,8 +470,7 @@ fn friction_to_the_end_of_the_range() {
         }
     }
     println!("{compared} compared, {small} normal impulses out of range");
-    assert!(compared > 5_000, "{compared}");
-    assert!(small > 20 && 20 * small < compared && stopped > 1000, "{small} {stopped}");
+    assert_eq!((compared, small, stopped), (14_445, 385, 12_728));
     for mu in [1e10_f32, 1e20, 1e30, 1e37, 3e38, f32::MAX] {
         for &law in Law::ALL {
             let m = ReducedMatrix::new(0.2251_f32, -0.1094, 0.1258, 22.360, 0.1158, 20.2702);

@@ -7,7 +7,7 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::common::random::Random;
+use crate::common::random::{Draw, Random};
 use crate::common::second_road::{self, Failure, condition};
 use hodograph::{Characteristics, Impact, Law, ReducedMatrix, Surface, solve};
 use nalgebra::{Matrix3, Vector3};
@@ -55,9 +55,9 @@ fn has_a_neighbour(
     hit: &Impact<f64>,
 ) -> bool {
     let rounding = 32.0 * condition(m) * f64::EPSILON;
-    let mut random = Random(17);
+    let mut random = Random::new(17);
     (0..40).any(|_| {
-        let mut near = |x: f64| x * (1.0 + rounding * random.next());
+        let mut near = |x: f64| x * (1.0 + rounding * random.number());
         let v = Vector3::new(near(v.x), near(v.y), near(v.z));
         let surface = Surface { mu: near(surface.mu), e: near(surface.e).min(1.0), ..*surface };
         match second_road::solve(m, &v, &surface) {
@@ -121,10 +121,10 @@ fn exact(random: &mut Random, rank: usize) -> (ReducedMatrix<f64>, Vector3<f64>)
 /// A contact of condition up to 3e8, in units from micro to mega.
 fn ill_conditioned(random: &mut Random) -> (ReducedMatrix<f64>, Vector3<f64>) {
     loop {
-        let scales = [1.0, random.between(1e-4, 1.0), random.between(1e-4, 1.0)];
-        let b = Matrix3::from_fn(|_, j| random.next() * scales[j]);
+        let scales = [1.0, random.logarithmic(1e-4, 1.0), random.logarithmic(1e-4, 1.0)];
+        let b = Matrix3::from_fn(|_, j| random.number() * scales[j]);
         let m = ReducedMatrix::from(b * b.transpose());
-        let v = Vector3::new(-0.1 - random.next().abs(), random.next(), random.next());
+        let v = Vector3::new(-0.1 - random.number().abs(), random.number(), random.number());
         if m.nn >= 1e-2 && condition(&m) <= 3e8 {
             let (mass, speed) = (random.power(6.0), random.power(6.0));
             return (ReducedMatrix::from(<[f64; 6]>::from(m).map(|x| x * mass)), v * speed);
@@ -147,7 +147,7 @@ const FAMILIES: [&str; 8] = [
 fn case(family: usize, random: &mut Random) -> Case {
     let (mut m, mut v) = match family {
         1 => {
-            let rank = 1 + random.pick(2);
+            let rank = 1 + random.below(2);
             exact(random, rank)
         }
         2 => ill_conditioned(random),
@@ -158,20 +158,20 @@ fn case(family: usize, random: &mut Random) -> Case {
     match family {
         3 => {
             let mu_c = Characteristics::of(&m, 1.0).mu_c;
-            let off = random.between(1e-12, 1e-1) * if random.pick(2) == 0 { 1.0 } else { -1.0 };
+            let off = random.logarithmic(1e-12, 1e-1) * if random.below(2) == 0 { 1.0 } else { -1.0 };
             surface.mu = if mu_c.is_finite() { mu_c * (1.0 + off) } else { surface.mu };
         }
-        4 => surface.mu = random.between(1e-12, 1e6),
-        5 => surface.e = [0.0, 1e-300, 1e-20, 1e-10, 1.0 - 1e-12, 1.0][random.pick(6)],
+        4 => surface.mu = random.logarithmic(1e-12, 1e6),
+        5 => surface.e = [0.0, 1e-300, 1e-20, 1e-10, 1.0 - 1e-12, 1.0][random.below(6)],
         6 => {
-            let slip = random.between(1e-12, 1e6) * -v.x / v.yz().norm().max(1e-3);
+            let slip = random.logarithmic(1e-12, 1e6) * -v.x / v.yz().norm().max(1e-3);
             (v.y, v.z) = (v.y * slip, v.z * slip);
         }
         7 => {
-            let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][random.pick(3)];
-            wrong = Some(match random.pick(6) {
+            let strange = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY][random.below(3)];
+            wrong = Some(match random.below(6) {
                 0 => {
-                    v[random.pick(3)] = strange;
+                    v[random.below(3)] = strange;
                     "not_finite"
                 }
                 1 => {
@@ -179,15 +179,16 @@ fn case(family: usize, random: &mut Random) -> Case {
                     "not_finite"
                 }
                 2 => {
-                    surface.e = if random.pick(2) == 0 { 1.0 + random.between(1e-12, 10.0) } else { -0.1 };
+                    surface.e =
+                        if random.below(2) == 0 { 1.0 + random.logarithmic(1e-12, 10.0) } else { -0.1 };
                     "restitution_out_of_range"
                 }
                 3 => {
-                    surface.mu = -random.between(1e-300, 10.0);
+                    surface.mu = -random.logarithmic(1e-300, 10.0);
                     "negative_friction"
                 }
                 4 => {
-                    v.x = [0.0, -v.x, 1e-300][random.pick(3)];
+                    v.x = [0.0, -v.x, 1e-300][random.below(3)];
                     "not_approaching"
                 }
                 _ => {
@@ -204,7 +205,7 @@ fn case(family: usize, random: &mut Random) -> Case {
 fn run(count: usize) -> Vec<Tally> {
     let mut tallies = Vec::new();
     for family in 0..FAMILIES.len() {
-        let mut random = Random(900 + family as u64);
+        let mut random = Random::new(900 + family as u64);
         let mut tally = Tally::default();
         for _ in 0..count {
             tally.judge(&case(family, &mut random));
@@ -277,7 +278,7 @@ fn nothing_is_wrong_in_silence() {
 /// A case that is wrong is seen: the law of another kind, or a normal impulse off by a millionth.
 #[test]
 fn the_judge_sees_what_is_wrong() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     for _ in 0..50 {
         let Case { m, v, surface, .. } = case(0, &mut random);
         let (Ok(mut hit), Ok(road)) = (solve(&m, &v, &surface), second_road::solve(&m, &v, &surface)) else {

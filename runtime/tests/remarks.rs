@@ -11,7 +11,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 /// A random matrix of full rank, not near a singular one.
 fn matrix(random: &mut Random) -> ReducedMatrix<f64> {
     loop {
-        let b = Matrix3::from_fn(|_, _| random.next());
+        let b = Matrix3::from_fn(|_, _| random.number());
         let m = b * b.transpose();
         if m.determinant() > 0.05 * m.m11 * m.m22 * m.m33 && m.m11 > 0.1 {
             return m.into();
@@ -20,8 +20,8 @@ fn matrix(random: &mut Random) -> ReducedMatrix<f64> {
 }
 
 fn approach(random: &mut Random) -> Vector3<f64> {
-    let (sin, cos) = (3.2 * random.next()).sin_cos();
-    let slip = random.within(0.3, 1.5);
+    let (sin, cos) = (3.2 * random.number()).sin_cos();
+    let slip = random.between(0.3, 1.5);
     Vector3::new(-1.0, slip * cos, slip * sin)
 }
 
@@ -35,13 +35,13 @@ fn off(at: &Snapshot<f64>, v_n1: f64) -> f64 {
 /// with 3D systems.
 #[test]
 fn normal_work_is_that_of_the_mean_velocity_in_planar_sliding_alone() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut counts = [0; 3];
     for _ in 0..300 {
         let space = matrix(&mut random);
         let planar = ReducedMatrix { ns: 0.0, ts: 0.0, ss: 0.0, ..space };
-        let mu = random.within(0.2, 1.5);
-        let (v, w) = (approach(&mut random), Vector3::new(-1.0, random.within(0.2, 1.0), 0.0));
+        let mu = random.between(0.2, 1.5);
+        let (v, w) = (approach(&mut random), Vector3::new(-1.0, random.between(0.2, 1.0), 0.0));
         for impulse in [0.3, 1.0, 3.0, 9.0].map(|part| part / space.nn) {
             let plane = snapshot_at(&planar, &w, mu, impulse).unwrap();
             if plane.motion == Motion::Sliding {
@@ -60,7 +60,7 @@ fn normal_work_is_that_of_the_mean_velocity_in_planar_sliding_alone() {
             }
         }
     }
-    assert!(counts.iter().all(|&count| count > 50), "{counts:?}");
+    assert_eq!(counts, [473, 544, 450]);
 }
 
 /// Section 5: below mu_s the sleds slide throughout; from mu_s on slip is renewed, in a part of the hodograph
@@ -125,11 +125,11 @@ fn slip_at(m: &ReducedMatrix<f64>, v: &Vector3<f64>, mu: f64, turn: f64, most: f
 /// Where two have the same direction, the quotient of their slips is always the same.
 #[test]
 fn hodographs_of_one_system_do_not_intersect() {
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let mut count = 0;
     for _ in 0..60 {
         let m = matrix(&mut random);
-        let (v, mu) = (approach(&mut random), random.within(0.2, 1.5));
+        let (v, mu) = (approach(&mut random), random.between(0.2, 1.5));
         let first = v.z.atan2(v.y);
         let h = rates(&m, mu, first).z;
         // How far slip may turn: to the next invariant direction on its way.
@@ -150,6 +150,10 @@ fn hodographs_of_one_system_do_not_intersect() {
             let one = slip_at(&m, &v, mu, h.signum() * part * room, 60.0 / m.nn);
             let two = slip_at(&m, &other, mu, h.signum() * (part - 0.2) * room, 60.0 / m.nn);
             let (Some(one), Some(two)) = (one, two) else { continue };
+            // What hardly slips any more has lost its digits.
+            if one.min(two) < 1e-6 * v.yz().norm() {
+                continue;
+            }
             quotients.push(one / two);
             // (38) by Gauss's quadrature with three nodes on 400 pieces.
             let pieces = 400;
@@ -177,13 +181,13 @@ fn hodographs_of_one_system_do_not_intersect() {
             count += 1;
         }
     }
-    assert!(count > 20, "{count}");
+    assert_eq!(count, 46);
 }
 
 /// (41a) to (41d), (43) from them, and (44): mu_c and phi_c are where g and h vanish.
 #[test]
 fn sticking_keeps_the_tangential_velocity() {
-    let mut random = Random(3);
+    let mut random = Random::new(3);
     for _ in 0..500 {
         let m = matrix(&mut random);
         let full = Matrix3::from(m);
@@ -208,7 +212,7 @@ fn sticking_keeps_the_tangential_velocity() {
 /// remote branch of the hyperbola does not meet the ellipse, and the near one meets it once more, at mu_c.
 #[test]
 fn the_remote_branch_misses_the_ellipse() {
-    let mut random = Random(4);
+    let mut random = Random::new(4);
     let mut remote = 0;
     for _ in 0..200 {
         let m = matrix(&mut random);
@@ -248,13 +252,13 @@ fn the_remote_branch_misses_the_ellipse() {
         }
         assert_eq!(changes, 1, "{m:?}");
     }
-    assert!(remote > 10_000, "{remote}");
+    assert_eq!(remote, 100_000);
 }
 
 /// Every zero of h, in order, and none else.
 #[test]
 fn all_invariant_directions_are_found() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut counts = [0; 5];
     for index in 0..400 {
         let mut m = matrix(&mut random);
@@ -265,7 +269,7 @@ fn all_invariant_directions_are_found() {
             3 => (m.ts, m.ss) = (0.0, m.tt),
             _ => {}
         }
-        let mu = random.between(0.01, 10.0);
+        let mu = random.logarithmic(0.01, 10.0);
         let found: Vec<f64> = invariant_directions(&m, mu).into_iter().flatten().collect();
         assert!(found.windows(2).all(|pair| pair[0] < pair[1]), "{found:?}");
         assert!(found.iter().all(|phi| phi.abs() <= std::f64::consts::PI));
@@ -282,17 +286,17 @@ fn all_invariant_directions_are_found() {
         assert!(phi_bar(&m, mu, 0.3).is_none_or(near));
         assert!(Characteristics::of(&m, mu).renewal.is_none_or(|renewal| near(renewal.phi_hat)));
     }
-    assert!(counts[2] > 50 && counts[4] > 50, "{counts:?}");
+    assert_eq!(counts, [0, 0, 259, 0, 141]);
 }
 
 /// phi_hat is stable: h' there is below -g_hat, and slip beside it turns back as s^(h' / g).
 #[test]
 fn renewed_slip_is_stable() {
-    let mut random = Random(6);
+    let mut random = Random::new(6);
     let mut count = 0;
     for _ in 0..500 {
         let m = matrix(&mut random);
-        let mu = random.within(0.0, 1.0) * Characteristics::of(&m, 0.0).mu_c;
+        let mu = random.between(0.0, 1.0) * Characteristics::of(&m, 0.0).mu_c;
         let Some(renewal) = Characteristics::of(&m, mu).renewal else { continue };
         let step = 1e-6;
         let h = |by: f64| rates(&m, mu, renewal.phi_hat + by).z;
@@ -309,18 +313,18 @@ fn renewed_slip_is_stable() {
         assert!((left - expected).abs() < 1e-2 * small, "{left} {expected}");
         count += 1;
     }
-    assert!(count > 400, "{count}");
+    assert_eq!(count, 500);
 }
 
 /// Section 3.1 supposes that I_n2 is known. A law with more restitution passes every state that one with less
 /// has; beyond any end (45) and (46) go on, and (20) to (23) hold everywhere.
 #[test]
 fn the_state_at_any_impulse_does_not_depend_on_a_law() {
-    let mut random = Random(8);
+    let mut random = Random::new(8);
     let mut beyond = 0;
     for _ in 0..300 {
         let m = matrix(&mut random);
-        let (v, mu) = (approach(&mut random), random.within(0.0, 2.0));
+        let (v, mu) = (approach(&mut random), random.between(0.0, 2.0));
         let with = |e: f64| Hodograph::new(&m, &v, &Surface { mu, e, law: Law::Poisson }).unwrap();
         let (short, long) = (with(0.1), with(1.0));
         for part in [0.0, 0.2, 0.6, 0.9, 1.0] {
@@ -348,7 +352,7 @@ fn the_state_at_any_impulse_does_not_depend_on_a_law() {
         };
         assert!((rate - expected).abs() < 1e-4 * m.nn * (1.0 + mu), "{rate} {expected}");
     }
-    assert!(beyond > 300, "{beyond}");
+    assert_eq!(beyond, 900);
     let (m, v, _) = two_sleds(0.6, Law::Newton);
     assert_eq!(snapshot_at(&m, &v, 0.6, -1.0).unwrap().velocity, v);
     let refused = |mu: f64, impulse: f64| snapshot_at(&m, &v, mu, impulse).unwrap_err().kind();
@@ -365,13 +369,14 @@ fn the_state_at_any_impulse_does_not_depend_on_a_law() {
 /// flag, no quadrature, and the bits of the closed form; the same, but for the bits, in turned axes.
 #[test]
 fn planar_contacts_are_recognised_from_their_numbers() {
-    let mut random = Random(9);
+    let mut random = Random::new(9);
     let (mut unstable, mut renewed, mut straight) = (0, 0, 0);
     for index in 0..600 {
         let full = matrix(&mut random);
         let m = ReducedMatrix { ns: 0.0, ts: 0.0, ss: 0.0, ..full };
-        let v = Vector3::new(-1.0, if index % 2 == 0 { 1.0 } else { -1.0 } * random.within(0.1, 2.0), 0.0);
-        let surface = Surface { mu: random.within(0.05, 2.0), e: random.within(0.0, 1.0), law: Law::Poisson };
+        let v = Vector3::new(-1.0, if index % 2 == 0 { 1.0 } else { -1.0 } * random.between(0.1, 2.0), 0.0);
+        let surface =
+            Surface { mu: random.between(0.05, 2.0), e: random.between(0.0, 1.0), law: Law::Poisson };
         let hit = solve(&m, &v, &surface.with_budget(0)).unwrap();
         let closed = solve_structured::<Planar, f64>(&m, &v, &surface).unwrap();
         assert_eq!(hit, closed);
@@ -398,13 +403,13 @@ fn planar_contacts_are_recognised_from_their_numbers() {
         unstable += usize::from(solve(&mobile, &v, &surface).unwrap().sensitivity.unstable_direction);
     }
     // Next to an axis a small diagonal entry has lost digits, and the couplings follow it.
-    assert!(unstable > 100 && renewed > 50 && straight > 560, "{unstable} {renewed} {straight}");
+    assert_eq!((unstable, renewed, straight), (523, 132, 598));
 }
 
 /// Rounding of the work (23) is no gain of energy: without friction and for e = 1 nothing is lost.
 #[test]
 fn rounding_is_no_gain() {
-    let mut random = Random(10);
+    let mut random = Random::new(10);
     for &law in Law::ALL {
         let mut positive = 0;
         for _ in 0..3000 {

@@ -10,22 +10,22 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 /// Contacts of a rank that slide with f < 0.
 fn painleve(seed: u64, rank: usize, count: usize) -> Vec<(ReducedMatrix<f64>, Vector2<f64>, Surface<f64>)> {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut found = Vec::new();
     while found.len() < count {
         let b =
-            Matrix3::from_fn(|_, j| if j < rank { (random.next() * 1024.0).round() / 1024.0 } else { 0.0 });
+            Matrix3::from_fn(|_, j| if j < rank { (random.number() * 1024.0).round() / 1024.0 } else { 0.0 });
         let m = ReducedMatrix::from(b * b.transpose());
         let v = if rank < 3 {
             // Without prescribed motion slip is in the range of the matrix; exactly so in doubles.
-            (b.column(0) * b[(0, 1)] - b.column(1) * b[(0, 0)]) * random.next().signum()
+            (b.column(0) * b[(0, 1)] - b.column(1) * b[(0, 0)]) * random.number().signum()
         } else {
-            Vector3::from_fn(|_, _| random.next())
+            Vector3::from_fn(|_, _| random.number())
         };
         let slip = Vector2::new(v.y, v.z);
         let surface = Surface {
-            mu: 0.2 + 3.0 * random.next().abs(),
-            e: [0.0, 1.0, 0.5 + 0.5 * random.next()][found.len() % 3],
+            mu: 0.2 + 3.0 * random.number().abs(),
+            e: [0.0, 1.0, 0.5 + 0.5 * random.number()][found.len() % 3],
             law: Law::ALL[(found.len() / 3) % Law::ALL.len()],
         };
         let f = rates(&m, surface.mu, slip.y.atan2(slip.x)).x;
@@ -39,7 +39,7 @@ fn painleve(seed: u64, rank: usize, count: usize) -> Vec<(ReducedMatrix<f64>, Ve
 /// Against Taylor's method in twice the digits, with the energy two ways.
 #[test]
 fn second_road_agrees() {
-    for (rank, expected) in [(2, [107, 13, 0]), (3, [120, 0, 0])] {
+    for (rank, expected) in [(2, [109, 11, 0]), (3, [120, 0, 0])] {
         let (mut count, mut wedged, mut left_out, mut worst) = (0, 0, 0, 0.0_f64);
         for (m, slip, surface) in painleve(31 + rank as u64, rank, 120) {
             let ours = impact_without_collision(&m, &slip, &surface);
@@ -60,7 +60,9 @@ fn second_road_agrees() {
             // How long v_n falls depends on f at the start, of which rounding leaves f over its terms.
             let f = rates(&m, surface.mu, slip.y.atan2(slip.x)).x;
             let terms = (m.nn + surface.mu * m.nt.hypot(m.ns)) / f.abs();
-            let bound = (32.0 * condition(&m) * 2.2e-16).max(1e-12) * terms.max(1.0);
+            // The work of little restitution is a difference: v_n2 is known to a multiple of eps / e.
+            let little = if surface.law == Law::Stronge && surface.e > 0.0 { 1.0 / surface.e } else { 1.0 };
+            let bound = (32.0 * condition(&m) * 2.2e-16).max(1e-12) * terms.max(1.0) * little;
             let error = road.error(&hit, &v) / bound;
             assert!(error <= 1.0, "{error} {hit:?} {road:?} {m:?} {slip:?} {surface:?}");
             assert_eq!(hit.compressions, road.compressions);
@@ -120,7 +122,7 @@ fn limit_of_collisions() {
         assert!(close <= 1e-2 * wide + 1e-10, "{wide:e} {close:e} {m:?} {slip:?} {surface:?}");
         count += 1;
     }
-    assert!(count > 40, "{count}");
+    assert_eq!(count, 78);
 }
 
 /// A uniform rod that slides on its tip at an angle of tangent t: f < 0 needs mu > (4 + t^2) / (3 t).
@@ -185,7 +187,7 @@ fn nothing_happens_without_painleve() {
 #[test]
 fn derivatives_are_those_of_differences() {
     use num_dual::Dual64;
-    let mut compared = 0;
+    let (mut compared, mut unresolved) = (0, 0);
     for (m, slip, surface) in painleve(77, 3, 150) {
         let Ok(d) = derivative_without_collision(&m, &slip, &surface) else { continue };
         assert_eq!(d.impact.impulse, impact_without_collision(&m, &slip, &surface).unwrap().impulse);
@@ -210,6 +212,11 @@ fn derivatives_are_those_of_differences() {
                 continue;
             }
             let column = d.impulse.column(j).into_owned();
+            // No step resolves an impulse that changes by all of itself within a few of them.
+            if 1e-4 * column.amax() > d.impact.impulse.amax() {
+                unresolved += 1;
+                continue;
+            }
             // Large steps truncate, small ones round: the best of four must agree.
             let differences = [1e-4, 1e-5, 1e-6, 1e-7].into_iter().filter_map(|h| {
                 let [a, b, c, e] = [moved(j, -2.0 * h)?, moved(j, -h)?, moved(j, h)?, moved(j, 2.0 * h)?];
@@ -228,9 +235,9 @@ fn derivatives_are_those_of_differences() {
                 &Surface { mu: carry(surface.mu, 9), e: carry(surface.e, 10), law: surface.law },
             );
             let dual = dual.unwrap().impulse.map(|x| x.eps);
-            assert!((column - dual).amax() <= 1e-10 * (1.0 + column.amax()), "{j}: {column} {dual}");
+            assert!((column - dual).amax() <= 1e-10 * size, "{j}: {column} {dual}");
             compared += 1;
         }
     }
-    assert!(compared > 500, "{compared}");
+    assert_eq!((compared, unresolved), (1376, 24));
 }

@@ -283,6 +283,7 @@ fn bisect(start: f64, end: f64, holds: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use hodograph_random::Random;
 
     /// W_nn of balls on a line that touch.
     fn balls(masses: &[f64]) -> DMatrix<f64> {
@@ -367,11 +368,8 @@ mod tests {
 
     #[test]
     fn random_chains_agree_with_springs_in_small_steps() {
-        let mut seed = 7_u64;
-        let mut random = |low: f64, high: f64| {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            low + (high - low) * (seed >> 11) as f64 / (1_u64 << 53) as f64
-        };
+        let mut generator = Random::new(7);
+        let mut random = |low: f64, high: f64| generator.between(low, high);
         for round in 0..12 {
             let balls_of = 3 + round % 3;
             let masses: Vec<f64> = (0..balls_of).map(|_| random(0.5, 2.0)).collect();

@@ -311,23 +311,13 @@ const ROUNDED: f64 = 1e-10;
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Numbers that look random, in [-1, 1].
-    fn numbers(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
-        move || {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-        }
-    }
+    use hodograph_random::Random;
 
     /// One body with contacts at random places, pressed down.
-    fn support(k: usize, random: &mut impl FnMut() -> f64) -> ClosedContacts {
+    fn support(k: usize, random: &mut Random) -> ClosedContacts {
         let mut partials = DMatrix::zeros(6, 3 * k);
         for i in 0..k {
-            let arm = Vector3::new(random(), random(), -0.3 + 0.1 * random());
+            let arm = Vector3::new(random.number(), random.number(), -0.3 + 0.1 * random.number());
             for (row, axis) in [Vector3::z(), Vector3::x(), Vector3::y()].into_iter().enumerate() {
                 let turn = arm.cross(&axis);
                 for c in 0..3 {
@@ -339,12 +329,12 @@ mod tests {
         let inverse = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, 1.0, 1.0, 9.0, 7.0, 5.0]));
         let response = &inverse * &partials;
         let load = DVector::from_vec(vec![
-            4.0 * random(),
-            4.0 * random(),
+            4.0 * random.number(),
+            4.0 * random.number(),
             -9.81,
-            2.0 * random(),
-            2.0 * random(),
-            2.0 * random(),
+            2.0 * random.number(),
+            2.0 * random.number(),
+            2.0 * random.number(),
         ]);
         ClosedContacts {
             contacts: (0..k).collect(),
@@ -364,13 +354,13 @@ mod tests {
     fn choices_obey_both_coefficients() {
         let mut seen = [0; 4];
         for seed in 1..150_u64 {
-            let mut random = numbers(seed);
+            let mut random = Random::new(seed);
             let k = 1 + seed as usize % 3;
             let support = support(k, &mut random);
             let friction: Vec<Friction> = (0..k)
                 .map(|_| {
-                    let slips = 0.2 + 0.15 * random();
-                    Friction { slips, sticks: slips + 0.2 + 0.15 * random() }
+                    let slips = 0.2 + 0.15 * random.number();
+                    Friction { slips, sticks: slips + 0.2 + 0.15 * random.number() }
                 })
                 .collect();
             let slips = vec![None; k];

@@ -5,16 +5,16 @@
 //! --nocapture`
 
 use crate::common::names;
-use crate::common::random::{Random, starts};
 use biped::Biped;
 use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
+use hodograph_random::{Random, starts};
 use hodograph_simulation::{Event, ImpactsAtOnce, Options, Progress, Simulation};
 
 hodograph::mechanism!("models/biped.mech");
 
 /// Two seconds from a random posture: how many events there were, or what went wrong.
 fn land(biped: &dyn Contacts<f64>, seed: u64) -> Result<usize, String> {
-    let mut random = Random(seed + 1);
+    let mut random = Random::new(seed + 1);
     let count = |kind| biped.count(kind);
     let (mut q, mut u) =
         (vec![0.0; count(ComponentKind::Coordinate)], vec![0.0; count(ComponentKind::Speed)]);
@@ -25,8 +25,8 @@ fn land(biped: &dyn Contacts<f64>, seed: u64) -> Result<usize, String> {
     }
     u.iter_mut().for_each(|u| *u += random.between(-0.3, 0.3));
     let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
-    let law = Law::ALL[random.place(Law::ALL.len())];
-    let e = if random.place(3) == 0 { 0.0 } else { random.between(0.0, 0.7) };
+    let law = Law::ALL[random.below(Law::ALL.len())];
+    let e = if random.below(3) == 0 { 0.0 } else { random.between(0.0, 0.7) };
     let surface = Surface { mu: random.between(0.05, 1.2), e, law };
     let options = Options {
         surface: Some(surface),

@@ -10,10 +10,10 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::time::Instant;
 
-use crate::common::random::Random;
 use crate::many::{Ended, Start, follow, model, name, surface, with_parameters};
 use hodograph::{ComponentKind, Contacts, Law, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
+use hodograph_random::Random;
 use hodograph_simulation::Options;
 
 /// A family of motions.
@@ -118,16 +118,16 @@ fn drop_one(
     others: &[InterpretedMechanism],
     seed: u64,
 ) -> (Ended, f64, String) {
-    let mut random = Random(seed);
-    let mechanism = if others.is_empty() { mechanism } else { &others[random.place(others.len())] };
+    let mut random = Random::new(seed);
+    let mechanism = if others.is_empty() { mechanism } else { &others[random.below(others.len())] };
     let tolerances = family.tolerances;
-    let tolerance = if tolerances.is_empty() { 1e-12 } else { tolerances[random.place(tolerances.len())] };
+    let tolerance = if tolerances.is_empty() { 1e-12 } else { tolerances[random.below(tolerances.len())] };
     let mut start = Start::of(mechanism);
     (family.throw)(mechanism, &mut start, &mut random);
-    let law = [Law::Newton, Law::Poisson, Law::Stronge][random.place(3)];
+    let law = [Law::Newton, Law::Poisson, Law::Stronge][random.below(3)];
     let (mu, e) = (random.between(0.05, family.most[0]), random.between(0.0, family.most[1]));
     // A third is perfectly plastic.
-    let e = if random.place(3) == 0 { 0.0 } else { e };
+    let e = if random.below(3) == 0 { 0.0 } else { e };
     let options =
         Options { relative_tolerance: tolerance, absolute_tolerance: tolerance, ..surface(mu, e, law) };
     let what = format!("mu {mu:.3} e {e:.3} {law:?} {tolerance:e}");
@@ -234,7 +234,7 @@ fn chains_of_ten() {
 #[test]
 fn dominoes() {
     let throw = |m: &InterpretedMechanism, start: &mut Start, random: &mut Random| {
-        let fall = 3 + random.place(6);
+        let fall = 3 + random.below(6);
         let apart = random.between(0.02, 0.05);
         for k in 1..=8 {
             let place = f64::from(k) * if k as usize > fall { 1.0 } else { apart };
@@ -255,7 +255,7 @@ const TOSSES: &str = include_str!("../../tests/data/tosses/elbow.csv");
 fn toss(m: &InterpretedMechanism, start: &mut Start, random: &mut Random) {
     let rows: Vec<&str> = TOSSES.lines().skip(1).collect();
     let row: Vec<f64> =
-        rows[random.place(rows.len())].split(',').skip(1).map(|number| number.parse().unwrap()).collect();
+        rows[random.below(rows.len())].split(',').skip(1).map(|number| number.parse().unwrap()).collect();
     let length = row[..4].iter().map(|part| part * part).sum::<f64>().sqrt();
     let names = "e0 e1 e2 e3 x y z th u4 u5 u6 u1 u2 u3 u7".split(' ');
     for (place, (name, value)) in names.zip(&row).enumerate() {

@@ -4,8 +4,8 @@
 //! --nocapture`
 
 use crate::common::names;
-use crate::common::random::{Random, starts};
 use hodograph::{CollisionError, ComponentKind, Contacts, ImpactError, Law, State, StateError, Surface};
+use hodograph_random::{Random, starts};
 use hodograph_simulation::{ErrorKind, Event, Options, Progress, Simulation, SimulationError};
 
 /// What became of the starts of a model.
@@ -58,9 +58,9 @@ fn open_start(model: &dyn Contacts<f64>, random: &mut Random) -> (Vec<f64>, Vec<
 /// wall, which friction forbids, and sticking it cannot move away from the wall (mu_c = 1, and the reduced
 /// matrix of the wall is singular in that direction).
 fn run(model: &dyn Contacts<f64>, seed: u64, events: &mut usize) -> End {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let (q, u) = open_start(model, &mut random);
-    let law = Law::ALL[random.place(Law::ALL.len())];
+    let law = Law::ALL[random.below(Law::ALL.len())];
     let surface = Surface { mu: random.between(0.0, 1.2), e: random.between(0.0, 0.9), law };
     let options = Options { surface: Some(surface), ..Options::default() };
     let inputs = vec![0.0; model.count(ComponentKind::Input)];

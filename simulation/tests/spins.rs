@@ -2,9 +2,9 @@
 //!
 //! `HODOGRAPH_SPINS=100000 cargo test --release -p hodograph-simulation --test all spins:: -- --nocapture`
 
-use crate::common::random::Random;
 use crate::many::{Start, follow, model, surface};
 use hodograph::Law;
+use hodograph_random::Random;
 
 /// A rod of length 1 at angle q + spin t, whose pivot approaches a wall by h - v t.
 struct Spin {
@@ -16,8 +16,8 @@ struct Spin {
 
 impl Spin {
     fn random(seed: u64) -> Self {
-        let mut random = Random(seed);
-        let sign = if random.place(2) == 0 { 1.0 } else { -1.0 };
+        let mut random = Random::new(seed);
+        let sign = if random.below(2) == 0 { 1.0 } else { -1.0 };
         // As many slow spins as fast ones.
         let spin = sign * 15.0 * 30.0_f64.powf(random.between(0.0, 1.0));
         let speed = 10.0_f64.powf(random.between(-0.8, 0.2));

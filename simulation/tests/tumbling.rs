@@ -3,9 +3,9 @@
 //! All 200 starts: `HODOGRAPH_STARTS=200 cargo test --release -p hodograph-simulation --test all tumbling:: --
 //! --nocapture`
 
-use crate::common::random::{Random, starts};
 use crate::common::{names, start};
 use hodograph::{ComponentKind, Contacts, Law, Mechanism, State, Surface};
+use hodograph_random::{Random, starts};
 use hodograph_simulation::{Event, EventKind, Options, Progress};
 use tumbling_box::TumblingBox;
 
@@ -64,12 +64,12 @@ fn corners_that_rattle_while_they_slide_keep_the_account() {
 /// One box, from its fall to its rest.
 fn tumble(seed: u64) -> Result<Figures, String> {
     let body = TumblingBox::<f64>::default();
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let mut q = vec![0.0, 0.0, random.between(0.4, 1.0)];
     q.extend(random.rotation());
     let u: Vec<f64> =
         (0..6).map(|i| if i < 3 { random.between(-2.0, 2.0) } else { random.between(-8.0, 8.0) }).collect();
-    let law = [Law::Stronge, Law::Poisson][random.place(2)];
+    let law = [Law::Stronge, Law::Poisson][random.below(2)];
     let surface = Surface { mu: random.between(0.1, 1.0), e: random.between(0.0, 0.7), law };
     let mut simulation = start(&body, &q, &u, Options { surface: Some(surface), ..Options::default() });
     let before = simulation.energy().unwrap().total().unwrap();

@@ -219,7 +219,7 @@ fn every_state_of_every_contact_has_an_answer_or_a_reason() {
     let mut met = Met::default();
     for module in &modules {
         let model = Model::load(module.name());
-        let mut random = Random::new(module.name());
+        let mut random = Random::named(module.name());
         for sample in samples(&model, places) {
             let m = module.by_slices(&sample.inputs);
             for contact in 0..m.count(ComponentKind::Contact) {

@@ -57,7 +57,7 @@ impl Met {
 fn a_ball_rolls_on_a_contact() {
     let (rolling, free) =
         (ball_on_turntable::BallOnTurntable::<f64>::default(), ball_on_contact::BallOnContact::default());
-    let mut random = Random::new("ball");
+    let mut random = Random::named("ball");
     let mut met = Met::default();
     for _ in 0..400 {
         let time = 3.0 * random.number();
@@ -90,7 +90,7 @@ fn a_ball_rolls_on_a_contact() {
 fn a_disc_rolls_on_a_contact() {
     let (rolling, free) =
         (rolling_disc::RollingDisc::<f64>::default(), disc_on_contact::DiscOnContact::default());
-    let mut random = Random::new("disc");
+    let mut random = Random::named("disc");
     let mut met = Met::default();
     for _ in 0..400 {
         let [q1, q3, q4, q5] = [(); 4].map(|()| 3.0 * random.number());
@@ -120,7 +120,7 @@ fn a_disc_rolls_on_a_contact() {
 fn a_torus_rolls_on_a_contact() {
     let (rolling, free) =
         (rolling_torus::RollingTorus::<f64>::default(), torus_on_contact::TorusOnContact::default());
-    let mut random = Random::new("torus");
+    let mut random = Random::named("torus");
     let mut met = Met::default();
     for _ in 0..400 {
         let [q1, q3, q4, q5] = [(); 4].map(|()| 3.0 * random.number());
@@ -151,7 +151,7 @@ fn a_rattleback_rolls_on_a_contact() {
     let (rolling, free) =
         (rattleback::Rattleback::<f64>::default(), rattleback_on_contact::RattlebackOnContact::default());
     let parameters = rolling.parameters();
-    let mut random = Random::new("rattleback");
+    let mut random = Random::named("rattleback");
     let mut met = Met::default();
     for _ in 0..400 {
         let [q1, q4, q5] = [(); 3].map(|()| 3.0 * random.number());
@@ -187,7 +187,7 @@ fn a_rattleback_rolls_on_a_contact() {
 #[test]
 fn the_force_is_as_generic_as_the_module() {
     use num_dual::Dual64;
-    let mut random = Random::new("duals");
+    let mut random = Random::named("duals");
     let mut modes = [0; 4];
     for case in 0..300 {
         let numbers: [f64; 6] = std::array::from_fn(|_| random.number());

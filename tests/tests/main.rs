@@ -35,4 +35,3 @@ mod rounding;
 mod saltation;
 mod second_road;
 mod specialised;
-mod ui;

@@ -24,7 +24,7 @@ impl Judge {
 fn states_of_mechanisms() {
     let mut faults = Vec::new();
     let references = references();
-    assert!(references.len() >= 22);
+    assert_eq!(references.len(), 22);
     for reference in &references {
         let model = Model::load(&reference.name);
         for (index, state) in reference.states().iter().enumerate() {

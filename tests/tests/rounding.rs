@@ -16,7 +16,7 @@ use precise::{Precise, evaluate};
 fn error(name: &str) -> (f64, f64) {
     const STATES: usize = 500;
     let model = Model::load(name);
-    let mut random = Random::new(name);
+    let mut random = Random::named(name);
     let (mut worst, mut mean) = (0.0f64, 0.0f64);
     for _ in 0..STATES {
         let mut list = |count: usize| (0..count).map(|_| random.number()).collect::<Vec<f64>>();

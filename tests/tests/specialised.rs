@@ -21,7 +21,7 @@ macro_rules! collisions {
             fn $module() {
                 use $module::{$machine, Coordinates, Speeds};
                 let machine = $machine::<f64>::default();
-                let mut random = Random::new(stringify!($module));
+                let mut random = Random::named(stringify!($module));
                 let (mut hits, mut refused, mut stopped) = (0, 0, 0);
                 for _ in 0..300 {
                     let mut q = <[f64; _]>::from(Coordinates::<f64>::default());

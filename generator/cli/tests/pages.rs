@@ -95,7 +95,7 @@ fn a_spoiled_page_is_noticed_in_a_browser() {
     }
 }
 
-/// Run by `cargo test --workspace by_latex -- --ignored`.
+/// Run by `cargo test --workspace --tests by_latex -- --ignored`.
 #[test]
 #[ignore = "needs pdflatex"]
 fn equations_are_set_by_latex() {

@@ -11,6 +11,7 @@
 //! A mistake is a [`diagnostics::Diagnostic`]; `rendering` shows it with its line, `explanations` explains its
 //! code. `page` is what all written pages have in common.
 
+pub mod arbitrary;
 pub mod arithmetic;
 pub mod check;
 pub mod diagnostics;

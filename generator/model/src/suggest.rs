@@ -2,9 +2,8 @@
 
 /// The candidate nearest to `word`, if one is near enough to be meant.
 pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    // long names are no typing mistakes of each other, and comparing them is slow
-    let letters: Vec<char> = word.chars().take(64).collect();
-    let allowed = match letters.len() {
+    let letters = word.chars().take(LETTERS).count();
+    let allowed = match letters {
         0 => return None,
         1..=2 => 1,
         n => ((n + 1) / 3).max(1),
@@ -13,15 +12,13 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
         .take(5_000)
         .filter(|candidate| *candidate != word)
         .filter_map(|candidate| {
-            let other: Vec<char> = candidate.chars().take(65).collect();
-            if letters.len().abs_diff(other.len()) > allowed {
+            let others = candidate.chars().take(LETTERS + 1).count();
+            if letters.abs_diff(others) > allowed {
                 return None;
             }
-            let same_but_for_case = candidate.eq_ignore_ascii_case(word);
-            let distance = if same_but_for_case { 0 } else { between(&letters, &other) };
+            let distance = if candidate.eq_ignore_ascii_case(word) { 0 } else { distance(word, candidate) };
             // two names of one letter have nothing in common
-            (distance <= allowed && distance < letters.len().max(other.len()))
-                .then_some((distance, candidate))
+            (distance <= allowed && distance < letters.max(others)).then_some((distance, candidate))
         })
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, candidate)| candidate)
@@ -30,27 +27,16 @@ pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Opt
 /// The distance of two words by optimal string alignment: how many letters must be put in, taken out,
 /// exchanged with their neighbour or replaced. At most 64 letters of each are looked at.
 pub fn distance(a: &str, b: &str) -> usize {
-    let letters = |word: &str| word.chars().take(64).collect::<Vec<char>>();
-    between(&letters(a), &letters(b))
+    strsim::osa_distance(beginning(a), beginning(b))
 }
 
-fn between(a: &[char], b: &[char]) -> usize {
-    let mut before: Vec<usize> = Vec::new();
-    let mut last: Vec<usize> = (0..=b.len()).collect();
-    for i in 0..a.len() {
-        let mut row = vec![i + 1];
-        for j in 0..b.len() {
-            let replaced = last[j] + usize::from(a[i] != b[j]);
-            let mut best = replaced.min(last[j + 1] + 1).min(row[j] + 1);
-            if i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j] {
-                best = best.min(before[j - 1] + 1);
-            }
-            row.push(best);
-        }
-        before = std::mem::replace(&mut last, row);
-    }
-    last[b.len()]
+/// The first letters of a word: long names are no typing mistakes of each other, and comparing them is slow.
+fn beginning(word: &str) -> &str {
+    word.char_indices().nth(LETTERS).map_or(word, |(end, _)| &word[..end])
 }
+
+/// How many letters are looked at.
+const LETTERS: usize = 64;
 
 #[cfg(test)]
 mod tests {

@@ -1,7 +1,5 @@
 //! Planar bodies written by hand, for tests of the simulation.
 
-pub mod random;
-
 use hodograph::generated::{
     Contact, Resolved, closed_contact, kept_contact, resolve, resolve_without_collision, slip_noise,
 };

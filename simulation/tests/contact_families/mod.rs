@@ -1,5 +1,6 @@
 //! Random problems of several contacts, in four families.
 
+use hodograph_random::Random;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
 /// W, beta, mu and the directions of slip.
@@ -13,41 +14,18 @@ pub struct Contacts {
 /// The names of the families.
 pub const FAMILIES: [&str; 4] = ["planted", "body", "flat", "stack"];
 
-/// Numbers that look random (splitmix).
-pub struct Random(pub u64);
+fn vector(random: &mut Random) -> Vector3<f64> {
+    Vector3::new(random.normal(), random.normal(), random.normal())
+}
 
-impl Random {
-    /// Between 0 and 1.
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Nearly normal.
-    pub fn normal(&mut self) -> f64 {
-        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (std::f64::consts::TAU * self.unit()).cos()
-    }
-
-    fn vector(&mut self) -> Vector3<f64> {
-        Vector3::new(self.normal(), self.normal(), self.normal())
-    }
-
-    fn direction(&mut self) -> Vector2<f64> {
-        let angle = std::f64::consts::TAU * self.unit();
-        Vector2::new(angle.cos(), angle.sin())
-    }
+fn direction(random: &mut Random) -> Vector2<f64> {
+    let angle = std::f64::consts::TAU * random.unit();
+    Vector2::new(angle.cos(), angle.sin())
 }
 
 /// A problem of a family with about `k` contacts (a stack has a multiple of four).
 pub fn problem(family: &str, k: usize, seed: u64) -> Contacts {
-    let mut random = Random(seed.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ (k as u64) << 40);
+    let mut random = Random::new(seed.wrapping_mul(0x5851_f42d_4c95_7f2d) ^ (k as u64) << 40);
     match family {
         "planted" => planted(k, &mut random),
         "body" => body(k, true, &mut random),
@@ -66,7 +44,7 @@ fn planted(k: usize, random: &mut Random) -> Contacts {
     let mut slip = Vec::new();
     let (mut force, mut acceleration) = (DVector::zeros(3 * k), DVector::zeros(3 * k));
     for i in 0..k {
-        let (friction, d) = (random.between(0.05, 0.6), random.direction());
+        let (friction, d) = (random.between(0.05, 0.6), direction(random));
         let normal = random.between(0.1, 2.0);
         let kind = random.unit();
         mu.push(friction);
@@ -107,7 +85,7 @@ fn body(k: usize, tilted: bool, random: &mut Random) -> Contacts {
     }
     let masses = [1.0, 1.0, 1.0, 0.3, 0.4, 0.5];
     let load = Vector3::new(random.normal(), random.normal(), -4.0);
-    let moment = random.vector() * 0.5;
+    let moment = vector(random) * 0.5;
     let free = [load.x, load.y, load.z, moment.x / 0.3, moment.y / 0.4, moment.z / 0.5];
     assembled(&partials, &masses, &free, mu)
 }
@@ -135,8 +113,8 @@ fn stack(boxes: usize, random: &mut Random) -> Contacts {
         }
         let mass = random.between(0.5, 2.0);
         masses.extend([mass, mass, mass, mass / 6.0, mass / 6.0, mass / 6.0]);
-        let push = random.vector() * if random.unit() < 0.3 { 3.0 } else { 0.3 };
-        let turn = random.vector() * 0.3;
+        let push = vector(random) * if random.unit() < 0.3 { 3.0 } else { 0.3 };
+        let turn = vector(random) * 0.3;
         free.extend([push.x, push.y, -9.81, turn.x, turn.y, turn.z]);
     }
     assembled(&partials, &masses, &free, mu)

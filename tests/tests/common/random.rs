@@ -4,26 +4,9 @@ use hodograph_generator::model::mechanism::Orientation;
 use hodograph_generator::numeric::{self, Evaluation, State};
 use hodograph_generator::program::Inputs;
 
+pub use hodograph_random::Random;
+
 use super::Model;
-
-/// A small generator of random numbers (SplitMix64).
-pub struct Random(u64);
-
-impl Random {
-    /// A generator that starts from a name.
-    pub fn new(name: &str) -> Self {
-        Random(name.bytes().fold(7, |seed, byte| seed.wrapping_mul(31) + u64::from(byte)))
-    }
-
-    /// A number between -1 and 1.
-    pub fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
 
 /// A state at which both roads are defined, with what the numeric one says of it.
 pub struct Sample {
@@ -39,7 +22,7 @@ pub struct Sample {
 /// defaults.
 pub fn samples(model: &Model, count: usize) -> Vec<Sample> {
     let m = &model.mechanism;
-    let mut random = Random::new(&model.name);
+    let mut random = Random::named(&model.name);
     let mut samples = Vec::new();
     for _ in 0..20 * count {
         if samples.len() == count {

@@ -1,5 +1,6 @@
 //! Reads and checks the attributes of a robot description; each mistake is reported at its place.
 
+use nalgebra::Vector3;
 use roxmltree::{Attribute, Node};
 
 use super::lines::Lines;
@@ -159,4 +160,33 @@ fn titled(node: Node) -> String {
 /// Whether it is an element of this kind.
 pub fn is(node: &Node, kind: &str) -> bool {
     node.is_element() && node.tag_name().name() == kind
+}
+
+/// The numbers of an attribute, all of them finite.
+///
+/// # Errors
+///
+/// What is wrong, as the end of a sentence about the element.
+pub fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64; N], String> {
+    let text = element.and_then(|element| element.attribute(name));
+    let text = text.ok_or_else(|| format!("it has no attribute `{name}`"))?;
+    let read: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+    let read = read.filter(|list| list.iter().all(|number| number.is_finite()));
+    let read: Option<[f64; N]> = read.and_then(|list| list.try_into().ok());
+    let wanted = if N == 1 { "a finite number" } else { "three finite numbers" };
+    read.ok_or_else(|| format!("`{name}=\"{text}\"` is not {wanted}"))
+}
+
+/// The `<origin>` of an element: its place, and roll, pitch and yaw of its axes; zero where nothing is said.
+///
+/// # Errors
+///
+/// As [`numbers`].
+pub fn pose(element: Node) -> Result<(Vector3<f64>, Vector3<f64>), String> {
+    let origin = element.children().find(|part| is(part, "origin"));
+    let three = |name: &str| match origin.and_then(|origin| origin.attribute(name)) {
+        None => Ok(Vector3::zeros()),
+        Some(_) => numbers(origin, name).map(Vector3::from),
+    };
+    Ok((three("xyz")?, three("rpy")?))
 }

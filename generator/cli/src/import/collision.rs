@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use roxmltree::Node;
 
-use super::attributes::is;
+use super::attributes::{is, numbers, pose};
 
 /// What a shape of a model can be made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,12 +44,7 @@ pub fn read(link: Node, at: impl Fn(Node) -> String, notes: &mut Vec<String>) ->
 fn collision(element: Node) -> Result<Collision, String> {
     let geometry = element.children().find(|part| is(part, "geometry")).ok_or("it has no <geometry>")?;
     let shape = geometry.children().find(Node::is_element).ok_or("its <geometry> is empty")?;
-    let origin = element.children().find(|part| is(part, "origin"));
-    let three = |name: &str| match origin.and_then(|origin| origin.attribute(name)) {
-        None => Ok([0.0; 3]),
-        Some(_) => numbers(origin, name),
-    };
-    let (offset, rpy) = (Vector3::from(three("xyz")?), Vector3::from(three("rpy")?));
+    let (offset, rpy) = pose(element)?;
     let length = |name: &str| numbers::<1>(Some(shape), name).and_then(|[length]| positive(name, length));
     let solid = match shape.tag_name().name() {
         "box" => {
@@ -63,16 +58,6 @@ fn collision(element: Node) -> Result<Collision, String> {
         other => return Err(format!("<{other}> is no shape of a model")),
     };
     Ok(Collision { solid, offset, rpy })
-}
-
-fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64; N], String> {
-    let text = element.and_then(|element| element.attribute(name));
-    let text = text.ok_or_else(|| format!("it has no attribute `{name}`"))?;
-    let read: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
-    let read = read.filter(|list| list.iter().all(|number| number.is_finite()));
-    let read: Option<[f64; N]> = read.and_then(|list| list.try_into().ok());
-    let wanted = if N == 1 { "a finite number" } else { "three finite numbers" };
-    read.ok_or_else(|| format!("`{name}=\"{text}\"` is not {wanted}"))
 }
 
 fn positive(name: &str, length: f64) -> Result<f64, String> {

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
+use super::description::Inertial;
 use super::document::Robot;
 use super::tree::{Motion, Tree};
 
@@ -126,8 +127,7 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
             match groups[group].ground {
                 true => notes.push(format!(
                     "{}: ignored the inertia of link `{}`, which is fixed to the ground",
-                    document.link(link.index),
-                    link.name
+                    document.links[link.index].at, link.name
                 )),
                 false => parts[group].push(carried(&part, &pose)),
             }
@@ -152,7 +152,7 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
         if let Some(fault) = group.properties.as_ref().and_then(MassProperties::fault) {
             let link = &tree.links[group.link];
             let with = if group.fixed.is_empty() { "" } else { " with what is fixed to it" };
-            problems.push(format!("{}: link `{}`{with}: {fault}", document.link(link.index), link.name));
+            problems.push(format!("{}: link `{}`{with}: {fault}", document.links[link.index].at, link.name));
         }
     }
     for (index, group) in groups.iter().enumerate() {
@@ -160,7 +160,7 @@ pub fn combined(tree: &Tree, document: &Robot, notes: &mut Vec<String>) -> Resul
             continue;
         }
         let link = &tree.links[group.link];
-        let place = document.link(link.index);
+        let place = &document.links[link.index].at;
         let carries_more = tree.links.iter().enumerate().any(|(other, link)| {
             link.parent.is_some_and(|parent| of_link[parent] == index) && of_link[other] != index
         });
@@ -188,15 +188,9 @@ fn read_inertial(
     problems: &mut Vec<String>,
 ) -> Option<MassProperties> {
     let link = &tree.links[here];
-    if !document.has_inertial(link.index) {
-        return None;
-    }
-    let place = document.link(link.index);
-    let given = &document.robot.links[link.index].inertial;
-    let i = &given.inertia;
-    let inertia = Matrix3::new(i.ixx, i.ixy, i.ixz, i.ixy, i.iyy, i.iyz, i.ixz, i.iyz, i.izz);
-    let (centre, rpy) = (Vector3::from(given.origin.xyz.0), Vector3::from(given.origin.rpy.0));
-    let mass = given.mass.value;
+    let place = &document.links[link.index].at;
+    let Inertial { mass, centre, rpy, inertia } = document.links[link.index].inertial.as_ref()?;
+    let (mass, centre) = (*mass, *centre);
     let mut problem = |message: String| {
         problems.push(format!("{place}: link `{}`: {message}", link.name));
         None
@@ -208,7 +202,7 @@ fn read_inertial(
         notes.push(format!("{place}: link `{}` has mass 0: taken as massless", link.name));
         return None;
     }
-    let turn = turned(&rpy);
+    let turn = turned(rpy);
     Some(MassProperties { mass, centre, inertia: symmetric(turn * inertia * turn.transpose()) })
 }
 

@@ -1,8 +1,8 @@
 //! Converts a robot description (URDF) to the text of a model.
 //!
 //! ```text
-//! URDF -> document  the XML, places of its elements, what is not used
-//!               and its attributes, checked, and the geometry of collisions
+//! URDF -> document  the XML: its attributes, checked, its links and joints with their places, the
+//!                   geometry of collisions, and what is not used
 //!      -> tree      links and joints as a tree, checked
 //!      -> bodies    links that are fixed to a moving link become part of it
 //!      -> text      the model
@@ -10,6 +10,7 @@
 
 mod attributes;
 mod collision;
+mod description;
 mod document;
 mod fixed_links;
 mod lines;

@@ -68,7 +68,7 @@ pub fn write(
         called: Vec::new(),
         bodies: vec![None; groups.groups.len()],
     };
-    let name = writer.names.give(&mechanism(&document.robot.name));
+    let name = writer.names.give(&mechanism(&document.name));
     let gravity = writer.parameter("g", "m/s^2", 9.80665, "standard gravity, towards -N.z");
     writer.out.loads.push(format!("gravity: -{gravity}*N.z;"));
     // Coordinates, speeds and inputs first: their names are promised, others give way.
@@ -76,7 +76,7 @@ pub fn write(
     for (link, moves) in motions.iter().enumerate() {
         writer.place(link, moves);
         writer.body(link);
-        document.collisions(link).iter().for_each(|collision| writer.shape(link, collision));
+        document.links[link].collisions.iter().for_each(|collision| writer.shape(link, collision));
     }
     let mut problems = Vec::new();
     for contact in &options.contacts {
@@ -413,7 +413,7 @@ impl Writer<'_> {
         let out = self.out;
         let mut text = format!(
             "//! {}, imported from {}.\n//!\n//! Axes, origins and inertias of links and joints are those of the URDF; gravity acts along -N.z.\n",
-            document.robot.name.replace(['\n', '\r'], " "),
+            document.name.replace(['\n', '\r'], " "),
             document.file.replace(['\n', '\r'], " ")
         );
         text.push_str(&format!("mechanism {name};\n"));

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use nalgebra::Vector3;
-use urdf_rs::JointType;
 
+use super::description;
 use super::document::Robot;
 
 /// How a joint lets its child move.
@@ -88,17 +88,16 @@ impl Tree {
 ///
 /// All that keeps it from being one, and all joints that cannot be imported.
 pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<String>> {
-    let robot = &document.robot;
     let mut problems = Vec::new();
     let known = links(document, &mut problems);
     let mut carried_by: HashMap<usize, usize> = HashMap::new();
-    let mut carries: Vec<Vec<usize>> = vec![Vec::new(); robot.links.len()];
+    let mut carries: Vec<Vec<usize>> = vec![Vec::new(); document.links.len()];
     let mut joints = Vec::new();
     let mut names: HashMap<&str, usize> = HashMap::new();
-    for (index, joint) in robot.joints.iter().enumerate() {
-        let at = document.joint(index);
+    for (index, joint) in document.joints.iter().enumerate() {
+        let at = &joint.at;
         if let Some(first) = names.insert(&joint.name, index) {
-            let first = document.joint(first);
+            let first = &document.joints[first].at;
             problems
                 .push(format!("{at}: a second joint `{}`; the first is at {first}: rename one", joint.name));
         }
@@ -114,16 +113,16 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
             }
             found
         };
-        let (parent, child) = (end("parent", &joint.parent.link), end("child", &joint.child.link));
+        let (parent, child) = (end("parent", &joint.parent), end("child", &joint.child));
         let (Some(parent), Some(child)) = (parent, child) else { continue };
         if let Some(&other) = carried_by.get(&child) {
             problems.push(format!(
                 "{at}: joint `{}` carries link `{}`, which joint `{}` ({}) carries already: a URDF is a tree, so cut \
                  the loop here and close it by constraints in the model",
                 joint.name,
-                joint.child.link,
-                robot.joints[other].name,
-                document.joint(other)
+                joint.child,
+                document.joints[other].name,
+                document.joints[other].at
             ));
             continue;
         }
@@ -143,40 +142,38 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
         damping: 0.0,
     };
     let mut links = Vec::new();
-    let mut reached = vec![false; robot.links.len()];
+    let mut reached = vec![false; document.links.len()];
     let mut open = vec![(root, None, ground)];
     while let Some((link, parent, joint)) = open.pop() {
         reached[link] = true;
         let here = links.len();
-        links.push(Link { name: robot.links[link].name.clone(), index: link, parent, joint });
+        links.push(Link { name: document.links[link].name.clone(), index: link, parent, joint });
         for &index in carries[link].iter().rev() {
-            let child = known[robot.joints[index].child.link.as_str()];
+            let child = known[document.joints[index].child.as_str()];
             open.push((child, Some(here), joints[index].clone()));
         }
     }
     if let Some(lost) = reached.iter().position(|reached| !reached) {
-        let name = &robot.links[lost].name;
+        let name = &document.links[lost].name;
         return Err(vec![format!(
             "{}: link `{name}` is part of a cycle of joints that the root `{}` does not reach: cut the cycle",
-            document.link(lost),
-            robot.links[root].name
+            document.links[lost].at, document.links[root].name
         )]);
     }
-    Ok(Tree { links, root_has_inertial: document.has_inertial(root) })
+    Ok(Tree { links, root_has_inertial: document.links[root].inertial.is_some() })
 }
 
 /// The links by their names, which must differ.
 fn links<'a>(document: &'a Robot, problems: &mut Vec<String>) -> HashMap<&'a str, usize> {
-    let robot = &document.robot;
     let mut known: HashMap<&str, usize> = HashMap::new();
-    for (index, link) in robot.links.iter().enumerate() {
+    for (index, link) in document.links.iter().enumerate() {
         if let Some(first) = known.insert(&link.name, index) {
-            let (at, first) = (document.link(index), document.link(first));
+            let (at, first) = (&link.at, &document.links[first].at);
             problems
                 .push(format!("{at}: a second link `{}`; the first is at {first}: rename one", link.name));
         }
     }
-    if robot.links.is_empty() {
+    if document.links.is_empty() {
         problems.push(format!("{}: there is no link", document.file));
     }
     known
@@ -184,56 +181,46 @@ fn links<'a>(document: &'a Robot, problems: &mut Vec<String>) -> HashMap<&'a str
 
 /// The one link that hangs on no joint.
 fn root(document: &Robot, carried_by: &HashMap<usize, usize>) -> Result<usize, Vec<String>> {
-    let robot = &document.robot;
-    let roots: Vec<usize> = (0..robot.links.len()).filter(|link| !carried_by.contains_key(link)).collect();
+    let roots: Vec<usize> = (0..document.links.len()).filter(|link| !carried_by.contains_key(link)).collect();
     match roots[..] {
         [root] => Ok(root),
         [] => Err(vec![format!(
             "{}: the links form a cycle (every one is carried by a joint): one link must be the root",
-            document.link(0)
+            document.links[0].at
         )]),
         [first, second, ..] => Err(vec![format!(
             "{}: link `{}` hangs on no joint, nor does `{}` ({}): connect all but one",
-            document.link(second),
-            robot.links[second].name,
-            robot.links[first].name,
-            document.link(first)
+            document.links[second].at,
+            document.links[second].name,
+            document.links[first].name,
+            document.links[first].at
         )]),
     }
 }
 
 fn read_joint(
-    joint: &urdf_rs::Joint,
+    joint: &description::Joint,
     at: &str,
     notes: &mut Vec<String>,
     problems: &mut Vec<String>,
 ) -> Joint {
     let name = &joint.name;
     let mut problem = |message: String| problems.push(format!("{at}: joint `{name}`: {message}"));
-    let motion = match joint.joint_type {
-        JointType::Fixed => Motion::Fixed,
-        JointType::Revolute | JointType::Continuous => Motion::Turn,
-        JointType::Prismatic => Motion::Slide,
-        JointType::Planar => Motion::Planar,
-        JointType::Floating => Motion::Free,
-        JointType::Spherical => {
-            problem(
-                "`spherical` is no joint type of URDF: write three revolute joints, or a floating one"
-                    .to_owned(),
-            );
-            Motion::Fixed
-        }
+    let motion = match joint.kind.as_str() {
+        "revolute" | "continuous" => Motion::Turn,
+        "prismatic" => Motion::Slide,
+        "planar" => Motion::Planar,
+        "floating" => Motion::Free,
+        // `attributes` has refused all others but "fixed"
+        _ => Motion::Fixed,
     };
-    if let Some(mimic) = &joint.mimic {
+    if let Some(mimicked) = &joint.mimics {
         problem(format!(
-            "it mimics `{}`, which cannot be imported: make it fixed or free, and write the relation as a constraint",
-            mimic.joint
+            "it mimics `{mimicked}`, which cannot be imported: make it fixed or free, and write the relation as a constraint"
         ));
     }
-    let vector = |three: &urdf_rs::Vec3| Vector3::from(three.0);
-    let (offset, rpy) = (vector(&joint.origin.xyz), vector(&joint.origin.rpy));
-    let mut damping = joint.dynamics.as_ref().map_or(0.0, |dynamics| dynamics.damping);
-    if joint.dynamics.as_ref().is_some_and(|dynamics| dynamics.friction != 0.0) {
+    let description::Joint { offset, rpy, mut axis, mut damping, .. } = *joint;
+    if joint.friction != 0.0 {
         notes.push(format!("{at}: ignored the friction of joint `{name}`: only its damping is linear"));
     }
     if damping < 0.0 {
@@ -255,13 +242,12 @@ fn read_joint(
             ));
         }
     }
-    let mut axis = vector(&joint.axis.xyz);
     if matches!(motion, Motion::Turn | Motion::Slide | Motion::Planar) {
         let length = axis.norm();
         // Six digits are what exporters write; anything further off is another axis or a mistake.
         let is_unit = (length - 1.0).abs() <= 1e-5;
         if !is_unit {
-            let [x, y, z] = joint.axis.xyz.0;
+            let [x, y, z] = joint.axis.into();
             let unit = axis / length;
             let advice = match length > 0.0 && length.is_finite() {
                 true => format!("for this direction write `{} {} {}`", unit.x, unit.y, unit.z),

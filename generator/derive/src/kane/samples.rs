@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use hodograph_model::arbitrary::Arbitrary;
 use hodograph_model::model::mechanism::{Mechanism, Orientation, Variable};
 use hodograph_program::program::Inputs;
 
@@ -18,14 +19,8 @@ pub fn samples(mechanism: &Mechanism) -> Vec<Inputs> {
 }
 
 fn sample(mechanism: &Mechanism, seed: u64) -> Inputs {
-    let mut bits = 0xd1b5_4a32_d192_ed03_u64.wrapping_mul(2 * seed + 1);
-    // from -1 to 1
-    let mut next = || {
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
+    let mut arbitrary = Arbitrary::after(0xd1b5_4a32_d192_ed03_u64.wrapping_mul(2 * seed + 1));
+    let mut next = || arbitrary.number();
     let half_turn = |unit: &str| HALF_TURNS.iter().find(|(name, _)| *name == unit).map(|(_, size)| *size);
     let parameters =
         mechanism.parameters.iter().map(|parameter| match parameter.value.filter(|_| parameter.fixed) {

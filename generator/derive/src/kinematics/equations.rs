@@ -13,6 +13,7 @@ use super::axes::{AxesId, AxesTree};
 use super::linear_forms::{LinearScalar, LinearVector};
 use super::partial_velocities::Along;
 use crate::algebra::{Expr, Intermediates, Sample};
+use hodograph_model::arbitrary::Arbitrary;
 use hodograph_model::model::mechanism::{
     DefinitionValue, EquationSides, Mechanism, Orientation, PointId, Vector,
 };
@@ -190,13 +191,8 @@ pub(super) fn samples(mechanism: &Mechanism) -> Vec<Sample> {
 }
 
 fn sample(mechanism: &Mechanism, seed: u64) -> Sample {
-    let mut bits = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * seed + 1);
-    let mut next = || {
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        (bits >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut arbitrary = Arbitrary::after(0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * seed + 1));
+    let mut next = || arbitrary.unit();
     let mut inputs = HashMap::from([(Input::Time, next())]);
     for (i, parameter) in mechanism.parameters.iter().enumerate() {
         inputs.insert(Input::Parameter(i as u32), parameter.typical * (0.5 + next()));

@@ -1,6 +1,7 @@
 //! The states at which the checks evaluate a mechanism: arbitrary ones near the initial values, and some all
 //! over the ranges of the coordinates.
 
+use crate::arbitrary::Arbitrary;
 use crate::model::mechanism::{Mechanism, Orientation};
 use crate::numeric::{Evaluation, Evaluator, State, Views, hyper_dual::HyperDual};
 
@@ -38,13 +39,8 @@ pub fn far(m: &Mechanism) -> Vec<State> {
 
 fn state(m: &Mechanism, distance: f64, seed: u64) -> State {
     let mut state = State::of(m);
-    let mut bits = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(seed + 1);
-    let mut next = || {
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        (bits >> 11) as f64 / (1_u64 << 53) as f64 * 2.0 - 1.0
-    };
+    let mut arbitrary = Arbitrary::after(0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(seed + 1));
+    let mut next = || arbitrary.number();
     for (value, parameter) in state.parameters.iter_mut().zip(&m.parameters) {
         if parameter.value.is_none() {
             *value = 1.0 + 0.5 * next();

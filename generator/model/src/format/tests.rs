@@ -132,11 +132,7 @@ fn derived_models_are_laid_out() {
 /// A model with other blanks, line breaks and comments between its tokens.
 fn in_disorder(text: &str, seed: u64) -> String {
     let tokens = lexer::tokens(text, MAX_TOKENS);
-    let mut state = seed | 1;
-    let mut next = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize
-    };
+    let mut random = hodograph_random::Random::new(seed);
     let blanks =
         [" ", "  ", "\n", "\n\n\n", "\t", " /* in between */ ", " // aside\n", "\r\n", "/* a\n  b */\n", ""];
     let mut out = String::new();
@@ -149,7 +145,7 @@ fn in_disorder(text: &str, seed: u64) -> String {
                 |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '.' || c == '/');
             word(written.chars().last()) && word(text[after.span.range()].chars().next())
         });
-        match blanks[next() % blanks.len()] {
+        match blanks[random.below(blanks.len())] {
             _ if documents => out.push('\n'),
             "" if joins => out.push(' '),
             blank => out.push_str(blank),

@@ -26,14 +26,8 @@ fn derivations(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// Arbitrary numbers, always the same for a seed.
 fn numbers(seed: u64) -> Vec<f64> {
-    let mut bits = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * seed + 1);
-    let mut next = || {
-        bits ^= bits << 13;
-        bits ^= bits >> 7;
-        bits ^= bits << 17;
-        0.3 + 1.7 * ((bits >> 11) as f64 / (1u64 << 53) as f64)
-    };
-    (0..400).map(|_| next()).collect()
+    let mut random = hodograph_random::Random::new(seed);
+    (0..400).map(|_| random.between(0.3, 2.0)).collect()
 }
 
 /// What rounding takes from a sum is nothing but for rounding: this says whether the value is a part of that,

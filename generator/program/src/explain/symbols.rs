@@ -284,10 +284,9 @@ mod tests {
             assert_eq!(written(number), text);
         }
         // Whatever is written is the number, to the bit.
-        let mut state = 1_u64;
+        let mut random = hodograph_random::Random::new(1);
         for _ in 0..20_000 {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            let number = f64::from_bits(state >> 1);
+            let number = f64::from_bits(random.bits() >> 1);
             if !number.is_finite() {
                 continue;
             }

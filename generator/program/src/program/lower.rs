@@ -392,14 +392,9 @@ mod tests {
         // Coordinates are integers of 53 bits in these units; their sums are longer, and doubles must round
         // them.
         let unit = 2f64.powi(-48);
-        let (mut bits, mut rounded) = (0x9e37_79b9_7f4a_7c15u64, 0);
+        let (mut random, mut rounded) = (hodograph_random::Random::new(1), 0);
         for _ in 0..200 {
-            let integers = [-1.0, 1.0, 1.0, 1.0].map(|sign| {
-                bits ^= bits << 13;
-                bits ^= bits >> 7;
-                bits ^= bits << 17;
-                sign * ((bits >> 11) | 1) as f64
-            });
+            let integers = [-1.0, 1.0, 1.0, 1.0].map(|sign| sign * ((random.bits() >> 11) | 1) as f64);
             let coordinates = integers.map(|integer| integer * unit).to_vec();
             let inputs = Inputs { coordinates, ..Inputs::default() };
             let found =

@@ -302,11 +302,7 @@ mod tests {
             0x3fd62e42, 0x3fd62e43, 0x3ff0a2b1, 0x3ff0a2b2, 0x3e300000, 0x3e300001, 0x4043687a, 0x3c900000,
             0x3fda827a, 0x3fd2bec4, 0x3fd2bec5, 0x3ca00000, 0x3fe6a09e, 0x40862000, 0x43400000, 0x3ff00000,
         ];
-        let mut random = 7_u64;
-        let mut next = || {
-            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            random
-        };
+        let mut random = hodograph_random::Random::new(7);
         let mut answers = 0;
         for sign in [0, 1 << 63] {
             for edge in edges {
@@ -314,17 +310,17 @@ mod tests {
                     answers += doubles(f64::from_bits(sign | u64::from(edge) << 32 | low));
                 }
                 (0..500).for_each(|_| {
-                    answers += doubles(f64::from_bits(sign | u64::from(edge) << 32 | next() >> 32));
+                    answers += doubles(f64::from_bits(sign | u64::from(edge) << 32 | random.bits() >> 32));
                 });
             }
             for exponent in 0..2048_u64 {
                 (0..100).for_each(|_| {
-                    answers += doubles(f64::from_bits(sign | exponent << 52 | next() >> 12));
+                    answers += doubles(f64::from_bits(sign | exponent << 52 | random.bits() >> 12));
                 });
             }
         }
         for _ in 0..1_000_000 {
-            let share = (next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+            let share = random.number();
             answers += doubles(share * 3.0) + doubles(share * 50.0) + doubles(share * 720.0);
         }
         assert!(answers > 7_000_000, "{answers}");

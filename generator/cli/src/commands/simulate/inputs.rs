@@ -78,17 +78,19 @@ fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Function
     let wrong = |line: usize, message: &str| Stop::Call(format!("{}:{line}: {message}", path.display()));
     // Some programs put a mark of the encoding first.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
-    let mut rows = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
-    let head: Vec<&str> =
-        rows.next().ok_or_else(|| wrong(1, "the file is empty"))?.1.split(',').map(str::trim).collect();
-    if head.first() != Some(&"t") {
+    let mut rows = rows(text).map(|(line, row)| match row {
+        Ok(row) => Ok((line, row)),
+        Err(error) => Err(wrong(line, &error.to_string())),
+    });
+    let (_, head) = rows.next().ok_or_else(|| wrong(1, "the file is empty"))??;
+    if head.get(0) != Some("t") {
         return Err(wrong(
             1,
             "the first line names the columns, separated by commas, and the first of them is `t`: as in t,F",
         ));
     }
     let mut indices = Vec::new();
-    for name in &head[1..] {
+    for name in head.iter().skip(1) {
         let index = index(mechanism, name)?;
         if indices.contains(&index) {
             return Err(wrong(1, &format!("the column `{name}` stands there twice: leave one out")));
@@ -96,23 +98,23 @@ fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Function
         indices.push(index);
     }
     let mut columns = vec![Vec::new(); head.len()];
-    for (number, line) in rows {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        if cells.len() != head.len() {
-            return Err(wrong(number + 1, &format!("{} values for {} columns", cells.len(), head.len())));
+    for row in rows {
+        let (line, row) = row?;
+        if row.len() != head.len() {
+            return Err(wrong(line, &format!("{} values for {} columns", row.len(), head.len())));
         }
         let before = columns[0].last().copied();
-        for (column, cell) in columns.iter_mut().zip(cells) {
+        for (column, cell) in columns.iter_mut().zip(&row) {
             match cell.parse::<f64>() {
                 Ok(value) if value.is_finite() => column.push(value),
-                _ => return Err(wrong(number + 1, &format!("`{cell}` is no finite number"))),
+                _ => return Err(wrong(line, &format!("`{cell}` is no finite number"))),
             }
         }
         if let (Some(before), Some(&time)) = (before, columns[0].last())
             && time <= before
         {
             let message = format!("t = {time} after t = {before}: times must rise from row to row");
-            return Err(wrong(number + 1, &message));
+            return Err(wrong(line, &message));
         }
     }
     let times = Arc::new(columns.remove(0));
@@ -126,6 +128,30 @@ fn table(mechanism: &Mechanism, path: &Path) -> Outcome<(Arc<Vec<f64>>, Function
     };
     let functions = indices.into_iter().zip(columns).map(function).collect();
     Ok((times, functions))
+}
+
+/// The rows of a CSV file that are not blank, each with the number of its line.
+fn rows(text: &str) -> impl Iterator<Item = (usize, csv::Result<csv::StringRecord>)> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut row = csv::StringRecord::new();
+    std::iter::from_fn(move || {
+        loop {
+            // Empty lines before a row are read with it.
+            let begin = reader.position().byte() as usize;
+            let blank = text[begin..].chars().take_while(|c| matches!(c, '\r' | '\n')).filter(|c| *c == '\n');
+            let line = reader.position().line() as usize + blank.count();
+            match reader.read_record(&mut row) {
+                Ok(false) => return None,
+                Ok(true) if row.len() == 1 && row[0].is_empty() => {}
+                Ok(true) => return Some((line, Ok(row.clone()))),
+                Err(error) => return Some((line, Err(error))),
+            }
+        }
+    })
 }
 
 /// The value at a time.

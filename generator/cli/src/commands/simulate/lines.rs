@@ -106,7 +106,7 @@ impl<'m> Lines<'m> {
                 .chain(names(ComponentKind::Coordinate))
                 .chain(names(ComponentKind::Speed))
                 .collect();
-            lines.write(&head.join(","))?;
+            lines.write(&csv_row(head)?)?;
         }
         Ok(lines)
     }
@@ -290,10 +290,20 @@ impl<'m> Lines<'m> {
 
     fn row(&mut self, t: f64, event: &str, contact: &str, q: &[f64], u: &[f64]) -> Outcome {
         let numbers = q.iter().chain(u).map(|value| (value + 0.0).to_string());
-        let cells: Vec<String> =
-            [t.to_string(), event.to_owned(), contact.to_owned()].into_iter().chain(numbers).collect();
-        self.write(&cells.join(","))
+        let cells = [t.to_string(), event.to_owned(), contact.to_owned()].into_iter().chain(numbers);
+        self.write(&csv_row(cells)?)
     }
+}
+
+/// A line of CSV.
+fn csv_row<C: AsRef<[u8]>>(cells: impl IntoIterator<Item = C>) -> Outcome<String> {
+    let fault = |error: String| Stop::Fault(format!("cannot write CSV: {error}"));
+    let mut writer =
+        csv::WriterBuilder::new().terminator(csv::Terminator::Any(b'\n')).from_writer(Vec::new());
+    writer.write_record(cells).map_err(|error| fault(error.to_string()))?;
+    let row = writer.into_inner().map_err(|error| fault(error.to_string()))?;
+    let row = String::from_utf8(row).map_err(|error| fault(error.to_string()))?;
+    Ok(row.trim_end_matches('\n').to_owned())
 }
 
 /// A line of JSON.

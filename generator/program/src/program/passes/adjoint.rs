@@ -6,6 +6,7 @@ use crate::program::inputs::Inputs;
 use crate::program::operation::{Operation, Value};
 use crate::program::semantics::operate;
 use crate::program::straight_line::Program;
+use hodograph_model::arbitrary::Arbitrary;
 use hodograph_model::arithmetic::reproducible::Reproducible;
 
 /// Sums of answers with random signs that stand for all of them.
@@ -33,13 +34,8 @@ impl Weighed {
         let numbers: Vec<(f64, f64)> = exact.iter().map(|(a, b)| (a.rounded(), b.rounded())).collect();
         let sizes = numbers.iter().map(|number| number.0.abs()).filter(|size| size.is_finite());
         let nothing = NOTHING * sizes.fold(0.0, f64::max);
-        let mut bits = 0x9e37_79b9_7f4a_7c15u64.wrapping_mul(2 * seed + 1);
-        let mut sign = || {
-            bits ^= bits << 13;
-            bits ^= bits >> 7;
-            bits ^= bits << 17;
-            if bits >> 63 == 0 { 1.0 } else { -1.0 }
-        };
+        let mut arbitrary = Arbitrary::after(0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * seed + 1));
+        let mut sign = || if arbitrary.bits() >> 63 == 0 { 1.0 } else { -1.0 };
         let mut weights = vec![0.0; numbers.len()];
         for _ in 0..MIXTURES {
             let mut slopes = vec![0.0; numbers.len()];

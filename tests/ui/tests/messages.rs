@@ -4,5 +4,5 @@
 #[test]
 fn messages_of_the_compiler() {
     let cases = trybuild::TestCases::new();
-    cases.compile_fail("ui/*.rs");
+    cases.compile_fail("*.rs");
 }

@@ -1,0 +1,1 @@
+//! What the compiler says of malformed models: see the files beside `src`.
