@@ -14,7 +14,6 @@ use hodograph_generator::program::Inputs;
 use hodograph_generator::program::Program;
 use hodograph_generator::program::{ContactQuantity, Quantity};
 use hodograph_generator::{artifact, check::check};
-use hodograph_random::Random;
 use nalgebra::{DMatrix, DVector};
 
 /// Derives a model that stands in a folder.
@@ -30,8 +29,13 @@ fn derived(folder: &Path, text: &str) -> (Mechanism, Program) {
 
 /// A state with every number between -1 and 1, quaternions of unit length.
 fn random(m: &Mechanism, seed: u64) -> State {
-    let mut random = Random::new(seed);
-    let mut next = || random.number();
+    let mut bits = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut next = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
     let mut state = State::of(m);
     for list in [&mut state.coordinates, &mut state.speeds, &mut state.inputs] {
         list.iter_mut().for_each(|number| *number = next());

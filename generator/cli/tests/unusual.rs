@@ -12,12 +12,16 @@ use hodograph_generator::model::mechanism::{Mechanism, Orientation};
 use hodograph_generator::numeric::{self, Evaluation, State};
 use hodograph_generator::program::{ContactQuantity, Inputs, PointQuantity, Program, Quantity};
 use hodograph_generator::{artifact, rendering::render};
-use hodograph_random::Random;
 
 /// A state near the initial one, with its loops closed; `None` where they cannot be.
 fn near(m: &Mechanism, seed: u64) -> Option<State> {
-    let mut random = Random::new(seed);
-    let mut next = || random.number();
+    let mut bits = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
+    let mut next = || {
+        bits ^= bits << 13;
+        bits ^= bits >> 7;
+        bits ^= bits << 17;
+        (bits >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    };
     let mut state = State::of(m);
     state.time = 0.4 * next();
     for list in [&mut state.coordinates, &mut state.inputs] {
