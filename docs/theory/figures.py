@@ -194,8 +194,88 @@ def modes():
     save(figure, "modes.svg")
 
 
+def springs(velocities, n):
+    """Balls of mass 1 that touch, on equal linear springs that are much stiffer than all else: their velocities after."""
+    x, v, step = np.zeros(n), np.array(velocities, float), 1e-4
+    force = lambda x: np.diff(np.concatenate(([0.0], np.maximum(-np.diff(x), 0.0), [0.0]))) * -1.0
+    while True:
+        v += 0.5 * step * force(x)
+        x += step * v
+        v += 0.5 * step * force(x)
+        if (np.diff(x) > 0).all() and (np.diff(v) >= 0).all():
+            return v
+
+
+def struck_alone(w, v, mu, e, steps=2000):
+    """The impulse (n, t) of one planar contact by Poisson's hypothesis: Routh's method in small steps."""
+    p = np.zeros(2)
+    size = -v[0] / w[0, 0] / steps
+    end = np.inf
+    while p[0] < end:
+        now = v + w @ p
+        if end == np.inf and now[0] >= 0:
+            end = (1 + e) * p[0]
+        hold = -w[0, 1] / w[1, 1]
+        slip = now[1]
+        if abs(slip) < 2 * size * w[1, 1] and abs(hold) <= mu:
+            # It sticks: what is left of the slip goes, too.
+            p += [size, hold * size - slip / w[1, 1]]
+        else:
+            direction = np.sign(slip) if abs(slip) > 2 * size * w[1, 1] else -np.sign(hold)
+            p += [size, -mu * direction * size]
+    return p
+
+
+def thrown_flat(u, mu, e, ratio=1.0):
+    """A box of mass 1 and half width 1 that falls flat with speed 1 and slides with u: its angular velocity after
+    impacts of its corners one after the other, all at once by Moreau's law, and by Poisson's hypothesis."""
+    h, inertia = ratio, (1 + ratio**2) / 3
+    rows = [np.array([[0, 1, x], [1, 0, h]], float) for x in (-1.0, 1.0)]  # n and t by (vx, vz, omega)
+    inverse = np.diag([1, 1, 1 / inertia])
+    state = np.array([u, -1.0, 0.0])
+    while True:
+        normal = [(row @ state)[0] for row in rows]
+        first = int(np.argmin(normal))
+        if normal[first] > -1e-6:
+            break
+        row = rows[first]
+        state = state + inverse @ row.T @ struck_alone(row @ inverse @ row.T, row @ state, mu, e)
+    # Poisson: compression leaves (u - mu, 0, 0) or rest, and each corner half of the weight, more at the leading one.
+    stopped = min(u, mu)
+    left, turned = u - stopped, e * h * stopped
+    friction = np.clip(-(left + h * turned / inertia) / (1 + h**2 / inertia), -mu * e, mu * e)
+    return state[2], 0.0, (turned + h * friction) / inertia
+
+
+def at_once():
+    """Where the laws of impacts of several contacts differ."""
+    figure, (balls, box) = plt.subplots(1, 2, figsize=(6.6, 2.9))
+    rows = [
+        ("one after the other", [0.0, 0.0, 1.0], BLUE),
+        ("Moreau, Poisson", [-1 / 3, 2 / 3, 2 / 3], GREEN),
+        ("Liu, Zhao, Brogliato", springs([1, 0, 0], 3), RED),
+    ]
+    for k, (name, speeds, colour) in enumerate(rows):
+        print(name, np.round(speeds, 3))
+        balls.bar(np.arange(3) + 0.25 * (k - 1), speeds, 0.22, color=colour, label=name)
+    balls.axhline(0, color=GREY, linewidth=0.6)
+    balls.set_xticks(range(3), ["struck with 1", "middle", "last"])
+    balls.set_ylabel("speed after")
+    balls.legend(frameon=False, fontsize=7.5, loc="upper left")
+    slides = np.linspace(0, 1.5, 61)
+    after = np.array([thrown_flat(u, 0.5, 0.5) for u in slides])
+    for column, name, colour in [(0, "one after the other", BLUE), (1, "Moreau", GREY), (2, "Poisson", GREEN)]:
+        box.plot(slides, after[:, column], color=colour, label=name)
+    box.set_yticks([-0.1, 0, 0.1])
+    box.set_xlabel("speed of sliding / speed of falling")
+    box.set_ylabel("angular velocity after, in v / a")
+    box.legend(frameon=False, fontsize=7.5)
+    save(figure, "at_once.svg")
+
+
 rates()
 portraits()
 reach()
 several()
 modes()
+at_once()

@@ -8,6 +8,19 @@ use crate::angles::Angles;
 use crate::contact_problem::Problem;
 use crate::torques::WithTorques;
 
+/// Velocities of contacts whose coupling, relative to their own mobilities, is less than this do not depend on each
+/// other.
+const COUPLED: f64 = 1e-12;
+
+/// Which impulses couple contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Along {
+    /// along the normals
+    Normal,
+    /// along the normals and friction
+    All,
+}
+
 /// What is needed of k closed contacts. Rows and columns stand by contact, then n, t, s along its contact
 /// basis.
 #[derive(Clone, Debug)]
@@ -207,6 +220,31 @@ impl ClosedContacts {
             mechanism.share_normal_forces(contacts, own, coupled, velocity, beta);
         }
         Ok(())
+    }
+
+    /// The contacts, by place, whose velocities impulses at these change, directly or through others: bodies that
+    /// have nothing to do with an impact are left as they are.
+    pub fn coupled_with(&self, struck: &[usize], along: Along) -> Vec<usize> {
+        let axes = match along {
+            Along::Normal => 1,
+            Along::All => 3,
+        };
+        let entry = |a: usize, b: usize| self.coupled[(a, b)].abs();
+        let size = |i: usize| (3 * i..3 * i + axes).map(|row| entry(row, row)).fold(0.0, f64::max);
+        let mut found = vec![false; self.len()];
+        let mut next = struck.to_vec();
+        while let Some(place) = next.pop() {
+            if std::mem::replace(&mut found[place], true) {
+                continue;
+            }
+            let coupled = |&other: &usize| {
+                let pairs = (0..axes).flat_map(|a| (0..axes).map(move |b| (3 * place + a, 3 * other + b)));
+                let most = pairs.map(|(a, b)| entry(a, b)).fold(0.0, f64::max);
+                most > COUPLED * (size(place) * size(other)).sqrt()
+            };
+            next.extend((0..self.len()).filter(coupled).filter(|other| !found[*other]));
+        }
+        (0..self.len()).filter(|&place| found[place]).collect()
     }
 
     /// The problem of their forces, for these coefficients of friction and directions of slip.

@@ -13,6 +13,8 @@ use crate::{ErrorKind, SimulationError};
 
 /// A contact that lifts off is apart where its gap is above this part of the length of the problem.
 const LIFTED: f64 = 5e-11;
+/// The gap of a contact that leaves, as integral of its rate, is known to this part of the length of the problem.
+const RISEN: f64 = 1e-11;
 /// Coordinates count as no smaller than this part of the length of the problem where rounding is weighed.
 pub(crate) const SIZE: f64 = 5e-3;
 /// A gap that closes may be rounded by this part of the length of the problem.
@@ -294,11 +296,42 @@ impl Transition<'_> {
         Ok(mean)
     }
 
+    /// Whether the gaps of contacts that leave are the integrals of their rates, as far as these are known by a few
+    /// points: a step in which a body turns far is too long for that.
+    pub(crate) fn leaving_is_known(&self, step: &Step) -> Result<bool, SimulationError> {
+        let h = step.h;
+        let leaves = |contact: &usize| {
+            matches!(self.front.phases[*contact], Phase::Open(Leaving::Bounced | Leaving::Lifted { .. }))
+        };
+        for contact in (0..self.front.phases.len()).filter(leaves) {
+            // Within a step beside a jam there may be no states.
+            let Ok(mean) = self.mean_rate(contact, h, &mut |after| step.at(after / h)) else {
+                return Ok(false);
+            };
+            let (before, _) = self.gap_in(step.t, step.start(), contact)?;
+            let (gap, _) = self.gap_at(step, contact)?;
+            let rounding = 4.0 * self.rounding_of_gap(contact);
+            if (gap - before - h * mean).abs() > rounding.max(RISEN * self.front.scales.length) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Whether a contact that leaves and comes back at the end of a step is clearly apart in between.
+    pub(crate) fn rises(&self, step: &Step, contact: usize) -> Result<bool, SimulationError> {
+        let (gap, _) = self.gap_in(step.t + 0.5 * step.h, &step.at(0.5), contact)?;
+        Ok(gap > LIFTED * self.front.scales.length)
+    }
+
     /// Gap and normal velocity of a contact at the end of a step.
     pub(crate) fn gap_at(&self, step: &Step, contact: usize) -> Result<(f64, f64), SimulationError> {
-        let time = step.t + step.h;
+        self.gap_in(step.t + step.h, &step.end, contact)
+    }
+
+    fn gap_in(&self, time: f64, y: &[f64], contact: usize) -> Result<(f64, f64), SimulationError> {
         let motion = self.motion(&[]);
-        let (q, u) = motion.split(&step.end);
+        let (q, u) = motion.split(y);
         let state = State { time, coordinates: q, speeds: u, inputs: &self.front.held };
         let fault = |error| self.failure(Failure::State(error));
         let gap = self.mechanism.gap(contact, &state).map_err(fault)?.unwrap_or(1.0);

@@ -45,6 +45,8 @@ impl Transition<'_> {
             step = part;
             let (gap, rate) = self.gap_at(&step, contact)?;
             let gap = match self.front.phases[contact] {
+                // It has risen so far that its gap is known; over a long way its mean rate is not as exact.
+                Phase::Open(Leaving::Lifted { .. }) if self.rises(&step, contact)? => gap,
                 Phase::Open(Leaving::Lifted { risen, .. }) if risen > 0.0 => {
                     let h = step.h;
                     let mut at = |after: f64| step.at(if h > 0.0 { after / h } else { 1.0 });

@@ -1,17 +1,21 @@
-//! Impacts of several contacts at once, by Moreau's law with friction.
+//! Impacts of several contacts at once, with friction: by Poisson's hypothesis where it is the law of all of them
+//! ([`crate::poisson_at_once`]), else by Moreau's law.
 //!
-//! With v- and v+ before and after, the impulses p of all contacts obey v+ = v- + W p with the laws of contact
+//! Moreau's law: with v- and v+ before and after, the impulses p of all contacts obey v+ = v- + W p with the laws of contact
 //! that lasts in place of accelerations: each contact asks for v+_n >= -e v-_n with p_n >= 0, one of them with
 //! equality, and friction abs(p_tan) <= mu p_n, which opposes the slip that is left (docs/theory.md, section
 //! 17.13).
 
-use hodograph::State;
+use hodograph::{Law, Selection, State};
 use nalgebra::{DVector, Vector2};
 
 use crate::closed_contacts::ClosedContacts;
-use crate::contact_problem::{self, Problem};
+use crate::contact_problem::{self, Mode, Problem, Solution, Unsolved};
+use crate::mode_selection::{Choice, Decision};
 use crate::motion::Failure;
 use crate::pair::Pair;
+use crate::phase::Phase;
+use crate::poisson_at_once;
 use crate::single_impact::{Hit, HitKind};
 use crate::transition::Transition;
 use crate::{ErrorKind, Share, SimulationError};
@@ -50,13 +54,24 @@ impl AtOnce {
     }
 }
 
+/// What becomes of contacts that jam together.
+pub(crate) enum Jam {
+    Impact(Hit),
+    /// They go on in these modes.
+    Modes(Choice),
+    Unsolved,
+}
+
+/// The limit of implicit steps.
+enum Outcome {
+    Impulses(AtOnce),
+    /// Their forces are finite.
+    Modes(Solution),
+}
+
 impl Transition<'_> {
-    /// The impact of contacts that jam together, though none of them would alone; `None` where there is none.
-    pub(crate) fn impact_of_a_jam(
-        &self,
-        contacts: &[usize],
-        speeds: &[f64],
-    ) -> Result<Option<Hit>, SimulationError> {
+    /// What becomes of contacts that jam together, though none of them would alone.
+    pub(crate) fn impact_of_a_jam(&self, contacts: &[usize], speeds: &[f64]) -> Result<Jam, SimulationError> {
         let state = State { speeds, ..self.here() };
         let support = ClosedContacts::new(self.mechanism, &state, contacts, true)
             .map_err(|error| self.failure(Failure::State(error)))?;
@@ -65,9 +80,39 @@ impl Transition<'_> {
             Ok((1.0 + MORE) * self.friction(contact, slip)?.slips)
         });
         let mu = mu.collect::<Result<Vec<f64>, SimulationError>>()?;
-        match impulses_of_a_jam(&support, &mu, STEP * self.front.scales.time) {
-            Some(outcome) => Ok(Some(self.hit_by(contacts, &support, speeds, &outcome, Vec::new())?)),
-            None => Ok(None),
+        let h = STEP * self.front.scales.time;
+        Ok(match impulses_of_a_jam(&support, &mu, h) {
+            Some(Outcome::Impulses(outcome)) => {
+                Jam::Impact(self.hit_by(contacts, &support, speeds, &outcome, Vec::new())?)
+            }
+            Some(Outcome::Modes(solution)) if self.differs(contacts, &solution.modes) => {
+                Jam::Modes(self.choice_of(contacts, &solution, h))
+            }
+            _ => Jam::Unsolved,
+        })
+    }
+
+    /// Whether these modes are not those that the contacts have.
+    fn differs(&self, contacts: &[usize], modes: &[Mode]) -> bool {
+        contacts.iter().zip(modes).any(|(&contact, mode)| {
+            !matches!(
+                (self.front.phases[contact], mode),
+                (Phase::Stick, Mode::Stick) | (Phase::Slide(_), Mode::Slide(_))
+            )
+        })
+    }
+
+    /// The modes that an implicit step over this time leaves.
+    fn choice_of(&self, contacts: &[usize], solution: &Solution, h: f64) -> Choice {
+        let decision = |(&contact, mode): (&usize, &Mode)| match mode {
+            Mode::Separate => Decision::Separate,
+            Mode::Stick => Decision::Stick,
+            Mode::Slide(direction) => Decision::Slide(*direction, self.front.phases[contact] == Phase::Stick),
+        };
+        Choice {
+            decisions: contacts.iter().zip(&solution.modes).map(decision).collect(),
+            forces: (0..contacts.len()).map(|i| ClosedContacts::three(&solution.force, i) / h).collect(),
+            selection: vec![Selection::Unknown; contacts.len()],
         }
     }
 
@@ -79,18 +124,27 @@ impl Transition<'_> {
         faded: bool,
     ) -> Result<Hit, SimulationError> {
         let support = self.struck_support(contacts, speeds)?;
-        let mut restitution = Vec::with_capacity(contacts.len());
+        let before: Vec<f64> = (0..contacts.len()).map(|i| -support.velocity[3 * i]).collect();
+        let mut restitution = vec![0.0; contacts.len()];
+        if !faded {
+            for ((e, &contact), before) in restitution.iter_mut().zip(contacts).zip(&before) {
+                *e = self.surface_in_impact(contact, *before)?.e;
+            }
+        }
+        // What each returns: by Poisson's hypothesis that depends on all.
+        let mut rebound: Vec<f64> = restitution.iter().zip(&before).map(|(e, before)| e * before).collect();
+        if self.by_poisson(contacts) && restitution.iter().any(|&e| e > 0.0) {
+            let outcome = two_phases(&support, &self.mus_in_impacts(contacts), &restitution)
+                .map_err(|unsolved| self.without_impulses(contacts, unsolved))?;
+            rebound = (0..contacts.len()).map(|i| outcome.velocity[3 * i]).collect();
+        }
         let mut bounces = Vec::new();
         for (i, &contact) in contacts.iter().enumerate() {
-            let before = -support.velocity[3 * i];
-            let e = if faded { 0.0 } else { self.surface_in_impact(contact, before)?.e };
-            let ends = if e > 0.0 && e < 1.0 && before > 0.0 {
-                self.last_bounce(contact, speeds, before, e * before)?
-            } else {
-                None
-            };
-            restitution.push(if ends.is_some() { 0.0 } else { e });
-            bounces.extend(ends.map(|time| (contact, time)));
+            let bounds = restitution[i] > 0.0 && restitution[i] < 1.0 && before[i] > 0.0 && rebound[i] > 0.0;
+            if bounds && let Some(time) = self.last_bounce(contact, speeds, before[i], rebound[i])? {
+                restitution[i] = 0.0;
+                bounces.push((contact, time));
+            }
         }
         self.at_once(contacts, &support, speeds, &restitution, bounces)
     }
@@ -115,23 +169,16 @@ impl Transition<'_> {
         restitution: &[f64],
         bounces: Vec<(usize, f64)>,
     ) -> Result<Hit, SimulationError> {
-        let mu: Vec<f64> =
-            contacts.iter().map(|&contact| self.pair(contact).map_or(0.0, Pair::mu_in_impacts)).collect();
+        let (mu, poisson) = (self.mus_in_impacts(contacts), self.by_poisson(contacts));
         let solve = |share: f64| {
             let e: Vec<f64> = restitution.iter().map(|e| share * e).collect();
-            solve(support, &mu, &e).map_err(|unsolved| {
-                self.error(
-                    Some(contacts[0]),
-                    ErrorKind::NoForces(format!(
-                        "the contacts that strike at once have no impulses: {unsolved}"
-                    )),
-                )
-            })
+            let solved = if poisson { two_phases(support, &mu, &e) } else { solve(support, &mu, &e) };
+            solved.map_err(|unsolved| self.without_impulses(contacts, unsolved))
         };
         let mut outcome = solve(1.0)?;
         if outcome.work > ROUNDING * outcome.scale {
-            // Moreau's law may gain energy with friction and unlike e: as much of the restitution is taken as
-            // gains none. Without restitution none is gained.
+            // Both laws may gain energy with friction and unlike e: as much of the restitution is taken as gains
+            // none. Without restitution none is gained.
             let (mut low, mut high) = (0.0, 1.0);
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
@@ -141,6 +188,22 @@ impl Transition<'_> {
             outcome = solve(low)?;
         }
         self.hit_by(contacts, support, speeds, &outcome, bounces)
+    }
+
+    /// Whether all of these contacts have Poisson's hypothesis.
+    fn by_poisson(&self, contacts: &[usize]) -> bool {
+        contacts
+            .iter()
+            .all(|&contact| self.pair(contact).is_some_and(|pair| pair.surface.law == Law::Poisson))
+    }
+
+    fn mus_in_impacts(&self, contacts: &[usize]) -> Vec<f64> {
+        contacts.iter().map(|&contact| self.pair(contact).map_or(0.0, Pair::mu_in_impacts)).collect()
+    }
+
+    fn without_impulses(&self, contacts: &[usize], unsolved: Unsolved) -> SimulationError {
+        let message = format!("the contacts that strike at once have no impulses: {unsolved}");
+        self.error(Some(contacts[0]), ErrorKind::NoForces(message))
     }
 
     /// The impact with these impulses.
@@ -180,8 +243,8 @@ impl Transition<'_> {
 }
 
 /// The impulses without restitution that end a jam: the limit of the implicit steps v+ = v- + W p + h beta as h falls to
-/// zero, with friction against the slip that is left. `None` where these steps have finite forces.
-fn impulses_of_a_jam(support: &ClosedContacts, mu: &[f64], h: f64) -> Option<AtOnce> {
+/// zero, with friction against the slip that is left; or the modes of these steps, where they have finite forces.
+fn impulses_of_a_jam(support: &ClosedContacts, mu: &[f64], h: f64) -> Option<Outcome> {
     let k = support.len();
     let mut velocity = support.velocity.clone();
     for i in 0..k {
@@ -191,17 +254,29 @@ fn impulses_of_a_jam(support: &ClosedContacts, mu: &[f64], h: f64) -> Option<AtO
     let none: Vec<Option<Vector2<f64>>> = vec![None; k];
     let stepped = &velocity + h * &support.beta;
     let problem = Problem { w: &support.coupled, beta: &stepped, mu, slip: &none, noise: None };
-    let modes = contact_problem::solve(&problem, None).ok()?.modes;
+    let step = contact_problem::solve(&problem, None).ok()?;
     let problem = Problem { beta: &velocity, ..problem };
-    let impulse =
-        contact_problem::with_modes(&problem, &modes).ok().filter(|found| found.margin >= -SHORT)?.force;
-    let after = &support.coupled * &impulse + &velocity;
+    let limit =
+        contact_problem::with_modes(&problem, &step.modes).ok().filter(|found| found.margin >= -SHORT);
+    let Some(limit) = limit else { return Some(Outcome::Modes(step)) };
+    let after = &support.coupled * &limit.force + &velocity;
     let change = (&after - &velocity).amax();
-    (change > LARGE * h * support.beta.amax()).then(|| AtOnce::with(impulse, velocity, after))
+    Some(if change > LARGE * h * support.beta.amax() {
+        Outcome::Impulses(AtOnce::with(limit.force, velocity, after))
+    } else {
+        Outcome::Modes(step)
+    })
 }
 
-/// The impulses for these coefficients of restitution.
-fn solve(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Result<AtOnce, contact_problem::Unsolved> {
+/// The impulses by Poisson's hypothesis.
+fn two_phases(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Result<AtOnce, Unsolved> {
+    let impulse = poisson_at_once::impulses(support, mu, e)?;
+    let velocity = &support.coupled * &impulse + &support.velocity;
+    Ok(AtOnce::with(impulse, support.velocity.clone(), velocity))
+}
+
+/// The impulses by Moreau's law, for these coefficients of restitution.
+fn solve(support: &ClosedContacts, mu: &[f64], e: &[f64]) -> Result<AtOnce, Unsolved> {
     let mut wanted = support.velocity.clone();
     for (i, e) in e.iter().enumerate() {
         wanted[3 * i] += e * support.velocity[3 * i].min(0.0);

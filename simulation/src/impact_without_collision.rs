@@ -1,9 +1,13 @@
 //! Impacts without collision: a sliding contact that no finite force can hold (Painleve's paradox).
 
-use hodograph::{CollisionError, CollisionOutcome, ComponentKind, ContactState, ImpactError, State, Surface};
-use nalgebra::Vector2;
+use hodograph::{
+    CollisionError, CollisionOutcome, ComponentKind, ContactState, ImpactError, ReducedMatrix, State, Surface,
+};
+use nalgebra::{DVector, Vector2};
 
+use crate::closed_contacts::{ClosedContacts, least_squares};
 use crate::forces::JAM;
+use crate::impact_at_once::Jam;
 use crate::impacts::MOST;
 use crate::motion::Failure;
 use crate::phase::Phase;
@@ -22,7 +26,11 @@ impl Transition<'_> {
         let touching = self.touching(Some(contact))?;
         let (n, p) =
             (self.mechanism.count(ComponentKind::Coordinate), self.mechanism.count(ComponentKind::Speed));
-        let before = self.front.y[n..n + p].to_vec();
+        let mut before = self.front.y[n..n + p].to_vec();
+        if let Some(turned) = self.turned_into_jam(contact, &before)? {
+            self.front.energy.impacts += self.energy_change(&before, &turned)?;
+            before = turned;
+        }
         let (outcome, after) = match self.without_collision(contact, &before) {
             // Alone it would not jam.
             Err(
@@ -46,6 +54,32 @@ impl Transition<'_> {
         }
     }
 
+    /// The speeds with the slip of the only closed contact turned so far that it jams. Slip that turns towards a jam
+    /// meets it with f like the square root of the time left: the last turn happens in less time than a step can
+    /// have. `None` where it has jammed already, or is not about to.
+    fn turned_into_jam(&self, contact: usize, speeds: &[f64]) -> Result<Option<Vec<f64>>, SimulationError> {
+        let closed = self.front.phases.iter().filter(|phase| phase.is_closed()).count();
+        if closed != 1 || !matches!(self.front.phases[contact], Phase::Slide(_)) {
+            return Ok(None);
+        }
+        let state = State { speeds, ..self.here() };
+        let alone = ClosedContacts::new(self.mechanism, &state, &[contact], false)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let slip = alone.slip(0);
+        let mu = self.friction(contact, slip.norm())?.slips;
+        let Some(turned) = slip_that_jams(&alone.reduced(0), slip, mu) else { return Ok(None) };
+        let change = Vector2::new(turned.x - slip.x, turned.y - slip.y);
+        let impulse = least_squares(&alone.coupled, &DVector::from_vec(vec![0.0, change.x, change.y]));
+        let change = &alone.response * impulse;
+        Ok(Some(speeds.iter().zip(change.iter()).map(|(speed, change)| speed + change).collect()))
+    }
+
+    /// The only closed contact, if its slip turns into a jam within no time.
+    pub(crate) fn turns_into_jam(&self) -> Result<Option<usize>, SimulationError> {
+        let Some(contact) = self.front.phases.iter().position(Phase::is_closed) else { return Ok(None) };
+        Ok(self.turned_into_jam(contact, self.here().speeds)?.map(|_| contact))
+    }
+
     /// The closed contacts jam together: an impact of all of them.
     fn jam_together(
         &mut self,
@@ -54,7 +88,15 @@ impl Transition<'_> {
         alone: SimulationError,
     ) -> Result<(), SimulationError> {
         let closed: Vec<usize> = (0..was.len()).filter(|&contact| was[contact].is_closed()).collect();
-        let Some(hit) = self.impact_of_a_jam(&closed, before)? else { return Err(alone) };
+        let hit = match self.impact_of_a_jam(&closed, before)? {
+            Jam::Impact(hit) => hit,
+            // Finite forces exist in other modes.
+            Jam::Modes(choice) => {
+                self.apply(&closed, was, &choice);
+                return self.crowded(self.front.t);
+            }
+            Jam::Unsolved => return Err(alone),
+        };
         self.front.resting = false;
         let after = hit.after.clone();
         self.take_impact(hit, None);
@@ -89,6 +131,29 @@ impl Transition<'_> {
         Ok((outcome, after))
     }
 }
+
+/// Slip turned to where f = m_nn - mu b.d is as small and negative as [`jammed`] makes it; `None` where that is no
+/// small turn, or none at all.
+fn slip_that_jams(reduced: &ReducedMatrix<f64>, slip: Vector2<f64>, mu: f64) -> Option<Vector2<f64>> {
+    let b = Vector2::new(reduced.nt, reduced.ns);
+    let (least, speed) = (JAM * reduced.nn, slip.norm());
+    let f = reduced.nn - mu * b.dot(&slip) / speed;
+    if !(f > 1.5 * least && f <= TURNS * reduced.nn) {
+        return None;
+    }
+    let cos = (reduced.nn + least) / (mu * b.norm());
+    if cos >= 1.0 {
+        return None;
+    }
+    // On the side of b on which the slip is.
+    let towards = b / b.norm();
+    let across = Vector2::new(-towards.y, towards.x);
+    let side = if across.dot(&slip) < 0.0 { -1.0 } else { 1.0 };
+    Some(speed * (towards * cos + across * (side * (1.0 - cos * cos).sqrt())))
+}
+
+/// A contact whose slip turns into a jam within no time has f / m_nn below this.
+const TURNS: f64 = 1e-2;
 
 /// The surface of an impact without collision: where f = m_nn - mu m_nt, t along the slip, is not yet zero,
 /// but so small that the contact jams, with the friction that makes it as small and negative. It is larger by

@@ -6,7 +6,7 @@
 use hodograph::{ComponentKind, State};
 use nalgebra::{DMatrix, DVector};
 
-use crate::closed_contacts::ClosedContacts;
+use crate::closed_contacts::{Along, ClosedContacts};
 use crate::event_functions::SIZE;
 use crate::motion::Failure;
 use crate::pair::Pair;
@@ -135,7 +135,12 @@ impl Transition<'_> {
     /// The slowest normal velocity of a contact that is more than rounding, m/s: relative to the one that all
     /// kinetic energy so far would give it. A body at rest beside others that move has only rounding.
     fn slowest(&self, support: &ClosedContacts, place: usize) -> f64 {
-        ROUNDING * (2.0 * self.front.greatest * support.coupled[(3 * place, 3 * place)]).sqrt()
+        self.slowest_along(support, 3 * place)
+    }
+
+    /// The same of a component of a velocity.
+    pub(crate) fn slowest_along(&self, support: &ClosedContacts, row: usize) -> f64 {
+        ROUNDING * (2.0 * self.front.greatest * support.coupled[(row, row)]).sqrt()
     }
 
     /// What may count as no normal velocity, where it would be less than `rounding`, which is told by all
@@ -224,6 +229,21 @@ impl Transition<'_> {
         Ok(list)
     }
 
+    /// The touching contacts that approach, and those whose velocities their impulses change.
+    fn involved(
+        &self,
+        touching: &[usize],
+        approaching: &[(usize, f64)],
+        speeds: &[f64],
+    ) -> Result<Vec<usize>, SimulationError> {
+        let state = State { speeds, ..self.here() };
+        let support = ClosedContacts::new(self.mechanism, &state, touching, false)
+            .map_err(|error| self.failure(Failure::State(error)))?;
+        let approaches = |place: &usize| approaching.iter().any(|(contact, _)| *contact == touching[*place]);
+        let struck: Vec<usize> = (0..touching.len()).filter(approaches).collect();
+        Ok(support.coupled_with(&struck, Along::All).into_iter().map(|place| touching[place]).collect())
+    }
+
     /// The impacts at a time until nothing approaches. With an `order` of preference one contact strikes after
     /// the other.
     fn sequence(
@@ -250,7 +270,7 @@ impl Transition<'_> {
                     let fastest = approaching.iter().find(|(_, speed)| *speed == fastest);
                     fastest.map(|(contact, _)| *contact).into_iter().collect()
                 }
-                (None, ImpactsAtOnce::Simultaneous) if !approaching.is_empty() => touching.to_vec(),
+                (None, ImpactsAtOnce::Simultaneous) => self.involved(touching, &approaching, &speeds)?,
                 _ => approaching.iter().map(|(contact, _)| *contact).collect(),
             };
             if next.is_empty() {
@@ -258,7 +278,8 @@ impl Transition<'_> {
             }
             let faded = hits.len() > touching.len() && fastest < FADED * scale;
             let hit = if hits.len() >= patience && touching.len() > 1 {
-                match self.plastic_impact(touching, &speeds) {
+                let involved = self.involved(touching, &approaching, &speeds)?;
+                match self.plastic_impact(&involved, &speeds) {
                     // It is proven that nothing approaches any more, beside the slip that is left. The bound of
                     // an approach is relative to the first one, and may be less than that proof.
                     Ok(last) => {

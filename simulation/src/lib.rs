@@ -59,6 +59,7 @@ mod motion;
 mod options;
 mod pair;
 mod phase;
+mod poisson_at_once;
 mod rattling;
 mod scales;
 mod scheduled_events;

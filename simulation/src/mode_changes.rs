@@ -243,7 +243,9 @@ impl Transition<'_> {
                 }
                 let slip = support.slip(i);
                 let size = support.velocity_size(i, speeds).max(support.velocity_size(i, &self.front.scale));
-                (slip.norm() > NO_SLIP * size).then(|| slip / slip.norm())
+                let slowest =
+                    (1..3).map(|axis| self.slowest_along(&support, 3 * i + axis)).fold(0.0, f64::max);
+                (slip.norm() > (NO_SLIP * size).max(slowest)).then(|| slip / slip.norm())
             })
             .collect())
     }

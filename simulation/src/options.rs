@@ -14,13 +14,14 @@ pub type EventFunction = Arc<dyn Fn(f64, &[f64], &[f64]) -> f64 + Send + Sync>;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ImpactsAtOnce {
-    /// All that approach strike at once, by Moreau's law with friction; what their impulses press together
-    /// strikes next, until nothing approaches. A contact that strikes alone does so exactly, by its own law.
+    /// All that approach strike at once, by Poisson's hypothesis in two phases where it is the law of all of them,
+    /// else by Moreau's law, with friction; what their impulses press together strikes next, until nothing
+    /// approaches. A contact that strikes alone does so exactly, by its own law.
     #[default]
     Approaching,
     /// One after the other, the fastest approach first, until nothing approaches.
     Sequential,
-    /// All that touch at once, by Moreau's law with friction: v+_n = -e v-_n or more.
+    /// All that touch at once, by the same laws. Moreau's: v+_n = -e v-_n or more.
     Simultaneous,
     /// All that touch at once, after Liu, Zhao and Brogliato, by the ratios of [`Options::stiffness`]: without friction
     /// only.

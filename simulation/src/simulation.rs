@@ -306,14 +306,13 @@ impl<'m> Simulation<'m> {
         self.look(self.front.t);
     }
 
-    /// The phase of a contact after the last event. It may belong to a time later than [`Simulation::time`],
-    /// by less than a step of the integration.
+    /// The phase of a contact at [`Simulation::time`], after the events that happen then.
     pub fn phase(&self, contact: usize) -> Option<ContactPhase> {
         let own = self.with_torques().torque(contact).is_none();
-        self.front.phases.get(contact).filter(|_| own).map(|phase| phase.of_contact())
+        self.phase_now(contact).filter(|_| own)
     }
 
-    /// Whether the bodies roll on each other against rolling friction, after the last event: `Slide` where they do,
+    /// Whether the bodies roll on each other against rolling friction, at [`Simulation::time`]: `Slide` where they do,
     /// `Stick` where it holds them. `None` where the contact has no rolling friction.
     pub fn rolling_phase(&self, contact: usize) -> Option<ContactPhase> {
         self.phase_of_torque(contact, Turning::Rolling)
@@ -328,7 +327,22 @@ impl<'m> Simulation<'m> {
         let all = self.with_torques();
         let is_it = |torque: &usize| all.torque(*torque).is_some_and(|torque| torque.turning == turning);
         let torque = all.torques_of(&[contact]).find(is_it)?;
-        self.front.phases.get(torque).map(|phase| phase.of_contact())
+        self.phase_now(torque)
+    }
+
+    /// The phase of a contact or torque at [`Simulation::time`]: within a step its modes were those before the event.
+    fn phase_now(&self, index: usize) -> Option<ContactPhase> {
+        let phase = self.front.phases.get(index)?;
+        if let Some((_, modes)) = &self.step
+            && self.view.0 < self.front.t
+        {
+            let closed = modes.closed.iter().find(|closed| closed.contact == index);
+            return Some(closed.map_or(ContactPhase::Open, |closed| match closed.slides {
+                Some(_) => ContactPhase::Slide,
+                None => ContactPhase::Stick,
+            }));
+        }
+        Some(phase.of_contact())
     }
 
     /// Forces of the closed contacts at [`Simulation::time`], along n, t, s of their contact bases, N, and
@@ -367,8 +381,16 @@ impl<'m> Simulation<'m> {
 
     /// Forces of the closed contacts and their torques.
     fn closed_forces(&self) -> Result<(ContactForces, bool), SimulationError> {
-        let transition = self.transition();
-        let closed = transition.closed();
+        let mut transition = self.transition();
+        let mut closed = transition.closed();
+        if let Some((_, modes)) = &self.step
+            && self.view.0 < self.front.t
+        {
+            // The front may be beyond an event: within the step its modes were those before.
+            closed.clone_from(&modes.closed);
+            transition.front.held.clone_from(&modes.held);
+            transition.front.resting = modes.resting;
+        }
         if closed.is_empty() {
             return Ok((Vec::new(), true));
         }

@@ -3,16 +3,12 @@
 use hodograph::{ComponentKind, Law, State};
 use nalgebra::{DMatrix, DVector};
 
-use crate::closed_contacts::ClosedContacts;
+use crate::closed_contacts::{Along, ClosedContacts};
 use crate::contact_law::Restitution;
 use crate::lzb::{self, Fault};
 use crate::motion::Failure;
 use crate::transition::Transition;
 use crate::{ErrorKind, EventKind, Share, SimulationError, SimultaneousCollision};
-
-/// Normal velocities of contacts whose coupling, relative to their own mobilities, is less than this do not
-/// touch each other.
-const COUPLED: f64 = 1e-12;
 
 impl Transition<'_> {
     /// Solves the impact of the touching contacts that `first` is coupled with, and says so; the speeds
@@ -33,7 +29,8 @@ impl Transition<'_> {
         };
         let fault = |error| self.failure(Failure::State(error));
         let support = ClosedContacts::new(self.mechanism, &state, touching, false).map_err(fault)?;
-        let places = coupled_with(&support, touching.iter().position(|&contact| contact == first));
+        let struck: Vec<usize> = touching.iter().position(|&contact| contact == first).into_iter().collect();
+        let places = support.coupled_with(&struck, Along::Normal);
         if places.len() < 2 {
             return Ok(None);
         }
@@ -117,22 +114,4 @@ impl Transition<'_> {
         }
         Ok(surface.e)
     }
-}
-
-/// The contacts, by place, whose normal velocities impulses at the first change, directly or through others.
-fn coupled_with(support: &ClosedContacts, first: Option<usize>) -> Vec<usize> {
-    let Some(first) = first else { return Vec::new() };
-    let entry = |a: usize, b: usize| support.coupled[(3 * a, 3 * b)];
-    let mut found = vec![false; support.len()];
-    let mut next = vec![first];
-    while let Some(place) = next.pop() {
-        if std::mem::replace(&mut found[place], true) {
-            continue;
-        }
-        let coupled = |other: &usize| {
-            entry(place, *other).abs() > COUPLED * (entry(place, place) * entry(*other, *other)).sqrt()
-        };
-        next.extend((0..support.len()).filter(coupled).filter(|other| !found[*other]));
-    }
-    (0..support.len()).filter(|&place| found[place]).collect()
 }

@@ -20,6 +20,8 @@ use crate::{ErrorKind, SimulationError};
 /// A share of the time to the end of slip that a step may take.
 const SHARE: f64 = 0.75;
 
+/// Slip that is followed to its end ends within so many times the time in which its rate would end it.
+const LATE: f64 = 1e3;
 /// So many steps without an event must advance the motion by this part of the longest step so far, or of half the time of
 /// the problem.
 const STEPS: usize = 3000;
@@ -73,10 +75,11 @@ impl Transition<'_> {
             }
         }
         let mut closed = self.closed();
-        let here = self
-            .motion(&closed)
-            .evaluate(self.front.t, &self.front.y)
-            .map_err(|failure| self.failure(failure))?;
+        let here = match self.motion(&closed).evaluate(self.front.t, &self.front.y) {
+            Ok(here) => here,
+            // It has jammed with the end of the last step.
+            Err(failure) => return self.stuck_integration(Some(failure)),
+        };
         self.weigh_lifted(&here)?;
         for (contact, hold) in closed.iter().zip(&here.holds) {
             // Should slip become too small to have a direction, it has the last one.
@@ -103,7 +106,9 @@ impl Transition<'_> {
                     if !stopped.is_empty() {
                         return self.end_slip(&closed, &here, &stopped, left[i].unwrap_or(0.0).min(ending));
                     }
-                } else if let Fate::Ends(time) = fate(&here.support, &here.holds, &mus(&closed), i) {
+                } else if let Fate::Ends(time) =
+                    fate(&here.support, &here.holds, &mus(&closed), i, LATE * ending)
+                {
                     return self.end_slip(&closed, &here, &[i], time);
                 }
             }
@@ -305,6 +310,10 @@ impl Transition<'_> {
                 most = 0.5 * step.h;
                 continue;
             }
+            if !self.leaving_is_known(&step)? {
+                most = 0.5 * step.h;
+                continue;
+            }
             let (watched, noise) = self.watched(closed, step.h);
             let Some(turns) = self.turns(closed, &step) else {
                 most = 0.5 * step.h;
@@ -348,9 +357,10 @@ impl Transition<'_> {
                 ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. },
             )) => self.jams(contact),
             Some(failure) => Err(self.failure(failure)),
-            None => match self.singular_here(&self.closed()) {
-                Some(contact) => self.end_at(contact),
-                None => Err(self.error(None, ErrorKind::Stalled)),
+            None => match (self.singular_here(&self.closed()), self.turns_into_jam()?) {
+                (Some(contact), _) => self.end_at(contact),
+                (None, Some(contact)) => self.impact_without_collision(contact),
+                (None, None) => Err(self.error(None, ErrorKind::Stalled)),
             },
         }
     }

@@ -21,6 +21,7 @@ mod mechanisms;
 mod one_contact;
 mod one_pass;
 mod painleve;
+mod poisson;
 mod rotation;
 mod settling;
 mod several;

@@ -20,7 +20,7 @@ fn factors(mechanism: &InterpretedMechanism, kind: ComponentKind) -> Vec<f64> {
 }
 
 /// The motion in SI units and in small ones.
-fn both(name: &str, change: &[(&str, f64)], mu: f64, until: f64) -> [Ended; 2] {
+fn both(name: &str, change: &[(&str, f64)], (mu, e): (f64, f64), until: f64) -> [Ended; 2] {
     let mechanism = model(name);
     let mut start = Start::of(&mechanism);
     for (name, value) in change {
@@ -43,7 +43,7 @@ fn both(name: &str, change: &[(&str, f64)], mu: f64, until: f64) -> [Ended; 2] {
         speeds: scaled(&start.speeds, ComponentKind::Speed),
         inputs: scaled(&start.inputs, ComponentKind::Input),
     };
-    let options = |absolute| Options { absolute_tolerance: absolute, ..surface(mu, 0.0, Law::Poisson) };
+    let options = |absolute| Options { absolute_tolerance: absolute, ..surface(mu, e, Law::Poisson) };
     [
         follow(&mechanism, &start, options(1e-12), until),
         // The tolerance is one of lengths too.
@@ -63,23 +63,32 @@ fn events_do_not_depend_on_units() {
         ("euler_disc", &[], 0.3, 0.5),
     ];
     for (name, change, mu, until) in cases {
-        let [one, other] = both(name, change, mu, until);
-        let list = |end: &Ended| -> Vec<(&'static str, Option<usize>)> {
-            end.events.iter().map(|event| (event.kind.name(), event.contact)).collect()
-        };
-        assert!(one.error.is_none() && other.error.is_none(), "{name}: {:?} {:?}", one.error, other.error);
-        assert!(!one.events.is_empty());
-        assert_eq!(list(&one), list(&other), "{name}: {:?} {:?}", one.names(), other.names());
-        for (a, b) in one.events.iter().zip(&other.events) {
-            // How near to its singular point a motion is followed depends on the tolerance of angles.
-            let close = if a.kind.name() == "singular" { 1e-5 } else { 1e-6 };
-            assert!(
-                (1e-3 * b.time - a.time).abs() < close,
-                "{name}: {} at {} {}",
-                a.kind.name(),
-                a.time,
-                b.time
-            );
+        compare(name, &both(name, change, (mu, 0.0), until), 1e-6);
+    }
+}
+
+/// Where domino 3 stands beside the others, which strike each other plastically, rounding of their impulses had let it
+/// rattle.
+#[test]
+fn dominoes_do_not_depend_on_units() {
+    for mu in [0.1, 0.2, 0.3, 0.45, 0.6, 0.8] {
+        for e in [0.0, 0.2, 0.5] {
+            compare("domino3", &both("domino3", &[], (mu, e), 0.35), 1e-6);
         }
+    }
+}
+
+/// Both have the same events at the same times.
+fn compare(name: &str, [one, other]: &[Ended; 2], within: f64) {
+    let list = |end: &Ended| -> Vec<(&'static str, Option<usize>)> {
+        end.events.iter().map(|event| (event.kind.name(), event.contact)).collect()
+    };
+    assert!(one.error.is_none() && other.error.is_none(), "{name}: {:?} {:?}", one.error, other.error);
+    assert!(!one.events.is_empty());
+    assert_eq!(list(one), list(other), "{name}: {:?} {:?}", one.names(), other.names());
+    for (a, b) in one.events.iter().zip(&other.events) {
+        // How near to its singular point a motion is followed depends on the tolerance of angles.
+        let close = if a.kind.name() == "singular" { 1e-5 } else { within };
+        assert!((1e-3 * b.time - a.time).abs() < close, "{name}: {} {} {}", a.kind.name(), a.time, b.time);
     }
 }

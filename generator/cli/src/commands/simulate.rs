@@ -87,12 +87,12 @@ pub struct Arguments {
 /// What contacts that are struck together do.
 #[derive(Clone, Copy, Debug, clap::ValueEnum)]
 enum TogetherArgument {
-    /// all that approach strike at once, by Moreau's law with friction; what this presses together
-    /// strikes next
+    /// all that approach strike at once, by Poisson's hypothesis where all have the law poisson, else by
+    /// Moreau's law, with friction; what this presses together strikes next
     Approaching,
     /// one after the other, the fastest first
     Sequential,
-    /// all that touch strike at once, by Moreau's law with friction
+    /// all that touch strike at once, by the same laws
     Simultaneous,
     /// all that touch at once, after Liu, Zhao and Brogliato, by the ratios of --stiffness; without friction
     /// only
