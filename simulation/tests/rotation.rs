@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::common::random::Random;
 use crate::common::{first, run};
 use hodograph::{Contacts, Law, State, Surface};
+use hodograph_random::Random;
 use hodograph_simulation::contact_problem::{Mode, Problem, solve, with_modes};
 use hodograph_simulation::{ContactLaw, ContactPhase, Drive, ErrorKind, Event, Options, Simulation};
 use nalgebra::{DMatrix, DVector};
@@ -270,7 +270,7 @@ fn a_stool_turns_on_four_feet() {
 #[test]
 fn random_motions_obey_the_laws() {
     let [m, r, j] = BALL;
-    let mut random = Random(17);
+    let mut random = Random::new(17);
     let mut seen = [0; 3];
     for run_number in 0..12 {
         let (mu, rolling, spinning) =
@@ -394,7 +394,7 @@ fn impossible_arms_and_mechanisms_without_rotation_are_refused() {
 /// the forces that are found obey the laws as they are stated for torques.
 #[test]
 fn forces_of_random_problems_obey_the_laws_of_torques() {
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let mut seen = [0; 4];
     for number in 0..400 {
         let k = 1 + number % 3;
