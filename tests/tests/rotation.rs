@@ -82,7 +82,7 @@ fn what_cannot_turn_is_refused_with_a_cure() {
         ),
     ] {
         assert_eq!(text.matches(from).count(), 1, "{from}");
-        let source = Source::file("stool.mech", &text.replace(from, to));
+        let source = Source::file("stool.mech", text.replace(from, to));
         let found = check(&source);
         let told: Vec<String> = found.diagnostics.iter().map(|one| one.message.clone()).collect();
         assert!(found.mechanism.is_none(), "{to}");
