@@ -3,9 +3,9 @@
 use hodograph::{Law, Surface};
 use hodograph_simulation::{EventKind, ImpactsAtOnce, Options, Simulation};
 
-use crate::common::random::Random;
 use crate::common::{Body, Line, Part, start};
 use crate::many;
+use hodograph_random::Random;
 
 /// A block of half width a and half height h on its two lower corners.
 fn block(m: f64, a: f64, h: f64) -> Body {
@@ -113,7 +113,7 @@ fn a_cradle_struck_at_once() {
 fn no_impact_gives_energy() {
     let mut struck = 0;
     for seed in 0..60 {
-        let mut random = Random(seed);
+        let mut random = Random::new(seed);
         let (a, h) = (random.between(0.05, 0.4), random.between(0.05, 0.4));
         let body = block(1.0, a, h);
         let (mu, e) = (random.between(0.0, 1.5), [random.between(0.0, 1.0), random.between(0.0, 1.0)]);
