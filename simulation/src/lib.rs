@@ -63,6 +63,7 @@ mod poisson_at_once;
 mod rattling;
 mod scales;
 mod scheduled_events;
+mod settled_direction;
 mod settled_slip;
 mod signed_slip;
 mod simulation;

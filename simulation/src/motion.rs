@@ -11,7 +11,7 @@ use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::pair::Pair;
 use crate::phase::Closed;
-use crate::signed_slip;
+use crate::settled_direction;
 use crate::slip_direction::settle_directions;
 use crate::torques::WithTorques;
 
@@ -222,7 +222,7 @@ impl Motion<'_> {
             };
             let solve = |holds: &[Hold]| forces(support, holds, mu, None, Wanted::Motion);
             settle_directions(support, self.closed, holds, &solve);
-            signed_slip::settle(support, self.closed, t, holds, &solve).ok_or(Failure::NoForces)?;
+            settled_direction::settle(support, self.closed, t, holds, &solve).ok_or(Failure::NoForces)?;
             let answer = forces(support, holds, mu, guess, wanted).map_err(lacking)?;
             let greatest = answer.lambda.amax();
             let accelerations = &mut rates[n..n + p];

@@ -14,6 +14,7 @@ use crate::contact_problem::Wanted;
 use crate::forces::{Forces, Hold, Lacking, forces};
 use crate::motion::{Evaluation, Motion};
 use crate::phase::{Closed, Turned};
+use crate::settled_direction::{Solve, across, slope, turn_until};
 use crate::stepper::Tolerances;
 
 /// An explicit integration takes steps of no more than so many times the time in which the direction settles.
@@ -28,16 +29,6 @@ const SETTLED: f64 = 10.0;
 const NEAR: f64 = 0.9;
 /// Rounds in which direction and rate of turning are found, each from the other.
 const ROUNDS: usize = 2;
-/// Difference of angles by which derivatives are formed, rad.
-const TURN: f64 = 1e-5;
-/// Steps of the method of secants at most.
-const STEPS: usize = 12;
-/// The angle is found where the product of the last two changes is below this, rad^2: the error that is left is of
-/// this order.
-const FOUND: f64 = 1e-15;
-/// Changes of the angle below this are rounding, rad.
-const ROUNDING: f64 = 1e-14;
-
 /// A contact whose direction of slip follows from the state.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settled {
@@ -69,9 +60,6 @@ pub(crate) struct Search<'a> {
     /// what a step may err
     pub tolerances: Tolerances,
 }
-
-/// Forces for modes.
-type Solve<'a> = dyn Fn(&[Hold]) -> Result<Forces, Lacking> + 'a;
 
 /// Closed contacts and the modes that follow from their velocities.
 type Beside = (ClosedContacts, Vec<Hold>);
@@ -118,25 +106,6 @@ pub(crate) fn settled(
     Some(Settled { place, direction, rates, slope, relaxation: slip.norm() / -slope, across, has_settled })
 }
 
-/// Gives a contact that has settled the direction that follows from the state at a time. `None` where there is none.
-pub(crate) fn settle(
-    support: &ClosedContacts,
-    closed: &[Closed],
-    t: f64,
-    holds: &mut [Hold],
-    solve: &Solve<'_>,
-) -> Option<()> {
-    for (place, contact) in closed.iter().enumerate() {
-        if let (Some(turning), Some(from)) = (contact.turning, contact.slides) {
-            holds[place] = Hold::Slide(turned(from, turning.angle(t)));
-            let slip = support.slip(place);
-            let wanted = |d: &Vector2<f64>| turning.rate(t) * slip.dot(d) + turning.fading(t);
-            turn_until(holds, place, turning.slope, &wanted, solve)?;
-        }
-    }
-    Some(())
-}
-
 /// By how much the slip across a settled direction differs from what it should be at a time, beside what a step may err:
 /// the error that is left by a rate of turning which was taken to be a polynomial.
 pub(crate) fn inconsistent(
@@ -153,57 +122,6 @@ pub(crate) fn inconsistent(
         }
     }
     most
-}
-
-/// A vector of length one turned by an angle.
-fn turned(d: Vector2<f64>, angle: f64) -> Vector2<f64> {
-    let (sin, cos) = angle.sin_cos();
-    Vector2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y)
-}
-
-/// The acceleration across the direction of slip of a contact.
-fn across(holds: &[Hold], place: usize, solve: &Solve<'_>) -> Option<f64> {
-    let (d, found) = (holds[place].direction()?, solve(holds).ok()?);
-    Some(d.x * found.acceleration[3 * place + 2] - d.y * found.acceleration[3 * place + 1])
-}
-
-/// The change of that acceleration by the angle of the direction.
-fn slope(holds: &[Hold], place: usize, solve: &Solve<'_>) -> Option<f64> {
-    let at = |angle: f64| -> Option<f64> {
-        let mut there = holds.to_vec();
-        there[place] = Hold::Slide(turned(holds[place].direction()?, angle));
-        across(&there, place, solve)
-    };
-    Some((at(TURN)? - at(-TURN)?) / (2.0 * TURN))
-}
-
-/// Turns the direction of slip of a contact until the acceleration across it is that wanted. `slope` is nearly its
-/// derivative by the angle.
-fn turn_until(
-    holds: &mut [Hold],
-    place: usize,
-    mut slope: f64,
-    wanted: &dyn Fn(&Vector2<f64>) -> f64,
-    solve: &Solve<'_>,
-) -> Option<()> {
-    let residual = |holds: &[Hold]| Some(across(holds, place, solve)? - wanted(&holds[place].direction()?));
-    let mut left = residual(holds)?;
-    let mut last = 1.0;
-    for _ in 0..STEPS {
-        let step = -left / slope;
-        if step.is_nan() || step.abs() >= 1.0 {
-            return None;
-        }
-        holds[place] = Hold::Slide(turned(holds[place].direction()?, step).normalize());
-        if step.abs() <= ROUNDING || step.abs() * last <= FOUND {
-            return Some(());
-        }
-        last = step.abs();
-        let after = residual(holds)?;
-        slope = (after - left) / step;
-        left = after;
-    }
-    None
 }
 
 /// Forces in these modes, with the coefficients of friction of these velocities.
@@ -294,45 +212,8 @@ fn allowed(support: &ClosedContacts, place: usize, speeds: &[f64], tolerances: &
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::{DMatrix, DVector};
-
     use super::*;
     use crate::phase::Turning;
-
-    /// Two contacts of one body that slide: the acceleration across the slip of one becomes that wanted.
-    #[test]
-    fn a_direction_is_turned_until_the_acceleration_across_it_is_that_wanted() {
-        let point = |x: f64, y: f64, z: f64| {
-            [[0.0, 0.0, 1.0, y, -x, 0.0], [1.0, 0.0, 0.0, 0.0, z, -y], [0.0, 1.0, 0.0, -z, 0.0, x]]
-        };
-        let rows: Vec<f64> =
-            [point(-0.2, 0.1, -0.3), point(0.25, -0.15, -0.3)].into_iter().flatten().flatten().collect();
-        let partials = DMatrix::from_row_slice(6, 6, &rows).transpose();
-        let inverse = DMatrix::from_diagonal(&DVector::from_vec(vec![0.5, 0.5, 0.5, 6.0, 5.0, 4.0]));
-        let response = &inverse * &partials;
-        let directions = [Vector2::new(1.0, 0.0), Vector2::new(0.8, 0.6)];
-        let support = ClosedContacts {
-            contacts: vec![0, 1],
-            coupled: partials.transpose() * &response,
-            velocity: DVector::zeros(6),
-            noise: DVector::zeros(6),
-            beta: DVector::from_vec(vec![-9.0, 0.3, 1.0, -10.0, 0.2, 0.7]),
-            partials,
-            response,
-        };
-        let solve = |holds: &[Hold]| forces(&support, holds, &[0.3, 0.4], None, Wanted::Motion);
-        for place in [0, 1] {
-            let mut holds = directions.map(Hold::Slide);
-            let known = across(&holds, place, &solve).unwrap();
-            let slope = slope(&holds, place, &solve).unwrap();
-            for (by, slope) in [(0.05, slope), (-0.08, 0.7 * slope)] {
-                holds[place] = Hold::Slide(turned(directions[place], by));
-                turn_until(&mut holds, place, slope, &|_| known, &solve).unwrap();
-                let d = holds[place].direction().unwrap();
-                assert!((d - directions[place]).norm() < 1e-13 && (d.norm() - 1.0).abs() < 1e-15, "{d}");
-            }
-        }
-    }
 
     /// Rates that are a parabola of the time go on as that parabola.
     #[test]

@@ -104,6 +104,7 @@ fn unsafe_code_stands_where_the_architecture_says() {
         "bindings/casadi/src",
         "generator/cli/src/export",
         "generator/editors/acceptance/src",
+        "playground/src",
         "tests/benchmark/src/times",
         "tests/firmware/src",
         "tests/freestanding/src",

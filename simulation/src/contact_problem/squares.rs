@@ -2,7 +2,9 @@
 //!
 //! With u_n = n and abs(u_tan) = a the barrier of a cone is -ln(n - a) - ln(n + a), and its Hessian a sum of three squares:
 //!
-//!     g1 g1^T / (n - a)^2 + g2 g2^T / (n + a)^2 + 2 / (n^2 - a^2) t t^T,     g1, g2 = (1, -+u_tan / a), t across u_tan,
+//! ```text
+//! g1 g1^T / (n - a)^2 + g2 g2^T / (n + a)^2 + 2 / (n^2 - a^2) t t^T,     g1, g2 = (1, -+u_tan / a), t across u_tan,
+//! ```
 //!
 //! without the differences of large terms in which rows and columns of the Hessian would lose what is along the cone.
 //! So the Hessian is J^T J with the rows J of these squares, and steps follow from J by orthogonal transformations,
