@@ -1,7 +1,7 @@
 //! Writes a motion as an animated HTML page: points and the lines between them, contacts, impulses and
 //! forces, and curves over time.
 //!
-//! [`page`] makes the text of the page from an [`Animation`]. The page loads no other files, and works with
+//! [`page()`] makes the text of the page from an [`Animation`]. The page loads no other files, and works with
 //! mouse, touch and keyboard.
 
 mod energies;

@@ -4,7 +4,28 @@ use hodograph::{Characteristics, Law, ReducedMatrix, Surface, rates};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::Case;
-use crate::random::Random;
+
+/// A linear congruential generator (Knuth's constants), the upper 53 bits of which are used: the tables of
+/// docs/benchmarks.md are of the collisions that it draws.
+struct Random(u64);
+
+impl Random {
+    /// Between -1 and 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+
+    /// A place in a list of so many.
+    fn pick(&mut self, count: usize) -> usize {
+        ((0.5 * (self.next() + 1.0) * count as f64) as usize).min(count - 1)
+    }
+
+    /// Between two positive numbers, evenly in the logarithm.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(0.5 * (self.next() + 1.0))
+    }
+}
 
 /// Random contacts of rank 1 to 3 and conditions to 1e16; slip that hardly is or is fast, along a root of h
 /// or nearly, stopping nearly at mu_c; steep friction.

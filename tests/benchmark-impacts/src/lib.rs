@@ -3,9 +3,6 @@
 mod hostile;
 pub mod modes;
 mod ode;
-#[path = "../../../runtime/tests/common/random.rs"]
-#[allow(dead_code)]
-mod random;
 pub mod times;
 
 use std::hint::black_box;

@@ -84,13 +84,13 @@ fn run() -> Result<bool, String> {
         }
     }
     for (what, of_motions) in [("routines", false), ("motions", true)] {
-        let here = |counts: &&(&String, &f64)| counts.0.starts_with(MOTION) == of_motions;
-        let sum = |counts: &Counts| counts.iter().filter(here).map(|(_, count)| count).sum::<f64>();
-        println!(
-            "{} {what}, together {:.2} % of the table",
-            counted.iter().filter(here).count(),
-            100.0 * sum(&counted) / sum(&stored)
-        );
+        let of = |counts: &Counts| -> Vec<f64> {
+            let all = counts.iter().filter(|(name, _)| name.starts_with(MOTION) == of_motions);
+            all.map(|(_, count)| *count).collect()
+        };
+        let (now, before) = (of(&counted), of(&stored));
+        let part = 100.0 * now.iter().sum::<f64>() / before.iter().sum::<f64>();
+        println!("{} {what}, together {part:.2} % of the table", now.len());
     }
     if !right {
         println!("where this is meant: HODOGRAPH_UPDATE=1 writes the table anew");
