@@ -95,6 +95,7 @@ fn every_construct_has_an_example() {
         "ellipsoid:",
         "box:",
         "polytope:",
+        "rectangle:",
         "plane:",
         "half_space:",
         "surface: h*",

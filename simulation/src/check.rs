@@ -87,9 +87,8 @@ pub(crate) fn check(
     }
     let mut surfaces: Vec<Option<Pair>> = vec![None; count];
     for (contact, slot) in surfaces.iter_mut().enumerate() {
-        let gap = mechanism
-            .gap(contact, state)
-            .map_err(|error| SimulationError::new(mechanism, state.time, None, ErrorKind::State(error)))?;
+        let fault = |error| SimulationError::new(mechanism, state.time, None, ErrorKind::State(error));
+        let gap = mechanism.gap(contact, state).map_err(fault)?;
         // A contact without a gap cannot be seen to close.
         if gap.is_none() {
             continue;
@@ -111,7 +110,8 @@ pub(crate) fn check(
             None => ContactLaw::stated(&mechanism.stated_law(contact))
                 .map_err(|message| error(Some(contact), ErrorKind::BadOption(message)))?,
         };
-        let pair = Pair { surface, law };
+        let ends = mechanism.validity(contact, state).map_err(fault)?.is_some();
+        let pair = Pair { surface, law, ends };
         pair.check().map_err(|message| error(Some(contact), ErrorKind::BadOption(message)))?;
         *slot = Some(pair);
     }

@@ -49,6 +49,10 @@ const GAUSS: [(f64, f64); 5] = [
 pub(crate) enum Watched {
     /// the gap of a contact
     Gap(usize),
+    /// the way of a contact that is near to where its face begins
+    Entry(usize),
+    /// how far a closed contact (its place among them) is from the end of its face
+    End(usize),
     /// normal force of a contact (place among the closed ones)
     Normal(usize),
     /// whether friction suffices
@@ -76,11 +80,19 @@ impl Transition<'_> {
                     Leaving::Bounced => rate(),
                     Leaving::Lifted { risen, .. } if risen > 0.0 => h * rate(),
                     Leaving::Lifted { .. } => rate(),
-                    Leaving::Apart => self.rounding_of_gap(contact),
+                    Leaving::Apart | Leaving::Near => self.rounding_of_gap(contact),
                 });
+            }
+            if self.ends(contact) && self.is_beside(contact) {
+                watched.push(Watched::Entry(contact));
+                noise.push(self.rounding_of_gap(contact));
             }
         }
         for (place, contact) in closed.iter().enumerate() {
+            if self.ends(contact.contact) {
+                watched.push(Watched::End(place));
+                noise.push(self.rounding_of_gap(contact.contact));
+            }
             // A torque has the normal force of its contact.
             if self.mechanism.torque(contact.contact).is_none() {
                 watched.push(Watched::Normal(place));
@@ -215,9 +227,14 @@ impl Transition<'_> {
                             let mean = self.mean_rate(contact, after, at)? + 0.5 * rounding * after;
                             Ok(if risen > 0.0 { risen + after * mean } else { mean })
                         }
-                        _ => Ok(self.mechanism.gap(contact, &state)?.unwrap_or(1.0)),
+                        _ => {
+                            let gap = self.mechanism.gap(contact, &state)?.unwrap_or(1.0);
+                            Ok(gap - self.watched_from(contact))
+                        }
                     }
                 }
+                Watched::Entry(contact) => Ok(self.low() - self.validity(contact, &state)?),
+                Watched::End(place) => Ok(self.validity(closed[place].contact, &state)?),
                 Watched::Normal(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[0])),
                 Watched::Cone(place) => Ok(conditions.get(place).map_or(1.0, |margins| margins[1])),
                 Watched::Slip(place) => Ok(slips.get(place).copied().unwrap_or(1.0)),
@@ -236,7 +253,11 @@ impl Transition<'_> {
         let Ok(inputs) = motion.inputs(t, y) else { return vec![None; watched.len()] };
         let state = State { time: t, coordinates: q, speeds: u, inputs: &inputs };
         let rate = |what: &Watched| match *what {
-            Watched::Gap(contact) if self.front.phases[contact] == Phase::Open(Leaving::Apart) => {
+            Watched::Gap(contact)
+                if self.front.phases[contact] == Phase::Open(Leaving::Apart)
+                    // beside its face a gap has another rate
+                    && self.validity(contact, &state).is_ok_and(|validity| validity > 0.0) =>
+            {
                 self.mechanism.contact_velocity(contact, &state).ok().map(|velocity| velocity.x)
             }
             _ => None,
@@ -344,14 +365,19 @@ impl Transition<'_> {
             let before = match self.front.phases[contact] {
                 Phase::Open(Leaving::Bounced) if step.h > 0.0 => 0.0,
                 Phase::Open(Leaving::Lifted { risen, .. }) => risen,
+                Phase::Open(Leaving::Near) => {
+                    if self.gap_at(step, contact)?.0 > 2.0 * self.low() {
+                        self.front.phases[contact] = Phase::Open(Leaving::Apart);
+                    }
+                    continue;
+                }
                 _ => continue,
             };
             let (gap, _) = self.gap_at(step, contact)?;
-            self.front.phases[contact] = Phase::Open(if gap > LIFTED * self.front.scales.length {
-                Leaving::Apart
-            } else {
-                self.risen(contact, before, step)?
-            });
+            let lifted =
+                if self.ends(contact) { 2.0 * self.low() } else { LIFTED * self.front.scales.length };
+            self.front.phases[contact] =
+                Phase::Open(if gap > lifted { Leaving::Apart } else { self.risen(contact, before, step)? });
         }
         Ok(())
     }

@@ -45,9 +45,19 @@ impl Transition<'_> {
         self.reached = Some(self.front.clone());
         self.crowded(start)?;
         match watched {
+            Watched::Gap(contact) if self.watched_from(contact) > 0.0 => {
+                self.gap_is_known(contact)?;
+                self.front.phases[contact] = Phase::Open(Leaving::Near);
+                Ok(())
+            }
+            Watched::Entry(contact) => self.enter(contact),
+            Watched::End(place) => self.leave(closed[place].contact),
             Watched::Gap(contact) => {
                 self.gap_is_known(contact)?;
                 let (_, rate) = self.gap_at(&step, contact)?;
+                if self.ends(contact) && self.keeps_height(contact)? {
+                    return self.stay(contact);
+                }
                 if rate >= 0.0 {
                     let leaves = matches!(self.front.phases[contact], Phase::Open(Leaving::Lifted { .. }));
                     // It only touches.
@@ -74,7 +84,7 @@ impl Transition<'_> {
     }
 
     /// A contact that was about to leave has not: decides its mode with those of all closed contacts.
-    fn stay(&mut self, contact: usize) -> Result<(), SimulationError> {
+    pub(crate) fn stay(&mut self, contact: usize) -> Result<(), SimulationError> {
         let was = self.front.phases.clone();
         let closed = |&other: &usize| other == contact || was[other].is_closed();
         let candidates: Vec<usize> = (0..was.len()).filter(closed).collect();

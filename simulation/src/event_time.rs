@@ -26,7 +26,9 @@ impl Transition<'_> {
     ) -> Result<Step, SimulationError> {
         let after = crossing.place * whole.h;
         match watched {
-            Watched::Gap(contact) => self.at_gap(closed, whole, contact, after),
+            Watched::Gap(contact) if self.watched_from(contact) == 0.0 => {
+                self.at_gap(closed, whole, contact, after)
+            }
             _ => Ok(self.at_zero(closed, whole, watched, after)),
         }
     }

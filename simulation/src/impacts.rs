@@ -194,6 +194,9 @@ impl Transition<'_> {
                 continue;
             }
             let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
+            if self.ends(contact) && !self.is_valid(contact, &state)? {
+                continue;
+            }
             let rate = self.mechanism.contact_velocity(contact, &state).map_err(fault)?.x;
             if gap <= 1e-14 * size || (rate < 0.0 && gap < -rate * NOW * self.front.scales.time) {
                 touching.push(contact);

@@ -37,6 +37,7 @@ mod contact_law;
 pub mod contact_problem;
 mod drift;
 mod drive;
+mod ends;
 mod energy;
 mod error;
 mod event;

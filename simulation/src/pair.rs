@@ -10,6 +10,8 @@ use crate::contact_law::{ContactLaw, Restitution, Sliding};
 pub(crate) struct Pair {
     pub surface: Surface<f64>,
     pub law: ContactLaw,
+    /// whether the faces or edges that touch end
+    pub ends: bool,
 }
 
 /// Coefficients of friction of a contact in a state: up to which it sticks, and with which it slips.
@@ -200,9 +202,9 @@ mod tests {
     #[test]
     fn ladders_have_the_sum_of_their_series() {
         let surface = Surface { mu: 0.0, e: 0.7, law: hodograph::Law::Newton };
-        let constant = Pair { surface, law: ContactLaw::default() };
+        let constant = Pair { surface, law: ContactLaw::default(), ends: false };
         let restitution = Restitution::Table(vec![[0.0, 0.7]]);
-        let table = Pair { surface, law: ContactLaw { restitution, ..ContactLaw::default() } };
+        let table = Pair { surface, law: ContactLaw { restitution, ..ContactLaw::default() }, ends: false };
         let (one, other) = (constant.bounces_for(2.0, 1.4, 9.81), table.bounces_for(2.0, 1.4, 9.81));
         assert!((one.unwrap() / other.unwrap() - 1.0).abs() < 1e-8);
     }

@@ -7,6 +7,8 @@ use nalgebra::Vector2;
 pub(crate) enum Leaving {
     /// Its gap is open.
     Apart,
+    /// Its gap is open and small, of a contact whose faces or edges end.
+    Near,
     /// It separated with a speed now; its gap is zero but for rounding.
     Bounced,
     /// It lifted off: rate and gap begin at zero. `risen` is its gap at the front by integration of its rate,

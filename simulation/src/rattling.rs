@@ -58,7 +58,7 @@ impl Transition<'_> {
                 || self.mechanism.gap(contact, &state).map_err(|error| self.failure(Failure::State(error)));
             if contact == first
                 || self.front.phases[contact].is_closed()
-                || gap()?.is_some_and(|gap| gap <= reach)
+                || gap()?.is_some_and(|gap| gap <= reach) && self.is_valid(contact, &state)?
             {
                 near.push(contact);
             }

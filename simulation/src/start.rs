@@ -25,6 +25,7 @@ impl Transition<'_> {
             if self.surfaces[contact].is_none() {
                 continue;
             }
+            let (low, ends) = (self.low(), self.ends(contact));
             let fault = |error| self.failure(Failure::State(error));
             let Some(gap) = self.mechanism.gap(contact, &state).map_err(fault)? else { continue };
             if gap < -overlap {
@@ -33,6 +34,14 @@ impl Transition<'_> {
             if gap > overlap {
                 continue;
             }
+            let valid = self.is_valid(contact, &state)?;
+            if ends && gap <= low {
+                self.front.phases[contact] = Phase::Open(Leaving::Near);
+            }
+            if !valid {
+                continue;
+            }
+            let fault = |error| self.failure(Failure::State(error));
             let support = ClosedContacts::new(self.mechanism, &state, &[contact], false).map_err(fault)?;
             let rate = support.velocity[0];
             let rounding = 1e-9 * support.velocity_size(0, state.speeds);

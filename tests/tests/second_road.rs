@@ -176,6 +176,8 @@ fn contacts() {
             turning(name, theirs.turning.as_ref(), &basis, &inverse, get)?;
             let gap: Vec<f64> = theirs.gap.into_iter().collect();
             close(&format!("{name} gap"), &get(C::Gap).values, &gap, 1e-12)?;
+            let validity: Vec<f64> = theirs.validity.into_iter().collect();
+            close(&format!("{name} validity"), &get(C::Validity).values, &validity, 1e-12)?;
         }
         Ok(())
     });

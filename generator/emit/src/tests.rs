@@ -94,6 +94,7 @@ fn mechanism() -> Mechanism {
             normal_span: span,
             gap: None,
             without_gap: false,
+            validity: None,
             gap_span: span,
             surface: None,
             law: ContactLaw::default(),

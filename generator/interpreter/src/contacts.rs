@@ -34,6 +34,19 @@ impl InterpretedMechanism {
             .map_or(0, |output| output.values.len())
     }
 
+    /// A length that not all contacts have.
+    fn length_at_contact(
+        &self,
+        contact: usize,
+        quantity: ContactQuantity,
+        state: &State<'_>,
+    ) -> Result<Option<f64>, StateError> {
+        self.exists(ComponentKind::Contact, contact)?;
+        let request = Request::Contact(contact, OfContact::One(quantity));
+        let [length] = self.array::<1>(request, state, &[])?;
+        Ok(self.has(request).then_some(length))
+    }
+
     fn vector_of_contact(
         &self,
         contact: usize,
@@ -264,10 +277,14 @@ impl Contacts for InterpretedMechanism {
     }
 
     fn gap(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
-        self.exists(ComponentKind::Contact, contact)?;
-        let request = Request::Contact(contact, OfContact::One(ContactQuantity::Gap));
-        let [gap] = self.array::<1>(request, state, &[])?;
-        Ok(self.has(request).then_some(gap))
+        self.length_at_contact(contact, ContactQuantity::Gap, state)
+    }
+
+    fn validity(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
+        if self.size(contact, ContactQuantity::Validity) == 0 {
+            return self.exists(ComponentKind::Contact, contact).map(|()| None);
+        }
+        self.length_at_contact(contact, ContactQuantity::Validity, state)
     }
 
     fn surface(&self, contact: usize) -> Option<Surface<f64>> {

@@ -10,9 +10,10 @@ use hodograph_program::program::quantity::table::{POINT, WHOLE};
 use hodograph_program::program::{ContactQuantity, PointQuantity, Quantity};
 
 /// What is asked of a contact.
-const CONTACT: [OfContact; 12] = [
+const CONTACT: [OfContact; 13] = [
     OfContact::State,
     OfContact::One(ContactQuantity::Gap),
+    OfContact::One(ContactQuantity::Validity),
     OfContact::One(ContactQuantity::Velocity),
     OfContact::One(ContactQuantity::FreeAcceleration),
     OfContact::One(ContactQuantity::PartialVelocities),

@@ -105,6 +105,7 @@ pub const FIELDS: &[Word] = &[
     word("torus", "torus: [R, r]", "a tyre, radius and radius of its tube"),
     word("ellipsoid", "ellipsoid: [a, b, c]", "semi-axes along x, y and z"),
     word("box", "box: [a, b, c]", "lengths along x, y and z"),
+    word("rectangle", "rectangle: [a, b]", "lengths along x and y, in the plane of motion"),
     word("polytope", "polytope: [P, Q, G + a*B.x]", "the convex hull of points"),
     word("plane", "plane: N.z", "a plane with its normal"),
     word("half_space", "half_space: N.z", "what lies behind a plane with this normal"),

@@ -121,6 +121,13 @@ pub trait Contacts<T: Scalar = f64>: Mechanism<T> {
     fn contact_state(&self, contact: usize, state: &State<'_, T>) -> Result<ContactState<T>, StateError>;
     /// Gap alone, m; `None` where the model gives none.
     fn gap(&self, contact: usize, state: &State<'_, T>) -> Result<Option<T>, StateError>;
+    /// How far the place of contact is within the faces and edges that touch there, m; `None` where these do not
+    /// end. Of a contact that has a validity, gap and normal belong together where it is positive, and a closed
+    /// contact ends where it falls below zero; elsewhere the gap is positive as long as the features are apart.
+    fn validity(&self, contact: usize, state: &State<'_, T>) -> Result<Option<T>, StateError> {
+        let _ = (contact, state);
+        Ok(None)
+    }
     /// Friction and restitution that the model states for a contact; `None` where it states none. A simulation
     /// takes it where its options say nothing else.
     fn surface(&self, contact: usize) -> Option<Surface<T>> {

@@ -211,6 +211,7 @@ impl Local<'_> {
             (Kind::Torus, [big, r]) => Outline::torus(place, [*big, *r]),
             (Kind::Ellipsoid, [a, b, c]) => Outline::ellipsoid(place, [*a, *b, *c]),
             (Kind::Box, [a, b, c]) => Outline::cuboid(place, [*a, *b, *c]),
+            (Kind::Rectangle, [a, b]) => Outline::cuboid(place, [*a, *b, 0.0]),
             (Kind::Polytope, _) => {
                 let vertices: Option<Vec<[f64; 3]>> =
                     shape.vertices.iter().map(|vertex| Some(self.anchor(vertex)?.into())).collect();

@@ -19,6 +19,8 @@ pub struct ContactForms {
     pub rows: Rows,
     /// distance
     pub gap: Option<Expr>,
+    /// how far the place of contact is within the features that touch, where these end
+    pub validity: Option<Expr>,
     /// whether there is no velocity along the second tangential axis, whatever the speeds.
     pub planar: bool,
     /// unit forces along the axes of the basis, if they act on nothing but the mechanism
@@ -59,7 +61,8 @@ pub fn contact_forms(k: &mut Kinematics<'_>, contact: &Contact, along: Along) ->
         k.tree.convert(&mut k.z, &v, axes, AxesTree::N)
     });
     let gap = contact.gap.as_ref().map(|gap| k.scalar(gap));
-    ContactForms { basis, rows, gap, planar, forces, turning }
+    let validity = contact.validity.as_ref().map(|validity| k.scalar(validity));
+    ContactForms { basis, rows, gap, validity, planar, forces, turning }
 }
 
 /// A vector along the contact basis.

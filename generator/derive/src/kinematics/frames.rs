@@ -58,7 +58,7 @@ pub fn used_axes(mechanism: &Mechanism) -> Vec<bool> {
         if let Against::Velocity(v) = &contact.against {
             scan.vector(v);
         }
-        contact.gap.iter().for_each(|gap| scan.scalar(gap));
+        contact.gap.iter().chain(&contact.validity).for_each(|length| scan.scalar(length));
     }
     used
 }

@@ -40,6 +40,7 @@ impl Emitter<'_> {
         let state =
             self.contact_values(ContactQuantity::Reduced, "contact_state", "reduced matrix of this contact");
         let gap = self.gaps();
+        let validity = self.validities();
         let surface = self.stated_surfaces();
         let velocity =
             self.contact_values(ContactQuantity::Velocity, "contact_velocity", "velocity of this contact");
@@ -76,6 +77,7 @@ impl Emitter<'_> {
                 ) -> ::core::result::Result<::core::option::Option<T>, #krate::StateError> {
                     #gap
                 }
+                #validity
                 #surface
                 fn contact_velocity(
                     &self,
@@ -270,15 +272,38 @@ impl Emitter<'_> {
     }
 
     fn gaps(&self) -> TokenStream {
+        self.lengths(ContactQuantity::Gap)
+    }
+
+    /// The validities, if the contacts of the model have any.
+    fn validities(&self) -> Option<TokenStream> {
+        let krate = self.krate;
+        let quantity = ContactQuantity::Validity;
+        let mut contacts = 0..self.mechanism.contacts.len();
+        contacts.any(|contact| self.contact_output(contact, quantity).is_some()).then(|| {
+            let validity = self.lengths(quantity);
+            quote! {
+                fn validity(
+                    &self,
+                    contact: usize,
+                    state: &#krate::State<'_, T>,
+                ) -> ::core::result::Result<::core::option::Option<T>, #krate::StateError> {
+                    #validity
+                }
+            }
+        })
+    }
+
+    /// A length that not all contacts have.
+    fn lengths(&self, quantity: ContactQuantity) -> TokenStream {
         self.by_contact(|contact| {
-            let quantity = Quantity::Contact(contact as u32, ContactQuantity::Gap);
-            if self.contact_output(contact, ContactQuantity::Gap).is_none() {
+            if self.contact_output(contact, quantity).is_none() {
                 return quote! {
                     DESCRIPTION.check(state)?;
                     ::core::result::Result::Ok(::core::option::Option::None)
                 };
             }
-            let (unpack, call) = self.own(quantity);
+            let (unpack, call) = self.own(Quantity::Contact(contact as u32, quantity));
             quote!(#unpack ::core::result::Result::map(#call, ::core::option::Option::Some))
         })
     }

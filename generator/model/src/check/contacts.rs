@@ -25,7 +25,10 @@ pub fn contacts(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<D
         if found.iter().any(|d| d.primary.span == contact.normal_span) {
             continue;
         }
-        if let Some(still) = approach(m, contact, i, seen) {
+        // of two boxes many edges never meet
+        if contact.validity.is_none()
+            && let Some(still) = approach(m, contact, i, seen)
+        {
             out.push(still);
             continue;
         }

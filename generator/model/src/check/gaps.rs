@@ -25,7 +25,9 @@ pub fn gaps(m: &Mechanism, seen: &[Seen<'_>], found: &[Diagnostic]) -> Vec<Diagn
         if found.iter().any(|d| places.contains(&d.primary.span)) {
             continue;
         }
-        match strange(m, contact, gap, seen) {
+        // beside a face that ends a gap has another rate
+        let strange = if contact.validity.is_some() { None } else { strange(m, contact, gap, seen) };
+        match strange {
             Some(diagnostic) => out.push(diagnostic),
             None => {
                 let Some(found) = begins_inside(m, contact, gap) else { continue };

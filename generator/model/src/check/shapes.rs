@@ -6,7 +6,7 @@ use super::states::{Seen, at_rest};
 use crate::diagnostics::{Diagnostic, codes};
 use crate::model::mechanism::*;
 use crate::numeric::hyper_dual::HyperDual;
-use crate::numeric::views::{cross3, norm3, sub3};
+use crate::numeric::views::{cross3, dot3, norm3, sub3};
 use crate::numeric::{Failure, Level, State, Views};
 
 /// A place or axis that leaves its frame by this share of its velocity is not fixed in it.
@@ -23,7 +23,63 @@ pub fn shapes(m: &Mechanism, state: Option<&State>, seen: &[Seen<'_>]) -> Vec<(S
             .or_else(|| turning_axis(m, shape, seen));
         out.extend(found.map(|found| (ShapeId(i), found)));
     }
+    for contact in &m.contacts {
+        let Some(pair) = contact.shapes else { continue };
+        if !out.iter().any(|(shape, _)| pair.contains(shape)) {
+            out.extend(out_of_plane(m, contact, pair, seen).map(|found| (pair[1], found)));
+        }
+    }
     out
+}
+
+/// A rectangle and another shape that do not move in one plane.
+fn out_of_plane(
+    m: &Mechanism,
+    contact: &Contact,
+    pair: [ShapeId; 2],
+    seen: &[Seen<'_>],
+) -> Option<Diagnostic> {
+    let shapes = pair.map(|id| &m.shapes[id.0]);
+    let [other, rectangle] = match (shapes[0].kind, shapes[1].kind) {
+        (_, Kind::Rectangle) => shapes,
+        (Kind::Rectangle, _) => [shapes[1], shapes[0]],
+        _ => return None,
+    };
+    let tilted = seen.iter().any(|seen| {
+        let views = &seen.views.now;
+        let off = || -> Result<f64, Failure> {
+            let z = |frame: FrameId| Ok(views.orientation(frame)?.map(|row| row[2].re));
+            let own = z(rectangle.axes.unwrap_or(rectangle.frame))?;
+            let place = |anchor: &Anchor| -> Result<[f64; 3], Failure> {
+                let (at, by) = (views.position(anchor.point)?, views.vector(&anchor.by, Level::Geometry)?);
+                Ok([0, 1, 2].map(|i| at[i].re + by[i].re))
+            };
+            if other.kind.is_flat() {
+                let normal = other
+                    .axis
+                    .as_ref()
+                    .map_or(Ok([0.0; 3]), |axis| Ok(views.vector(axis, Level::Geometry)?.map(|c| c.re)))?;
+                return Ok(dot3(normal, own).abs());
+            }
+            let apart = sub3(place(&rectangle.at)?, place(&other.at)?);
+            let across = dot3(apart, own).abs() / (1.0 + norm3(apart));
+            let turned = match other.axes {
+                Some(axes) => norm3(cross3(z(axes)?, own)),
+                None => 0.0,
+            };
+            Ok(across.max(turned))
+        };
+        off().is_ok_and(|off| off > SLIP)
+    });
+    tilted.then(|| {
+        let [first, second] = shapes.map(|shape| &shape.name);
+        let message = format!("`{first}` and `{second}` do not move in one plane");
+        let help = format!(
+            "`{}` is a rectangle in the plane of x and y of its axes: in space, make it a `box`",
+            rectangle.name
+        );
+        Diagnostic::new(codes::PAIR, contact.span, message).help(help)
+    })
 }
 
 /// A length or density that is not positive with the values of the model.

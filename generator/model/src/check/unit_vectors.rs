@@ -42,9 +42,17 @@ pub fn unit_vectors(m: &Mechanism, readable: &Readable, states: &[State]) -> Vec
 pub fn normals(m: &Mechanism, states: &[State]) -> Vec<Diagnostic> {
     let check = |contact: &Contact| {
         let message = |length| format!("the normal of `{}` has the length {length}, not 1", contact.name);
-        not_unit(codes::NORMAL, contact.normal_span, lengths(m, states, &contact.normal), message)
+        let valid: Vec<State> = states.iter().filter(|state| is_valid(m, state, contact)).cloned().collect();
+        not_unit(codes::NORMAL, contact.normal_span, lengths(m, &valid, &contact.normal), message)
     };
     m.contacts.iter().filter_map(check).collect()
+}
+
+/// Whether a contact is within the faces and edges to which its normal belongs.
+fn is_valid(m: &Mechanism, state: &State, contact: &Contact) -> bool {
+    contact.validity.as_ref().is_none_or(|validity| {
+        at_rest(m, state).scalar(validity, Level::Motion).is_ok_and(|validity| validity.re > 0.0)
+    })
 }
 
 fn lengths(m: &Mechanism, states: &[State], vector: &Vector) -> Vec<f64> {

@@ -6,8 +6,8 @@ use crate::diagnostics::codes::*;
 pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: SHAPE,
-        text: "A shape is one of sphere, capsule, cylinder, cone, disc, torus, ellipsoid, box, polytope, plane, \
-            half_space, surface and curve, with its dimensions: lengths that are positive and depend on \
+        text: "A shape is one of sphere, capsule, cylinder, cone, disc, torus, ellipsoid, box, rectangle, \
+            polytope, plane, half_space, surface and curve, with its dimensions: lengths that are positive and depend on \
             parameters only. It moves with the body or frame after `of`, without which it is fixed in N; its \
             place `at`, its vertices and its axis must move with that too. Round shapes have an `axis`, which is \
             a unit vector. A body that takes its mass from a shape needs one with volume and `density`.",
@@ -24,9 +24,9 @@ pub(super) const TABLE: &[Explanation] = &[
         code: PAIR,
         text: "Contacts are compiled between pairs of shapes whose nearest points have a closed form: everything \
             convex on a plane, a sphere on (or in) a sphere, capsule, cylinder or box, and on a disc or torus, \
-            and the vertices of a box or polytope on a surface. What strikes stands first. Edges and faces that \
-            end are not contacts: for two boxes, place spheres at the corners that meet, or state points, \
-            normals and gaps.",
+            the vertices of a box or polytope on a surface, and, in a mechanism that moves in a plane, a \
+            rectangle on a rectangle. What strikes stands first. Other pairs whose edges and faces \
+            end are not compiled: place spheres at the corners that meet, or state points, normals and gaps.",
         wrong: Some(
             "shapes { Bar { of: Rod, capsule: [l/20, l], axis: B.y }, Post { at: O + l*N.x, box: [l/4, l, l] } }\n\
             contacts { tip { Bar on Post } }",

@@ -53,8 +53,11 @@ pub fn contacts((striking, vertices): (Kind, usize), inside: bool, struck: Kind)
         (Sphere | Disc | Torus | Ellipsoid, Plane | HalfSpace, false) => Some(1),
         (Capsule | Cylinder | Cone, Plane | HalfSpace, false) => Some(2),
         (Box, Plane | HalfSpace | Surface | Curve, false) => Some(8),
+        (Rectangle, Plane | HalfSpace | Curve, false) => Some(4),
+        // the vertices of both
+        (Rectangle, Rectangle, false) => Some(8),
         (Polytope, Plane | HalfSpace | Surface | Curve, false) => Some(vertices),
-        (Sphere, Sphere | Capsule | Cylinder | Box | Disc | Torus, false) => Some(1),
+        (Sphere, Sphere | Capsule | Cylinder | Box | Rectangle | Disc | Torus, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder, true) => Some(1),
         (Sphere, Box, true) => Some(6),
         _ => None,

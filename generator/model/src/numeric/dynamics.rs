@@ -227,6 +227,10 @@ fn contact_values(views: &Views<'_>, contact: &Contact) -> Result<ContactEvaluat
             Some(gap) => Some(views.now.scalar(gap, Level::Motion)?.re),
             None => None,
         },
+        validity: match &contact.validity {
+            Some(validity) => Some(views.now.scalar(validity, Level::Motion)?.re),
+            None => None,
+        },
         normal_rate: accelerations(views.onward.vector(&contact.normal, Level::Motion)?),
         acceleration: accelerations(views.onward.contact_velocity(contact)?),
         turning: contact.turning.map(|frames| turning_values(views, frames)).transpose()?,

@@ -98,6 +98,8 @@ pub struct ContactEvaluation {
     pub remainder: [f64; 3],
     /// gap, m, if the model gives one
     pub gap: Option<f64>,
+    /// validity, m, where the features that touch end
+    pub validity: Option<f64>,
     /// rate of the normal
     pub normal_rate: [f64; 3],
     /// rate of the relative velocity while the independent speeds stay, m/s^2

@@ -112,6 +112,10 @@ impl Writer<'_, '_> {
             let nodes = self.nodes([gap]);
             self.put(of(ContactQuantity::Gap), 1, 1, nodes);
         }
+        if let Some(validity) = &forms.validity {
+            let nodes = self.nodes([validity]);
+            self.put(of(ContactQuantity::Validity), 1, 1, nodes);
+        }
         let work: Vec<Node> = columns
             .iter()
             .map(|column| {

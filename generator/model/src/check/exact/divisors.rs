@@ -36,7 +36,9 @@ pub fn vanishing(m: &Mechanism) -> Option<Diagnostic> {
     }
     for contact in &m.contacts {
         look(&mut nodes, contact.normal_span, &mut |nodes| nodes.vector(&contact.normal).map(drop));
-        look(&mut nodes, contact.gap_span, &mut |nodes| nodes.scalar(contact.gap.as_ref()?).map(drop));
+        for length in contact.gap.iter().chain(&contact.validity) {
+            look(&mut nodes, contact.gap_span, &mut |nodes| nodes.scalar(length).map(drop));
+        }
     }
     for equation in m.kinematics.iter().chain(&m.constraints).chain(&m.configuration) {
         look(&mut nodes, equation.span, &mut |nodes| nodes.residual(equation).map(drop));

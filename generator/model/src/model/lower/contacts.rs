@@ -97,6 +97,7 @@ impl Lowering<'_> {
             normal_span,
             gap: gap.flatten().flatten(),
             without_gap,
+            validity: None,
             gap_span,
             surface,
             law,

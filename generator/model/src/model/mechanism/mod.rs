@@ -404,6 +404,8 @@ pub struct Contact {
     pub gap: Option<Scalar>,
     /// whether the model says that there is none, `gap: none`
     pub without_gap: bool,
+    /// how far the place of contact is within the faces and edges that touch there, m; none where these do not end
+    pub validity: Option<Scalar>,
     /// where the gap is stated; else where the contact is declared
     pub gap_span: Span,
     /// friction and restitution, where the model states them

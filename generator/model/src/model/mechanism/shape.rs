@@ -18,6 +18,8 @@ pub enum Kind {
     Torus,
     Ellipsoid,
     Box,
+    /// in the plane of motion, which is that of x and y
+    Rectangle,
     /// the convex hull of its vertices
     Polytope,
     /// the boundary of a half space; its axis is its normal
@@ -32,7 +34,7 @@ pub enum Kind {
 
 impl Kind {
     /// All.
-    pub const ALL: [Kind; 13] = [
+    pub const ALL: [Kind; 14] = [
         Kind::Sphere,
         Kind::Capsule,
         Kind::Cylinder,
@@ -41,6 +43,7 @@ impl Kind {
         Kind::Torus,
         Kind::Ellipsoid,
         Kind::Box,
+        Kind::Rectangle,
         Kind::Polytope,
         Kind::Plane,
         Kind::HalfSpace,
@@ -59,6 +62,7 @@ impl Kind {
             Kind::Torus => "torus",
             Kind::Ellipsoid => "ellipsoid",
             Kind::Box => "box",
+            Kind::Rectangle => "rectangle",
             Kind::Polytope => "polytope",
             Kind::Plane => "plane",
             Kind::HalfSpace => "half_space",
@@ -81,6 +85,7 @@ impl Kind {
             Kind::Torus => &["radius", "radius of its tube"],
             Kind::Ellipsoid => &["semi-axis along x", "semi-axis along y", "semi-axis along z"],
             Kind::Box => &["length along x", "length along y", "length along z"],
+            Kind::Rectangle => &["length along x", "length along y"],
             Kind::Polytope | Kind::Plane | Kind::HalfSpace | Kind::Surface | Kind::Curve => &[],
         }
     }
@@ -92,7 +97,8 @@ impl Kind {
 
     /// Whether it lies along the axes of a frame.
     pub fn has_axes(self) -> bool {
-        matches!(self, Kind::Ellipsoid | Kind::Box | Kind::Surface | Kind::Curve)
+        use Kind::*;
+        matches!(self, Ellipsoid | Box | Rectangle | Surface | Curve)
     }
 
     /// Whether it is the boundary of a half space.

@@ -99,6 +99,8 @@ pub enum ContactQuantity {
     DependentResponse,
     /// gap (1), only where the model gives one
     Gap,
+    /// how far the place of contact is within the features that touch (1), only where these end
+    Validity,
     /// sum over bodies of (m v_t . dv) per unit impulse (3): the work of prescribed motion in (24)
     PrescribedWork,
     /// angular velocity of what strikes relative to what is struck (3) in the contact basis, only where the

@@ -394,6 +394,22 @@ pub const CONTACT: &[(C, Description)] = &[
         },
     ),
     (
+        C::Validity,
+        Description {
+            word: "validity",
+            method: Some("validity"),
+            docs: "Validity (how far the place of contact is within the faces and edges that touch; the contact ends where it falls below 0), in m, at {}.",
+            title: "validity",
+            symbol: "i",
+            unit: "m",
+            shape: [Extent::Count(1), Extent::Count(1)],
+            entries: Entries::Scalar,
+            offer: Offer::Answered,
+            usual: true,
+            ..PLAIN
+        },
+    ),
+    (
         C::Velocity,
         Description {
             word: "velocity",

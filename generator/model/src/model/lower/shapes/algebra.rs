@@ -55,6 +55,26 @@ pub fn greater(a: Scalar, b: Scalar) -> Scalar {
     Scalar::Call(Function::Max, vec![a, b])
 }
 
+/// The lesser of two.
+pub fn lesser(a: Scalar, b: Scalar) -> Scalar {
+    Scalar::Call(Function::Min, vec![a, b])
+}
+
+/// The size of a number.
+pub fn size(a: Scalar) -> Scalar {
+    Scalar::Call(Function::Abs, vec![a])
+}
+
+/// -1 below 0, else 1.
+pub fn sign(a: Scalar) -> Scalar {
+    Scalar::Call(Function::Sign, vec![a])
+}
+
+/// 0 below 0, else 1.
+pub fn step(a: Scalar) -> Scalar {
+    product([ratio(1, 2), sum([integer(1), sign(a)])])
+}
+
 /// The value nearest to `a` between -`bound` and `bound`.
 pub fn between_bounds(a: Scalar, bound: &Scalar) -> Scalar {
     let below = Scalar::Call(Function::Min, vec![a, bound.clone()]);

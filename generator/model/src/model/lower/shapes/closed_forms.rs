@@ -4,6 +4,7 @@
 //! the gap is g = n . (p_1 - p_2). The point of a contact is p_1, as a material point of the first shape.
 
 use super::algebra::*;
+use super::faces;
 use crate::model::mechanism::{Anchor, Kind, Scalar, Shape, Vector};
 use crate::span::Span;
 
@@ -15,6 +16,15 @@ pub struct Touch {
     pub normal: Vector,
     /// their distance
     pub gap: Scalar,
+    /// how far the place is within the features that touch, where these end
+    pub validity: Option<Scalar>,
+}
+
+impl Touch {
+    /// One between features that do not end.
+    fn endless(point: Anchor, normal: Vector, gap: Scalar) -> Touch {
+        Touch { point, normal, gap, validity: None }
+    }
 }
 
 /// All contacts of a pair, in the order of their numbers; `at` is where the pair is stated. Pairs that are not
@@ -25,6 +35,7 @@ pub fn touches(first: &Shape, inside: bool, second: &Shape, at: Span) -> Vec<Tou
         (Kind::Surface, _) => corners(first).iter().filter_map(|p| on_height(p, second, 2)).collect(),
         (Kind::Curve, _) => corners(first).iter().filter_map(|p| on_height(p, second, 1)).collect(),
         (Kind::Box, true) => in_box(first, second),
+        (Kind::Rectangle, _) if first.kind == Kind::Rectangle => faces::between(first, second),
         (_, false) => vec![on_solid(first, second, at)],
         (_, true) => vec![in_solid(first, second, at)],
     }
@@ -36,7 +47,7 @@ fn axis_of(shape: &Shape) -> Vector {
 }
 
 /// The axes of the frame along which a shape lies.
-fn axes_of(shape: &Shape) -> [Vector; 3] {
+pub(super) fn axes_of(shape: &Shape) -> [Vector; 3] {
     let frame = shape.axes.unwrap_or(shape.frame);
     [0, 1, 2].map(|i| axis(frame, i))
 }
@@ -45,10 +56,9 @@ fn axes_of(shape: &Shape) -> [Vector; 3] {
 fn on_plane(shape: &Shape, plane: &Shape, at: Span) -> Vec<Touch> {
     let normal = axis_of(plane);
     // a point of the shape, deeper than which it reaches by `depth` along -n, at `by` from there
-    let touch = |core: Anchor, by: Vector, depth: Scalar| Touch {
-        gap: less(dot(&core.from(&plane.at), &normal), depth),
-        point: core.plus(by),
-        normal: normal.clone(),
+    let touch = |core: Anchor, by: Vector, depth: Scalar| {
+        let gap = less(dot(&core.from(&plane.at), &normal), depth);
+        Touch::endless(core.plus(by), normal.clone(), gap)
     };
     let ball = |centre: Anchor, radius: &Scalar| {
         touch(centre, opposite(&scaled(radius.clone(), &normal)), radius.clone())
@@ -97,11 +107,8 @@ fn on_plane(shape: &Shape, plane: &Shape, at: Span) -> Vec<Touch> {
     }
 }
 
-/// The vertices of a box or polytope.
-fn corners(shape: &Shape) -> Vec<Anchor> {
-    if shape.kind != Kind::Box {
-        return shape.vertices.clone();
-    }
+/// The vertices of a box, rectangle or polytope.
+pub(super) fn corners(shape: &Shape) -> Vec<Anchor> {
     let axes = axes_of(shape);
     let corner = |number: usize| {
         let sides = axes.iter().zip(&shape.sizes).enumerate().map(|(i, (e, size))| {
@@ -110,7 +117,10 @@ fn corners(shape: &Shape) -> Vec<Anchor> {
         });
         shape.at.plus(total(sides))
     };
-    (0..8).map(corner).collect()
+    match shape.kind {
+        Kind::Polytope => shape.vertices.clone(),
+        _ => (0..1 << shape.sizes.len()).map(corner).collect(),
+    }
 }
 
 /// The point of a solid that is nearest to a place outside of it, from the solid's own place; d is the place.
@@ -129,7 +139,7 @@ fn nearest(solid: &Shape, d: &Vector, at: Span) -> Vector {
             let m = total([d.clone(), opposite(&scaled(dot(d, &a), &a))]);
             scaled(r.clone(), &unit(&m, at))
         }
-        (Kind::Box, sizes) => {
+        (Kind::Box | Kind::Rectangle, sizes) => {
             let sides = axes_of(solid);
             let part = |(e, size): (&Vector, &Scalar)| scaled(between_bounds(dot(d, e), &half(size)), e);
             total(sides.iter().zip(sizes).map(part))
@@ -159,7 +169,8 @@ fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
         None => radius.clone(),
         Some(thickness) => sum([radius.clone(), thickness]),
     };
-    Touch { point: ball.at.plus(opposite(&scaled(radius, &normal))), gap: less(norm(&w), away), normal }
+    let point = ball.at.plus(opposite(&scaled(radius, &normal)));
+    Touch::endless(point, normal, less(norm(&w), away))
 }
 
 /// A ball within a sphere, a capsule or a cylinder without ends: w leads from the middle to the ball's centre.
@@ -172,11 +183,8 @@ fn in_solid(ball: &Shape, hollow: &Shape, at: Span) -> Touch {
         _ => d,
     };
     let (radius, out) = (radius_of(ball), unit(&w, at));
-    Touch {
-        point: ball.at.plus(scaled(radius.clone(), &out)),
-        gap: less(less(radius_of(hollow), radius), norm(&w)),
-        normal: opposite(&out),
-    }
+    let gap = less(less(radius_of(hollow), radius.clone()), norm(&w));
+    Touch::endless(ball.at.plus(scaled(radius, &out)), opposite(&out), gap)
 }
 
 /// A ball within a box: six walls.
@@ -188,7 +196,7 @@ fn in_box(ball: &Shape, hollow: &Shape) -> Vec<Touch> {
         for inward in [opposite(e), e.clone()] {
             let gap = less(sum([half(size), dot(&d, &inward)]), radius.clone());
             let point = ball.at.plus(opposite(&scaled(radius.clone(), &inward)));
-            out.push(Touch { point, normal: inward, gap });
+            out.push(Touch::endless(point, inward, gap));
         }
     }
     out
@@ -212,7 +220,7 @@ fn on_height(point: &Anchor, surface: &Shape, slopes: usize) -> Option<Touch> {
     let at = surface.span;
     let gap = quotient(less(dot(&d, &up), height.value.at(&places)), length.clone(), at);
     let normal = scaled(quotient(integer(1), length, at), &steepest);
-    Some(Touch { point: point.clone(), normal, gap })
+    Some(Touch::endless(point.clone(), normal, gap))
 }
 
 fn radius_of(round: &Shape) -> Scalar {

@@ -60,6 +60,7 @@ impl Lowering<'_> {
                 gap: parts.gap,
                 // nothing is to be said of a gap where a pair could not be read
                 without_gap: ids.is_none(),
+                validity: parts.validity,
                 gap_span: pair.field.value.span.to(struck),
                 surface,
                 law: law.clone(),
@@ -173,7 +174,8 @@ impl Lowering<'_> {
                 Against::Point(self.hidden_point(name_of_it, docs, struck.frame, &there, name.span), body)
             }
         };
-        Parts { point, body: striking.body, against, normal: touch.normal, gap: Some(touch.gap) }
+        let (normal, gap, validity) = (touch.normal, Some(touch.gap), touch.validity);
+        Parts { point, body: striking.body, against, normal, gap, validity }
     }
 }
 
@@ -184,11 +186,13 @@ struct Parts {
     against: Against,
     normal: Vector,
     gap: Option<Scalar>,
+    validity: Option<Scalar>,
 }
 
 impl Parts {
     /// Those of a pair that could not be read.
     fn none() -> Self {
-        Parts { point: PointId::O, body: None, against: Against::Fixed, normal: Vector::Zero, gap: None }
+        let (against, normal) = (Against::Fixed, Vector::Zero);
+        Parts { point: PointId::O, body: None, against, normal, gap: None, validity: None }
     }
 }

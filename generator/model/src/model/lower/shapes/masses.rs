@@ -98,6 +98,7 @@ pub fn mass_properties(shape: &Shape) -> Result<MassProperties, &'static str> {
             upright(mass, across, along, Vector::Zero)
         }
         (Kind::Disc, _) => Err("a disc is a thin rim without volume; a wheel of some width is a cylinder"),
+        (Kind::Rectangle, _) => Err("a rectangle has no volume: the mass of a block is that of a `box`"),
         (Kind::Polytope, _) => Err("the inertia of a polytope is not compiled: state mass and inertia"),
         _ => Err("it has no end"),
     }

@@ -5,6 +5,7 @@ mod bodies;
 mod closed_forms;
 mod colours;
 mod contacts;
+mod faces;
 mod heights;
 mod masses;
 mod sizes;
