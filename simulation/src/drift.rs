@@ -72,7 +72,9 @@ pub(crate) fn close_gaps(
         let mut open = Vec::new();
         let mut gaps = Vec::new();
         for &contact in contacts {
-            if let Some(gap) = mechanism.gap(contact, &state)? {
+            // beyond its end a gap is not what the normal closes
+            let ended = mechanism.validity(contact, &state)?.is_some_and(|validity| validity < 0.0);
+            if let Some(gap) = mechanism.gap(contact, &state)?.filter(|_| !ended) {
                 open.push(contact);
                 gaps.push(gap);
             }
