@@ -80,6 +80,11 @@ impl Transition<'_> {
     pub(crate) fn leave(&mut self, contact: usize) -> Result<(), SimulationError> {
         self.front.phases[contact] = Phase::Open(Leaving::Near);
         self.front.forces[contact] = Vector3::zeros();
+        let torques: Vec<usize> = self.mechanism.torques_of(&[contact]).collect();
+        for torque in torques {
+            self.front.phases[torque] = Phase::Open(Leaving::Apart);
+            self.front.forces[torque] = Vector3::zeros();
+        }
         self.front.resting = false;
         let selection = hodograph::Selection::Unique;
         self.push(Some(contact), EventKind::LiftOff { selection });
