@@ -5,9 +5,9 @@
 //! `generator/model/src/model/lower/shapes/faces.rs`.
 
 use hodograph::{ComponentKind, Contacts, State};
+use hodograph_random::Random;
 use nalgebra::Vector3;
 
-use crate::common::random::Random;
 use crate::ledge::block_on_ledge::BlockOnLedge;
 
 type V = [f64; 3];
@@ -184,7 +184,7 @@ fn compare(bodies: &Bodies<'_>, poses: usize) -> Seen {
             model.index(ComponentKind::Point, name).unwrap()
         })
         .collect();
-    let mut random = Random(0x1234_5678_9abc_def1);
+    let mut random = Random::new(0x1234_5678_9abc_def1);
     let (mut seen, mut worst, mut worst_rate, mut done) = (Seen::default(), 0.0_f64, [0.0_f64; 2], 0);
     while done < poses {
         let (q, u) = (bodies.random)(&mut random);
