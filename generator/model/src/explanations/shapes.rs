@@ -7,8 +7,8 @@ pub(super) const TABLE: &[Explanation] = &[
     Explanation {
         code: SHAPE,
         text: "A shape is one of sphere, capsule, cylinder, cone, disc, torus, ellipsoid, box, rectangle, \
-            polytope, plane, half_space, surface and curve, with its dimensions: lengths that are positive and depend on \
-            parameters only. It moves with the body or frame after `of`, without which it is fixed in N; its \
+            polytope, plane, half_space, surface and curve, with its dimensions: lengths that are positive and \
+            depend on parameters only. It moves with the body or frame after `of`, without which it is fixed in N; its \
             place `at`, its vertices and its axis must move with that too. Round shapes have an `axis`, which is \
             a unit vector. A body that takes its mass from a shape needs one with volume and `density`.",
         wrong: Some(

@@ -5,27 +5,9 @@
 
 use super::algebra::*;
 use super::faces;
+use super::features::{Touch, axes_of, corners};
 use crate::model::mechanism::{Anchor, Kind, Scalar, Shape, Vector};
 use crate::span::Span;
-
-/// Where two shapes touch.
-pub struct Touch {
-    /// the point of the first shape
-    pub point: Anchor,
-    /// from the second to the first
-    pub normal: Vector,
-    /// their distance
-    pub gap: Scalar,
-    /// how far the place is within the features that touch, where these end
-    pub validity: Option<Scalar>,
-}
-
-impl Touch {
-    /// One between features that do not end.
-    fn endless(point: Anchor, normal: Vector, gap: Scalar) -> Touch {
-        Touch { point, normal, gap, validity: None }
-    }
-}
 
 /// All contacts of a pair, in the order of their numbers; `at` is where the pair is stated. Pairs that are not
 /// compiled have none.
@@ -44,12 +26,6 @@ pub fn touches(first: &Shape, inside: bool, second: &Shape, at: Span) -> Vec<Tou
 /// The axis of a shape that has one.
 fn axis_of(shape: &Shape) -> Vector {
     shape.axis.clone().unwrap_or(Vector::Zero)
-}
-
-/// The axes of the frame along which a shape lies.
-pub(super) fn axes_of(shape: &Shape) -> [Vector; 3] {
-    let frame = shape.axes.unwrap_or(shape.frame);
-    [0, 1, 2].map(|i| axis(frame, i))
 }
 
 /// What of a convex shape can be nearest to a plane with the normal n.
@@ -104,22 +80,6 @@ fn on_plane(shape: &Shape, plane: &Shape, at: Span) -> Vec<Touch> {
             vec![touch(shape.at.clone(), by, depth)]
         }
         _ => corners(shape).into_iter().map(|p| touch(p, Vector::Zero, integer(0))).collect(),
-    }
-}
-
-/// The vertices of a box, rectangle or polytope.
-pub(super) fn corners(shape: &Shape) -> Vec<Anchor> {
-    let axes = axes_of(shape);
-    let corner = |number: usize| {
-        let sides = axes.iter().zip(&shape.sizes).enumerate().map(|(i, (e, size))| {
-            let side = scaled(half(size), e);
-            if number >> i & 1 == 0 { side } else { opposite(&side) }
-        });
-        shape.at.plus(total(sides))
-    };
-    match shape.kind {
-        Kind::Polytope => shape.vertices.clone(),
-        _ => (0..1 << shape.sizes.len()).map(corner).collect(),
     }
 }
 

@@ -6,7 +6,8 @@ use super::super::super::mechanism::{
 use super::super::super::names::Symbol;
 use super::super::super::pairs::{self, Pair};
 use super::super::Lowering;
-use super::closed_forms::{Touch, touches};
+use super::closed_forms::touches;
+use super::features::Touch;
 use crate::diagnostics::{Diagnostic, codes};
 use crate::span::Span;
 use crate::syntax::tree::{Field, Name, Record};

@@ -5,7 +5,7 @@
 //! positive wherever the vertex is outside of the body, and its validity tells how far it is from the edges.
 
 use super::algebra::*;
-use super::closed_forms::{Touch, axes_of, corners};
+use super::features::{Touch, axes_of, corners};
 use crate::model::mechanism::{Anchor, Scalar, Shape, Vector};
 
 /// By how much of the length of a side a vertex of the first shape may be beyond its end, and by how much

@@ -6,6 +6,7 @@ mod closed_forms;
 mod colours;
 mod contacts;
 mod faces;
+mod features;
 mod heights;
 mod masses;
 mod sizes;
