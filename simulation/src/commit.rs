@@ -22,8 +22,12 @@ impl Transition<'_> {
         self.correct()?;
         step.corrected(&self.front.y);
         self.arm(step)?;
-        self.step = Some((step.clone(), modes));
         let n = self.mechanism.count(ComponentKind::Coordinate);
+        let p = self.mechanism.count(ComponentKind::Speed);
+        if let Some(parts) = &mut self.parts {
+            parts.add(step, &modes, &self.front.y[..n + p]);
+        }
+        self.step = Some((step.clone(), modes));
         for (scale, speed) in self.front.scale.iter_mut().zip(&self.front.y[n..]) {
             *scale = scale.max(speed.abs());
         }

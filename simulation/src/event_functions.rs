@@ -7,6 +7,7 @@ use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Hold, JAM, margins};
 use crate::motion::{Evaluation, Failure};
 use crate::phase::{Closed, Leaving, Phase, mus};
+use crate::smooth_parts::Guard;
 use crate::stepper::Step;
 use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
@@ -63,6 +64,20 @@ pub(crate) enum Watched {
     Jam,
     /// a user's function, times this sign
     User(usize, f64),
+}
+
+impl Watched {
+    /// What ends a smooth part; slip that ends does so in a part of its own.
+    pub fn guard(self, closed: &[Closed]) -> Option<Guard> {
+        Some(match self {
+            Self::Gap(contact) => Guard::Gap(contact),
+            Self::Normal(place) => Guard::NormalForce(closed[place].contact),
+            Self::Cone(place) => Guard::Friction(closed[place].contact),
+            Self::Jam => Guard::Jam,
+            Self::User(index, _) => Guard::Function(index),
+            Self::Slip(_) => return None,
+        })
+    }
 }
 
 impl Transition<'_> {

@@ -41,6 +41,9 @@ impl Transition<'_> {
         };
         let start = self.front.t;
         self.commit(&mut step)?;
+        if let Some(parts) = &mut self.parts {
+            parts.end(watched.guard(closed));
+        }
         self.front.turnings.fill(None);
         self.reached = Some(self.front.clone());
         self.crowded(start)?;
@@ -174,7 +177,8 @@ impl Transition<'_> {
         time: f64,
     ) -> Result<(), SimulationError> {
         let start = self.front.t;
-        let mut end = self.front.y.clone();
+        let before = self.front.y.clone();
+        let mut end = before.clone();
         end.iter_mut().zip(&here.rates).for_each(|(value, rate)| *value += time * rate);
         let mut step = Step::still(self.front.t, time, &end);
         let stopped: Vec<usize> = places.iter().map(|&place| closed[place].contact).collect();
@@ -182,6 +186,9 @@ impl Transition<'_> {
             self.front.phases[contact] = Phase::Stick;
         }
         self.commit(&mut step)?;
+        if let Some(parts) = &mut self.parts {
+            parts.end_of_slip(&before, closed, &stopped);
+        }
         self.crowded(start)?;
         self.slip_ended(&stopped)
     }

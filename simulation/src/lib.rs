@@ -73,8 +73,9 @@ mod single_impact;
 mod singular;
 mod slip_direction;
 mod slip_end;
+mod smooth_parts;
 mod start;
-mod stepper;
+pub mod stepper;
 mod time_step;
 mod torque_modes;
 mod torques;
@@ -91,4 +92,5 @@ pub use crate::{
     options::{EventFunction, ImpactsAtOnce, Options},
     phase::ContactPhase,
     simulation::{ContactForces, Progress, Simulation},
+    smooth_parts::{ClosedPart, Guard, SmoothPart},
 };

@@ -12,6 +12,7 @@ use crate::motion::Failure;
 use crate::pair::Pair;
 use crate::phase::{ContactPhase, Modes};
 use crate::scales::Scales;
+use crate::smooth_parts::{Parts, SmoothPart};
 use crate::stepper::Step;
 use crate::torques::{Lacking, Torque, Turning, WithTorques, torques};
 use crate::transition::Transition;
@@ -41,6 +42,8 @@ pub struct Simulation<'m> {
     /// the time asked for, and the state then
     view: (f64, Vec<f64>),
     failed: Option<SimulationError>,
+    /// the smooth parts, where they are kept
+    parts: Option<Parts>,
 }
 
 impl std::fmt::Debug for Simulation<'_> {
@@ -109,6 +112,7 @@ impl<'m> Simulation<'m> {
             queue: VecDeque::new(),
             view,
             failed: None,
+            parts: None,
         };
         // The inputs of the first sample decide what contacts do at the start.
         let inputs = simulation.sampled_inputs()?;
@@ -137,6 +141,7 @@ impl<'m> Simulation<'m> {
             events: Vec::new(),
             step: None,
             reached: None,
+            parts: self.parts.as_ref().map(|_| Parts::default()),
         }
     }
 
@@ -148,7 +153,12 @@ impl<'m> Simulation<'m> {
     ) -> Result<(), SimulationError> {
         let mut transition = self.transition();
         let done = change(&mut transition);
-        let Transition { front, events, step, reached, .. } = transition;
+        let Transition { front, events, step, reached, parts: later, .. } = transition;
+        if let (Some(parts), Some(later)) = (&mut self.parts, later)
+            && (done.is_ok() || reached.is_some())
+        {
+            parts.follow(later);
+        }
         if let Err(error) = done {
             if let Some(front) = reached {
                 self.front = front;
@@ -420,6 +430,17 @@ impl<'m> Simulation<'m> {
             inputs: works[1],
             ..self.front.energy
         })
+    }
+
+    /// From now on keeps the smooth parts of the motion: [`Simulation::take_parts`].
+    pub fn keep_parts(&mut self) {
+        self.parts.get_or_insert_default();
+    }
+
+    /// The smooth parts since they were kept or last taken, in order. The last one may end after the time that was asked
+    /// for.
+    pub fn take_parts(&mut self) -> Vec<SmoothPart> {
+        self.parts.as_mut().map_or_else(Vec::new, Parts::take)
     }
 
     /// The mechanism.

@@ -24,15 +24,18 @@ const LEAST_FACTOR: f64 = 0.2;
 const GREATEST_FACTOR: f64 = 10.0;
 
 /// The rates y' = f(t, y) of a system; not a number where it has none.
-pub(crate) type Rates<'r> = dyn FnMut(f64, &[f64], &mut [f64]) + 'r;
+pub type Rates<'r> = dyn FnMut(f64, &[f64], &mut [f64]) + 'r;
 
 /// A step that was made: from `t` over `h`.
 #[derive(Clone)]
-pub(crate) struct Step {
+pub struct Step {
+    /// Its beginning.
     pub t: f64,
+    /// Its length.
     pub h: f64,
     /// The step size that the error allows next.
     pub next: f64,
+    /// The state at its end.
     pub end: Vec<f64>,
     start: Vec<f64>,
     /// The rates at the start; none of a step in which nothing moves.
@@ -92,15 +95,17 @@ impl std::fmt::Debug for Step {
 
 /// Relative and absolute tolerance of a step; absolute per component.
 #[derive(Clone, Debug)]
-pub(crate) struct Tolerances {
+pub struct Tolerances {
+    /// Relative to the state.
     pub relative: f64,
+    /// In the units of the state.
     pub absolute: f64,
 }
 
 /// A step from (t, y) of at most `h`, whose error is within the tolerances; `first` are the rates there if they are
 /// known. `None` if there is none: the rates are not finite, or the step became too small. Rates that are not
 /// finite make a step be refused.
-pub(crate) fn step(
+pub fn step(
     rates: &mut Rates<'_>,
     (t, y, first): (f64, &[f64], Option<&[f64]>),
     mut h: f64,
@@ -129,11 +134,7 @@ pub(crate) fn step(
 }
 
 /// A step from (t, y) over exactly `h`, whatever its error: part of a step that was accepted.
-pub(crate) fn part(
-    rates: &mut Rates<'_>,
-    (t, y, first): (f64, &[f64], Option<&[f64]>),
-    h: f64,
-) -> Option<Step> {
+pub fn part(rates: &mut Rates<'_>, (t, y, first): (f64, &[f64], Option<&[f64]>), h: f64) -> Option<Step> {
     if h <= 0.0 {
         return Some(Step::still(t, 0.0, y));
     }

@@ -10,6 +10,7 @@ use crate::front::Front;
 use crate::motion::{Failure, Motion};
 use crate::pair::{Friction, Pair};
 use crate::phase::{Closed, Modes, Phase};
+use crate::smooth_parts::Parts;
 use crate::stepper::Step;
 use crate::torques::WithTorques;
 use crate::{ErrorKind, Event, EventKind, Options, SimulationError};
@@ -30,6 +31,8 @@ pub(crate) struct Transition<'s> {
     /// the front at the end of that step, before its event was handled: the motion is right up to there even if
     /// the event cannot be handled
     pub reached: Option<Front>,
+    /// the smooth parts, where they are kept
+    pub parts: Option<Parts>,
 }
 
 impl Transition<'_> {

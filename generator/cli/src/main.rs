@@ -30,8 +30,8 @@ mod table;
 
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
-    export as export_library, fmt, import as import_urdf, lsp as language_server, new, plot as draw, serve,
-    simulate, solve,
+    export as export_library, fmt, gradient, import as import_urdf, lsp as language_server, new,
+    plot as draw, serve, simulate, solve,
 };
 
 /// Impact with friction in three dimensions, and equations of motion generated from model files
@@ -53,6 +53,7 @@ enum Command {
     Lsp(language_server::Arguments),
     Serve(serve::Arguments),
     Simulate(Box<simulate::Arguments>),
+    Gradient(Box<gradient::Arguments>),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
     Plot(draw::Arguments),
@@ -92,6 +93,7 @@ fn main() -> ExitCode {
         Command::Export(arguments) => export_library::run(&arguments),
         Command::Serve(arguments) => serve::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Gradient(arguments) => gradient::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),
         Command::DeriveWorker(arguments) => derive_worker::run(&arguments),

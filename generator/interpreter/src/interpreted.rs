@@ -112,7 +112,8 @@ impl InterpretedMechanism {
         &self.parameters
     }
 
-    pub(crate) fn quaternions(&self) -> &[[usize; 4]] {
+    /// The numbers of the coordinates of each quaternion.
+    pub fn quaternions(&self) -> &[[usize; 4]] {
         &self.quaternions
     }
 

@@ -4,6 +4,7 @@
 //! floating-point functions.
 
 pub mod columns;
+mod directional;
 mod prepared;
 
 use std::collections::BTreeSet;
@@ -15,6 +16,7 @@ use crate::program::{Guard, Inputs, Program, Quantity, Slice, VANISHING, operate
 use hodograph_model::arithmetic::DoubleDouble;
 
 pub use columns::{Column, Columns, Table};
+pub use directional::{Directional, Rates};
 use prepared::holds;
 pub use prepared::{Arguments, Constants, Failed, Prepared};
 

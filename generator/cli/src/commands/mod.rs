@@ -11,6 +11,7 @@ pub mod expand;
 pub mod explain;
 pub mod export;
 pub mod fmt;
+pub mod gradient;
 pub mod import;
 pub mod lsp;
 pub mod new;

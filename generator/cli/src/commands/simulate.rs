@@ -6,7 +6,7 @@ mod lines;
 mod pictures;
 mod setup;
 mod summary;
-mod surfaces;
+pub mod surfaces;
 
 use std::io::IsTerminal;
 use std::path::PathBuf;

@@ -27,7 +27,7 @@ pub struct Arguments<'a> {
 
 impl Arguments<'_> {
     /// One of the numbers; what is not there is not a number.
-    fn get(&self, input: Input) -> f64 {
+    pub(super) fn get(&self, input: Input) -> f64 {
         let (list, index) = match input {
             Input::Time => return self.time,
             Input::Parameter(_) => return f64::NAN,
@@ -74,6 +74,11 @@ impl Constants {
     /// A value that depends on parameters alone.
     pub fn get(&self, value: Value) -> f64 {
         self.rounded.get(value.index()).map_or(f64::NAN, |numbers| numbers.0)
+    }
+
+    /// Such a value; of a pair of sine and cosine both.
+    pub(super) fn pair(&self, value: Value) -> (f64, f64) {
+        self.rounded.get(value.index()).copied().unwrap_or((f64::NAN, f64::NAN))
     }
 
     /// Whether all that later values need of them is finite.

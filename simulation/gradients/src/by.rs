@@ -1,0 +1,185 @@
+//! What a motion is differentiated by.
+
+use std::fmt;
+
+use hodograph::{ComponentKind, Mechanism};
+use hodograph_interpreter::InterpretedMechanism;
+
+/// A number on which a motion depends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum By {
+    /// a coordinate of the start state
+    Coordinate(usize),
+    /// an independent speed of the start state
+    Speed(usize),
+    /// a parameter of the model, by its number among those that are not `fixed`
+    Parameter(usize),
+    /// a named input, which is held
+    Input(usize),
+    /// mu of a contact, or of all contacts together
+    Friction(Option<usize>),
+    /// e of a contact, or of all contacts together
+    Restitution(Option<usize>),
+}
+
+impl By {
+    /// The one with this name: `mu`, `e`, `mu.CONTACT`, `e.CONTACT`, or the name of a coordinate, speed, parameter or
+    /// input. Where a model gives a coordinate or parameter the name `mu` or `e`, that is meant.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that says what there is.
+    pub fn named(mechanism: &InterpretedMechanism, name: &str) -> Result<Self, String> {
+        type Kind = (ComponentKind, fn(usize) -> By);
+        let kinds: [Kind; 4] = [
+            (ComponentKind::Coordinate, By::Coordinate),
+            (ComponentKind::Speed, By::Speed),
+            (ComponentKind::Parameter, By::Parameter),
+            (ComponentKind::Input, By::Input),
+        ];
+        let named = |(kind, by): Kind| mechanism.index(kind, name).map(by);
+        if let Some(by) = kinds.into_iter().find_map(named) {
+            return Ok(by);
+        }
+        let contact = |contact: &str| mechanism.index(ComponentKind::Contact, contact);
+        let found = match name.split_once('.') {
+            None if name == "mu" => Some(By::Friction(None)),
+            None if name == "e" => Some(By::Restitution(None)),
+            Some(("mu", of)) => contact(of).map(|contact| By::Friction(Some(contact))),
+            Some(("e", of)) => contact(of).map(|contact| By::Restitution(Some(contact))),
+            _ => None,
+        };
+        found.ok_or_else(|| {
+            let all = kinds.iter().flat_map(|&(kind, _)| names(mechanism, kind));
+            let contacts = names(mechanism, ComponentKind::Contact);
+            let all: Vec<String> = all
+                .chain(["mu".to_owned(), "e".to_owned()])
+                .chain(contacts.into_iter().flat_map(|name| [format!("mu.{name}"), format!("e.{name}")]))
+                .collect();
+            format!("a motion has no derivative by `{name}`: there are {}", all.join(", "))
+        })
+    }
+
+    /// Its name, as [`By::named`] reads it.
+    pub fn name(self, mechanism: &InterpretedMechanism) -> String {
+        let of = |kind, index| mechanism.component(kind, index).map_or("?", |component| component.name);
+        match self {
+            By::Coordinate(index) => of(ComponentKind::Coordinate, index).to_owned(),
+            By::Speed(index) => of(ComponentKind::Speed, index).to_owned(),
+            By::Parameter(index) => of(ComponentKind::Parameter, index).to_owned(),
+            By::Input(index) => of(ComponentKind::Input, index).to_owned(),
+            By::Friction(None) => "mu".to_owned(),
+            By::Restitution(None) => "e".to_owned(),
+            By::Friction(Some(contact)) => format!("mu.{}", of(ComponentKind::Contact, contact)),
+            By::Restitution(Some(contact)) => format!("e.{}", of(ComponentKind::Contact, contact)),
+        }
+    }
+
+    /// Whether it is mu of this contact.
+    pub(crate) fn is_friction_of(self, contact: usize) -> bool {
+        matches!(self, By::Friction(of) if of.is_none_or(|of| of == contact))
+    }
+
+    /// Whether it is e of this contact.
+    pub(crate) fn is_restitution_of(self, contact: usize) -> bool {
+        matches!(self, By::Restitution(of) if of.is_none_or(|of| of == contact))
+    }
+}
+
+fn names(mechanism: &InterpretedMechanism, kind: ComponentKind) -> Vec<String> {
+    let component = |index| mechanism.component(kind, index);
+    (0..mechanism.count(kind)).filter_map(component).map(|component| component.name.to_owned()).collect()
+}
+
+/// Why a motion has no derivative from a time on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Undefined {
+    /// when, s
+    pub time: f64,
+    /// number of the contact, if it is about one
+    pub contact: Option<usize>,
+    /// why
+    pub reason: Reason,
+}
+
+/// Why a motion is not differentiable, or not differentiated here.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// A gap closes with no speed: neighbours miss the surface, or hit it with a speed that grows like a root.
+    Grazing,
+    /// Several contacts strike, or several slips end, at one time: neighbours do so in another order.
+    AtOnce,
+    /// The outcome of a collision is not differentiable: why, as the solver says.
+    Impact(hodograph::NonSmoothness),
+    /// More than one mode of the contacts fits, or a sliding contact may lift off or suffer an impact.
+    SeveralModes,
+    /// A sliding contact jams and suffers an impact without collision.
+    Jam,
+    /// The function that ends a mode vanishes with its rate.
+    Tangency,
+    /// Slip ends while its direction still turns.
+    SlipTurns,
+    /// The forces of the closed contacts are not unique.
+    ForcesNotUnique,
+    /// The start state lies on the border of a contact: by this variable the contact opens, overlaps or begins to slip.
+    StartInContact(By),
+    /// A contact bounced at the start time.
+    StartInCollision,
+    /// Small bounces were taken together as lasting contact.
+    Settling,
+    /// The modes changed by something whose time does not follow from the state.
+    ModesChanged,
+    /// The mechanism cannot be evaluated.
+    State(hodograph::StateError),
+    /// What was integrated anew differs from the motion by so much, relative to the state.
+    Inaccurate(f64),
+}
+
+impl fmt::Display for Undefined {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(out, "no derivative from t = {} s on: ", self.time)?;
+        match &self.reason {
+            Reason::Grazing => write!(
+                out,
+                "a gap closes with no speed (grazing): neighbouring motions miss it, or the derivative grows like an inverse root"
+            ),
+            Reason::AtOnce => write!(
+                out,
+                "several contacts strike, or several slips end, at one time: neighbouring motions do so in another order"
+            ),
+            Reason::Impact(why) => write!(out, "the outcome of a collision is not differentiable ({why:?})"),
+            Reason::SeveralModes => write!(out, "more than one mode of the contacts is possible"),
+            Reason::Jam => write!(
+                out,
+                "a sliding contact jams: impacts without collision are not differentiated within a motion"
+            ),
+            Reason::Tangency => {
+                write!(out, "what ends the mode of a contact vanishes together with its rate")
+            }
+            Reason::SlipTurns => write!(out, "slip ends while its direction still turns"),
+            Reason::ForcesNotUnique => write!(out, "the forces of the closed contacts are not unique"),
+            Reason::StartInContact(_) => write!(
+                out,
+                "the start state is in contact, and by one of the variables the contact opens, overlaps or slips: start apart, or leave \
+                 that variable out"
+            ),
+            Reason::StartInCollision => {
+                write!(out, "a contact collides at the start: begin a little before the collision")
+            }
+            Reason::Settling => {
+                write!(out, "bounces below the tolerance were taken together as lasting contact")
+            }
+            Reason::ModesChanged => write!(
+                out,
+                "the modes of the contacts changed by something whose time does not follow from the state"
+            ),
+            Reason::State(error) => error.fmt(out),
+            Reason::Inaccurate(by) => {
+                write!(out, "integrated anew the motion differs by {by:e} of its size: tighten the tolerance")
+            }
+        }
+    }
+}
+
+impl std::error::Error for Undefined {}

@@ -1,0 +1,35 @@
+//! Derivatives of motions: of the state at any time, of the times of events and of the states there, with respect to the
+//! start state, parameters of the model, held inputs, mu and e.
+//!
+//! [`differentiate`] follows a motion with [`Simulation`](hodograph_simulation::Simulation), then goes through its smooth
+//! parts once more and carries the derivatives along: variational equations between events, saltation at events. There is
+//! no step of differences anywhere. Where the motion is not differentiable the derivatives are `None` from then on, with
+//! the reason.
+//!
+//! ```no_run
+//! use hodograph::State;
+//! use hodograph_gradients::{By, differentiate};
+//! use hodograph_interpreter::InterpretedMechanism;
+//! use hodograph_simulation::Options;
+//!
+//! let ball = InterpretedMechanism::read("ball.mech".as_ref())?;
+//! let start = State { time: 0.0, coordinates: &[1.0], speeds: &[0.0], inputs: &[] };
+//! let by = [By::named(&ball, "e")?, By::Coordinate(0)];
+//! let motion = differentiate(&ball, &start, Options::default(), &by, &[2.0])?;
+//! for event in &motion.events {
+//!     println!("{} at {} s: {:?}", event.event.kind.name(), event.event.time, event.time);
+//! }
+//! println!("{:?}", motion.samples[0].derivative);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Theory: docs/theory.md, section 19.
+
+mod by;
+mod field;
+mod junction;
+mod modes;
+mod motion;
+
+pub use by::{By, Reason, Undefined};
+pub use motion::{EventGradient, GradientError, MotionGradient, Sample, differentiate};

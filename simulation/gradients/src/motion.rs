@@ -1,0 +1,478 @@
+//! Follows a motion, and carries derivatives through its smooth parts and events.
+//!
+//! Theory: docs/theory.md, section 19.
+
+use std::fmt;
+
+use hodograph::{ComponentKind, Contacts, Mechanism, State, Surface};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::stepper::{Tolerances, step};
+use hodograph_simulation::{
+    ContactLaw, Drive, Event, EventKind, Guard, Options, Simulation, SimulationError, SmoothPart,
+};
+use nalgebra::{DMatrix, DVector};
+
+use crate::field::{At, Field};
+use crate::junction::{Lacking, Passed, at_start, modes};
+use crate::modes::{Hold, Mode};
+use crate::{By, Reason, Undefined};
+
+/// What is integrated anew agrees with the motion to this part of the state.
+const SAME: f64 = 1e-6;
+/// At the start closed contacts may part along a direction by this part of the terms that make it up.
+const APART: f64 = 1e-9;
+/// Steps of the integration within one step of the motion.
+const STEPS: usize = 20_000;
+
+/// A motion with its derivatives. Matrices have a row per coordinate and independent speed, in the units of the model, and
+/// a column per variable.
+#[derive(Clone, Debug)]
+pub struct MotionGradient {
+    /// the variables
+    pub by: Vec<By>,
+    /// the events, up to the last time asked for
+    pub events: Vec<EventGradient>,
+    /// the states at the times asked for
+    pub samples: Vec<Sample>,
+    /// why there are no derivatives from a time on, if there are none
+    pub undefined: Option<Undefined>,
+}
+
+/// The state at a time.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// s
+    pub time: f64,
+    /// coordinates and independent speeds
+    pub state: Vec<f64>,
+    /// their derivatives at this time; `None` where the motion is not differentiable
+    pub derivative: Option<DMatrix<f64>>,
+}
+
+/// An event with derivatives. They are those of the event as it moves: of the time when it happens, and of the state there.
+#[derive(Clone, Debug)]
+pub struct EventGradient {
+    /// the event
+    pub event: Event,
+    /// derivatives of its time, s over the unit of the variable; `None` where the motion is not differentiable up to there,
+    /// or where the time is only told (the end of bounces, rest)
+    pub time: Option<DVector<f64>>,
+    /// derivatives of the state at the event, before all that happens at its time
+    pub before: Option<DMatrix<f64>>,
+    /// derivatives of the state at the event, after it
+    pub after: Option<DMatrix<f64>>,
+}
+
+/// Why a motion is not differentiated at all.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum GradientError {
+    /// The motion itself cannot be followed.
+    Simulation(SimulationError),
+    /// It has something through which derivatives are not carried: what, in words.
+    NotSupported(String),
+    /// The times are not finite, do not rise, or begin before the start; or a variable does not exist.
+    BadRequest(String),
+}
+
+impl fmt::Display for GradientError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Simulation(error) => error.fmt(out),
+            Self::NotSupported(what) => write!(out, "derivatives of this motion are not supported: {what}"),
+            Self::BadRequest(what) => out.write_str(what),
+        }
+    }
+}
+
+impl std::error::Error for GradientError {}
+
+impl From<SimulationError> for GradientError {
+    fn from(error: SimulationError) -> Self {
+        Self::Simulation(error)
+    }
+}
+
+/// Follows the motion from a start state to the last of the `times`, which rise, and differentiates it by each of `by`.
+///
+/// The components of a quaternion of the start state are taken as independent numbers that are divided by its length.
+///
+/// # Errors
+///
+/// [`GradientError`]. A motion that is not differentiable is no error: [`MotionGradient::undefined`].
+pub fn differentiate(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    options: Options,
+    by: &[By],
+    times: &[f64],
+) -> Result<MotionGradient, GradientError> {
+    check_request(mechanism, start, by, times)?;
+    let surfaces = supported(mechanism, start, &options)?;
+    let tolerances =
+        Tolerances { relative: options.relative_tolerance, absolute: options.absolute_tolerance };
+    let end = times.last().copied().unwrap_or(start.time);
+    let mut simulation = Simulation::new(mechanism, start, options)?;
+    simulation.keep_parts();
+    let mut events = simulation.advance_to(end)?;
+    let mut parts = simulation.take_parts();
+    if parts.last().is_none_or(|part| part.end <= end) {
+        // Events at the end need the motion after them.
+        simulation.advance_to(end.next_up())?;
+        parts.extend(simulation.take_parts());
+    }
+    events.retain(|event| event.time <= end);
+    let field = Field::new(mechanism, by, &surfaces);
+    let mut carried = Carried {
+        by: seeds(&field, mechanism, start),
+        field,
+        tolerances,
+        since: start.time,
+        motion: MotionGradient { by: by.to_vec(), events: Vec::new(), samples: Vec::new(), undefined: None },
+    };
+    carried.follow(start, &parts, events, times);
+    Ok(carried.motion)
+}
+
+fn check_request(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    by: &[By],
+    times: &[f64],
+) -> Result<(), GradientError> {
+    let bad = |what: String| Err(GradientError::BadRequest(what));
+    let mut before = start.time;
+    for &time in times {
+        if !time.is_finite() || time < before {
+            return bad(format!(
+                "the times must be finite, not before the start at {} s, and must rise: {time} follows {before}",
+                start.time
+            ));
+        }
+        before = time;
+    }
+    for &variable in by {
+        let (kind, index) = match variable {
+            By::Coordinate(index) => (ComponentKind::Coordinate, index),
+            By::Speed(index) => (ComponentKind::Speed, index),
+            By::Parameter(index) => (ComponentKind::Parameter, index),
+            By::Input(index) => (ComponentKind::Input, index),
+            By::Friction(contact) | By::Restitution(contact) => {
+                (ComponentKind::Contact, contact.unwrap_or(0))
+            }
+        };
+        if index >= mechanism.count(kind) {
+            return bad(format!("there is no {} with the number {index}", kind.noun()));
+        }
+    }
+    Ok(())
+}
+
+/// The surfaces of the contacts, where derivatives can be carried through all of them.
+fn supported(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    options: &Options,
+) -> Result<Vec<(usize, Surface<f64>)>, GradientError> {
+    let no = |what: String| Err(GradientError::NotSupported(what));
+    if !matches!(options.drive, Drive::Held) || !options.breaks.is_empty() {
+        return no("its inputs are driven; only inputs that are held have derivatives".to_owned());
+    }
+    if mechanism.count(ComponentKind::DependentCoordinate) > 0 {
+        return no("the mechanism has closed loops (dependent coordinates)".to_owned());
+    }
+    let mut surfaces = Vec::new();
+    for contact in 0..mechanism.count(ComponentKind::Contact) {
+        if !matches!(mechanism.gap(contact, start), Ok(Some(_))) {
+            continue;
+        }
+        let own = |list: &[(usize, Surface<f64>)]| {
+            list.iter().rev().find(|(other, _)| *other == contact).map(|(_, surface)| *surface)
+        };
+        let surface = own(&options.surfaces).or(options.surface).or_else(|| mechanism.surface(contact));
+        surfaces.extend(surface.map(|surface| (contact, surface)));
+        let given =
+            options.laws.iter().rev().find(|(other, _)| *other == contact).map(|(_, law)| law.clone());
+        let stated = || ContactLaw::stated(&mechanism.stated_law(contact)).unwrap_or_default();
+        let law = given.or_else(|| options.law.clone()).unwrap_or_else(stated);
+        if law != ContactLaw::default() {
+            let name =
+                mechanism.component(ComponentKind::Contact, contact).map_or("?", |contact| contact.name);
+            return no(format!(
+                "contact {name} has a law of its own beyond mu, e and law (static friction, functions of speeds, rolling or spinning \
+                 friction)"
+            ));
+        }
+    }
+    Ok(surfaces)
+}
+
+/// The derivatives of the start state.
+fn seeds(field: &Field<'_>, mechanism: &InterpretedMechanism, start: &State<'_>) -> Vec<f64> {
+    let (n, k) = (field.n, field.k);
+    let mut by = vec![0.0; (n + field.p) * k];
+    for (direction, variable) in field.by.iter().enumerate() {
+        match *variable {
+            By::Coordinate(index) => by[index * k + direction] = 1.0,
+            By::Speed(index) => by[(n + index) * k + direction] = 1.0,
+            _ => {}
+        }
+    }
+    for quaternion in mechanism.quaternions() {
+        let parts = quaternion.map(|index| start.coordinates[index]);
+        let square: f64 = parts.iter().map(|part| part * part).sum();
+        for direction in 0..k {
+            let along: f64 =
+                quaternion.iter().zip(parts).map(|(&index, part)| by[index * k + direction] * part).sum();
+            for (&index, part) in quaternion.iter().zip(parts) {
+                let rate = &mut by[index * k + direction];
+                *rate = (*rate - along * part / square) / square.sqrt();
+            }
+        }
+    }
+    by
+}
+
+/// Derivatives on their way through a motion.
+struct Carried<'m> {
+    field: Field<'m>,
+    tolerances: Tolerances,
+    /// of the state: n + p rows, k columns
+    by: Vec<f64>,
+    /// the time of the events before, s
+    since: f64,
+    motion: MotionGradient,
+}
+
+impl Carried<'_> {
+    fn follow(&mut self, start: &State<'_>, parts: &[SmoothPart], events: Vec<Event>, times: &[f64]) {
+        let mut events = events.into_iter().peekable();
+        let at_once = |time: f64| move |event: &Event| event.time <= time;
+        let first: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(start.time))).collect();
+        if let Err(lacking) = self.begin(parts, &first) {
+            self.lacks(start.time, lacking);
+        }
+        let known = self.motion.undefined.is_none().then(|| self.matrix(&self.by));
+        self.motion.events.extend(first.into_iter().map(|event| EventGradient {
+            event,
+            time: known.as_ref().map(|by| DVector::zeros(by.ncols())),
+            before: known.clone(),
+            after: known.clone(),
+        }));
+        let end = times.last().copied().unwrap_or(start.time);
+        let mut times = times.iter().copied().peekable();
+        let mut state = start.coordinates.to_vec();
+        state.extend_from_slice(start.speeds);
+        while times.next_if(|time| *time <= start.time).is_some() {
+            self.sample(start.time, &state);
+        }
+        for (index, part) in parts.iter().enumerate() {
+            if part.start >= end {
+                break;
+            }
+            let samples: Vec<f64> = std::iter::from_fn(|| times.next_if(|time| *time <= part.end)).collect();
+            if let Err(why) = self.through(part, &samples, end) {
+                self.lacks(part.start, (None, why));
+            }
+            if part.end > end {
+                break;
+            }
+            let here: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(part.end))).collect();
+            self.at_end(part, parts.get(index + 1), here);
+        }
+    }
+
+    /// Looks at the start: contacts must stay closed along all directions.
+    fn begin(&mut self, parts: &[SmoothPart], events: &[Event]) -> Result<(), Lacking> {
+        let contacts = self.field.mechanism.count(ComponentKind::Contact);
+        if parts.iter().flat_map(|part| &part.closed).any(|closed| closed.contact >= contacts) {
+            return Err((None, Reason::ModesChanged));
+        }
+        let struck = events.iter().find(|event| {
+            let kind = &event.kind;
+            matches!(
+                kind,
+                EventKind::Collision(_)
+                    | EventKind::SimultaneousCollision(_)
+                    | EventKind::ImpactWithoutCollision(_)
+            )
+        });
+        if let Some(event) = struck {
+            return Err((event.contact, Reason::StartInCollision));
+        }
+        let Some(first) = parts.first() else { return Ok(()) };
+        let sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
+        match self
+            .field
+            .moved_apart(&modes(first), &at_start(first, &self.by), &sizes)
+            .map_err(|why| (None, why))?
+        {
+            Some((contact, direction, left)) if left > APART => {
+                let by = self.field.by.get(direction).copied();
+                Err((Some(contact), by.map_or(Reason::ModesChanged, Reason::StartInContact)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn lacks(&mut self, time: f64, (contact, reason): Lacking) {
+        self.motion.undefined.get_or_insert(Undefined { time, contact, reason });
+    }
+
+    fn matrix(&self, by: &[f64]) -> DMatrix<f64> {
+        let k = self.field.k;
+        DMatrix::from_fn(by.len() / k, k - 1, |row, column| by[row * k + column])
+    }
+
+    fn sample(&mut self, time: f64, state: &[f64]) {
+        let derivative = self.motion.undefined.is_none().then(|| self.matrix(&self.by));
+        self.motion.samples.push(Sample { time, state: state.to_vec(), derivative });
+    }
+
+    /// Carries the derivatives through a part up to `end`, by the samples asked for.
+    fn through(&mut self, part: &SmoothPart, samples: &[f64], end: f64) -> Result<(), Reason> {
+        let modes = modes(part);
+        let count = part.first.len();
+        let mut y = part.first.clone();
+        y.extend_from_slice(&self.by);
+        let mut failed = None;
+        let mut now = part.start;
+        let stops = samples.iter().map(|time| (*time, true)).chain([(part.end.min(end), false)]);
+        for (time, wanted) in stops {
+            let defined = self.motion.undefined.is_none() && failed.is_none();
+            let done = match &part.ended_by {
+                Some(Guard::Slip(_)) => self.straight(part, &modes, time - now, &mut y),
+                _ => self.integrate(part, &modes, defined, (now, time), &mut y),
+            };
+            if let Err(why) = done {
+                failed.get_or_insert(why);
+                self.lacks(part.start, (None, failed.clone().unwrap_or(Reason::ModesChanged)));
+            }
+            now = time;
+            self.by.copy_from_slice(&y[count..]);
+            if wanted {
+                let state = y[..count].to_vec();
+                self.sample(time, &state);
+            }
+        }
+        if let Some(why) = failed {
+            return Err(why);
+        }
+        if part.end <= end && self.motion.undefined.is_none() {
+            let size = part.last.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+            let off = y.iter().zip(&part.last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+            if off > SAME {
+                return Err(Reason::Inaccurate(off));
+            }
+        }
+        Ok(())
+    }
+
+    /// The variational equations from a time to another; the state alone where there are no derivatives any more.
+    fn integrate(
+        &self,
+        part: &SmoothPart,
+        modes: &[Mode],
+        defined: bool,
+        (from, to): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<(), Reason> {
+        let count = part.first.len();
+        let mut failed = None;
+        let mut rates = |time: f64, y: &[f64], rates: &mut [f64]| {
+            let (state, by) = y.split_at(count);
+            let at = At { time, state, by, time_by: &[], inputs: &part.inputs };
+            match self.field.moving(modes, &at) {
+                Ok(moving) => {
+                    rates[..count].copy_from_slice(&moving.rates);
+                    if defined {
+                        rates[count..].copy_from_slice(&moving.rates_by);
+                    } else {
+                        rates[count..].fill(0.0);
+                    }
+                }
+                Err(why) => {
+                    failed.get_or_insert(why);
+                    rates.fill(f64::NAN);
+                }
+            }
+        };
+        let (mut now, mut h) = (from, to - from);
+        for _ in 0..STEPS {
+            if now >= to {
+                return Ok(());
+            }
+            let Some(made) = step(&mut rates, (now, y, None), h, &self.tolerances) else { break };
+            // The sum of steps may miss the end by rounding.
+            now = if made.h >= to - now { to } else { now + made.h };
+            y.copy_from_slice(&made.end);
+            h = made.next.min(to - now);
+        }
+        Err(failed.unwrap_or(Reason::Inaccurate(f64::INFINITY)))
+    }
+
+    /// The last nanoseconds of slip, along a straight line.
+    fn straight(&self, part: &SmoothPart, modes: &[Mode], time: f64, y: &mut [f64]) -> Result<(), Reason> {
+        let count = part.first.len();
+        let moving = self.field.moving(modes, &at_start(part, &y[count..]))?;
+        let rates = moving.rates.iter().chain(&moving.rates_by);
+        let rates: Vec<f64> = rates.copied().collect();
+        y.iter_mut().zip(rates).for_each(|(value, rate)| *value += time * rate);
+        Ok(())
+    }
+
+    /// The events at the end of a part.
+    fn at_end(&mut self, part: &SmoothPart, next: Option<&SmoothPart>, events: Vec<Event>) {
+        let passed = match (self.motion.undefined.is_some(), &part.ended_by, next) {
+            (true, ..) | (_, Some(Guard::Function(_)), _) => None,
+            (_, _, None) => None,
+            (false, None, Some(next)) => {
+                // Only what is told of the past may happen here.
+                let kinds = |part: &SmoothPart| -> Vec<(usize, bool)> {
+                    part.closed.iter().map(|closed| (closed.contact, closed.slides.is_some())).collect()
+                };
+                if kinds(part) != kinds(next) {
+                    self.lacks(part.end, (None, Reason::ModesChanged));
+                }
+                None
+            }
+            (false, Some(_), Some(next)) => match self.pass(part, next, &events) {
+                Ok(passed) => {
+                    self.by.copy_from_slice(&passed.by);
+                    self.since = part.end;
+                    Some(passed)
+                }
+                Err(lacking) => {
+                    self.lacks(part.end, lacking);
+                    None
+                }
+            },
+        };
+        for (index, event) in events.into_iter().enumerate() {
+            let of = |passed: &Passed| EventGradient {
+                event: event.clone(),
+                time: Some(DVector::from_column_slice(&passed.time[..self.field.k - 1])),
+                before: Some(self.matrix(&passed.before)),
+                after: passed.after.get(index).map(|by| self.matrix(by)),
+            };
+            let told = || EventGradient { event: event.clone(), time: None, before: None, after: None };
+            let gradient = passed.as_ref().map_or_else(told, of);
+            self.motion.events.push(gradient);
+        }
+    }
+
+    fn pass(&self, part: &SmoothPart, next: &SmoothPart, events: &[Event]) -> Result<Passed, Lacking> {
+        let mut modes = modes(part);
+        if let Some(Guard::Slip(stopped)) = &part.ended_by {
+            // Slip is zero at its end: it has the direction of a moment before.
+            let at = at_start(part, &self.by);
+            let moving = self.field.moving(&modes, &at).map_err(|why| (None, why))?;
+            for (mode, direction) in modes.iter_mut().zip(moving.directions) {
+                if let (true, Some(along)) = (stopped.contains(&mode.contact), direction) {
+                    mode.hold = Hold::Along(along);
+                }
+            }
+        }
+        self.field.pass((part, next), &modes, &self.by, events, self.since)
+    }
+}

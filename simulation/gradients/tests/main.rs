@@ -1,0 +1,6 @@
+//! Derivatives of motions, against closed forms and differences.
+
+mod closed_forms;
+mod common;
+mod differences;
+mod undefined;
