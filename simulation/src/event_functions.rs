@@ -71,6 +71,8 @@ impl Watched {
     pub fn guard(self, closed: &[Closed]) -> Option<Guard> {
         Some(match self {
             Self::Gap(contact) => Guard::Gap(contact),
+            Self::Entry(contact) => Guard::Face(contact),
+            Self::End(place) => Guard::Face(closed[place].contact),
             Self::Normal(place) => Guard::NormalForce(closed[place].contact),
             Self::Cone(place) => Guard::Friction(closed[place].contact),
             Self::Jam => Guard::Jam,

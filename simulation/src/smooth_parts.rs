@@ -40,6 +40,8 @@ pub struct ClosedPart {
 pub enum Guard {
     /// the gap of an open contact
     Gap(usize),
+    /// the way of a contact to where its face begins or ends
+    Face(usize),
     /// the normal force of a closed contact
     NormalForce(usize),
     /// what is left of the friction that may hold a contact which sticks
