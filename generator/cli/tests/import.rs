@@ -118,6 +118,24 @@ fn robots_agree_with_another_program() {
     }
 }
 
+/// A machine with all joints, geoms and actuators of MJCF that are imported.
+#[test]
+fn a_machine_of_mjcf_agrees_with_mujoco() {
+    let folder = tempfile::tempdir().unwrap();
+    let machine = root().join("tests/data/imports/machine.xml").display().to_string();
+    let model = imported(&machine, "machine", &[], folder.path());
+    let expected: Value = serde_json::from_str(&data("imports/expected.json")).unwrap();
+    for state in expected["states"].as_array().unwrap() {
+        let answer = eval(&model, &json!({"q": state["q"], "u": state["u"], "inputs": state["inputs"]}));
+        let speeds = state["udot"].as_object().unwrap();
+        assert_eq!(speeds.len(), answer["udot"].as_object().unwrap().len());
+        for (name, expected) in speeds {
+            let (found, expected) = (number(&answer["udot"][name]), number(expected));
+            assert!((found - expected).abs() < 1e-10 * (1.0 + expected.abs()), "{name}: {found} {expected}");
+        }
+    }
+}
+
 /// A state moved along its rates for a time.
 fn moved(state: &Value, answer: &Value, time: f64) -> Value {
     let shift = |values: &Value, rates: &Value| -> Value {

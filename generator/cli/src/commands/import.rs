@@ -1,4 +1,4 @@
-//! `hodograph import`: converts a URDF file to a model.
+//! `hodograph import`: converts a URDF, MJCF or SDF file to a model.
 
 use std::path::PathBuf;
 
@@ -15,24 +15,24 @@ use crate::stop::{Outcome, Stop};
 /// Largest size of a robot description, in bytes.
 const MAX_BYTES: usize = 64 << 20;
 
-/// Turn a robot description (URDF) into a model file, written to standard output
+/// Turn a description of a robot (URDF, MJCF or SDF) into a model file, written to standard output
 ///
 ///   hodograph import robot.urdf > robot.mech
 ///
 /// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have
-/// becomes `_`. A root link that moves freely has the coordinates q_base_x .. z, the quaternion
+/// becomes `_`. Joints of MJCF have the inputs of their actuators, `ctrl_NAME`. In URDF a root link that moves freely has the coordinates q_base_x .. z, the quaternion
 /// q_base_e0 .. e3 and the speeds u_base_x .. z and u_base_rx .. rz along its own axes. What is
 /// ignored is said on standard error.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
-    /// the URDF file
+    /// the URDF, MJCF or SDF file
     file: PathBuf,
     /// make a contact of the origin of this link with the plane through O across N.z (may be
     /// repeated)
     #[arg(long, value_name = "LINK")]
     contact: Vec<String>,
-    /// whether the root link is fixed to the ground or free [default: free if it has an inertia]
+    /// URDF: whether the root link is fixed to the ground or free [default: free if it has an inertia]
     #[arg(long, value_enum)]
     base: Option<Base>,
     /// declare all parameters `fixed`: folded in at build time

@@ -90,6 +90,7 @@ impl<'a> Checker<'a> {
             if !mimic.has_attribute("joint") {
                 self.at_start(mimic, &format!("<mimic> of {} has no attribute `joint`", titled(joint)));
             }
+            ["multiplier", "offset"].iter().for_each(|name| self.number(mimic, name, false));
         }
     }
 
@@ -173,7 +174,11 @@ pub fn numbers<const N: usize>(element: Option<Node>, name: &str) -> Result<[f64
     let read: Option<Vec<f64>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
     let read = read.filter(|list| list.iter().all(|number| number.is_finite()));
     let read: Option<[f64; N]> = read.and_then(|list| list.try_into().ok());
-    let wanted = if N == 1 { "a finite number" } else { "three finite numbers" };
+    let wanted = match N {
+        1 => "a finite number".to_owned(),
+        3 => "three finite numbers".to_owned(),
+        _ => format!("{N} finite numbers"),
+    };
     read.ok_or_else(|| format!("`{name}=\"{text}\"` is not {wanted}"))
 }
 

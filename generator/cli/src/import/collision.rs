@@ -12,6 +12,12 @@ pub enum Solid {
     Box([f64; 3]),
     /// radius and length along z, m
     Cylinder([f64; 2]),
+    /// radius and length of its axis along z, m
+    Capsule([f64; 2]),
+    /// semi-axes along x, y and z, m
+    Ellipsoid([f64; 3]),
+    /// across z
+    Plane,
     /// radius, m
     Sphere(f64),
 }

@@ -1,11 +1,38 @@
-//! What a robot description says of a link and of a joint. Their attributes are checked before
-//! (`attributes`): what is missing or no number is reported there, and nothing here.
+//! What a description of a robot says of its links and joints, whatever its format. Those of URDF are read here;
+//! their attributes are checked before (`attributes`): what is missing or no number is reported there, and nothing
+//! here.
 
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::Node;
 
 use super::attributes::{is, numbers, pose};
 use super::collision::Collision;
+
+/// A description.
+pub struct Robot {
+    /// the file's name, for messages
+    pub file: String,
+    /// the name of its format
+    pub format: &'static str,
+    /// its own name
+    pub name: String,
+    /// the acceleration of gravity, m/s^2
+    pub gravity: Gravity,
+    /// whether its root is the ground itself, so that it never moves
+    pub on_ground: bool,
+    /// its links, in the order of the file
+    pub links: Vec<Link>,
+    /// its joints, in the order of the file
+    pub joints: Vec<Joint>,
+}
+
+/// The acceleration of gravity.
+pub enum Gravity {
+    /// that of the standard, along -N.z: the description says nothing
+    Standard,
+    /// along N.x, N.y and N.z, m/s^2
+    Stated(Vector3<f64>),
+}
 
 /// A link.
 pub struct Link {
@@ -20,6 +47,7 @@ pub struct Link {
 }
 
 /// The inertia of a link.
+#[derive(Clone, Debug)]
 pub struct Inertial {
     /// kg
     pub mass: f64,
@@ -32,6 +60,7 @@ pub struct Inertial {
 }
 
 /// A joint.
+#[derive(Clone, Debug)]
 pub struct Joint {
     /// where it stands
     pub at: String,
@@ -53,8 +82,63 @@ pub struct Joint {
     pub damping: f64,
     /// N m or N
     pub friction: f64,
+    /// N m/rad or N/m
+    pub stiffness: f64,
+    /// the coordinate at which its spring is without force, rad or m
+    pub spring_rests_at: f64,
+    /// the coordinates at the start, none where all are zero
+    pub start: Vec<f64>,
     /// the joint that it mimics
-    pub mimics: Option<String>,
+    pub mimics: Option<Mimic>,
+    /// what drives it; `None`: an input of its own, as where a format has no actuators
+    pub actuators: Option<Vec<Actuator>>,
+}
+
+/// A coordinate that follows another: `multiplier` times that, and `offset`.
+#[derive(Clone, Debug)]
+pub struct Mimic {
+    /// the joint that it follows
+    pub joint: String,
+    /// rad or m of this joint for each of the other
+    pub multiplier: f64,
+    /// rad or m
+    pub offset: f64,
+}
+
+/// What drives a joint: the force `gear (gain input + bias[0] + bias[1] gear q + bias[2] gear u)`.
+#[derive(Clone, Debug)]
+pub struct Actuator {
+    /// its name as spelled
+    pub name: String,
+    /// the force for an input of 1
+    pub gain: f64,
+    /// a constant force, and those for each unit of the coordinate and of the speed
+    pub bias: [f64; 3],
+    /// what its force is multiplied by
+    pub gear: f64,
+}
+
+impl Joint {
+    /// One that stands still, until it is said what it is.
+    pub fn fixed(at: String, name: String, [parent, child]: [String; 2]) -> Self {
+        Joint {
+            at,
+            name,
+            kind: "fixed".to_owned(),
+            parent,
+            child,
+            offset: Vector3::zeros(),
+            rpy: Vector3::zeros(),
+            axis: Vector3::x(),
+            damping: 0.0,
+            friction: 0.0,
+            stiffness: 0.0,
+            spring_rests_at: 0.0,
+            start: Vec::new(),
+            mimics: None,
+            actuators: None,
+        }
+    }
 }
 
 impl Link {
@@ -76,18 +160,21 @@ impl Joint {
     pub fn read(node: Node, at: String) -> Self {
         let (offset, rpy) = pose(node).unwrap_or_default();
         let dynamics = child(node, "dynamics");
+        let ends = ["parent", "child"].map(|end| text(child(node, end), "link"));
+        let follow = |mimic: Node| Mimic {
+            joint: text(Some(mimic), "joint"),
+            multiplier: numbers(Some(mimic), "multiplier").map_or(1.0, |[number]| number),
+            offset: number(Some(mimic), "offset"),
+        };
         Joint {
-            at,
-            name: text(Some(node), "name"),
             kind: text(Some(node), "type"),
-            parent: text(child(node, "parent"), "link"),
-            child: text(child(node, "child"), "link"),
             offset,
             rpy,
             axis: numbers(child(node, "axis"), "xyz").map_or(Vector3::x(), Vector3::from),
             damping: number(dynamics, "damping"),
             friction: number(dynamics, "friction"),
-            mimics: child(node, "mimic").map(|mimic| text(Some(mimic), "joint")),
+            mimics: child(node, "mimic").map(follow),
+            ..Joint::fixed(at, text(Some(node), "name"), ends)
         }
     }
 }

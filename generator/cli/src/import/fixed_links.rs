@@ -2,8 +2,7 @@
 
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
-use super::description::Inertial;
-use super::document::Robot;
+use super::description::{Inertial, Robot};
 use super::tree::{Motion, Tree};
 
 /// The inertia of a body.

@@ -1,25 +1,37 @@
-//! Converts a robot description (URDF) to the text of a model.
+//! Converts a description of a robot (URDF, MJCF or SDF) to the text of a model.
 //!
 //! ```text
-//! URDF -> document  the XML: its attributes, checked, its links and joints with their places, the
-//!                   geometry of collisions, and what is not used
+//! URDF -> document  its attributes, checked, its links and joints with their places, the geometry of collisions,
+//!                   and what is not used
+//! MJCF -> mjcf      the same of bodies, whose joints may be several and anywhere: `chains` makes links of them
+//! SDF  -> sdf       the same of links and joints, each in axes of its own
 //!      -> tree      links and joints as a tree, checked
 //!      -> bodies    links that are fixed to a moving link become part of it
 //!      -> text      the model
 //! ```
 
 mod attributes;
+mod chains;
 mod collision;
 mod description;
 mod document;
 mod fixed_links;
+mod forces;
+mod formulas;
 mod lines;
+mod masses;
+mod mjcf;
 mod names;
+mod poses;
+mod sdf;
 mod text;
 mod tree;
+mod xml;
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_formats;
 
 /// How to import.
 #[derive(Clone, Debug, Default)]
@@ -41,16 +53,38 @@ pub struct Imported {
     pub notes: Vec<String>,
 }
 
-/// Imports the text of a URDF file called `file` (for messages).
+/// Imports the text of a URDF, MJCF or SDF file called `file` (for messages).
 ///
 /// # Errors
 ///
 /// All that is wrong with the file, one sentence with its place each.
 pub fn import(source: &str, file: &str, options: &Options) -> Result<Imported, Vec<String>> {
     let mut notes = Vec::new();
-    let document = document::read(source, file, &mut notes)?;
+    let lines = lines::Lines::of(source);
+    let xml = xml::parse(source, file, &lines)?;
+    let root = xml.root_element();
+    let document = match root.tag_name().name() {
+        "robot" => document::read(root, file, &lines, &mut notes)?,
+        "mujoco" => mjcf::read(root, file, &lines, &mut notes)?,
+        "sdf" => sdf::read(root, file, &lines, &mut notes)?,
+        found => {
+            let at = lines.place(root.range().start);
+            return Err(vec![format!(
+                "{file}:{at}: this describes no robot: its root is <{found}>, not <robot> (URDF), <mujoco> (MJCF) or <sdf>"
+            )]);
+        }
+    };
     let mut tree = tree::grow(&document, &mut notes)?;
-    tree.choose_base(options.floating, &mut notes);
+    match (document.on_ground, options.floating) {
+        (false, floating) => tree.choose_base(floating, &mut notes),
+        (true, None) => {}
+        (true, Some(_)) => {
+            return Err(vec![format!(
+                "{file}: --base is for URDF: {} says itself what is free",
+                document.format
+            )]);
+        }
+    }
     let groups = fixed_links::combined(&tree, &document, &mut notes)?;
     let model = text::write(&tree, &groups, &document, options, &mut notes)?;
     Ok(Imported { model, notes })

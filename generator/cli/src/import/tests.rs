@@ -118,7 +118,7 @@ fn mistakes_are_named_with_their_place() {
         (two(joint("j", "revolute", "base", "arm", "<axis xyz=\"0 0 0\"/>")), "give its direction"),
         (
             two(joint("j", "revolute", "base", "arm", "<mimic joint=\"k\"/>")),
-            "r.urdf:4:1: joint `j`: it mimics `k`",
+            "r.urdf:4:1: joint `j`: it mimics the unknown joint `k`",
         ),
         (two(joint("j", "fixed", "base", "arm", "")), "nothing moves"),
         (two(""), "link `arm` hangs on no joint"),
@@ -194,8 +194,8 @@ fn mistakes_are_named_with_their_place() {
     assert_eq!(refused(&negative), "r.urdf:3:1: link `arm`: its mass is -1: give a positive one");
     let empty = import("", "r.urdf", &Options::default()).unwrap_err().join("\n");
     assert!(empty.starts_with("r.urdf:1:1: this is no XML"), "{empty}");
-    let other = import("<sdf/>", "r.urdf", &Options::default()).unwrap_err().join("\n");
-    assert!(other.contains("its root is <sdf>"), "{other}");
+    let other = import("<scene/>", "r.urdf", &Options::default()).unwrap_err().join("\n");
+    assert!(other.contains("its root is <scene>"), "{other}");
 }
 
 #[test]
@@ -272,4 +272,42 @@ fn collision_geometry_becomes_shapes() {
     let said = hodograph_generator::rendering::render(&checked.diagnostics, &source);
     let mechanism = checked.mechanism.unwrap_or_else(|| panic!("{said}\n{model}"));
     assert_eq!(mechanism.shapes.len(), 3);
+}
+
+/// A joint that mimics another has its coordinate as a multiple of that one.
+#[test]
+fn joints_follow_others() {
+    let mimic = "<mimic joint=\"left\" multiplier=\"-2\" offset=\"0.1\"/>";
+    let body = "<link name=\"base\"/>".to_owned()
+        + link("right_finger")
+        + link("left_finger")
+        + joint("right", "prismatic", "base", "right_finger", mimic)
+        + joint("left", "revolute", "base", "left_finger", "");
+    let (model, notes) = model(&body, &Options::default());
+    has(&model, "k_right: m/rad = -2,");
+    has(&model, "right_finger_origin = O + (k_right*q_left + q0_right)*N.x;");
+    has(&model, "force on right_finger_origin: tau_right*N.x;");
+    assert!(!model.contains(" u_right") && !notes.contains("mimic"), "{model}\n{notes}");
+    let source = hodograph_generator::source::Source::file("two.mech", model.as_str());
+    let checked = hodograph_generator::check::check(&source);
+    assert!(
+        !checked.has_errors(),
+        "{}",
+        hodograph_generator::rendering::render(&checked.diagnostics, &source)
+    );
+    let both = body.replace("type=\"revolute\">", "type=\"revolute\"><mimic joint=\"right\"/>");
+    assert!(refused(&both).contains("mimics `right`, which mimics another"), "{}", refused(&both));
+}
+
+/// Links in another order than that of the tree keep their own solids.
+#[test]
+fn shapes_are_of_their_links_in_any_order() {
+    let ball = "<collision><geometry><sphere radius=\"0.2\"/></geometry></collision></link>";
+    let body = link("hand").replace("</link>", ball)
+        + link("arm")
+        + "<link name=\"base\"/>"
+        + joint("wrist", "revolute", "arm", "hand", "")
+        + joint("hip", "revolute", "base", "arm", "");
+    let (model, _) = model(&body, &Options::default());
+    has(&model, "hand_shape { of: hand, at: O, sphere: r_hand_shape },");
 }

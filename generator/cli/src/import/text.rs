@@ -4,8 +4,9 @@ use nalgebra::Vector3;
 
 use super::Options;
 use super::collision::{Collision, Solid};
-use super::document::Robot;
+use super::description::{Gravity, Robot};
 use super::fixed_links::{Groups, across};
+use super::formulas::{axis_word, combination, decimal, rotation, times, weighted};
 use super::names::{Names, mechanism};
 use super::tree::{Joint, Motion, Tree};
 
@@ -36,7 +37,8 @@ struct Called {
     origin: String,
 }
 
-struct Writer<'a> {
+/// Writes the sections of a model.
+pub struct Writer<'a> {
     tree: &'a Tree,
     groups: &'a Groups,
     names: Names,
@@ -69,14 +71,21 @@ pub fn write(
         bodies: vec![None; groups.groups.len()],
     };
     let name = writer.names.give(&mechanism(&document.name));
-    let gravity = writer.parameter("g", "m/s^2", 9.80665, "standard gravity, towards -N.z");
-    writer.out.loads.push(format!("gravity: -{gravity}*N.z;"));
+    writer.gravity(&document.gravity);
     // Coordinates, speeds and inputs first: their names are promised, others give way.
-    let motions: Vec<Moves> = tree.links.iter().map(|link| writer.declare(&link.joint)).collect();
-    for (link, moves) in motions.iter().enumerate() {
-        writer.place(link, moves);
-        writer.body(link);
-        document.links[link].collisions.iter().for_each(|collision| writer.shape(link, collision));
+    let mut motions: Vec<Moves> = tree.links.iter().map(|link| writer.declare(&link.joint)).collect();
+    for (here, link) in tree.links.iter().enumerate() {
+        if let Some(follows) = &link.joint.mimics {
+            let moves_so = |other: &super::tree::Link| other.joint.name.as_ref() == Some(&follows.joint);
+            let other = tree.links.iter().position(moves_so).unwrap_or(here);
+            motions[here] = writer.follow(&link.joint, &tree.links[other].joint, &motions[other]);
+        }
+    }
+    for (here, moves) in motions.iter().enumerate() {
+        writer.place(here, moves);
+        writer.body(here);
+        let collisions = &document.links[tree.links[here].index].collisions;
+        collisions.iter().for_each(|collision| writer.shape(here, collision));
     }
     let mut problems = Vec::new();
     for contact in &options.contacts {
@@ -91,21 +100,72 @@ pub fn write(
 
 /// The names of what moves at a joint.
 #[derive(Default)]
-struct Moves {
-    coordinates: Vec<String>,
-    speeds: Vec<String>,
-    inputs: Vec<String>,
+pub struct Moves {
+    /// its coordinates
+    pub coordinates: Vec<String>,
+    /// its speeds
+    pub speeds: Vec<String>,
+    /// its inputs
+    pub inputs: Vec<String>,
 }
+
+/// Suffixes of rotations about three axes.
+const TURNS: [&str; 3] = ["_rx", "_ry", "_rz"];
 
 /// Suffix, unit of the coordinate, unit of the speed, unit of the input.
 const TURN: [&str; 3] = ["rad", "rad/s", "N*m"];
 const SLIDE: [&str; 3] = ["m", "m/s", "N"];
 
 impl Writer<'_> {
-    fn parameter(&mut self, name: &str, unit: &str, value: f64, docs: &str) -> String {
+    pub(super) fn parameter(&mut self, name: &str, unit: &str, value: f64, docs: &str) -> String {
         let name = self.names.give(name);
         let docs = if docs.is_empty() { String::new() } else { format!("/// {docs}\n    ") };
         self.out.parameters.push(format!("{docs}{}{name}: {unit} = {},", self.fixed, decimal(value)));
+        name
+    }
+
+    fn gravity(&mut self, gravity: &Gravity) {
+        let along = |g: Vector3<f64>| (g.x == 0.0 && g.y == 0.0).then_some(-g.z);
+        let (down, says) = match *gravity {
+            Gravity::Standard => (9.80665, "standard gravity, towards -N.z"),
+            Gravity::Stated(g) if g == Vector3::zeros() => return,
+            Gravity::Stated(g) => match along(g) {
+                Some(down) => (down, "acceleration of gravity, towards -N.z"),
+                None => {
+                    let parts = ["gx", "gy", "gz"].into_iter().zip(g.iter());
+                    let names: Vec<String> = parts
+                        .map(|(name, &part)| self.parameter(name, "m/s^2", part, "acceleration of gravity"))
+                        .collect();
+                    return self.out.loads.push(format!("gravity: N.vec({});", names.join(", ")));
+                }
+            },
+        };
+        let name = self.parameter("g", "m/s^2", down, says);
+        self.out.loads.push(format!("gravity: -{name}*N.z;"));
+    }
+
+    /// The coordinate and speed of a joint that follows another.
+    fn follow(&mut self, joint: &Joint, other: &Joint, moves: &Moves) -> Moves {
+        let (Some(mimic), Some(base)) = (&joint.mimics, &joint.name) else { return Moves::default() };
+        let unit = |joint: &Joint| if joint.motion == Motion::Turn { TURN } else { SLIDE };
+        let [own, its] = [joint, other].map(|joint| unit(joint)[0]);
+        let ratio = if own == its { "1".to_owned() } else { format!("{own}/{its}") };
+        let docs = format!("joint `{base}` follows `{}` by this factor", mimic.joint);
+        let factor = self.parameter(&format!("k_{base}"), &ratio, mimic.multiplier, &docs);
+        let mut coordinate = format!("{factor}*{}", moves.coordinates[0]);
+        if mimic.offset != 0.0 {
+            let docs = format!("joint `{base}` where `{}` is zero", mimic.joint);
+            let offset = self.parameter(&format!("q0_{base}"), own, mimic.offset, &docs);
+            coordinate = format!("{coordinate} + {offset}");
+        }
+        let input = self.input(&format!("tau_{base}"), unit(joint)[2]);
+        let speeds = vec![format!("{factor}*{}", moves.speeds[0])];
+        Moves { coordinates: vec![coordinate], speeds, inputs: vec![input] }
+    }
+
+    pub(super) fn input(&mut self, wish: &str, unit: &str) -> String {
+        let name = self.names.give(wish);
+        self.out.inputs.push(format!("{name}: {unit} = 0,"));
         name
     }
 
@@ -114,33 +174,40 @@ impl Writer<'_> {
         let base = joint.name.as_deref().unwrap_or("base");
         let mut moves = Moves::default();
         let list: Vec<(&str, [&str; 3])> = match joint.motion {
+            _ if joint.mimics.is_some() => return moves,
             Motion::Fixed => return moves,
             Motion::Turn => vec![("", TURN)],
             Motion::Slide => vec![("", SLIDE)],
             Motion::Planar => vec![("_x", SLIDE), ("_y", SLIDE), ("_r", TURN)],
+            Motion::Ball => TURNS.map(|suffix| (suffix, TURN)).into(),
             Motion::Free => {
-                let turn = ["_rx", "_ry", "_rz"].map(|suffix| (suffix, TURN));
+                let turn = TURNS.map(|suffix| (suffix, TURN));
                 ["_x", "_y", "_z"].map(|suffix| (suffix, SLIDE)).into_iter().chain(turn).collect()
             }
         };
+        let turns_freely = matches!(joint.motion, Motion::Free | Motion::Ball);
+        let mut start = joint.start.iter().copied();
+        let mut value = |default: f64| match start.next().unwrap_or(default) {
+            0.0 => String::new(),
+            value => format!(" = {}", decimal(value)),
+        };
         for (suffix, [position, speed, force]) in list {
-            if joint.motion != Motion::Free || position == "m" {
+            if !turns_freely || position == "m" {
                 let name = self.names.give(&format!("q_{base}{suffix}"));
-                self.out.coordinates.push(format!("{name}: {position},"));
+                self.out.coordinates.push(format!("{name}: {position}{},", value(0.0)));
                 moves.coordinates.push(name);
             }
             let name = self.names.give(&format!("u_{base}{suffix}"));
             self.out.speeds.push(format!("{name}: {speed},"));
             moves.speeds.push(name);
-            let name = self.names.give(&format!("tau_{base}{suffix}"));
-            self.out.inputs.push(format!("{name}: {force} = 0,"));
-            moves.inputs.push(name);
+            if joint.actuators.is_none() {
+                moves.inputs.push(self.input(&format!("tau_{base}{suffix}"), force));
+            }
         }
-        if joint.motion == Motion::Free {
+        if turns_freely {
             for (index, suffix) in ["_e0", "_e1", "_e2", "_e3"].into_iter().enumerate() {
                 let name = self.names.give(&format!("q_{base}{suffix}"));
-                let value = if index == 0 { " = 1" } else { "" };
-                self.out.coordinates.push(format!("{name}: 1{value},"));
+                self.out.coordinates.push(format!("{name}: 1{},", value(if index == 0 { 1.0 } else { 0.0 })));
                 moves.coordinates.push(name);
             }
         }
@@ -179,21 +246,26 @@ impl Writer<'_> {
             Motion::Turn => {
                 let turned = format!("rotate({}, {})", axis_word(&joint.axis), moves.coordinates[0]);
                 let frame = self.frame(&frame_wish, &axes, &turned);
-                let torque = self.effort(&moves.inputs[0], &moves.speeds[0], base, joint.damping, TURN);
-                let torque = times(&torque, &combination(&joint.axis, &frame));
+                let torque = self.effort(moves, joint, base, TURN);
                 let called = Called { axes: frame, origin };
-                self.twist(&called, reaction, &torque);
+                if let Some(torque) = torque {
+                    let torque = times(&torque, &combination(&joint.axis, &called.axes));
+                    self.twist(&called, reaction, &torque);
+                }
                 called
             }
             Motion::Slide => {
                 let axis = combination(&joint.axis, &axes);
                 let point = self.point(&here_wish, &origin, &times(&moves.coordinates[0], &axis));
-                let force = self.effort(&moves.inputs[0], &moves.speeds[0], base, joint.damping, SLIDE);
+                let force = self.effort(moves, joint, base, SLIDE);
                 let reaction = if on_ground { String::new() } else { format!(" from {origin}") };
-                self.out.loads.push(format!("force on {point}{reaction}: {};", times(&force, &axis)));
+                if let Some(force) = force {
+                    self.out.loads.push(format!("force on {point}{reaction}: {};", times(&force, &axis)));
+                }
                 Called { axes, origin: point }
             }
             Motion::Planar => self.place_planar(here, moves, &Called { axes, origin }, reaction),
+            Motion::Ball => self.place_ball(here, moves, Called { axes, origin }, reaction),
             Motion::Free => self.place_free(here, moves, &Called { axes, origin }, reaction),
         };
         self.called.push(called);
@@ -217,6 +289,22 @@ impl Writer<'_> {
         self.push(&called, joint_axes, carrier, &weighted(&moves.inputs, &directions));
         let torque = times(&moves.inputs[2], &combination(&joint.axis, &called.axes));
         self.twist(&called, carrier, &torque);
+        called
+    }
+
+    /// A joint that turns about all axes: its speeds are the components of the relative angular velocity along the
+    /// axes of what turns.
+    fn place_ball(&mut self, here: usize, moves: &Moves, base: Called, carrier: Option<&str>) -> Called {
+        let link = &self.tree.links[here];
+        let quaternion = format!("quaternion({})", moves.coordinates.join(", "));
+        let axes = self.frame(&format!("{}_axes", link.name), &base.axes, &quaternion);
+        let own = ["x", "y", "z"].map(|axis| format!("{axes}.{axis}"));
+        let within = if base.axes == "N" { String::new() } else { format!(" in {}", base.axes) };
+        self.out.angular_velocities.push(format!("{axes}{within} = {};", weighted(&moves.speeds, &own)));
+        let called = Called { axes, origin: base.origin };
+        if !moves.inputs.is_empty() {
+            self.twist(&called, carrier, &weighted(&moves.inputs, &own));
+        }
         called
     }
 
@@ -247,8 +335,10 @@ impl Writer<'_> {
             Some(_) => own(&joint_axes.axes),
         };
         let called = Called { axes, origin };
-        self.push(&called, joint_axes, carrier, &weighted(&moves.inputs, &directions));
-        self.twist(&called, carrier, &weighted(&moves.inputs[3..], &own(&called.axes)));
+        if let [_, _, _, turns @ ..] = &moves.inputs[..] {
+            self.push(&called, joint_axes, carrier, &weighted(&moves.inputs[..3], &directions));
+            self.twist(&called, carrier, &weighted(turns, &own(&called.axes)));
+        }
         called
     }
 
@@ -332,6 +422,18 @@ impl Writer<'_> {
             Solid::Cylinder([r, l]) => {
                 format!("cylinder: [{}, {}], axis: {own}.z", length("r", r), length("l", l))
             }
+            Solid::Capsule([r, l]) => {
+                format!("capsule: [{}, {}], axis: {own}.z", length("r", r), length("l", l))
+            }
+            Solid::Ellipsoid([a, b, c]) => {
+                format!(
+                    "ellipsoid: [{}, {}, {}], axes: {own}",
+                    length("a", a),
+                    length("b", b),
+                    length("c", c)
+                )
+            }
+            Solid::Plane => format!("plane: {own}.z"),
             Solid::Box([a, b, c]) => {
                 format!("box: [{}, {}, {}], axes: {own}", length("a", a), length("b", b), length("c", c))
             }
@@ -399,22 +501,13 @@ impl Writer<'_> {
         (!terms.is_empty()).then(|| terms.join(" + "))
     }
 
-    /// The input, less the damping.
-    fn effort(&mut self, input: &str, speed: &str, base: &str, damping: f64, units: [&str; 3]) -> String {
-        if damping == 0.0 {
-            return input.to_owned();
-        }
-        let unit = if units[0] == "rad" { "N*m*s/rad" } else { "N*s/m" };
-        let name = self.parameter(&format!("d_{base}"), unit, damping, &format!("damping of joint `{base}`"));
-        format!("({input} - {name}*{speed})")
-    }
-
     fn finish(self, name: &str, document: &Robot) -> String {
         let out = self.out;
         let mut text = format!(
-            "//! {}, imported from {}.\n//!\n//! Axes, origins and inertias of links and joints are those of the URDF; gravity acts along -N.z.\n",
+            "//! {}, imported from {}.\n//!\n//! Axes, origins and inertias of links and joints are those of the {}.\n",
             document.name.replace(['\n', '\r'], " "),
-            document.file.replace(['\n', '\r'], " ")
+            document.file.replace(['\n', '\r'], " "),
+            document.format
         );
         text.push_str(&format!("mechanism {name};\n"));
         for (title, lines) in [
@@ -438,72 +531,4 @@ impl Writer<'_> {
         }
         text
     }
-}
-
-/// The shortest decimal that reads back exactly.
-fn decimal(number: f64) -> String {
-    let text = format!("{number:?}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
-}
-
-/// An angle, as a multiple of pi where it is one to 10 digits.
-fn angle(number: f64) -> String {
-    let twelfths = number / std::f64::consts::PI * 12.0;
-    let count = twelfths.round();
-    if count == 0.0 || (twelfths - count).abs() > 6e-10 || count.abs() > 24.0 {
-        return decimal(number);
-    }
-    let (sign, count) = (if count < 0.0 { "-" } else { "" }, count.abs() as u32);
-    let common = (1..=12).rev().find(|&d| 12 % d == 0 && count % d == 0).unwrap_or(1);
-    let top = if count == common { "pi".to_owned() } else { format!("{}*pi", count / common) };
-    if common == 12 { format!("{sign}{top}") } else { format!("{sign}{top}/{}", 12 / common) }
-}
-
-/// `rotate(..)` or `space(..)` for roll, pitch and yaw; `None` where nothing turns.
-fn rotation(rpy: &Vector3<f64>) -> Option<String> {
-    let turns: Vec<(&str, f64)> =
-        ["x", "y", "z"].into_iter().zip(rpy.iter().copied()).filter(|&(_, angle)| angle != 0.0).collect();
-    match turns[..] {
-        [] => None,
-        [(axis, about)] => Some(format!("rotate({axis}, {})", angle(about))),
-        _ => Some(format!("space(xyz, {}, {}, {})", angle(rpy.x), angle(rpy.y), angle(rpy.z))),
-    }
-}
-
-/// The axis of a rotation as the language writes it.
-fn axis_word(axis: &Vector3<f64>) -> String {
-    match aligned(axis) {
-        Some((sign, letter)) => format!("{sign}{letter}"),
-        None => format!("[{}, {}, {}]", decimal(axis.x), decimal(axis.y), decimal(axis.z)),
-    }
-}
-
-/// A vector given by numbers along the axes of a frame.
-fn combination(vector: &Vector3<f64>, axes: &str) -> String {
-    match aligned(vector) {
-        Some((sign, letter)) => format!("{sign}{axes}.{letter}"),
-        None => format!("{axes}.vec({}, {}, {})", decimal(vector.x), decimal(vector.y), decimal(vector.z)),
-    }
-}
-
-/// Which axis, and which way, if the vector is an axis.
-fn aligned(vector: &Vector3<f64>) -> Option<(&'static str, &'static str)> {
-    let (index, largest) = vector.iter().copied().enumerate().find(|(_, number)| *number != 0.0)?;
-    let alone = vector.iter().filter(|&&number| number != 0.0).count() == 1;
-    (alone && largest.abs() == 1.0).then(|| (if largest < 0.0 { "-" } else { "" }, ["x", "y", "z"][index]))
-}
-
-/// `factor*vector`, with a sign of the vector moved to the front.
-fn times(factor: &str, vector: &str) -> String {
-    match vector.strip_prefix('-') {
-        Some(vector) => format!("-{factor}*{vector}"),
-        None => format!("{factor}*{vector}"),
-    }
-}
-
-/// `a*v + b*w + ..`
-fn weighted(factors: &[String], vectors: &[String]) -> String {
-    let terms: Vec<String> =
-        factors.iter().zip(vectors).map(|(factor, vector)| times(factor, vector)).collect();
-    terms.join(" + ").replace("+ -", "- ")
 }

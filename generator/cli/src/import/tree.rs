@@ -4,8 +4,7 @@ use std::collections::HashMap;
 
 use nalgebra::Vector3;
 
-use super::description;
-use super::document::Robot;
+use super::description::{self, Actuator, Mimic, Robot};
 
 /// How a joint lets its child move.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +17,8 @@ pub enum Motion {
     Slide,
     /// in the plane across the axis
     Planar,
+    /// about all axes of one point
+    Ball,
     /// freely
     Free,
 }
@@ -37,6 +38,14 @@ pub struct Joint {
     pub axis: Vector3<f64>,
     /// N m s/rad or N s/m
     pub damping: f64,
+    /// N m/rad or N/m, and the coordinate at which the spring is without force
+    pub spring: [f64; 2],
+    /// the coordinates at the start, none where all are zero
+    pub start: Vec<f64>,
+    /// the joint that its coordinate follows
+    pub mimics: Option<Mimic>,
+    /// what drives it; `None`: an input of its own
+    pub actuators: Option<Vec<Actuator>>,
 }
 
 /// A link and the joint that carries it.
@@ -62,7 +71,7 @@ pub struct Tree {
 }
 
 impl Tree {
-    /// Decides whether the root is free.
+    /// Decides whether the root is free, of a description that leaves it open.
     pub fn choose_base(&mut self, floating: Option<bool>, notes: &mut Vec<String>) {
         let root = &mut self.links[0];
         let free = floating.unwrap_or(self.root_has_inertial);
@@ -132,6 +141,7 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
     if !problems.is_empty() {
         return Err(problems);
     }
+    mimics(document, &joints)?;
     let root = root(document, &carried_by)?;
     let ground = Joint {
         name: None,
@@ -140,6 +150,10 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
         rpy: Vector3::zeros(),
         axis: Vector3::z(),
         damping: 0.0,
+        spring: [0.0; 2],
+        start: Vec::new(),
+        mimics: None,
+        actuators: None,
     };
     let mut links = Vec::new();
     let mut reached = vec![false; document.links.len()];
@@ -161,6 +175,33 @@ pub fn grow(document: &Robot, notes: &mut Vec<String>) -> Result<Tree, Vec<Strin
         )]);
     }
     Ok(Tree { links, root_has_inertial: document.links[root].inertial.is_some() })
+}
+
+/// Joints that follow others.
+fn mimics(document: &Robot, joints: &[Joint]) -> Result<(), Vec<String>> {
+    let mut problems = Vec::new();
+    for (joint, description::Joint { at, name, .. }) in joints.iter().zip(&document.joints) {
+        let Some(mimic) = &joint.mimics else { continue };
+        let follows = &mimic.joint;
+        let mut problem = |message: String| problems.push(format!("{at}: joint `{name}`: {message}"));
+        let about_one = |joint: &Joint| matches!(joint.motion, Motion::Turn | Motion::Slide);
+        let other = joints.iter().find(|other| other.name.as_ref() == Some(follows));
+        match other {
+            None => {
+                let names = document.joints.iter().map(|joint| joint.name.as_str());
+                let hint = crate::spelling::hint(follows, names);
+                problem(format!("it mimics the unknown joint `{follows}`: {hint}"));
+            }
+            Some(other) if other.mimics.is_some() => {
+                problem(format!("it mimics `{follows}`, which mimics another: name the one that moves"));
+            }
+            Some(other) if !about_one(joint) || !about_one(other) => {
+                problem(format!("it mimics `{follows}`: both must turn or slide about one axis"));
+            }
+            Some(_) => {}
+        }
+    }
+    if problems.is_empty() { Ok(()) } else { Err(problems) }
 }
 
 /// The links by their names, which must differ.
@@ -210,27 +251,26 @@ fn read_joint(
         "revolute" | "continuous" => Motion::Turn,
         "prismatic" => Motion::Slide,
         "planar" => Motion::Planar,
+        "ball" => Motion::Ball,
         "floating" => Motion::Free,
-        // `attributes` has refused all others but "fixed"
+        // the readers have refused all others but "fixed"
         _ => Motion::Fixed,
     };
-    if let Some(mimicked) = &joint.mimics {
-        problem(format!(
-            "it mimics `{mimicked}`, which cannot be imported: make it fixed or free, and write the relation as a constraint"
-        ));
-    }
-    let description::Joint { offset, rpy, mut axis, mut damping, .. } = *joint;
+    let description::Joint { offset, rpy, mut axis, mut damping, mut stiffness, .. } = *joint;
+    let about_one = matches!(motion, Motion::Turn | Motion::Slide);
     if joint.friction != 0.0 {
         notes.push(format!("{at}: ignored the friction of joint `{name}`: only its damping is linear"));
     }
     if damping < 0.0 {
         problem(format!("its damping is {damping}: give a number that is not negative"));
     }
-    if damping != 0.0 && !matches!(motion, Motion::Turn | Motion::Slide) {
-        notes.push(format!(
-            "{at}: ignored the damping of joint `{name}`, which neither turns nor slides about one axis"
-        ));
-        damping = 0.0;
+    for (what, number) in [("damping", &mut damping), ("stiffness", &mut stiffness)] {
+        if *number != 0.0 && !about_one {
+            notes.push(format!(
+                "{at}: ignored the {what} of joint `{name}`, which neither turns nor slides about one axis"
+            ));
+            *number = 0.0;
+        }
     }
     for (word, angle) in ["roll", "pitch", "yaw"].into_iter().zip(rpy.iter()) {
         let off = (angle / std::f64::consts::FRAC_PI_2).fract().abs();
@@ -257,5 +297,16 @@ fn read_joint(
         }
         axis /= length;
     }
-    Joint { name: Some(name.clone()), motion, offset, rpy, axis, damping }
+    Joint {
+        name: Some(name.clone()),
+        motion,
+        offset,
+        rpy,
+        axis,
+        damping,
+        spring: [stiffness, joint.spring_rests_at],
+        start: joint.start.clone(),
+        mimics: joint.mimics.clone(),
+        actuators: joint.actuators.clone(),
+    }
 }

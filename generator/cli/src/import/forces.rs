@@ -1,0 +1,97 @@
+//! The forces along the axes of joints: inputs, actuators, damping and springs.
+
+use super::description::Actuator;
+use super::formulas::bracketed;
+use super::text::{Moves, Writer};
+use super::tree::Joint;
+
+impl Writer<'_> {
+    /// The force along the axis of a joint, if there is any: its input or actuators, less damping and spring.
+    pub(super) fn effort(
+        &mut self,
+        moves: &Moves,
+        joint: &Joint,
+        base: &str,
+        units: [&str; 3],
+    ) -> Option<String> {
+        let (coordinate, speed) = (bracketed(&moves.coordinates[0]), bracketed(&moves.speeds[0]));
+        let mut terms = moves.inputs.clone();
+        for actuator in joint.actuators.iter().flatten() {
+            terms.push(self.actuator(actuator, &coordinate, &speed, units));
+        }
+        let [position, _, force] = units;
+        if joint.damping != 0.0 {
+            let unit = format!("{}*s{}", force, if position == "rad" { "/rad" } else { "/m" });
+            let docs = format!("damping of joint `{base}`");
+            let name = self.parameter(&format!("d_{base}"), &unit, joint.damping, &docs);
+            terms.push(format!("-{name}*{speed}"));
+        }
+        let [stiffness, rests_at] = joint.spring;
+        if stiffness != 0.0 {
+            let docs = format!("stiffness of joint `{base}`");
+            let unit = format!("{force}/{position}");
+            let name = self.parameter(&format!("s_{base}"), &unit, stiffness, &docs);
+            terms.push(match rests_at {
+                0.0 => format!("-{name}*{coordinate}"),
+                _ => {
+                    let docs = format!("where the spring of joint `{base}` is without force");
+                    let rests = self.parameter(&format!("q0_{base}"), position, rests_at, &docs);
+                    format!("-{name}*({coordinate} - {rests})")
+                }
+            });
+        }
+        let sum = terms.join(" + ").replace("+ -", "- ");
+        match terms.len() {
+            0 => None,
+            1 if !sum.starts_with('-') && !sum.contains(' ') => Some(sum),
+            _ => Some(format!("({sum})")),
+        }
+    }
+
+    /// The force of an actuator.
+    fn actuator(&mut self, actuator: &Actuator, coordinate: &str, speed: &str, units: [&str; 3]) -> String {
+        let Actuator { name, gain, bias, gear } = actuator;
+        let [position, rate, force] = units;
+        let docs = |what: &str| format!("{what} of actuator `{name}`");
+        // a gain of one has the input as its force
+        let mut terms = Vec::new();
+        if *gain != 0.0 {
+            let input = self.input(&format!("ctrl_{name}"), if *gain == 1.0 { force } else { "1" });
+            terms.push(match *gain {
+                1.0 => input,
+                gain => {
+                    let gain = self.parameter(
+                        &format!("gain_{name}"),
+                        force,
+                        gain,
+                        &docs("force for an input of 1"),
+                    );
+                    format!("{gain}*{input}")
+                }
+            });
+        }
+        let shares = [
+            ("f0", "", force.to_owned()),
+            ("kq", coordinate, format!("{force}/{position}")),
+            ("ku", speed, format!("{force}*s/{}", rate.trim_end_matches("/s"))),
+        ];
+        for ((letter, factor, unit), &number) in shares.into_iter().zip(bias) {
+            if number == 0.0 {
+                continue;
+            }
+            // both the coordinate and the force go through the gear
+            let number = if factor.is_empty() { number } else { number * gear };
+            let name = self.parameter(&format!("{letter}_{name}"), &unit, number, &docs("share"));
+            terms.push(if factor.is_empty() { name } else { format!("{name}*{factor}") });
+        }
+        let sum = terms.join(" + ");
+        match (*gear, terms.len()) {
+            (_, 0) => "0".to_owned(),
+            (1.0, _) => sum,
+            (gear, count) => {
+                let gear = self.parameter(&format!("gear_{name}"), "1", gear, &docs("gear"));
+                if count == 1 { format!("{gear}*{sum}") } else { format!("{gear}*({sum})") }
+            }
+        }
+    }
+}

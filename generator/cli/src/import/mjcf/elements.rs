@@ -1,0 +1,202 @@
+//! Elements of MJCF with the values that their classes give them.
+
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+
+use nalgebra::{Matrix3, Vector3};
+use roxmltree::Node;
+
+use crate::import::poses::{self, Pose};
+
+/// The values of attributes.
+type Values = BTreeMap<String, String>;
+
+/// What `<default>` gives to the elements of a class, by their names.
+#[derive(Default)]
+pub struct Defaults(BTreeMap<String, BTreeMap<String, Values>>);
+
+impl Defaults {
+    /// Reads a `<default>` and those in it, which have what is given to the outer one besides.
+    pub fn read(&mut self, node: Node, outer: Option<&str>) {
+        let class = node.attribute("class").unwrap_or("main").to_owned();
+        let mut all = self.0.get(outer.unwrap_or(&class)).cloned().unwrap_or_default();
+        for element in node.children().filter(Node::is_element) {
+            let name = element.tag_name().name();
+            if name != "default" {
+                let values = element.attributes().map(|a| (a.name().to_owned(), a.value().to_owned()));
+                all.entry(name.to_owned()).or_default().extend(values);
+            }
+        }
+        self.0.insert(class.clone(), all);
+        for inner in node.children().filter(|part| part.tag_name().name() == "default") {
+            self.read(inner, Some(&class));
+        }
+    }
+
+    /// An element of a class, which its own `class` overrides.
+    ///
+    /// # Errors
+    ///
+    /// A class that there is not.
+    pub fn element(&self, node: Node, class: &str, at: String) -> Result<Element, String> {
+        let name = node.tag_name().name();
+        let class = node.attribute("class").unwrap_or(class);
+        let given = self.0.get(class);
+        if given.is_none() && class != "main" {
+            return Err(format!("{at}: there is no <default class=\"{class}\">"));
+        }
+        let mut values = given.and_then(|given| given.get(name)).cloned().unwrap_or_default();
+        values.extend(node.attributes().map(|a| (a.name().to_owned(), a.value().to_owned())));
+        let known = RefCell::new(BTreeSet::from(["class".to_owned(), "name".to_owned()]));
+        Ok(Element { at, kind: name.to_owned(), values, known })
+    }
+}
+
+/// An element.
+pub struct Element {
+    /// where it stands
+    pub at: String,
+    /// its name, as `geom`
+    pub kind: String,
+    values: Values,
+    /// the attributes that were asked for
+    known: RefCell<BTreeSet<String>>,
+}
+
+impl Element {
+    /// A value.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.known.borrow_mut().insert(name.to_owned());
+        self.values.get(name).map(String::as_str)
+    }
+
+    /// Whether it has no attribute of this name, or one with this value.
+    pub fn is_or_lacks(&self, name: &str, value: &str) -> bool {
+        self.text(name).is_none_or(|text| text == value)
+    }
+
+    /// The attributes that nothing asked for.
+    pub fn unknown(&self) -> Vec<String> {
+        let known = self.known.borrow();
+        self.values.keys().filter(|name| !known.contains(*name)).cloned().collect()
+    }
+
+    /// A sentence about this element.
+    pub fn wrong(&self, message: &str) -> String {
+        let name = self.values.get("name").map_or(String::new(), |name| format!(" `{name}`"));
+        format!("{}: <{}>{name}: {message}", self.at, self.kind)
+    }
+
+    /// All numbers of an attribute.
+    ///
+    /// # Errors
+    ///
+    /// What is no finite number.
+    pub fn list(&self, name: &str) -> Result<Option<Vec<f64>>, String> {
+        let Some(text) = self.text(name) else { return Ok(None) };
+        let read: Option<Vec<f64>> = text
+            .split_whitespace()
+            .map(|word| word.parse().ok().filter(|number: &f64| number.is_finite()))
+            .collect();
+        let wrong =
+            || self.wrong(&format!("`{name}=\"{text}\"`: write finite numbers with spaces between them"));
+        read.map(Some).ok_or_else(wrong)
+    }
+
+    /// So many numbers.
+    ///
+    /// # Errors
+    ///
+    /// As [`Element::list`], and where there are not so many.
+    pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, String> {
+        let Some(list) = self.list(name)? else { return Ok(None) };
+        let count = list.len();
+        let wrong = |_| self.wrong(&format!("`{name}` has {count} numbers, not {N}"));
+        list.try_into().map(Some).map_err(wrong)
+    }
+
+    /// A number.
+    ///
+    /// # Errors
+    ///
+    /// As [`Element::numbers`].
+    pub fn number(&self, name: &str, default: f64) -> Result<f64, String> {
+        Ok(self.numbers::<1>(name)?.map_or(default, |[number]| number))
+    }
+
+    /// A number that is not negative.
+    ///
+    /// # Errors
+    ///
+    /// As [`Element::numbers`], and where it is negative.
+    pub fn amount(&self, name: &str, default: f64) -> Result<f64, String> {
+        let number = self.number(name, default)?;
+        if number >= 0.0 { Ok(number) } else { Err(self.wrong(&format!("`{name}` is negative"))) }
+    }
+}
+
+/// What `<compiler>` says of angles.
+pub struct Angles {
+    /// whether they are in degrees
+    pub degrees: bool,
+    /// the axes of Euler's angles, small letters for those that turn along
+    pub sequence: String,
+}
+
+impl Angles {
+    /// An angle, rad.
+    pub fn radians(&self, angle: f64) -> f64 {
+        if self.degrees { angle.to_radians() } else { angle }
+    }
+
+    /// Where an element is in its body, and how it is turned.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong with the numbers.
+    pub fn pose(&self, element: &Element) -> Result<Pose, String> {
+        let at = element.numbers::<3>("pos")?.map_or(Vector3::zeros(), Vector3::from);
+        Ok(Pose { turn: self.turn(element)?, at })
+    }
+
+    fn turn(&self, element: &Element) -> Result<Matrix3<f64>, String> {
+        let given =
+            ["quat", "axisangle", "euler", "xyaxes", "zaxis"].map(|name| element.text(name).is_some());
+        if given.iter().filter(|given| **given).count() > 1 {
+            return Err(element.wrong("its orientation is stated twice"));
+        }
+        let zero = || element.wrong("its orientation has a direction of length 0");
+        if let Some(quaternion) = element.numbers::<4>("quat")? {
+            return poses::of_quaternion(quaternion).ok_or_else(zero);
+        }
+        if let Some([x, y, z, angle]) = element.numbers::<4>("axisangle")? {
+            let axis = Vector3::new(x, y, z).try_normalize(0.0).ok_or_else(zero)?;
+            let half = 0.5 * self.radians(angle);
+            let [x, y, z] = (axis * half.sin()).into();
+            return poses::of_quaternion([half.cos(), x, y, z]).ok_or_else(zero);
+        }
+        if let Some(angles) = element.numbers::<3>("euler")? {
+            let mut turn = Matrix3::identity();
+            for (letter, angle) in self.sequence.chars().zip(angles) {
+                let axis = match letter.to_ascii_lowercase() {
+                    'x' => 0,
+                    'y' => 1,
+                    _ => 2,
+                };
+                let next = poses::about(axis, self.radians(angle));
+                turn = if letter.is_ascii_lowercase() { turn * next } else { next * turn };
+            }
+            return Ok(turn);
+        }
+        if let Some([a, b, c, d, e, f]) = element.numbers::<6>("xyaxes")? {
+            let x = Vector3::new(a, b, c).try_normalize(0.0).ok_or_else(zero)?;
+            let y = Vector3::new(d, e, f);
+            let y = (y - x * x.dot(&y)).try_normalize(0.0).ok_or_else(zero)?;
+            return Ok(Matrix3::from_columns(&[x, y, x.cross(&y)]));
+        }
+        if let Some(axis) = element.numbers::<3>("zaxis")? {
+            return poses::along_z(Vector3::from(axis)).ok_or_else(zero);
+        }
+        Ok(Matrix3::identity())
+    }
+}

@@ -1,0 +1,423 @@
+//! Reads MJCF, the format of MuJoCo: bodies with their joints, geoms and inertias, and actuators of joints.
+
+mod actuators;
+mod elements;
+mod geoms;
+
+use nalgebra::{Matrix3, Vector3};
+use roxmltree::Node;
+
+use self::elements::{Angles, Defaults, Element};
+use super::chains::Chains;
+use super::description::{Gravity, Inertial, Joint, Link, Robot};
+use super::lines::Lines;
+use super::masses;
+use super::poses::Pose;
+use super::xml::Ignored;
+
+/// Bodies in bodies, at most.
+const DEEPEST: usize = 200;
+
+/// Elements that describe nothing that moves: they are counted.
+const SEEN: [&str; 12] = [
+    "visual",
+    "asset",
+    "statistic",
+    "size",
+    "keyframe",
+    "sensor",
+    "custom",
+    "contact",
+    "site",
+    "camera",
+    "light",
+    "plugin",
+];
+
+/// Whether the inertia of a body is that of its geoms.
+#[derive(Clone, Copy, PartialEq)]
+enum FromGeoms {
+    Always,
+    Never,
+    WhereNoneIsStated,
+}
+
+/// Reads a file.
+///
+/// # Errors
+///
+/// What is wrong with it, and what of it has no counterpart in a model, by name.
+pub fn read(
+    root: Node,
+    file: &str,
+    lines: &Lines<'_>,
+    notes: &mut Vec<String>,
+) -> Result<Robot, Vec<String>> {
+    let mut reader = Reader {
+        file,
+        lines,
+        defaults: Defaults::default(),
+        angles: Angles { degrees: true, sequence: "xyz".to_owned() },
+        from_geoms: FromGeoms::WhereNoneIsStated,
+        gravity: Vector3::new(0.0, 0.0, -9.81),
+        chains: Chains::default(),
+        unnamed: 0,
+        ignored: Ignored::default(),
+        problems: Vec::new(),
+    };
+    let sections = |name: &'static str| root.children().filter(move |node| node.tag_name().name() == name);
+    sections("default").for_each(|node| reader.defaults.read(node, None));
+    sections("compiler").for_each(|node| reader.attempt(node, Reader::compiler));
+    sections("option").for_each(|node| reader.attempt(node, Reader::option));
+    let world = reader.at(root);
+    let mut link = Link { at: world, name: "world".to_owned(), inertial: None, collisions: Vec::new() };
+    for node in sections("worldbody") {
+        reader.world(node, &mut link);
+    }
+    reader.chains.links.push(link);
+    sections("actuator").for_each(|node| reader.actuators(node));
+    for node in root.children().filter(Node::is_element) {
+        let name = node.tag_name().name();
+        match name {
+            "default" | "compiler" | "option" | "worldbody" | "actuator" => {}
+            "equality" | "tendon" => reader.refuse_parts(node),
+            _ => reader.other(node),
+        }
+    }
+    if !reader.problems.is_empty() {
+        return Err(reader.problems);
+    }
+    notes.extend(reader.ignored.notes());
+    Ok(Robot {
+        file: file.to_owned(),
+        format: "MJCF",
+        name: root.attribute("model").unwrap_or("robot").to_owned(),
+        gravity: Gravity::Stated(reader.gravity),
+        on_ground: true,
+        links: reader.chains.links,
+        joints: reader.chains.joints,
+    })
+}
+
+struct Reader<'a> {
+    file: &'a str,
+    lines: &'a Lines<'a>,
+    defaults: Defaults,
+    angles: Angles,
+    from_geoms: FromGeoms,
+    gravity: Vector3<f64>,
+    chains: Chains,
+    /// bodies without a name so far
+    unnamed: usize,
+    ignored: Ignored,
+    problems: Vec<String>,
+}
+
+/// A body whose parts are read.
+struct Body {
+    name: String,
+    parent: String,
+    pose: Pose,
+    /// its `childclass`, or that of what it is in
+    class: String,
+    joints: Vec<Element>,
+    geoms: Vec<geoms::Geom>,
+    inertial: Option<Inertial>,
+}
+
+impl Reader<'_> {
+    fn at(&self, node: Node) -> String {
+        format!("{}:{}", self.file, self.lines.place(node.range().start))
+    }
+
+    /// Reads an element; a fault is reported, and what was not asked for is counted.
+    fn attempt(&mut self, node: Node, read: impl FnOnce(&mut Self, &Element) -> Result<(), String>) {
+        self.attempt_in(node, "main", read);
+    }
+
+    fn attempt_in(
+        &mut self,
+        node: Node,
+        class: &str,
+        read: impl FnOnce(&mut Self, &Element) -> Result<(), String>,
+    ) {
+        let element = self.defaults.element(node, class, self.at(node));
+        let done = element.and_then(|element| read(self, &element).map(|()| element));
+        match done {
+            Ok(element) => {
+                for name in element.unknown() {
+                    let what = format!("attribute `{name}` of <{}>", element.kind);
+                    self.ignored.count(what, || element.at.clone());
+                }
+            }
+            Err(problem) => self.problems.push(problem),
+        }
+    }
+
+    /// An element that is not used, or that would change the motion if it were not.
+    fn other(&mut self, node: Node) {
+        let name = node.tag_name().name();
+        let at = self.at(node);
+        match SEEN.contains(&name) {
+            true => self.ignored.count(format!("<{name}>"), || at),
+            false if name == "include" => {
+                let file = node.attribute("file").unwrap_or_default();
+                self.problems
+                    .push(format!("{at}: <include file=\"{file}\"> is not followed: put it in its place"));
+            }
+            false => self
+                .problems
+                .push(format!("{at}: <{name}> cannot be imported: remove it, or write out what it makes")),
+        }
+    }
+
+    /// All elements of a section are refused, each by name.
+    fn refuse_parts(&mut self, section: Node) {
+        for node in section.children().filter(Node::is_element) {
+            let (at, kind) = (self.at(node), node.tag_name().name());
+            let name = node.attribute("name").map_or(String::new(), |name| format!(" `{name}`"));
+            let of = section.tag_name().name();
+            let advice = match of {
+                "equality" => "remove it, and state it as a constraint in the model",
+                _ => "remove it, and state its force in the model",
+            };
+            self.problems.push(format!("{at}: <{of}> <{kind}>{name} cannot be imported: {advice}"));
+        }
+    }
+
+    fn compiler(&mut self, element: &Element) -> Result<(), String> {
+        match element.text("angle") {
+            None | Some("degree") => {}
+            Some("radian") => self.angles.degrees = false,
+            Some(_) => return Err(element.wrong("`angle` is `degree` or `radian`")),
+        }
+        if let Some(sequence) = element.text("eulerseq") {
+            if sequence.len() != 3 || !sequence.chars().all(|letter| "xyzXYZ".contains(letter)) {
+                return Err(element.wrong("`eulerseq` has three letters out of xyz and XYZ"));
+            }
+            self.angles.sequence = sequence.to_owned();
+        }
+        self.from_geoms = match element.text("inertiafromgeom") {
+            Some("true") => FromGeoms::Always,
+            Some("false") => FromGeoms::Never,
+            _ => FromGeoms::WhereNoneIsStated,
+        };
+        for (name, usual) in [
+            ("coordinate", "local"),
+            ("balanceinertia", "false"),
+            ("settotalmass", "-1"),
+            ("boundmass", "0"),
+            ("boundinertia", "0"),
+            ("fitaabb", "false"),
+        ] {
+            if !element.is_or_lacks(name, usual) {
+                return Err(
+                    element.wrong(&format!("`{name}` changes masses or places: only `{usual}` is imported"))
+                );
+            }
+        }
+        for name in
+            ["autolimits", "meshdir", "texturedir", "assetdir", "discardvisual", "strippath", "usethread"]
+        {
+            let _ = element.text(name);
+        }
+        Ok(())
+    }
+
+    fn option(&mut self, element: &Element) -> Result<(), String> {
+        if let Some(gravity) = element.numbers::<3>("gravity")? {
+            self.gravity = Vector3::from(gravity);
+        }
+        Ok(())
+    }
+
+    fn world(&mut self, node: Node, link: &mut Link) {
+        let class = node.attribute("childclass").unwrap_or("main").to_owned();
+        let mut body = Body {
+            name: "world".to_owned(),
+            parent: String::new(),
+            pose: Pose::identity(),
+            class,
+            joints: Vec::new(),
+            geoms: Vec::new(),
+            inertial: None,
+        };
+        for part in node.children().filter(Node::is_element) {
+            self.part(part, &mut body);
+        }
+        link.collisions.extend(body.geoms.into_iter().filter_map(|geom| geom.collision));
+        for part in node.children().filter(|part| part.tag_name().name() == "body") {
+            self.body(part, "world", "main", 1);
+        }
+    }
+
+    /// What belongs to a body itself.
+    fn part(&mut self, node: Node, body: &mut Body) {
+        let class = body.class.clone();
+        match node.tag_name().name() {
+            "body" => {}
+            "geom" => self.attempt_in(node, &class, |reader, element| {
+                body.geoms.push(reader.geom(element, &body.name)?);
+                Ok(())
+            }),
+            "inertial" => self.attempt_in(node, &class, |reader, element| {
+                body.inertial = Some(reader.inertial(element)?);
+                Ok(())
+            }),
+            "joint" | "freejoint" => match self.defaults.element(node, &class, self.at(node)) {
+                Ok(element) => body.joints.push(element),
+                Err(problem) => self.problems.push(problem),
+            },
+            _ => self.other(node),
+        }
+    }
+
+    fn body(&mut self, node: Node, parent: &str, class: &str, depth: usize) {
+        let at = self.at(node);
+        if depth > DEEPEST {
+            return self.problems.push(format!("{at}: bodies in more than {DEEPEST} bodies"));
+        }
+        let class = node.attribute("childclass").unwrap_or(class).to_owned();
+        self.unnamed += usize::from(!node.has_attribute("name"));
+        let name = node.attribute("name").map_or_else(|| format!("body_{}", self.unnamed), str::to_owned);
+        let mut read = None;
+        self.attempt(node, |reader, element| {
+            let _ = element.text("childclass");
+            if !element.is_or_lacks("mocap", "false") {
+                return Err(element.wrong("a body that is moved from outside (`mocap`) cannot be imported"));
+            }
+            read = Some(reader.angles.pose(element)?);
+            Ok(())
+        });
+        let Some(pose) = read else { return };
+        let (joints, geoms) = (Vec::new(), Vec::new());
+        let mut body = Body { name, parent: parent.to_owned(), pose, class, joints, geoms, inertial: None };
+        for part in node.children().filter(Node::is_element) {
+            self.part(part, &mut body);
+        }
+        let class = body.class.clone();
+        let Some(carries) = self.assemble(body, &at) else { return };
+        for part in node.children().filter(|part| part.tag_name().name() == "body") {
+            self.body(part, &carries, &class, depth + 1);
+        }
+    }
+
+    /// The links and joints that a body is. Returns the name of the link that has its axes.
+    fn assemble(&mut self, body: Body, at: &str) -> Option<String> {
+        let mut parts = Vec::new();
+        let stated = body.inertial.is_some() && self.from_geoms != FromGeoms::Always;
+        if !stated && self.from_geoms != FromGeoms::Never {
+            for geom in &body.geoms {
+                match geom.mass.clone() {
+                    Ok(part) => parts.extend(part),
+                    Err(problem) => self.problems.push(problem),
+                }
+            }
+        }
+        let inertial = if stated { body.inertial.clone() } else { masses::together(&parts) };
+        let collisions = body.geoms.iter().filter_map(|geom| geom.collision).collect();
+        let link = Link { at: at.to_owned(), name: body.name.clone(), inertial, collisions };
+        let mut parent = body.parent.clone();
+        // the axes of the body where the next joint is, in the axes of the joint before or in the parent
+        let mut pose = body.pose;
+        let (count, mut within) = (body.joints.len(), Pose::identity());
+        for (number, element) in body.joints.iter().enumerate() {
+            let last = number + 1 == count;
+            let name = match (element.text("name"), count) {
+                (Some(name), _) => name.to_owned(),
+                (None, 1) => body.name.clone(),
+                (None, _) => format!("{}_{}", body.name, number + 1),
+            };
+            let child = if last { body.name.clone() } else { format!("{}_{name}", body.name) };
+            let ends = [parent.clone(), child.clone()];
+            let read = self.joint(element, &body, count, Joint::fixed(element.at.clone(), name, ends));
+            let (joint, anchor) = match read {
+                Ok(read) => read,
+                Err(problem) => {
+                    self.problems.push(problem);
+                    return None;
+                }
+            };
+            for name in element.unknown() {
+                self.ignored
+                    .count(format!("attribute `{name}` of <{}>", element.kind), || element.at.clone());
+            }
+            let free = joint.kind == "floating";
+            let place = if free { Pose::identity() } else { pose.then(&Pose::place(anchor)) };
+            self.chains.joint(joint, &place);
+            if !last {
+                self.chains.massless(&element.at, &child);
+            }
+            parent = child;
+            within = Pose::place(-anchor);
+            pose = within;
+        }
+        if count == 0 {
+            let name = format!("{}_weld", body.name);
+            self.chains.joint(Joint::fixed(at.to_owned(), name, [parent, body.name.clone()]), &pose);
+        }
+        Some(self.chains.link(link, &within))
+    }
+
+    /// A joint, and where it is in the axes of its body.
+    fn joint(
+        &self,
+        element: &Element,
+        body: &Body,
+        count: usize,
+        joint: Joint,
+    ) -> Result<(Joint, Vector3<f64>), String> {
+        let kind = if element.kind == "freejoint" { "free" } else { element.text("type").unwrap_or("hinge") };
+        let anchor = element.numbers::<3>("pos")?.map_or(Vector3::zeros(), Vector3::from);
+        let axis = element.numbers::<3>("axis")?.map_or(Vector3::z(), Vector3::from);
+        let axis = axis.try_normalize(0.0).ok_or_else(|| element.wrong("its axis has length 0"))?;
+        if element.number("ref", 0.0)? != 0.0 {
+            return Err(
+                element.wrong("`ref` is not 0: let its coordinate be 0 where the file has its bodies")
+            );
+        }
+        let rests_at = element.number("springref", 0.0)?;
+        let about_one = |kind: &str, rests_at: f64| -> Result<Joint, String> {
+            Ok(Joint {
+                kind: kind.to_owned(),
+                axis,
+                damping: element.amount("damping", 0.0)?,
+                friction: element.amount("frictionloss", 0.0)?,
+                stiffness: element.amount("stiffness", 0.0)?,
+                spring_rests_at: rests_at,
+                actuators: Some(Vec::new()),
+                ..joint.clone()
+            })
+        };
+        let joint = match kind {
+            "hinge" => about_one("revolute", self.angles.radians(rests_at))?,
+            "slide" => about_one("prismatic", rests_at)?,
+            "ball" => about_one("ball", 0.0)?,
+            "free" if body.parent != "world" || count != 1 => {
+                return Err(element.wrong("only a body of the world itself, without other joints, is free"));
+            }
+            "free" => {
+                let [w, x, y, z] = body.pose.quaternion();
+                let start = body.pose.at.iter().copied().chain([w, x, y, z]).collect();
+                return Ok((Joint { start, ..about_one("floating", 0.0)? }, Vector3::zeros()));
+            }
+            _ => return Err(element.wrong("`type` is `hinge`, `slide`, `ball` or `free`")),
+        };
+        Ok((joint, anchor))
+    }
+
+    fn inertial(&self, element: &Element) -> Result<Inertial, String> {
+        let pose = self.angles.pose(element)?;
+        let mass = element.numbers::<1>("mass")?.ok_or_else(|| element.wrong("it has no `mass`"))?[0];
+        let diagonal =
+            element.numbers::<3>("diaginertia")?.map(|d| Matrix3::from_diagonal(&Vector3::from(d)));
+        let full = element.numbers::<6>("fullinertia")?;
+        let full = full.map(|[xx, yy, zz, xy, xz, yz]| Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz));
+        let inertia = match (diagonal, full) {
+            (Some(inertia), None) | (None, Some(inertia)) => inertia,
+            _ => return Err(element.wrong("state one of `diaginertia` and `fullinertia`")),
+        };
+        let inertia = pose.turn * inertia * pose.turn.transpose();
+        Ok(Inertial { mass, centre: pose.at, rpy: Vector3::zeros(), inertia })
+    }
+}

@@ -1,0 +1,82 @@
+//! Places and directions of links, as the formats state them.
+
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+
+/// Axes and an origin in those of something else.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// its columns are the axes
+    pub turn: Matrix3<f64>,
+    /// the origin, m
+    pub at: Vector3<f64>,
+}
+
+impl Pose {
+    /// That of the other itself.
+    pub fn identity() -> Self {
+        Pose { turn: Matrix3::identity(), at: Vector3::zeros() }
+    }
+
+    /// A place without a rotation.
+    pub fn place(at: Vector3<f64>) -> Self {
+        Pose { at, ..Pose::identity() }
+    }
+
+    /// What lies so in this one, in what this one lies.
+    pub fn then(&self, inner: &Pose) -> Pose {
+        Pose { turn: self.turn * inner.turn, at: self.at + self.turn * inner.at }
+    }
+
+    /// That of the other in this one.
+    pub fn inverse(&self) -> Pose {
+        let turn = self.turn.transpose();
+        Pose { turn, at: -(turn * self.at) }
+    }
+
+    /// Whether it is that of the other, but for rounding.
+    pub fn is_identity(&self) -> bool {
+        self.at.amax() < 1e-12 && (self.turn - Matrix3::identity()).amax() < 1e-12
+    }
+
+    /// Roll, pitch and yaw, rad. What is zero but for rounding is zero.
+    pub fn rpy(&self) -> Vector3<f64> {
+        let m = &self.turn;
+        let level = m[(0, 0)].hypot(m[(1, 0)]);
+        let pitch = (-m[(2, 0)]).atan2(level);
+        // at a right angle of pitch roll and yaw are about one axis
+        let (roll, yaw) = match level > 1e-9 {
+            true => (m[(2, 1)].atan2(m[(2, 2)]), m[(1, 0)].atan2(m[(0, 0)])),
+            false => ((-m[(1, 2)]).atan2(m[(1, 1)]), 0.0),
+        };
+        Vector3::new(roll, pitch, yaw).map(|angle| if angle.abs() < 1e-15 { 0.0 } else { angle })
+    }
+
+    /// The rotation as a quaternion, scalar part first.
+    pub fn quaternion(&self) -> [f64; 4] {
+        let turn = nalgebra::Rotation3::from_matrix_unchecked(self.turn);
+        let q = UnitQuaternion::from_rotation_matrix(&turn);
+        let sign = if q.w < 0.0 { -1.0 } else { 1.0 };
+        [q.w, q.i, q.j, q.k].map(|part| sign * part)
+    }
+}
+
+/// The rotation of a quaternion, scalar part first; `None` where it is zero.
+pub fn of_quaternion([w, x, y, z]: [f64; 4]) -> Option<Matrix3<f64>> {
+    let length = (w * w + x * x + y * y + z * z).sqrt();
+    let q = Quaternion::new(w, x, y, z) / length;
+    (length > 0.0).then(|| UnitQuaternion::new_unchecked(q).to_rotation_matrix().into_inner())
+}
+
+/// The rotation by an angle about an axis, x (0), y (1) or z (2).
+pub fn about(axis: usize, angle: f64) -> Matrix3<f64> {
+    let mut rpy = Vector3::zeros();
+    rpy[axis] = angle;
+    super::fixed_links::turned(&rpy)
+}
+
+/// The least rotation that takes z to a direction; `None` where that is zero.
+pub fn along_z(direction: Vector3<f64>) -> Option<Matrix3<f64>> {
+    let to = direction.try_normalize(0.0)?;
+    let turn = nalgebra::Rotation3::rotation_between(&Vector3::z(), &to);
+    Some(turn.map_or_else(|| about(0, std::f64::consts::PI), nalgebra::Rotation3::into_inner))
+}

@@ -1,0 +1,218 @@
+//! Tests of the import of MJCF and SDF: what becomes of their elements, and what is refused, each by name.
+
+use super::{Options, import};
+
+fn imported(source: &str, file: &str) -> (String, String) {
+    let imported =
+        import(source, file, &Options::default()).unwrap_or_else(|problems| panic!("{problems:?}"));
+    (imported.model, imported.notes.join("\n"))
+}
+
+fn refused(source: &str, file: &str) -> String {
+    import(source, file, &Options::default()).unwrap_err().join("\n")
+}
+
+fn has(model: &str, line: &str) {
+    assert!(model.lines().any(|other| other.trim() == line), "no line `{line}` in\n{model}");
+}
+
+/// Checks the model as `hodograph check` does.
+fn accepted(model: &str) {
+    let source = hodograph_generator::source::Source::file("imported.mech", model);
+    let checked = hodograph_generator::check::check(&source);
+    let said = hodograph_generator::rendering::render(&checked.diagnostics, &source);
+    assert!(checked.mechanism.is_some() && !checked.has_errors(), "{said}\n{model}");
+}
+
+fn mjcf(world: &str, more: &str) -> String {
+    format!("<mujoco model=\"m\">\n<worldbody>\n{world}\n</worldbody>\n{more}\n</mujoco>")
+}
+
+const ARM: &str = "<body name=\"arm\" pos=\"0 0 1\"><joint name=\"hip\" axis=\"0 2 0\"/>\
+                   <geom type=\"box\" size=\"0.5 0.5 0.5\" density=\"10\"/></body>";
+
+#[test]
+fn bodies_of_mjcf_become_links() {
+    let motor = "<actuator><motor name=\"m\" joint=\"hip\" gear=\"3\"/></actuator>";
+    let floor = "<geom type=\"plane\" size=\"1 1 1\"/>";
+    let (model, notes) = imported(&mjcf(&format!("{floor}{ARM}"), motor), "m.xml");
+    accepted(&model);
+    has(&model, "arm_axes = N.rotate(y, q_hip);");
+    has(&model, "m_arm: kg = 10,");
+    has(&model, "torque on arm_axes: gear_m*ctrl_m*arm_axes.y;");
+    has(&model, "ctrl_m: N*m = 0,");
+    has(&model, "world_shape { at: O, plane: N.z },");
+    has(&model, "g: m/s^2 = 9.81,");
+    assert!(notes.is_empty(), "{notes}");
+    // a joint without an actuator has no force
+    let (model, _) = imported(&mjcf(ARM, ""), "m.xml");
+    accepted(&model);
+    assert!(!model.contains("torque") && !model.contains("inputs"), "{model}");
+}
+
+#[test]
+fn a_joint_beside_the_origin_carries_a_frame_of_its_body() {
+    let body = ARM.replace("name=\"hip\"", "name=\"hip\" pos=\"0.5 0 0\"");
+    let (model, _) = imported(&mjcf(&body, ""), "m.xml");
+    accepted(&model);
+    has(&model, "arm_origin = O + ox_hip*N.x + oz_hip*N.z;");
+    has(&model, "arm_frame_origin = arm_origin + ox_arm_frame*arm_axes.x;");
+}
+
+#[test]
+fn free_bodies_begin_where_they_are() {
+    let body =
+        "<body name=\"b\" pos=\"0 2 1\" euler=\"90 0 0\"><freejoint name=\"f\"/><geom size=\"0.1\"/></body>";
+    let (model, notes) = imported(&mjcf(body, ""), "m.xml");
+    accepted(&model);
+    has(&model, "q_f_y: m = 2,");
+    has(&model, "q_f_e1: 1 = 0.7071067811865475,");
+    assert!(notes.is_empty() && !model.contains("inputs"), "{notes}\n{model}");
+}
+
+#[test]
+fn what_mjcf_has_and_a_model_has_not_is_named() {
+    let equality = "<equality><connect name=\"loop\" body1=\"arm\" anchor=\"0 0 0\"/></equality>";
+    let tendon = "<tendon><spatial name=\"rope\"/></tendon>";
+    let arm = |from: &str, to: &str| mjcf(&ARM.replace(from, to), "");
+    let joint = |more: &str| arm("<joint ", &format!("<joint {more} "));
+    let actuator = |text: &str| mjcf(ARM, &format!("<actuator>{text}</actuator>"));
+    let cases = [
+        (mjcf(ARM, equality), "m.xml:5:11: <equality> <connect> `loop` cannot be imported"),
+        (mjcf(ARM, tendon), "<tendon> <spatial> `rope` cannot be imported"),
+        (mjcf(ARM, "<include file=\"hand.xml\"/>"), "<include file=\"hand.xml\"> is not followed"),
+        (mjcf("<composite/>", ""), "<composite> cannot be imported"),
+        (joint("ref=\"3\""), "m.xml:3:30: <joint> `hip`: `ref` is not 0"),
+        (joint("damping=\"-1\""), "`damping` is negative"),
+        (joint("class=\"soft\""), "there is no <default class=\"soft\">"),
+        (joint("type=\"screw\""), "`type` is `hinge`, `slide`, `ball` or `free`"),
+        (arm("0 2 0", "0 0 0"), "its axis has length 0"),
+        (arm("0 2 0", "0 2"), "`axis` has 2 numbers, not 3"),
+        (arm("0 2 0", "0 nan 0"), "`axis=\"0 nan 0\"`: write finite numbers"),
+        (arm("0.5 0.5 0.5", "0.5 0.5"), "a box has 3 positive numbers in `size`"),
+        (
+            arm("type=\"box\"", "type=\"mesh\" mesh=\"m\""),
+            "its mass is that of a mesh: state the <inertial> of body `arm`",
+        ),
+        (arm("name=\"arm\"", "name=\"arm\" quat=\"0 0 0 0\""), "its orientation has a direction of length 0"),
+        (arm("name=\"arm\"", "name=\"arm\" mocap=\"true\""), "moved from outside"),
+        (arm("<joint ", "<freejoint/><joint "), "only a body of the world itself"),
+        (
+            actuator("<muscle name=\"biceps\" joint=\"hip\"/>"),
+            "<muscle> `biceps`: a muscle cannot be imported",
+        ),
+        (
+            actuator("<motor name=\"m\" joint=\"hop\"/>"),
+            "it drives the unknown joint `hop`: did you mean `hip`?",
+        ),
+        (actuator("<motor name=\"m\" tendon=\"t\"/>"), "only actuators of a `joint`"),
+        (actuator("<general name=\"m\" joint=\"hip\" dyntype=\"filter\"/>"), "only `dyntype` none"),
+        ("<mujoco><compiler settotalmass=\"3\"/></mujoco>".to_owned(), "`settotalmass` changes masses"),
+        ("<scene/>".to_owned(), "m.xml:1:1: this describes no robot: its root is <scene>"),
+    ];
+    for (source, expected) in cases {
+        let said = refused(&source, "m.xml");
+        assert!(said.contains(expected), "{expected}\n{said}");
+    }
+    let noted = [
+        (joint("armature=\"0.1\" range=\"0 1\""), "m.xml:3:30: ignored attribute `armature` of <joint>"),
+        (joint("frictionloss=\"0.1\""), "ignored the friction of joint `hip`"),
+        (mjcf(ARM, "<sensor/><asset/>"), "ignored <sensor>"),
+    ];
+    for (source, expected) in noted {
+        let (_, notes) = imported(&source, "m.xml");
+        assert!(notes.contains(expected), "{expected}\n{notes}");
+    }
+    let deep = mjcf(&format!("{}{}", "<body>".repeat(400), "</body>".repeat(400)), "");
+    assert!(refused(&deep, "m.xml").contains("bodies in more than 200 bodies"));
+    let options = Options { floating: Some(true), ..Options::default() };
+    let said = import(&mjcf(ARM, ""), "m.xml", &options).unwrap_err().join("\n");
+    assert!(said.contains("--base is for URDF: MJCF says itself what is free"), "{said}");
+}
+
+/// A link with its middle half a metre above its origin.
+fn link(name: &str, pose: &str, more: &str) -> String {
+    format!(
+        "<link name=\"{name}\">{pose}<inertial><pose>0 0 0.5 0 0 0</pose><mass>2</mass><inertia><ixx>0.1</ixx>\
+         <iyy>0.1</iyy><izz>0.02</izz></inertia></inertial>{more}</link>\n"
+    )
+}
+
+fn joint(name: &str, kind: &str, parent: &str, child: &str, more: &str) -> String {
+    format!(
+        "<joint name=\"{name}\" type=\"{kind}\"><parent>{parent}</parent><child>{child}</child>{more}</joint>\n"
+    )
+}
+
+fn sdf(body: &str) -> String {
+    format!("<sdf version=\"1.11\"><model name=\"m\">\n{body}</model></sdf>")
+}
+
+#[test]
+fn models_of_sdf_have_links_in_axes_of_their_choice() {
+    let solid = "<collision name=\"c\"><geometry><capsule><radius>0.1</radius><length>1</length></capsule></geometry></collision>";
+    let body = [
+        link("base", "", ""),
+        link("arm", "<pose relative_to=\"base\">0 0 1 0 0 0</pose>", solid),
+        link("hand", "<pose relative_to=\"wrist\">0 0 0.25 0 0 0</pose>", ""),
+        joint("weld", "fixed", "world", "base", ""),
+        joint(
+            "hip",
+            "revolute",
+            "base",
+            "arm",
+            "<axis><xyz>0 1 0</xyz><dynamics><damping>0.5</damping></dynamics></axis>",
+        ),
+        joint(
+            "wrist",
+            "prismatic",
+            "arm",
+            "hand",
+            "<pose relative_to=\"arm\">0 0 1 0 0 0</pose><axis><xyz expressed_in=\"__model__\">0 0 3</xyz></axis>",
+        )
+    ]
+    .concat();
+    let (model, notes) = imported(&sdf(&body), "m.sdf");
+    accepted(&model);
+    has(&model, "arm_origin = O + oz_hip*N.z;");
+    has(&model, "torque on arm_axes: (tau_hip - d_hip*u_hip)*arm_axes.y;");
+    has(
+        &model,
+        "arm_shape { of: arm, at: arm_origin, capsule: [r_arm_shape, l_arm_shape], axis: arm_axes.z },",
+    );
+    has(&model, "wrist_point = arm_origin + oz_wrist*arm_axes.z;");
+    has(&model, "hand_origin = wrist_point + q_wrist*arm_axes.z;");
+    has(&model, "hand_frame_origin = hand_origin + oz_hand_frame*arm_axes.z;");
+    assert!(notes.contains("ignored the inertia of link `base`"), "{notes}");
+    // nothing carries a link: it is free where it is
+    let (model, _) = imported(&sdf(&link("ball", "<pose>0 0 3 0 0 0</pose>", "")), "m.sdf");
+    accepted(&model);
+    has(&model, "q_ball_z: m = 3,");
+}
+
+#[test]
+fn what_sdf_has_and_a_model_has_not_is_named() {
+    let two = |more: &str| sdf(&[link("a", "", ""), link("b", "", ""), more.to_owned()].concat());
+    let cases = [
+        (two(&joint("j", "screw", "a", "b", "")), "m.sdf:4:1: <joint>: `j` has the type `screw`"),
+        (two(&joint("j", "revolute", "a", "c", "")), "`c`"),
+        (two("<include><uri>model://hand</uri></include>"), "<include> within the model is not followed"),
+        (
+            two(&joint("j", "revolute", "a", "b", "<pose>0 0 1</pose>")),
+            "<pose> of joint `j`: `0 0 1` is not 6 finite numbers",
+        ),
+        (sdf(&link("a", "<pose relative_to=\"a\"/>", "")), "the place of `a` rests on itself"),
+        (sdf(&link("a", "<pose relative_to=\"z\"/>", "")), "there is no frame, link or joint `z`"),
+        ("<sdf><world/></sdf>".to_owned(), "there are 0 models"),
+    ];
+    for (source, expected) in cases {
+        let said = refused(&source, "m.sdf");
+        assert!(said.contains(expected), "{expected}\n{said}");
+    }
+    let mesh = "<collision name=\"c\"><geometry><mesh/></geometry></collision><visual name=\"v\"/>";
+    let (_, notes) = imported(&sdf(&link("a", "", mesh)), "m.sdf");
+    assert!(
+        notes.contains("ignored <collision> of a mesh") && notes.contains("ignored <visual> of a link"),
+        "{notes}"
+    );
+}
