@@ -30,7 +30,7 @@ mod table;
 
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
-    export as export_library, fmt, gradient, import as import_urdf, lsp as language_server, new,
+    export as export_library, fmt, gradient, import as import_urdf, lsp as language_server, new, orbit,
     plot as draw, serve, simulate, solve,
 };
 
@@ -54,6 +54,7 @@ enum Command {
     Serve(serve::Arguments),
     Simulate(Box<simulate::Arguments>),
     Gradient(Box<gradient::Arguments>),
+    Orbit(Box<orbit::Arguments>),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
     Plot(draw::Arguments),
@@ -94,6 +95,7 @@ fn main() -> ExitCode {
         Command::Serve(arguments) => serve::run(&arguments),
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Gradient(arguments) => gradient::run(&arguments),
+        Command::Orbit(arguments) => orbit::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),
         Command::DeriveWorker(arguments) => derive_worker::run(&arguments),

@@ -26,6 +26,7 @@ mod language_server;
 mod mechanisms;
 mod motion;
 mod neovim;
+mod orbit;
 mod own_crate;
 mod pages;
 mod paper;

@@ -23,13 +23,21 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Theory: docs/theory.md, section 19.
+//! [`find_orbit`] finds periodic motions by these derivatives, with their multipliers, and [`follow_branch`] follows them
+//! through a parameter.
+//!
+//! Theory: docs/theory.md, sections 19 and 20.
 
+mod branch;
 mod by;
+mod family;
 mod field;
 mod junction;
 mod modes;
 mod motion;
+mod orbit;
 
+pub use branch::{Branch, BranchPoint, Change, ChangeKind, follow_branch};
 pub use by::{By, Reason, Undefined};
 pub use motion::{EventGradient, GradientError, MotionGradient, Sample, differentiate};
+pub use orbit::{Orbit, OrbitError, Periodic, Return, find_orbit};

@@ -4,7 +4,7 @@
 //! Theory: docs/theory.md, section 19.1.
 
 use hodograph::StateError;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, FullPivLU};
 
 use crate::Reason;
 use crate::field::{At, Field, Together};
@@ -90,11 +90,7 @@ impl Field<'_> {
         });
         let free = |i: usize| together.free(unknowns[i].place, unknowns[i].axis);
         let right = DVector::from_fn(m, |i, _| -together.value(free(i)));
-        let solver = matrix.full_piv_lu();
-        let pivots = solver.u().diagonal().abs();
-        if m > 0 && pivots.min() <= SINGULAR * pivots.max() {
-            return Err(Reason::ForcesNotUnique);
-        }
+        let solver = unique(matrix)?;
         let unsolved = || Reason::State(StateError::NotFinite);
         let lambda = solver.solve(&right).ok_or_else(unsolved)?;
         // The accelerations by the forces.
@@ -143,23 +139,43 @@ impl Field<'_> {
         Ok(Moving { rates, rates_by, forces, directions, together })
     }
 
+    /// Derivatives of a state whose speeds follow, so that contacts do not part, and do not slip where they stick: by the
+    /// least change of kinetic energy.
+    pub fn hold(&self, modes: &[Mode], at: &At<'_>) -> Result<Vec<f64>, Reason> {
+        let (n, p, k) = (self.n, self.p, self.k);
+        let mut by = at.by.to_vec();
+        if modes.is_empty() {
+            return Ok(by);
+        }
+        let contacts: Vec<usize> = modes.iter().map(|mode| mode.contact).collect();
+        let together = self.together(&contacts, at).map_err(Reason::State)?;
+        let rows = held_rows(&together, modes, p);
+        let partial = |i: usize, speed: usize| together.value(together.partial(rows[i].0, rows[i].1, speed));
+        let response =
+            |i: usize, speed: usize| together.value(together.response(rows[i].0, rows[i].1, speed));
+        let matrix = DMatrix::from_fn(rows.len(), rows.len(), |i, j| {
+            (0..p).map(|speed| partial(i, speed) * response(j, speed)).sum()
+        });
+        let right =
+            DMatrix::from_fn(rows.len(), k, |i, d| together.by(together.velocity(rows[i].0, rows[i].1))[d]);
+        let impulses = unique(matrix)?.solve(&right).ok_or(Reason::ForcesNotUnique)?;
+        for speed in 0..p {
+            for d in 0..k {
+                let change: f64 = (0..rows.len()).map(|i| response(i, speed) * impulses[(i, d)]).sum();
+                by[(n + speed) * k + d] -= change;
+            }
+        }
+        Ok(by)
+    }
+
     fn unknowns(&self, modes: &[Mode], together: &Together, speeds: &[f64]) -> Result<Vec<Unknown>, Reason> {
-        let mobility = |place: usize, axis: usize| -> f64 {
-            let term = |speed| {
-                together.value(together.partial(place, axis, speed))
-                    * together.value(together.response(place, axis, speed))
-            };
-            (0..self.p).map(term).sum()
-        };
-        let all = (0..modes.len()).flat_map(|place| (0..3).map(move |axis| (place, axis)));
-        let greatest = all.map(|(place, axis)| mobility(place, axis)).fold(0.0, f64::max);
+        let rows = held_rows(together, modes, self.p);
         let mut unknowns = Vec::new();
         for (place, mode) in modes.iter().enumerate() {
             match direction(together, place, mode.hold, speeds) {
                 None => {
-                    // In a plane nothing moves along the third axis.
-                    let moves = (0..3).filter(|&axis| mobility(place, axis) > IMMOBILE * greatest);
-                    unknowns.extend(moves.map(|axis| Unknown { place, axis, friction: None }));
+                    let own = rows.iter().filter(|(other, _)| *other == place);
+                    unknowns.extend(own.map(|&(place, axis)| Unknown { place, axis, friction: None }));
                 }
                 Some((along, speed)) => {
                     let surface = self.surface(mode.contact);
@@ -209,6 +225,33 @@ impl Field<'_> {
             })
             .collect()
     }
+}
+
+/// The components of velocities that closed contacts keep at zero: place and axis.
+fn held_rows(together: &Together, modes: &[Mode], p: usize) -> Vec<(usize, usize)> {
+    let mobility = |&(place, axis): &(usize, usize)| -> f64 {
+        let term = |speed| {
+            together.value(together.partial(place, axis, speed))
+                * together.value(together.response(place, axis, speed))
+        };
+        (0..p).map(term).sum()
+    };
+    let all = (0..modes.len()).flat_map(|place| (0..3).map(move |axis| (place, axis)));
+    let greatest = all.clone().map(|row| mobility(&row)).fold(0.0, f64::max);
+    // In a plane nothing moves along the third axis.
+    let held = |row: &(usize, usize)| {
+        let sticks = modes[row.0].hold == Hold::Stick;
+        row.1 == 0 || (sticks && mobility(row) > IMMOBILE * greatest)
+    };
+    all.filter(held).collect()
+}
+
+/// The factors of a matrix that is not singular.
+fn unique(matrix: DMatrix<f64>) -> Result<FullPivLU<f64, Dyn, Dyn>, Reason> {
+    let solver = matrix.full_piv_lu();
+    let pivots = solver.u().diagonal().abs();
+    let singular = !pivots.is_empty() && pivots.min() <= SINGULAR * pivots.max();
+    if singular { Err(Reason::ForcesNotUnique) } else { Ok(solver) }
 }
 
 /// The direction in which a contact slides, and its speed where the direction follows from it; `None` while it sticks.

@@ -107,6 +107,27 @@ pub fn differentiate(
     by: &[By],
     times: &[f64],
 ) -> Result<MotionGradient, GradientError> {
+    carried(mechanism, start, options, by, times, Start::Free)
+}
+
+/// How a start state that is in contact changes with its variables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Start {
+    /// As they say; a variable that leaves the contact has no derivative.
+    Free,
+    /// Speeds follow so that contacts which are closed stay so, and do not begin to slip: by the least change of kinetic energy.
+    Held,
+}
+
+/// As [`differentiate`].
+pub(crate) fn carried(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    options: Options,
+    by: &[By],
+    times: &[f64],
+    how: Start,
+) -> Result<MotionGradient, GradientError> {
     check_request(mechanism, start, by, times)?;
     let surfaces = supported(mechanism, start, &options)?;
     let tolerances =
@@ -130,7 +151,7 @@ pub fn differentiate(
         since: start.time,
         motion: MotionGradient { by: by.to_vec(), events: Vec::new(), samples: Vec::new(), undefined: None },
     };
-    carried.follow(start, &parts, events, times);
+    carried.follow((start, how), &parts, events, times);
     Ok(carried.motion)
 }
 
@@ -245,11 +266,17 @@ struct Carried<'m> {
 }
 
 impl Carried<'_> {
-    fn follow(&mut self, start: &State<'_>, parts: &[SmoothPart], events: Vec<Event>, times: &[f64]) {
+    fn follow(
+        &mut self,
+        (start, how): (&State<'_>, Start),
+        parts: &[SmoothPart],
+        events: Vec<Event>,
+        times: &[f64],
+    ) {
         let mut events = events.into_iter().peekable();
         let at_once = |time: f64| move |event: &Event| event.time <= time;
         let first: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(start.time))).collect();
-        if let Err(lacking) = self.begin(parts, &first) {
+        if let Err(lacking) = self.begin(how, parts, &first) {
             self.lacks(start.time, lacking);
         }
         let known = self.motion.undefined.is_none().then(|| self.matrix(&self.by));
@@ -283,7 +310,7 @@ impl Carried<'_> {
     }
 
     /// Looks at the start: contacts must stay closed along all directions.
-    fn begin(&mut self, parts: &[SmoothPart], events: &[Event]) -> Result<(), Lacking> {
+    fn begin(&mut self, how: Start, parts: &[SmoothPart], events: &[Event]) -> Result<(), Lacking> {
         let contacts = self.field.mechanism.count(ComponentKind::Contact);
         if parts.iter().flat_map(|part| &part.closed).any(|closed| closed.contact >= contacts) {
             return Err((None, Reason::ModesChanged));
@@ -301,7 +328,12 @@ impl Carried<'_> {
             return Err((event.contact, Reason::StartInCollision));
         }
         let Some(first) = parts.first() else { return Ok(()) };
-        let sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
+        let mut sizes: Vec<f64> = self.by.iter().map(|by| by.abs()).collect();
+        if how == Start::Held {
+            let held = self.field.hold(&modes(first), &at_start(first, &self.by));
+            self.by = held.map_err(|why| (None, why))?;
+            sizes.iter_mut().zip(&self.by).for_each(|(size, by)| *size += by.abs());
+        }
         match self
             .field
             .moved_apart(&modes(first), &at_start(first, &self.by), &sizes)

@@ -15,6 +15,7 @@ pub mod gradient;
 pub mod import;
 pub mod lsp;
 pub mod new;
+pub mod orbit;
 pub mod plot;
 pub mod serve;
 pub mod simulate;

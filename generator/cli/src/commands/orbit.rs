@@ -1,0 +1,301 @@
+//! `hodograph orbit`: finds periodic motions, and follows them through a parameter.
+
+use std::path::PathBuf;
+
+use hodograph::{ComponentKind, Mechanism as _, State as Borrowed};
+use hodograph_generator::model::mechanism::Mechanism;
+use hodograph_gradients::{
+    BranchPoint, By, GradientError, Orbit, OrbitError, Periodic, Return, find_orbit, follow_branch,
+};
+use hodograph_interpreter::{InterpretedMechanism, motion};
+use hodograph_simulation::Options;
+use serde::Serialize;
+
+use super::simulate::surfaces::{Found, MotionSurfaces};
+use crate::answers::FormArgument;
+use crate::derivation::{self, Limits};
+use crate::evaluate::report::{Named, named};
+use crate::expression;
+use crate::json::{Failure, Kind};
+use crate::state_arguments::StateArguments;
+use crate::stop::{Outcome, Stop};
+use crate::table::{Table, number};
+
+/// Find a periodic motion from a start near to one, with its multipliers, and follow it through a parameter
+///
+///   hodograph orbit wheel.mech --return collision:second --reset x,z,q --mu 2 --e 0 --law poisson
+///   hodograph orbit ball.mech --period 2*pi/60 --follow a=0.002..0.004 --mu 0 --e 0.7 --law newton
+///
+/// A motion has returned after a period, or just after an event. With --follow the answer is the motions at values of
+/// the parameter, and where they change: fold, period_doubling, crossing.
+#[derive(Clone, Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// the model file
+    model: PathBuf,
+    /// the period, s, of a motion that is driven in time: a number, or as 2*pi/60
+    #[arg(long, value_name = "SECONDS", conflicts_with = "returns", required_unless_present = "returns")]
+    period: Option<String>,
+    /// the event just after which a motion has returned: collision, stick, slip, lift_off, ..; with :CONTACT, and
+    /// with :COUNT how many of them make a period
+    #[arg(long = "return", value_name = "EVENT[:CONTACT][:COUNT]")]
+    returns: Option<String>,
+    /// coordinates that take their values of the start again when it has returned: places along which nothing
+    /// changes, and what a symmetry brings back, as the angle of the next spoke
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    reset: Vec<String>,
+    /// the longest period that is waited for, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
+    longest: f64,
+    /// a parameter (or mu, e, mu.CONTACT, e.CONTACT) and the range through which motions are followed
+    #[arg(long, value_name = "NAME=FROM..TO")]
+    follow: Option<String>,
+    /// at most so many motions are followed
+    #[arg(long, value_name = "COUNT", default_value_t = 500)]
+    points: usize,
+    #[command(flatten)]
+    state: StateArguments,
+    /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    #[command(flatten)]
+    surfaces: MotionSurfaces,
+    #[command(flatten)]
+    form: FormArgument,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// An error object for what is wrong with the state or the names; [`Stop::Fault`] where no periodic motion is found.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
+    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
+    arguments.form.write(
+        || {
+            let state = arguments.state.state(&machine)?;
+            let mechanism = machine.interpreted(&state)?;
+            let start = Borrowed {
+                time: state.time,
+                coordinates: &state.coordinates,
+                speeds: &state.speeds,
+                inputs: &state.inputs,
+            };
+            let Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &start)?;
+            let options = Options {
+                relative_tolerance: tolerance,
+                absolute_tolerance: tolerance,
+                max_step: motion::greatest_step(&machine.program, false),
+                surfaces,
+                laws,
+                ..Options::default()
+            };
+            let periodic = arguments.periodic(&mechanism)?;
+            let Some(follow) = &arguments.follow else {
+                let orbit = find_orbit(&mechanism, &start, &options, &periodic, &[]).map_err(stop)?;
+                let motions = vec![Motion::new(&machine.mechanism, None, &orbit, true)];
+                return Ok(Answer { motions, changes: Vec::new(), ended: None });
+            };
+            let (name, range) = range(follow)?;
+            let by = variable(&mechanism, name)?;
+            let along = (by, range[0], range[1]);
+            let found = follow_branch(&mechanism, &start, &options, &periodic, along, arguments.points);
+            let found = found.map_err(stop)?;
+            let motion =
+                |point: &BranchPoint| Motion::new(&machine.mechanism, Some(point.value), &point.orbit, false);
+            Ok(Answer {
+                motions: found.points.iter().map(motion).collect(),
+                changes: found
+                    .changes
+                    .iter()
+                    .map(|change| Changed { change: change.kind.name(), motion: motion(&change.at) })
+                    .collect(),
+                ended: found.ended,
+            })
+        },
+        Answer::tables,
+    )
+}
+
+fn stop(error: OrbitError) -> Stop {
+    match error {
+        OrbitError::BadRequest(message) | OrbitError::Gradient(GradientError::BadRequest(message)) => {
+            Stop::Call(message)
+        }
+        error => Stop::Fault(error.to_string()),
+    }
+}
+
+fn variable(mechanism: &InterpretedMechanism, name: &str) -> Outcome<By> {
+    Ok(By::named(mechanism, name).map_err(|message| Failure::new(Kind::UnknownName, message))?)
+}
+
+/// A name and its range.
+fn range(text: &str) -> Outcome<(&str, [f64; 2])> {
+    let read = || {
+        let (name, range) = text.split_once('=')?;
+        let (from, to) = range.split_once("..")?;
+        Some((name.trim(), [expression::number(from).ok()?, expression::number(to).ok()?]))
+    };
+    read().ok_or_else(|| Stop::Call(format!("--follow {text}: give NAME=FROM..TO, as in a=0.002..0.004")))
+}
+
+impl Arguments {
+    fn periodic(&self, mechanism: &InterpretedMechanism) -> Outcome<Periodic> {
+        let index = |kind, name: &str| mechanism.index(kind, name.trim());
+        let reset = self.reset.iter().map(|name| {
+            index(ComponentKind::Coordinate, name).ok_or_else(|| {
+                Stop::from(Failure::new(
+                    Kind::UnknownName,
+                    format!("--reset: there is no coordinate `{name}`"),
+                ))
+            })
+        });
+        let reset = reset.collect::<Outcome<Vec<usize>>>()?;
+        let returns = match (&self.period, &self.returns) {
+            (Some(period), _) => Return::After(
+                expression::number(period)
+                    .map_err(|error| Stop::Call(format!("--period {period}: {error}")))?,
+            ),
+            (None, Some(text)) => {
+                let mut parts = text.split(':');
+                let event = parts.next().unwrap_or("").to_owned();
+                let (mut contact, mut count) = (None, 1);
+                for part in parts {
+                    match (part.parse::<usize>(), index(ComponentKind::Contact, part)) {
+                        (_, Some(found)) => contact = Some(found),
+                        (Ok(number), None) => count = number,
+                        (Err(_), None) => {
+                            return Err(Stop::Call(format!("--return {text}: there is no contact `{part}`")));
+                        }
+                    }
+                }
+                if !EVENTS.contains(&event.as_str()) {
+                    return Err(Stop::Call(format!(
+                        "--return {text}: there is no event `{event}` at which a motion returns: there are {}",
+                        EVENTS.join(", ")
+                    )));
+                }
+                Return::At { event, contact, count }
+            }
+            (None, None) => return Err(Stop::Call("give --period or --return".to_owned())),
+        };
+        Ok(Periodic { returns, reset, longest: self.longest })
+    }
+}
+
+/// The events at which a motion may return: those whose times have derivatives.
+const EVENTS: [&str; 4] = ["collision", "lift_off", "slip", "stick"];
+
+/// What is answered.
+#[derive(Serialize)]
+struct Answer<'a> {
+    motions: Vec<Motion<'a>>,
+    changes: Vec<Changed<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ended: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Changed<'a> {
+    change: &'static str,
+    #[serde(flatten)]
+    motion: Motion<'a>,
+}
+
+/// A periodic motion.
+#[derive(Serialize)]
+struct Motion<'a> {
+    /// of the parameter that is followed
+    #[serde(skip_serializing_if = "Option::is_none")]
+    value: Option<f64>,
+    period: f64,
+    q: Named<'a, f64>,
+    u: Named<'a, f64>,
+    /// real and imaginary parts
+    multipliers: Vec<[f64; 2]>,
+    stable: bool,
+    residual: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    events: Option<Vec<Happening<'a>>>,
+}
+
+#[derive(Serialize)]
+struct Happening<'a> {
+    t: f64,
+    event: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    contact: Option<&'a str>,
+}
+
+impl<'a> Motion<'a> {
+    fn new(model: &'a Mechanism, value: Option<f64>, orbit: &Orbit, events: bool) -> Self {
+        let (q, u) = orbit.state.split_at(model.coordinates.len());
+        let speeds = model.speeds.iter().filter(|speed| !speed.dependent);
+        let happening = |event: &hodograph_simulation::Event| Happening {
+            t: event.time,
+            event: event.kind.name(),
+            contact: event
+                .contact
+                .and_then(|index| model.contacts.get(index))
+                .map(|found| found.name.as_str()),
+        };
+        Motion {
+            value,
+            period: orbit.period,
+            q: named(&model.coordinates, q.iter().map(|number| number + 0.0)),
+            u: named(speeds, u.iter().map(|number| number + 0.0)),
+            multipliers: orbit.multipliers.iter().map(|number| [number.re + 0.0, number.im + 0.0]).collect(),
+            stable: orbit.is_stable(),
+            residual: orbit.residual,
+            events: events.then(|| orbit.events.iter().map(happening).collect()),
+        }
+    }
+
+    fn cells(&self) -> Vec<String> {
+        let multipliers = self.multipliers.iter().map(|[re, im]| match *im {
+            0.0 => number(*re),
+            im => format!("{}{}{}i", number(*re), if im < 0.0 { "" } else { "+" }, number(im)),
+        });
+        let multipliers: Vec<String> = multipliers.collect();
+        let mut cells: Vec<String> = self.value.map(number).into_iter().collect();
+        cells.push(number(self.period));
+        cells.extend(self.q.0.iter().chain(&self.u.0).map(|(_, value)| number(*value)));
+        cells.extend([if self.stable { "yes" } else { "no" }.to_owned(), multipliers.join(" ")]);
+        cells
+    }
+}
+
+impl Answer<'_> {
+    fn tables(&self) -> String {
+        let Some(first) = self.motions.first() else { return String::new() };
+        let names = || first.q.0.iter().chain(&first.u.0).map(|(name, _)| *name);
+        let value = first.value.is_some().then_some("value");
+        let heads = || value.into_iter().chain(["period"]).chain(names()).chain(["stable", "multipliers"]);
+        let mut table = Table::new(heads());
+        self.motions.iter().for_each(|motion| table.row(motion.cells()));
+        let mut out = format!("\n{}", table.text("  "));
+        if !self.changes.is_empty() {
+            let mut table = Table::new(["change"].into_iter().chain(heads()));
+            for change in &self.changes {
+                table.row([change.change.to_owned()].into_iter().chain(change.motion.cells()));
+            }
+            out += &format!("\n{}", table.text("  "));
+        }
+        if let Some(events) = &first.events {
+            let mut table = Table::new(["t", "event", "contact"]);
+            for event in events {
+                table.row([number(event.t), event.event.to_owned(), event.contact.unwrap_or("").to_owned()]);
+            }
+            out += &format!("\n{}", table.text("  "));
+        }
+        if let Some(ended) = &self.ended {
+            out += &format!("\nfollowed no further: {ended}\n");
+        }
+        out
+    }
+}

@@ -1,0 +1,54 @@
+//! `hodograph orbit`: periodic motions, their multipliers, and branches of them.
+
+use crate::common::{hodograph, number, root};
+
+fn path(name: &str) -> String {
+    root().join("simulation/gradients/tests/models").join(name).to_str().unwrap().to_owned()
+}
+
+/// The wheel of `hodograph_gradients`' tests: multiplier eta^2, eta = (J + m l^2 cos 2 alpha) / (J + m l^2).
+#[test]
+fn a_rimless_wheel_has_its_multiplier() {
+    let path = path("rimless_wheel.mech");
+    let (l, alpha, inertia) = (1.0_f64, std::f64::consts::FRAC_PI_8, 0.1);
+    let eta: f64 = (inertia + l * (2.0 * alpha).cos()) / (inertia + l);
+    let rate = 1.3;
+    let state = format!(
+        "z={},q={},ux={},uz={},u={rate}",
+        alpha.cos(),
+        -alpha,
+        rate * alpha.cos(),
+        rate * alpha.sin()
+    );
+    let call = ["orbit", &path, "--return", "collision:second", "--reset", "x,z,q", "--state", &state];
+    let surface = ["--mu", "2", "--e", "0", "--law", "poisson"];
+    let run = hodograph(&[&call[..], &surface[..]].concat(), "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let motion = &run.line()["motions"][0];
+    assert!((number(&motion["multipliers"][0][0]) - eta * eta).abs() < 1e-10, "{motion}");
+    assert!(motion["stable"] == true && motion["events"][1]["contact"] == "second", "{motion}");
+    let table = hodograph(&[&call[..], &surface[..], &["--format", "table"]].concat(), "");
+    assert!(table.stdout.contains("multipliers") && table.stdout.contains("yes"), "{}", table.stdout);
+    let wrong = ["orbit", &path, "--return", "bounce:second", "--state", &state];
+    let run = hodograph(&[&wrong[..], &surface[..]].concat(), "");
+    assert!(run.code == 2 && run.stderr.contains("lift_off"), "{}", run.stderr);
+}
+
+/// The locked motion of a ball on a plate doubles its period where (1 + e)^2 a w^2 sin(phi) = 2 g (1 + e^2).
+#[test]
+fn a_branch_doubles_its_period() {
+    let path = path("ball_on_plate.mech");
+    let (g, w, e) = (9.81_f64, 60.0_f64, 0.7_f64);
+    let plate = std::f64::consts::PI * g / w * (1.0 - e) / (1.0 + e);
+    let at = (2.0 * g * (1.0 + e * e) / ((1.0 + e).powi(2) * w * w)).hypot(plate / w);
+    let call = ["orbit", &path, "--period", "2*pi/60", "--follow", "a=0.002..0.0035"];
+    let state = ["--state", "t=0.05,z=0.0139,u=0.14"];
+    let surface = ["--mu", "0", "--e", "0.7", "--law", "newton"];
+    let run = hodograph(&[&call[..], &state[..], &surface[..]].concat(), "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let answer = run.line();
+    let change = &answer["changes"][0];
+    assert_eq!(change["change"], "period_doubling", "{answer}");
+    assert!((number(&change["value"]) - at).abs() < 1e-10, "{change}");
+    assert!(answer["motions"].as_array().unwrap().len() > 10);
+}

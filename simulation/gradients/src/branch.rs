@@ -1,0 +1,279 @@
+//! Follows a periodic motion through the values of a parameter, with the points where its kind or its stability changes.
+//!
+//! Theory: docs/theory.md, section 20.
+
+use hodograph::State;
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::Options;
+use nalgebra::{DMatrix, DVector};
+
+use crate::By;
+use crate::family::changed;
+use crate::orbit::{Orbit, OrbitError, Periodic, Returned, Task, find_orbit, solve};
+
+/// A periodic motion at a value of the parameter.
+#[derive(Clone, Debug)]
+pub struct BranchPoint {
+    /// the value
+    pub value: f64,
+    /// the motion
+    pub orbit: Orbit,
+}
+
+/// A point where a branch changes.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// how
+    pub kind: ChangeKind,
+    /// the motion there
+    pub at: BranchPoint,
+}
+
+/// How a branch of periodic motions changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ChangeKind {
+    /// The branch turns back: a multiplier is 1, and beyond this value there is no motion of the branch.
+    Fold,
+    /// A multiplier is -1: motions of twice the period branch off.
+    PeriodDoubling,
+    /// A multiplier is 1, and another branch crosses.
+    Crossing,
+}
+
+impl ChangeKind {
+    /// A stable lower-case name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::PeriodDoubling => "period_doubling",
+            Self::Crossing => "crossing",
+        }
+    }
+}
+
+/// A branch of periodic motions.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    /// its points, in order
+    pub points: Vec<BranchPoint>,
+    /// where it changes, in the same order
+    pub changes: Vec<Change>,
+    /// why it was not followed to the end of the range, if it was not
+    pub ended: Option<String>,
+}
+
+/// The first step, the greatest and the least, as parts of the range.
+const FIRST: f64 = 0.02;
+const GREATEST: f64 = 0.05;
+const LEAST: f64 = 1e-7;
+/// Newton's method brings a point onto the branch in so many steps.
+const STEPS: usize = 8;
+/// A point lies on the branch where the motion misses by less than this part of the state.
+const FOUND: f64 = 1e-10;
+/// A change is located where its function has fallen to this part, or after so many trials.
+const LOCATED: f64 = 1e-13;
+const TRIALS: usize = 40;
+
+/// Follows the periodic motion next to a start state from the value `from` of a parameter (or of mu or e) to `to`, by at most
+/// `most` points. The branch may turn back: it ends where it leaves the range.
+///
+/// # Errors
+///
+/// [`OrbitError`], where the first motion is not found.
+pub fn follow_branch(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    options: &Options,
+    periodic: &Periodic,
+    (by, from, to): (By, f64, f64),
+    most: usize,
+) -> Result<Branch, OrbitError> {
+    if !(from.is_finite() && to.is_finite() && from != to) {
+        return Err(OrbitError::BadRequest(
+            "the range of the parameter must be finite and not empty".to_owned(),
+        ));
+    }
+    let family = Family { mechanism, start, options, periodic, by };
+    let (here, surfaces) = family.at(from)?;
+    let orbit = find_orbit(&here, start, &surfaces, periodic, &[by])?;
+    let n = orbit.state.len();
+    let size = orbit.state.iter().fold(f64::MIN_POSITIVE, |size, value| size.max(value.abs()));
+    let mut scale: Vec<f64> = orbit.state.iter().map(|value| value.abs().max(1e-2 * size)).collect();
+    scale.push((to - from).abs());
+    let mut toward = DVector::zeros(n + 1);
+    toward[n] = (to - from).signum();
+    let mut point = Point::new(orbit, from, &scale, &toward);
+    let mut branch = Branch { points: vec![point.public()], changes: Vec::new(), ended: None };
+    let mut h = FIRST;
+    while branch.points.len() < most {
+        let next = match family.step(&point, h, &scale) {
+            Ok(next) => next,
+            Err(error) if h <= LEAST => {
+                branch.ended = Some(error.to_string());
+                break;
+            }
+            Err(_) => {
+                h *= 0.5;
+                continue;
+            }
+        };
+        for kind in [ChangeKind::Fold, ChangeKind::PeriodDoubling, ChangeKind::Crossing] {
+            if point.test(kind) * next.test(kind) < 0.0
+                && let Some(at) = family.locate(&point, &next, h, &scale, kind)
+            {
+                branch.changes.push(Change { kind, at: at.public() });
+            }
+        }
+        let outside = |value: f64| (value - from) * (value - to) > 0.0;
+        let left = outside(next.value);
+        point = next;
+        branch.points.push(point.public());
+        if left {
+            break;
+        }
+        h = (1.5 * h).min(GREATEST);
+    }
+    Ok(branch)
+}
+
+/// The periodic motions of all values of a parameter.
+struct Family<'a> {
+    mechanism: &'a InterpretedMechanism,
+    start: &'a State<'a>,
+    options: &'a Options,
+    periodic: &'a Periodic,
+    by: By,
+}
+
+/// A point of a branch, with the tangent of the branch in scaled numbers.
+struct Point {
+    orbit: Orbit,
+    value: f64,
+    tangent: DVector<f64>,
+    /// the functions that vanish at changes, in the order of the kinds
+    tests: [f64; 3],
+}
+
+impl Point {
+    fn new(orbit: Orbit, value: f64, scale: &[f64], toward: &DVector<f64>) -> Self {
+        let n = orbit.state.len();
+        let matrix = bordered(&orbit.matrix, &orbit.by, scale, toward);
+        let mut last = DVector::zeros(n + 1);
+        last[n] = 1.0;
+        let tangent = solve(&matrix, &last).normalize();
+        let doubling = (&orbit.matrix + DMatrix::identity(n, n)).determinant();
+        let crossing = bordered(&orbit.matrix, &orbit.by, scale, &tangent).determinant();
+        let tests = [tangent[n], doubling, crossing];
+        Point { orbit, value, tangent, tests }
+    }
+
+    fn test(&self, kind: ChangeKind) -> f64 {
+        match kind {
+            ChangeKind::Fold => self.tests[0],
+            ChangeKind::PeriodDoubling => self.tests[1],
+            ChangeKind::Crossing => self.tests[2],
+        }
+    }
+
+    fn public(&self) -> BranchPoint {
+        BranchPoint { value: self.value, orbit: self.orbit.clone() }
+    }
+}
+
+/// Derivatives of (return - state) by the scaled state and parameter, above a row.
+fn bordered(matrix: &DMatrix<f64>, by: &DMatrix<f64>, scale: &[f64], row: &DVector<f64>) -> DMatrix<f64> {
+    let n = matrix.nrows();
+    DMatrix::from_fn(n + 1, n + 1, |i, j| match (i == n, j == n) {
+        (true, _) => row[j],
+        (false, true) => by[(i, 0)] * scale[n] / scale[i],
+        (false, false) => (matrix[(i, j)] - f64::from(u8::from(i == j))) * scale[j] / scale[i],
+    })
+}
+
+impl Family<'_> {
+    /// The mechanism and the surfaces at a value.
+    fn at(&self, value: f64) -> Result<(InterpretedMechanism, Options), OrbitError> {
+        let (mut mechanism, mut options) = (self.mechanism.clone(), self.options.clone());
+        changed(&mut mechanism, &mut options, self.by, value).map_err(OrbitError::BadRequest)?;
+        Ok((mechanism, options))
+    }
+
+    fn returned(&self, state: &[f64], value: f64) -> Result<Returned, OrbitError> {
+        let (mechanism, options) = self.at(value)?;
+        let by = [self.by];
+        let task = Task {
+            mechanism: &mechanism,
+            start: self.start,
+            options: &options,
+            periodic: self.periodic,
+            by: &by,
+        };
+        task.returned(state)
+    }
+
+    /// The point of the branch a length `h` further along the tangent.
+    fn step(&self, from: &Point, h: f64, scale: &[f64]) -> Result<Point, OrbitError> {
+        let n = from.orbit.state.len();
+        let ahead = |place: usize, value: f64| value + h * from.tangent[place] * scale[place];
+        let mut state: Vec<f64> =
+            from.orbit.state.iter().enumerate().map(|(place, value)| ahead(place, *value)).collect();
+        let mut value = ahead(n, from.value);
+        let mut before = f64::INFINITY;
+        for _ in 0..STEPS {
+            let here = self.returned(&state, value)?;
+            if here.residual <= FOUND && (here.residual >= 0.5 * before || here.residual < 1e-14) {
+                return Ok(Point::new(here.orbit(state), value, scale, &from.tangent));
+            }
+            before = here.residual;
+            let off = here.difference(&state);
+            // The correction is across the tangent.
+            let right =
+                DVector::from_fn(n + 1, |place, _| if place < n { -off[place] / scale[place] } else { 0.0 });
+            let change = solve(&bordered(&here.matrix, &here.by, scale, &from.tangent), &right);
+            state.iter_mut().enumerate().for_each(|(place, value)| *value += change[place] * scale[place]);
+            value += change[n] * scale[n];
+        }
+        let here = self.returned(&state, value)?;
+        if here.residual > FOUND {
+            return Err(OrbitError::NotFound(here.residual));
+        }
+        Ok(Point::new(here.orbit(state), value, scale, &from.tangent))
+    }
+
+    /// The point between two where the function of a change vanishes, by false position.
+    fn locate(
+        &self,
+        from: &Point,
+        to: &Point,
+        length: f64,
+        scale: &[f64],
+        kind: ChangeKind,
+    ) -> Option<Point> {
+        let (mut low, mut high) = ((0.0, from.test(kind)), (length, to.test(kind)));
+        let size = low.1.abs().max(high.1.abs());
+        let (mut best, mut stayed): (Option<Point>, Option<bool>) = (None, None);
+        for _ in 0..TRIALS {
+            let h = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let Ok(there) = self.step(from, h, scale) else { break };
+            let test = there.test(kind);
+            let done = test.abs() <= LOCATED * size;
+            if best.as_ref().is_none_or(|best| test.abs() < best.test(kind).abs()) {
+                best = Some(there);
+            }
+            if done {
+                break;
+            }
+            // An end that stays twice would stay for ever.
+            let is_high = test * high.1 > 0.0;
+            if is_high {
+                high = (h, test);
+                low.1 *= if stayed == Some(true) { 0.5 } else { 1.0 };
+            } else {
+                low = (h, test);
+                high.1 *= if stayed == Some(false) { 0.5 } else { 1.0 };
+            }
+            stayed = Some(is_high);
+        }
+        best
+    }
+}
