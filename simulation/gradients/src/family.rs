@@ -1,6 +1,6 @@
 //! A mechanism and its surfaces with other values of parameters, mu and e.
 
-use hodograph::{ComponentKind, Contacts, Mechanism, Surface};
+use hodograph::{ComponentKind, Contacts, Mechanism};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 
