@@ -441,7 +441,7 @@ fn slips_left(closed: &[Closed], there: &Evaluation) -> Vec<f64> {
     closed
         .iter()
         .enumerate()
-        .map(|(place, contact)| match (contact.turning, &there.holds[place]) {
+        .map(|(place, contact)| match (&contact.turning, &there.holds[place]) {
             (Some(turning), Hold::Slide(d)) => there.support.slip(place).dot(d) - turning.least,
             _ => 1.0,
         })

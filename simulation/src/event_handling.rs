@@ -163,9 +163,36 @@ impl Transition<'_> {
         if stopped.contains(&place) {
             return self.end_slip(closed, &here, &stopped, left.unwrap_or(0.0).min(ending));
         }
+        let turned = self.turns_round(closed, &here, place);
+        if !turned.is_empty() {
+            return self.end_slip(closed, &here, &turned, left.unwrap_or(0.0).min(ending));
+        }
         let least = DIRECTION * here.support.velocity_size(place, self.here().speeds);
         self.front.barred[closed[place].contact] = here.support.slip(place).norm().max(least);
         Ok(())
+    }
+
+    /// The contacts, by place, whose settled slip ends with that of this one and begins anew, another way: those that
+    /// may end at the same time. Slip that falls along a settled direction meets zero; what it does from there does not
+    /// depend on how it came.
+    fn turns_round(&self, closed: &[Closed], here: &Evaluation, place: usize) -> Vec<usize> {
+        let within = 3.0 * ENDING * self.front.scales.time;
+        let ends = |&other: &usize| {
+            closed[other].turning.is_some()
+                && (other == place
+                    || time_of_slip(here, other, &self.front.scale).is_some_and(|left| left < within))
+        };
+        let ended: Vec<usize> = (0..closed.len()).filter(ends).collect();
+        let mut slips: Vec<Option<Vector2<f64>>> = here.holds.iter().map(Hold::direction).collect();
+        for &other in &ended {
+            slips[other] = None;
+        }
+        let before = here.forces.as_ref().map_or_else(|| DVector::zeros(0), |forces| forces.lambda.clone());
+        let friction: Vec<Friction> = closed.iter().map(|closed| Friction::same(closed.mu)).collect();
+        let Ok(choice) = choose(&here.support, &slips, &friction, &before) else { return Vec::new() };
+        let anew =
+            |other: &usize| matches!(choice.decisions[*other], Decision::Stick | Decision::Slide(_, true));
+        if ended.iter().all(anew) { ended } else { Vec::new() }
     }
 
     /// Slip of contacts ends after a short time.

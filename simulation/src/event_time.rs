@@ -81,7 +81,9 @@ impl Transition<'_> {
         };
         // Settled slip is about to end there: its end is found by itself.
         let enough = match watched {
-            Watched::Slip(place) => closed[place].turning.map_or(0.0, |turning| NEARLY * turning.least),
+            Watched::Slip(place) => {
+                closed[place].turning.as_ref().map_or(0.0, |turning| NEARLY * turning.least)
+            }
             _ => 0.0,
         };
         if enough > 0.0

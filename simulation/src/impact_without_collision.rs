@@ -31,7 +31,7 @@ impl Transition<'_> {
             self.front.energy.impacts += self.energy_change(&before, &turned)?;
             before = turned;
         }
-        let (outcome, after) = match self.without_collision(contact, &before) {
+        let (outcome, after) = match self.low_without_collision(contact, &before) {
             // Alone it would not jam.
             Err(
                 error @ SimulationError {
@@ -107,11 +107,27 @@ impl Transition<'_> {
         }
     }
 
-    /// The outcome along n, t, s with t along the slip, and the speeds after.
+    /// The outcome of [`Self::without_collision`]; without restitution where the contact is pressed down and would rise
+    /// by less than the tolerance: the rule of chatter (docs/theory.md, section 17.7).
+    fn low_without_collision(
+        &self,
+        contact: usize,
+        speeds: &[f64],
+    ) -> Result<(CollisionOutcome<f64>, Vec<f64>), SimulationError> {
+        let (outcome, after) = self.without_collision(contact, speeds, false)?;
+        let rebound = outcome.impact.velocity.x;
+        if rebound > 0.0 && self.is_low(contact, &after, rebound)? {
+            return self.without_collision(contact, speeds, true);
+        }
+        Ok((outcome, after))
+    }
+
+    /// The outcome along n, t, s with t along the slip, and the speeds after; `faded` is without restitution.
     fn without_collision(
         &self,
         contact: usize,
         speeds: &[f64],
+        faded: bool,
     ) -> Result<(CollisionOutcome<f64>, Vec<f64>), SimulationError> {
         let n = self.mechanism.count(ComponentKind::Coordinate);
         let state =
@@ -122,7 +138,7 @@ impl Transition<'_> {
         // Friction is that of the slip that jams, not that of impacts.
         let surface =
             Surface { mu: self.friction(contact, speed)?.slips, ..self.surface_in_impact(contact, 0.0)? };
-        let surface = jammed(&here, surface);
+        let surface = jammed(&here, if faded { Surface { e: 0.0, ..surface } } else { surface });
         let mut after = speeds.to_vec();
         let outcome = self
             .mechanism

@@ -1,6 +1,8 @@
 //! The phases of contacts: open, sticking, sliding.
 
-use nalgebra::Vector2;
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, Vector2};
 
 /// How an open contact came to be open.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +61,7 @@ pub enum ContactPhase {
 }
 
 /// A closed contact while its mode lasts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Closed {
     pub contact: usize,
     /// coefficient of friction up to which it sticks, or with which its slip begins and ends
@@ -86,7 +88,7 @@ impl Closed {
 }
 
 /// How the direction of settled slip turns, from the direction that it had at a time on.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Turning {
     pub since: f64,
     /// its rate, as a polynomial of the time since then: rad/s, rad/s^2, rad/s^3
@@ -94,8 +96,9 @@ pub(crate) struct Turning {
     /// slip across the direction at that time, m/s, and the time within which it vanishes, s
     pub across: f64,
     pub within: f64,
-    /// change of the acceleration across the direction by its angle, m/s^2
-    pub slope: f64,
+    /// nearly the inverse of the change of the accelerations across all directions that follow from the state, in the
+    /// order of their places, by their angles, s^2/m
+    pub inverse: Arc<DMatrix<f64>>,
     /// slip along the direction, m/s, at which a step ends
     pub least: f64,
 }

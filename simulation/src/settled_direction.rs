@@ -1,8 +1,8 @@
-//! The direction in which slip settles: the one in which the acceleration across it is that wanted.
+//! Directions in which slip settles: those in which the accelerations across them are those wanted.
 //!
 //! Theory: docs/theory.md, section 17.5.
 
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 
 use crate::closed_contacts::ClosedContacts;
 use crate::forces::{Forces, Hold, Lacking};
@@ -12,16 +12,19 @@ use crate::phase::Closed;
 const TURN: f64 = 1e-5;
 /// Steps of the method of secants at most.
 const STEPS: usize = 12;
-/// The angle is found where the product of the last two changes is below this, rad^2: the error that is left is of
+/// An angle is found where the product of its last two changes is below this, rad^2: the error that is left is of
 /// this order.
 const FOUND: f64 = 1e-15;
-/// Changes of the angle below this are rounding, rad.
+/// Several angles are found where their next change is expected to be below this, rad.
+const NEXT: f64 = 1e-13;
+/// Changes of an angle below this are rounding, rad; and those where accelerations are small differences.
 const ROUNDING: f64 = 1e-14;
+const COARSE: f64 = 1e-11;
 
 /// Forces for modes.
 pub(crate) type Solve<'a> = dyn Fn(&[Hold]) -> Result<Forces, Lacking> + 'a;
 
-/// Gives a contact that has settled the direction that follows from the state at a time. `None` where there is none.
+/// Gives contacts that have settled the directions that follow from the state at a time. `None` where there are none.
 pub(crate) fn settle(
     support: &ClosedContacts,
     closed: &[Closed],
@@ -29,15 +32,20 @@ pub(crate) fn settle(
     holds: &mut [Hold],
     solve: &Solve<'_>,
 ) -> Option<()> {
-    for (place, contact) in closed.iter().enumerate() {
-        if let (Some(turning), Some(from)) = (contact.turning, contact.slides) {
-            holds[place] = Hold::Slide(turned(from, turning.angle(t)));
-            let slip = support.slip(place);
-            let wanted = |d: &Vector2<f64>| turning.rate(t) * slip.dot(d) + turning.fading(t);
-            turn_until(holds, place, turning.slope, &wanted, solve)?;
+    let turning = |place: &usize| closed[*place].turning.as_ref();
+    let places: Vec<usize> = (0..closed.len()).filter(|place| turning(place).is_some()).collect();
+    let Some(first) = places.first().and_then(turning) else { return Some(()) };
+    let mut inverse = (*first.inverse).clone();
+    for place in &places {
+        if let (Some(turning), Some(from)) = (turning(place), closed[*place].slides) {
+            holds[*place] = Hold::Slide(turned(from, turning.angle(t)));
         }
     }
-    Some(())
+    let wanted = |place: usize, d: &Vector2<f64>| {
+        let slip = support.slip(place);
+        turning(&place).map_or(0.0, |turning| turning.rate(t) * slip.dot(d) + turning.fading(t))
+    };
+    turn_until(holds, &places, &mut inverse, &wanted, solve)
 }
 
 /// A vector of length one turned by an angle.
@@ -46,49 +54,76 @@ fn turned(d: Vector2<f64>, angle: f64) -> Vector2<f64> {
     Vector2::new(cos * d.x - sin * d.y, sin * d.x + cos * d.y)
 }
 
-/// The acceleration across the direction of slip of a contact.
-pub(crate) fn across(holds: &[Hold], place: usize, solve: &Solve<'_>) -> Option<f64> {
-    let (d, found) = (holds[place].direction()?, solve(holds).ok()?);
-    Some(d.x * found.acceleration[3 * place + 2] - d.y * found.acceleration[3 * place + 1])
+/// The accelerations across the directions of slip of contacts.
+pub(crate) fn across(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<DVector<f64>> {
+    let found = solve(holds).ok()?.acceleration;
+    let mut across = DVector::zeros(places.len());
+    for (across, &place) in across.iter_mut().zip(places) {
+        let d = holds[place].direction()?;
+        *across = d.x * found[3 * place + 2] - d.y * found[3 * place + 1];
+    }
+    Some(across)
 }
 
-/// The change of that acceleration by the angle of the direction.
-pub(crate) fn slope(holds: &[Hold], place: usize, solve: &Solve<'_>) -> Option<f64> {
-    let at = |angle: f64| -> Option<f64> {
-        let mut there = holds.to_vec();
-        there[place] = Hold::Slide(turned(holds[place].direction()?, angle));
-        across(&there, place, solve)
-    };
-    Some((at(TURN)? - at(-TURN)?) / (2.0 * TURN))
+/// The change of the accelerations across the directions of `places` by the angle of each of them.
+pub(crate) fn slopes(holds: &[Hold], places: &[usize], solve: &Solve<'_>) -> Option<DMatrix<f64>> {
+    let mut slopes = DMatrix::zeros(places.len(), places.len());
+    for (column, &place) in places.iter().enumerate() {
+        let at = |angle: f64| -> Option<DVector<f64>> {
+            let mut there = holds.to_vec();
+            there[place] = Hold::Slide(turned(holds[place].direction()?, angle));
+            across(&there, places, solve)
+        };
+        slopes.set_column(column, &((at(TURN)? - at(-TURN)?) / (2.0 * TURN)));
+    }
+    Some(slopes)
 }
 
-/// Turns the direction of slip of a contact until the acceleration across it is that wanted. `slope` is nearly its
-/// derivative by the angle.
+/// Turns the directions of slip of contacts until the accelerations across them are those wanted. `inverse` is nearly
+/// that of the derivative by the angles, and becomes more so: Broyden's method, of one contact that of secants.
 pub(crate) fn turn_until(
     holds: &mut [Hold],
-    place: usize,
-    mut slope: f64,
-    wanted: &dyn Fn(&Vector2<f64>) -> f64,
+    places: &[usize],
+    inverse: &mut DMatrix<f64>,
+    wanted: &dyn Fn(usize, &Vector2<f64>) -> f64,
     solve: &Solve<'_>,
 ) -> Option<()> {
-    let residual = |holds: &[Hold]| Some(across(holds, place, solve)? - wanted(&holds[place].direction()?));
+    let residual = |holds: &[Hold]| -> Option<DVector<f64>> {
+        let mut left = across(holds, places, solve)?;
+        for (left, &place) in left.iter_mut().zip(places) {
+            *left -= wanted(place, &holds[place].direction()?);
+        }
+        Some(left)
+    };
     let mut left = residual(holds)?;
-    let mut last = 1.0;
+    let mut last: Option<f64> = None;
     for _ in 0..STEPS {
-        let step = -left / slope;
-        if step.is_nan() || step.abs() >= 1.0 {
+        let step = -(&*inverse * &left);
+        let size = step.amax();
+        if size.is_nan() || size >= 1.0 {
             return None;
         }
-        holds[place] = Hold::Slide(turned(holds[place].direction()?, step).normalize());
-        if step.abs() <= ROUNDING || step.abs() * last <= FOUND {
+        for (&place, by) in places.iter().zip(&step) {
+            holds[place] = Hold::Slide(turned(holds[place].direction()?, *by).normalize());
+        }
+        let found = match places.len() {
+            1 => size * last.unwrap_or(1.0) <= FOUND,
+            _ => size * last.map_or(1.0, |last| size / last) <= NEXT,
+        };
+        if size <= ROUNDING || found {
             return Some(());
         }
-        last = step.abs();
+        last = Some(size);
         let after = residual(holds)?;
-        slope = (after - left) / step;
+        let change = &*inverse * (&after - &left);
+        let along = step.dot(&change);
+        if along != 0.0 {
+            let row = inverse.tr_mul(&step).transpose() / along;
+            *inverse += (step - change) * row;
+        }
         left = after;
     }
-    None
+    (last? <= COARSE).then_some(())
 }
 
 #[cfg(test)]
@@ -99,7 +134,7 @@ mod tests {
     use crate::contact_problem::Wanted;
     use crate::forces::forces;
 
-    /// Two contacts of one body that slide: the acceleration across the slip of one becomes that wanted.
+    /// Two contacts of one body that slide: the acceleration across the slip of one or of both becomes that wanted.
     #[test]
     fn a_direction_is_turned_until_the_acceleration_across_it_is_that_wanted() {
         let point = |x: f64, y: f64, z: f64| {
@@ -121,15 +156,22 @@ mod tests {
             response,
         };
         let solve = |holds: &[Hold]| forces(&support, holds, &[0.3, 0.4], None, Wanted::Motion);
-        for place in [0, 1] {
+        for places in [vec![0], vec![1], vec![0, 1]] {
             let mut holds = directions.map(Hold::Slide);
-            let known = across(&holds, place, &solve).unwrap();
-            let slope = slope(&holds, place, &solve).unwrap();
-            for (by, slope) in [(0.05, slope), (-0.08, 0.7 * slope)] {
-                holds[place] = Hold::Slide(turned(directions[place], by));
-                turn_until(&mut holds, place, slope, &|_| known, &solve).unwrap();
-                let d = holds[place].direction().unwrap();
-                assert!((d - directions[place]).norm() < 1e-13 && (d.norm() - 1.0).abs() < 1e-15, "{d}");
+            let known = across(&holds, &places, &solve).unwrap();
+            let inverse = slopes(&holds, &places, &solve).unwrap().try_inverse().unwrap();
+            for (by, part) in [(0.05, 1.0), (-0.08, 1.4)] {
+                for &place in &places {
+                    holds[place] = Hold::Slide(turned(directions[place], by));
+                }
+                let wanted = |place: usize, _: &Vector2<f64>| {
+                    known[places.iter().position(|of| *of == place).unwrap()]
+                };
+                turn_until(&mut holds, &places, &mut (part * &inverse), &wanted, &solve).unwrap();
+                for &place in &places {
+                    let d = holds[place].direction().unwrap();
+                    assert!((d - directions[place]).norm() < 1e-13 && (d.norm() - 1.0).abs() < 1e-15, "{d}");
+                }
             }
         }
     }

@@ -100,9 +100,23 @@ impl Transition<'_> {
         rebound: f64,
     ) -> Result<Option<f64>, SimulationError> {
         let pull = self.pull(contact, speeds)?;
-        let low = pull < 0.0 && rebound * rebound / (-2.0 * pull) < self.options.absolute_tolerance;
+        let low = self.rises_little(pull, rebound);
         let pair = self.pair(contact);
         Ok(if low { pair.and_then(|pair| pair.bounces_for(before, rebound, -pull)) } else { None })
+    }
+
+    /// Whether a contact that leaves with this speed is pressed down and rises by less than the tolerance.
+    pub(crate) fn is_low(
+        &self,
+        contact: usize,
+        speeds: &[f64],
+        rebound: f64,
+    ) -> Result<bool, SimulationError> {
+        Ok(self.rises_little(self.pull(contact, speeds)?, rebound))
+    }
+
+    fn rises_little(&self, pull: f64, rebound: f64) -> bool {
+        pull < 0.0 && rebound * rebound / (-2.0 * pull) < self.options.absolute_tolerance
     }
 
     /// The surface of a contact that strikes with this speed of approach, as impacts have it.

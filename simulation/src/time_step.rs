@@ -11,7 +11,7 @@ use crate::forces::Hold;
 use crate::motion::{DIRECTION, Evaluation, Failure};
 use crate::phase::{Closed, Phase, Turned, Turning, mus};
 use crate::settled_slip::settled;
-use crate::signed_slip::{self, EXPLICIT, Search, inconsistent};
+use crate::signed_slip::{self, EXPLICIT, Search, SettledSlip, inconsistent};
 use crate::slip_end::{ENDING, Fate, fate, may_end, time_of_slip};
 use crate::stepper::{self, Step, Tolerances};
 use crate::transition::Transition;
@@ -190,28 +190,35 @@ impl Transition<'_> {
                 Search { asked: &asked, left, before: &before, reach, tolerances: self.tolerances() };
             let start = (self.front.t, &self.front.y[..]);
             let found = signed_slip::settled(&self.motion(closed), start, here, &search)?;
-            let (place, contact) = (found.place, closed[found.place].contact);
-            self.front.turned[contact] = [Some((self.front.t, found.rates[0])), before[place][0]];
-            let others = (0..closed.len()).filter(|other| *other != place);
+            for slip in &found.slips {
+                let contact = closed[slip.place].contact;
+                self.front.turned[contact] = [Some((self.front.t, slip.rates[0])), before[slip.place][0]];
+            }
+            let settles = |place: &usize| found.slips.iter().any(|slip| slip.place == *place);
+            let others = (0..closed.len()).filter(|place| !settles(place));
             let ends = others.filter_map(|place| left[place]).map(|left| SHARE * left.max(ending));
-            let h = ends.fold(reach, f64::min);
-            let worth = EXPLICIT * found.relaxation < h || left[place].is_some_and(|left| left < h);
+            let h = ends.fold(reach.min(found.reach), f64::min);
+            let ends_within = |slip: &SettledSlip| left[slip.place].is_some_and(|left| left < h);
+            let worth = EXPLICIT * found.relaxation < h || found.slips.iter().any(ends_within);
             if !found.has_settled || !worth {
                 return None;
             }
             let mut trial = closed.to_vec();
-            trial[place].slides = Some(found.direction);
-            // The end of slip is followed by itself.
-            let least =
-                left[place].map_or(0.0, |left| LAST * ending / left * here.support.slip(place).norm());
-            trial[place].turning = Some(Turning {
-                since: self.front.t,
-                rates: found.rates,
-                across: found.across,
-                within: h,
-                slope: found.slope,
-                least,
-            });
+            for slip in &found.slips {
+                let place = slip.place;
+                trial[place].slides = Some(slip.direction);
+                // The end of slip is followed by itself.
+                let least =
+                    left[place].map_or(0.0, |left| LAST * ending / left * here.support.slip(place).norm());
+                trial[place].turning = Some(Turning {
+                    since: self.front.t,
+                    rates: slip.rates,
+                    across: slip.across,
+                    within: h,
+                    inverse: found.inverse.clone(),
+                    least,
+                });
+            }
             if let Ok(Attempt::Made(step, crossing)) = self.attempt(&trial, here, h) {
                 if crossing.is_some_and(|(watched, _)| watched == Watched::Jam) {
                     return None;
@@ -220,10 +227,13 @@ impl Transition<'_> {
                 let error = self.inconsistency(&trial, &step, part);
                 reach = part * step.h * (SAFETY / error.cbrt()).clamp(LEAST_FACTOR, GREATEST_FACTOR);
                 if error <= 1.0 {
-                    self.front.phases[contact] = Phase::Slide(found.direction);
-                    self.front.turnings[contact] = trial[place].turning;
+                    for slip in &found.slips {
+                        let contact = closed[slip.place].contact;
+                        self.front.phases[contact] = Phase::Slide(slip.direction);
+                        self.front.turnings[contact] = trial[slip.place].turning.clone();
+                    }
                     self.front.next_settled = reach;
-                    closed.copy_from_slice(&trial);
+                    closed.clone_from_slice(&trial);
                     return Some((step, crossing));
                 }
             } else {
@@ -380,7 +390,7 @@ impl Transition<'_> {
         let inputs = motion.inputs(step.t + step.h, &step.end).map_err(|failure| self.failure(failure))?;
         let state = State { time: step.t + step.h, coordinates: q, speeds: u, inputs: &inputs };
         for (place, (contact, hold)) in closed.iter().zip(&here.holds).enumerate() {
-            if let (Hold::Slide(d), true, None) = (hold, contact.rubs(), contact.turning) {
+            if let (Hold::Slide(d), true, None) = (hold, contact.rubs(), &contact.turning) {
                 let velocity = self
                     .mechanism
                     .contact_velocity(contact.contact, &state)

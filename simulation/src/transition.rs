@@ -77,7 +77,7 @@ impl Transition<'_> {
                     contact,
                     mu: self.mu_in_mode(contact, slides.is_some()),
                     omega: slides.and(self.front.omegas[contact]),
-                    turning: slides.and(self.front.turnings[contact]),
+                    turning: slides.and(self.front.turnings[contact].clone()),
                     slides,
                 })
             })

@@ -192,7 +192,8 @@ fn two_cubes() {
         turn(m, start, random, ["e02", "e12", "e22", "e32"], Some(0.4));
         speeds(m, start, random, 0.3, 1.0);
     };
-    campaign(&Family::new("cubes2", 2.0, [1.0, 0.6], throw), 2);
+    // The last one slides to its end with hardly any forces left that the laws allow.
+    campaign(&Family::new("cubes2", 2.0, [1.0, 0.6], throw), 4);
 }
 
 #[test]

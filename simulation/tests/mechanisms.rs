@@ -303,6 +303,25 @@ fn tables_that_tip_go_on_through_their_jams() {
     }
 }
 
+/// Slip of two feet that begins slowly has settled directions, which depend on each other. Steps of six times the time in
+/// which they settle made the motion end with an error.
+#[test]
+fn two_feet_begin_to_slip_slowly() {
+    let table = model("table3");
+    for (mu, push, across) in [(0.4, 45.0, 15.0), (1.0, 45.0, 7.0), (0.6, 45.0, 7.0)] {
+        let mut begin = Start::of(&table);
+        begin.set(&table, "F", push);
+        begin.set(&table, "Fy", across);
+        let tolerance = 1e-9;
+        let mut options = surface(mu, 0.3, Law::Poisson);
+        (options.relative_tolerance, options.absolute_tolerance) = (tolerance, tolerance);
+        let end = follow(&table, &begin, options, 2.1);
+        assert!(end.error.is_none(), "{mu} {push} {across}: {:?}", end.error);
+        assert!(end.gain().is_none_or(|(_, gain)| gain < 1e-12), "{mu}: {:?}", end.gain());
+        assert!(end.account.abs() < 1e3 * tolerance * end.before, "{mu}: {:e}", end.account);
+    }
+}
+
 /// A wheel that rolls against a kerb keeps 1 - 2 h / (3 r) of its angular velocity, and climbs where that carries it over.
 #[test]
 fn a_wheel_climbs_a_kerb() {

@@ -19,8 +19,9 @@ use super::{
 pub(super) enum By {
     /// from the Hessian, by Cholesky
     Hessian,
-    /// from its squares, by orthogonal transformations: for cones of different kinds that share normal forces, whose
-    /// greatest common reserve lies in a corner that the Hessian does not see ([`super::squares`])
+    /// from its squares, by orthogonal transformations: where hardly any forces are left, and for cones of different kinds
+    /// that share normal forces, whose greatest common reserve lies in a corner that the Hessian does not see
+    /// ([`super::squares`])
     Squares,
 }
 
@@ -36,19 +37,28 @@ pub(super) fn centre(
 ) -> (DVector<f64>, bool) {
     let project = |x: &DVector<f64>| least + basis * basis.tr_mul(&(x - least));
     let starts = start.map(project).into_iter().chain([least.clone()]);
+    let follow_on = |x: DVector<f64>| {
+        let x = follow(cones, basis, load, x, by);
+        // Where hardly any forces are left the Hessian does not see along the thin set that they form.
+        let thin = by == By::Hessian && least_reserve(cones, &x) < THIN * load;
+        if thin { follow(cones, basis, load, x, By::Squares) } else { x }
+    };
     for x in starts {
         if least_reserve(cones, &x) > START * load {
-            return (follow(cones, basis, load, x, by), true);
+            return (follow_on(x), true);
         }
     }
     match enter(cones, basis, load, least.clone(), (decide, by)) {
-        Ok(x) => (follow(cones, basis, load, x, by), true),
+        Ok(x) => (follow_on(x), true),
         Err(x) => (x, false),
     }
 }
 
 /// A reserve with which the way to the centre may begin, beside the load.
 const START: f64 = 1e-3;
+
+/// Reserves below this part of the load have rows of the Hessian beside whose squares others lose half of their digits.
+const THIN: f64 = 1e-4;
 
 /// Gradient and Hessian of the barrier by y and by the reserve s that all cones keep, and of the square.
 struct Barrier {
