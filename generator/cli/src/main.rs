@@ -30,7 +30,7 @@ mod table;
 
 use commands::{
     check, collide, completions, contacts, derive, derive_worker, eval, expand, explain,
-    export as export_library, fmt, gradient, import as import_urdf, lsp as language_server, new, orbit,
+    export as export_library, fit, fmt, gradient, import as import_urdf, lsp as language_server, new, orbit,
     plot as draw, serve, simulate, solve,
 };
 
@@ -55,6 +55,7 @@ enum Command {
     Simulate(Box<simulate::Arguments>),
     Gradient(Box<gradient::Arguments>),
     Orbit(Box<orbit::Arguments>),
+    Fit(Box<fit::Arguments>),
     Eval(eval::Arguments),
     Collide(collide::Arguments),
     Plot(draw::Arguments),
@@ -96,6 +97,7 @@ fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Gradient(arguments) => gradient::run(&arguments),
         Command::Orbit(arguments) => orbit::run(&arguments),
+        Command::Fit(arguments) => fit::run(&arguments),
         Command::Plot(arguments) => draw::run(&arguments),
         Command::Import(arguments) => import_urdf::run(&arguments),
         Command::DeriveWorker(arguments) => derive_worker::run(&arguments),

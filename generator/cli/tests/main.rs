@@ -18,6 +18,7 @@ mod expectations;
 mod export;
 mod files;
 mod first_minutes;
+mod fit;
 mod gradient;
 mod import;
 mod in_the_compiler;

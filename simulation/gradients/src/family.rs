@@ -1,6 +1,6 @@
-//! A mechanism and its surfaces with other values of parameters, mu and e.
+//! Values of parameters, mu and e: what they are, and a mechanism and its surfaces with others.
 
-use hodograph::{ComponentKind, Contacts, Mechanism};
+use hodograph::{ComponentKind, Contacts, Mechanism, Surface};
 use hodograph_interpreter::InterpretedMechanism;
 use hodograph_simulation::Options;
 
@@ -37,8 +37,31 @@ pub(crate) fn changed(
     }
 }
 
+/// The value of a parameter, mu or e; of several contacts that of the first.
+///
+/// # Errors
+///
+/// Why there is none.
+pub(crate) fn value_of(mechanism: &InterpretedMechanism, options: &Options, by: By) -> Result<f64, String> {
+    match by {
+        By::Parameter(index) => {
+            let mut all = vec![0.0; mechanism.count(ComponentKind::Parameter)];
+            mechanism.parameter_values(&mut all).map_err(|error| error.to_string())?;
+            all.get(index).copied().ok_or_else(|| "there is no such parameter".to_owned())
+        }
+        By::Friction(contact) | By::Restitution(contact) => {
+            let mut options = options.clone();
+            stated(mechanism, &mut options);
+            let own = |(place, _): &&(usize, Surface<f64>)| contact.is_none_or(|contact| contact == *place);
+            let (_, surface) = options.surfaces.iter().find(own).ok_or("the contact has no surface")?;
+            Ok(if matches!(by, By::Friction(_)) { surface.mu } else { surface.e })
+        }
+        _ => Err("only parameters of the model, mu and e are fitted or followed".to_owned()),
+    }
+}
+
 /// Gives each contact the surface of its own that it has by the options or the model.
-fn stated(mechanism: &InterpretedMechanism, options: &mut Options) {
+pub(crate) fn stated(mechanism: &InterpretedMechanism, options: &mut Options) {
     for contact in 0..mechanism.count(ComponentKind::Contact) {
         if options.surfaces.iter().all(|(place, _)| *place != contact) {
             let surface = options.surface.or_else(|| mechanism.surface(contact));

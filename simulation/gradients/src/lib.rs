@@ -26,12 +26,15 @@
 //! [`find_orbit`] finds periodic motions by these derivatives, with their multipliers, and [`follow_branch`] follows them
 //! through a parameter.
 //!
-//! Theory: docs/theory.md, sections 19 and 20.
+//! [`fit()`] fits parameters, mu and e to measured motions.
+//!
+//! Theory: docs/theory.md, sections 19 to 21.
 
 mod branch;
 mod by;
 mod family;
 mod field;
+mod fit;
 mod junction;
 mod modes;
 mod motion;
@@ -39,5 +42,6 @@ mod orbit;
 
 pub use branch::{Branch, BranchPoint, Change, ChangeKind, follow_branch};
 pub use by::{By, Reason, Undefined};
+pub use fit::{Fit, FitError, FitTask, Trajectory, fit};
 pub use motion::{EventGradient, GradientError, MotionGradient, Sample, differentiate};
 pub use orbit::{Orbit, OrbitError, Periodic, Return, find_orbit};

@@ -136,7 +136,7 @@ fn a_block_turns_until_it_sticks() {
     let step = 2.0 * mu * m * g / k;
     // It sticks where abs(x) <= mu m g / k = step / 2.
     let turns = ((x - step / 2.0) / step).ceil();
-    let sign = if turns as usize % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if (turns as usize).is_multiple_of(2) { 1.0 } else { -1.0 };
     let c = sign * turns * step;
     let exact = rows(&[&[sign, -c / mu, -c / m, c / k, -c / g]]);
     let end = found.samples[0].derivative.as_ref().unwrap().row(0).into_owned();

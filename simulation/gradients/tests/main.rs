@@ -3,5 +3,6 @@
 mod closed_forms;
 mod common;
 mod differences;
+mod fits;
 mod orbits;
 mod undefined;

@@ -10,6 +10,7 @@ pub mod eval;
 pub mod expand;
 pub mod explain;
 pub mod export;
+pub mod fit;
 pub mod fmt;
 pub mod gradient;
 pub mod import;

@@ -1,0 +1,231 @@
+//! `hodograph fit`: fits parameters, mu and e to measured motions.
+
+mod table_of_motions;
+
+use std::path::PathBuf;
+
+use hodograph::{ComponentKind, Mechanism as _, State as Borrowed, Surface};
+use hodograph_gradients::{By, Fit, FitError, FitTask, fit};
+use hodograph_interpreter::{InterpretedMechanism, motion};
+use hodograph_simulation::Options;
+use serde::Serialize;
+
+use self::table_of_motions::Motions;
+use super::simulate::surfaces::{Found, MotionSurfaces};
+use crate::answers::FormArgument;
+use crate::derivation::{self, Limits};
+use crate::evaluate::report::Named;
+use crate::expression;
+use crate::json::{Failure, Kind};
+use crate::state_arguments::StateArguments;
+use crate::stop::{Outcome, Stop};
+use crate::table::{Table, number};
+
+/// Fit parameters, mu and e to measured motions
+///
+///   hodograph fit throws.csv rod.mech --parameters mu,e,l --mu 0.2 --e 0.5 --law poisson
+///
+/// The data are a CSV file with a column `t` (s) and columns of coordinates and speeds, named as in the model, as `x` or `x [m]`; a
+/// column `trajectory` tells motions apart. The first row of each motion is its start state, which is taken as it is; what has no
+/// column there is that of the model or of --state. The fit begins at the values that the model and the options give.
+#[derive(Clone, Debug, clap::Args)]
+#[command(verbatim_doc_comment)]
+pub struct Arguments {
+    /// the data
+    data: PathBuf,
+    /// the model file
+    model: PathBuf,
+    /// what is fitted: names of parameters, and mu, e, mu.CONTACT, e.CONTACT
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', required = true)]
+    parameters: Vec<String>,
+    /// the columns that are compared [default: all coordinates and speeds of the data]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',')]
+    outputs: Vec<String>,
+    /// errors of measurement by which differences are divided, as x=0.0002,q=0.001 [default: the standard deviation of
+    /// the column]
+    #[arg(long, value_name = "NAME=NUMBER,..", value_delimiter = ',')]
+    error: Vec<String>,
+    /// so often trajectories are drawn anew, with replacement, and fitted again: the spread of the values
+    #[arg(long, value_name = "COUNT", default_value_t = 0)]
+    bootstrap: usize,
+    /// the seed of these draws
+    #[arg(long, value_name = "NUMBER", default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    state: StateArguments,
+    /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    #[command(flatten)]
+    surfaces: MotionSurfaces,
+    #[command(flatten)]
+    form: FormArgument,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+/// Runs the command.
+///
+/// # Errors
+///
+/// [`Stop::Call`] for what is wrong with the data or the options; [`Stop::Fault`] where a motion cannot be followed.
+pub fn run(arguments: &Arguments) -> Outcome {
+    let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
+    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
+    let names: Vec<&str> = arguments.parameters.iter().map(|name| name.trim()).collect();
+    arguments.form.write(
+        || {
+            let state = arguments.state.state(&machine)?;
+            let mechanism = machine.interpreted(&state)?;
+            let by: Result<Vec<By>, String> = names.iter().map(|name| By::named(&mechanism, name)).collect();
+            let by = by.map_err(|message| Failure::new(Kind::UnknownName, message))?;
+            let start = Borrowed {
+                time: state.time,
+                coordinates: &state.coordinates,
+                speeds: &state.speeds,
+                inputs: &state.inputs,
+            };
+            if !state.inputs.is_empty() {
+                return Err(Stop::Fault("motions of mechanisms with inputs are not fitted yet".to_owned()));
+            }
+            let Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &start)?;
+            let options = Options {
+                relative_tolerance: tolerance,
+                absolute_tolerance: tolerance,
+                max_step: motion::greatest_step(&machine.program, false),
+                surfaces,
+                laws,
+                ..Options::default()
+            };
+            let motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
+            let units = arguments.units(&motions, &mechanism)?;
+            let task = FitTask {
+                trajectories: &motions.trajectories,
+                measured: &motions.measured,
+                units: &units,
+                variables: &by,
+                bootstrap: arguments.bootstrap,
+                seed: arguments.seed,
+            };
+            let found = fit(&mechanism, &options, &task).map_err(stop)?;
+            Ok(Answer::new(&found, &names, (&mechanism, &by), motions.trajectories.len()))
+        },
+        |answer| answer.tables(&names),
+    )
+}
+
+fn stop(error: FitError) -> Stop {
+    match error {
+        FitError::BadRequest(message) => Stop::Call(message),
+        error => Stop::Fault(error.to_string()),
+    }
+}
+
+impl Arguments {
+    /// By what the differences of each column are divided.
+    fn units(&self, motions: &Motions, mechanism: &InterpretedMechanism) -> Outcome<Vec<f64>> {
+        let mut units = motions.deviations();
+        let call =
+            |text: &str| Stop::Call(format!("--error {text}: give NAME=NUMBER with a positive number"));
+        for text in &self.error {
+            let (name, value) = text.split_once('=').ok_or_else(|| call(text))?;
+            let value = expression::number(value).map_err(|_| call(text))?;
+            let place = motions.place(mechanism, name.trim()).ok_or_else(|| {
+                Stop::Call(format!("--error {text}: no column `{}` of the data is compared", name.trim()))
+            })?;
+            if value <= 0.0 {
+                return Err(call(text));
+            }
+            units[place] = value;
+        }
+        Ok(units)
+    }
+}
+
+/// What is answered.
+#[derive(Serialize)]
+struct Answer<'a> {
+    values: Named<'a, f64>,
+    /// null where the data do not determine a value
+    errors: Named<'a, f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bootstrap: Option<Named<'a, f64>>,
+    correlations: Vec<Vec<f64>>,
+    undetermined: Vec<Named<'a, f64>>,
+    rms: f64,
+    differences: usize,
+    trajectories: usize,
+    without_derivatives: Vec<String>,
+    steps: usize,
+    /// options with which `simulate` has these values
+    arguments: Vec<String>,
+}
+
+impl<'a> Answer<'a> {
+    fn new(
+        found: &Fit,
+        names: &[&'a str],
+        (mechanism, by): (&InterpretedMechanism, &[By]),
+        trajectories: usize,
+    ) -> Self {
+        let named = |values: &[f64]| Named(names.iter().copied().zip(values.iter().copied()).collect());
+        let mut arguments = Vec::new();
+        for ((variable, name), value) in by.iter().zip(names).zip(&found.values) {
+            if matches!(variable, By::Parameter(_)) {
+                arguments.extend(["--parameter".to_owned(), format!("{name}={value}")]);
+            }
+        }
+        for (contact, Surface { mu, e, law }) in &found.surfaces {
+            let name =
+                mechanism.component(ComponentKind::Contact, *contact).map_or("?", |contact| contact.name);
+            arguments.extend(["--surface".to_owned(), format!("{name}={mu},{e},{law}")]);
+        }
+        Answer {
+            values: named(&found.values),
+            errors: named(&found.errors),
+            bootstrap: found.spread.as_deref().map(named),
+            correlations: found.correlations.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            undetermined: found.undetermined.iter().map(|direction| named(direction)).collect(),
+            rms: found.rms,
+            differences: found.differences,
+            trajectories,
+            without_derivatives: found.without_derivatives.clone(),
+            steps: found.steps,
+            arguments,
+        }
+    }
+
+    fn tables(&self, names: &[&str]) -> String {
+        let mut heads = vec!["", "value", "error"];
+        heads.extend(self.bootstrap.as_ref().map(|_| "bootstrap"));
+        let mut table = Table::new(heads.into_iter().chain(names.iter().copied()));
+        for (row, name) in names.iter().enumerate() {
+            let error = self.errors.0[row].1;
+            let error = if error.is_finite() { number(error) } else { "-".to_owned() };
+            let mut cells = vec![(*name).to_owned(), number(self.values.0[row].1), error];
+            cells.extend(self.bootstrap.as_ref().map(|spread| number(spread.0[row].1)));
+            cells.extend(self.correlations[row].iter().map(|value| format!("{value:.3}")));
+            table.row(cells);
+        }
+        let mut out = format!("\nvalues, their errors and correlations\n{}", table.text("  "));
+        for direction in &self.undetermined {
+            let parts = direction.0.iter().filter(|(_, part)| part.abs() > 1e-6);
+            let parts: Vec<String> = parts.map(|(name, part)| format!("{part:+.3} {name}")).collect();
+            out += &format!("\nnot determined by the data, in parts of the values: {}\n", parts.join(" "));
+        }
+        out += &format!(
+            "\nrms {} of {} differences in {} motions, after {} steps\n",
+            number(self.rms),
+            self.differences,
+            self.trajectories,
+            self.steps
+        );
+        if !self.without_derivatives.is_empty() {
+            let names = self.without_derivatives.join(", ");
+            out += &format!("not differentiable, fitted by differences: {names}\n");
+        }
+        out += &format!("simulate with: {}\n", self.arguments.join(" "));
+        out
+    }
+}

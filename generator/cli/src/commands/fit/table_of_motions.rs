@@ -1,0 +1,239 @@
+//! Reads measured motions from a CSV file.
+
+use std::path::Path;
+
+use hodograph::{ComponentKind, Mechanism as _, State};
+use hodograph_gradients::Trajectory;
+use hodograph_interpreter::InterpretedMechanism;
+use nalgebra::DMatrix;
+
+use crate::stop::{Outcome, Stop};
+
+/// The largest file, in bytes.
+const MOST: u64 = 1 << 30;
+
+/// Measured motions.
+pub struct Motions {
+    pub trajectories: Vec<Trajectory>,
+    /// the quantities that are compared: numbers among coordinates, then independent speeds
+    pub measured: Vec<usize>,
+}
+
+/// What a column holds.
+#[derive(Clone, Copy, PartialEq)]
+enum Column {
+    Time,
+    Trajectory,
+    /// a number among coordinates, then independent speeds
+    State(usize),
+}
+
+/// A row: its line, trajectory, time, and the numbers of its columns of the state; NaN where a cell is empty.
+struct Row {
+    line: u64,
+    trajectory: String,
+    time: f64,
+    numbers: Vec<f64>,
+}
+
+impl Motions {
+    /// Reads motions; `start` is the state of what has no column. Without `outputs` all columns of the state are compared.
+    ///
+    /// # Errors
+    ///
+    /// [`Stop::Call`], with the line and the column.
+    pub fn read(
+        path: &Path,
+        mechanism: &InterpretedMechanism,
+        start: &State<'_>,
+        outputs: &[String],
+    ) -> Outcome<Self> {
+        let size = std::fs::metadata(path).map_err(|error| Stop::unreadable(path, &error))?.len();
+        if size > MOST {
+            return Err(Stop::Call(format!("{} is larger than 1 GiB", path.display())));
+        }
+        let wrong = |what: String| Stop::Call(format!("{}: {what}", path.display()));
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_path(path)
+            .map_err(|error| wrong(error.to_string()))?;
+        let heads = reader.headers().map_err(|error| wrong(error.to_string()))?.clone();
+        let columns: Result<Vec<Column>, String> = heads.iter().map(|head| column(mechanism, head)).collect();
+        let columns = columns.map_err(wrong)?;
+        for (place, column) in columns.iter().enumerate() {
+            if columns[..place].contains(column) {
+                return Err(wrong(format!("the column `{}` stands twice", &heads[place])));
+            }
+        }
+        if !columns.contains(&Column::Time) {
+            return Err(wrong("there is no column `t`, the time in s".to_owned()));
+        }
+        let states: Vec<usize> = columns
+            .iter()
+            .filter_map(|column| match column {
+                Column::State(index) => Some(*index),
+                _ => None,
+            })
+            .collect();
+        let mut measured = Vec::new();
+        for name in outputs {
+            let index = index_of(mechanism, name.trim()).filter(|index| states.contains(index));
+            measured.push(index.ok_or_else(|| {
+                Stop::Call(format!("--outputs: the data have no column `{}` of the state", name.trim()))
+            })?);
+        }
+        if outputs.is_empty() {
+            measured.clone_from(&states);
+        }
+        if measured.is_empty() {
+            return Err(wrong("no column holds a coordinate or speed of the model".to_owned()));
+        }
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|error| wrong(error.to_string()))?;
+            rows.push(row(&record, &columns, &heads).map_err(wrong)?);
+        }
+        let mut trajectories = Vec::new();
+        let mut from = 0;
+        while from < rows.len() {
+            let name = &rows[from].trajectory;
+            let count = rows[from..].iter().take_while(|row| row.trajectory == *name).count();
+            let known = |other: &Trajectory| other.name == *name;
+            if trajectories.iter().any(known) {
+                let line = rows[from].line;
+                return Err(wrong(format!(
+                    "line {line}: trajectory {name} began before: its rows must stand together"
+                )));
+            }
+            let rows = &rows[from..from + count];
+            trajectories.push(trajectory(mechanism, start, rows, &states, &measured).map_err(wrong)?);
+            from += count;
+        }
+        if trajectories.is_empty() {
+            return Err(wrong("there are no rows".to_owned()));
+        }
+        Ok(Motions { trajectories, measured })
+    }
+
+    /// The place of a quantity among those that are compared.
+    pub fn place(&self, mechanism: &InterpretedMechanism, name: &str) -> Option<usize> {
+        let index = index_of(mechanism, name)?;
+        self.measured.iter().position(|other| *other == index)
+    }
+
+    /// The standard deviation of each column over all motions; 1 where nothing changes.
+    pub fn deviations(&self) -> Vec<f64> {
+        let deviation = |column: usize| {
+            let all = self
+                .trajectories
+                .iter()
+                .flat_map(|one| one.samples.column(column).iter().copied().collect::<Vec<_>>());
+            let all: Vec<f64> = all.filter(|value| !value.is_nan()).collect();
+            let mean = all.iter().sum::<f64>() / all.len().max(1) as f64;
+            let square =
+                all.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / all.len().max(1) as f64;
+            if square > 0.0 { square.sqrt() } else { 1.0 }
+        };
+        (0..self.measured.len()).map(deviation).collect()
+    }
+}
+
+/// The number of a coordinate or independent speed among both.
+fn index_of(mechanism: &InterpretedMechanism, name: &str) -> Option<usize> {
+    let speed = || {
+        let count = mechanism.count(ComponentKind::Coordinate);
+        mechanism.index(ComponentKind::Speed, name).map(|index| count + index)
+    };
+    mechanism.index(ComponentKind::Coordinate, name).or_else(speed)
+}
+
+/// What a column with this head holds: a name, and in brackets its unit.
+fn column(mechanism: &InterpretedMechanism, head: &str) -> Result<Column, String> {
+    let (name, unit) = match head.split_once('[') {
+        Some((name, rest)) => {
+            let unit =
+                rest.strip_suffix(']').ok_or_else(|| format!("the head `{head}` lacks a bracket `]`"))?;
+            (name.trim(), Some(unit.trim()))
+        }
+        None => (head.trim(), None),
+    };
+    let check = |own: &str| match unit {
+        Some(unit) if unit != own => {
+            Err(format!("the column `{name}` is in {unit}, the model counts it in {own}: convert it"))
+        }
+        _ => Ok(()),
+    };
+    if let Some(index) = index_of(mechanism, name) {
+        let count = mechanism.count(ComponentKind::Coordinate);
+        let component = match index.checked_sub(count) {
+            Some(speed) => mechanism.component(ComponentKind::Speed, speed),
+            None => mechanism.component(ComponentKind::Coordinate, index),
+        };
+        check(component.map_or("1", |component| component.unit))?;
+        return Ok(Column::State(index));
+    }
+    match name {
+        "t" => check("s").map(|()| Column::Time),
+        "trajectory" => Ok(Column::Trajectory),
+        _ => Err(format!(
+            "the column `{name}` is neither t, trajectory, nor a coordinate or independent speed of the model: rename it or leave it out"
+        )),
+    }
+}
+
+fn row(record: &csv::StringRecord, columns: &[Column], heads: &csv::StringRecord) -> Result<Row, String> {
+    let line = record.position().map_or(0, csv::Position::line);
+    let mut row = Row { line, trajectory: "1".to_owned(), time: f64::NAN, numbers: Vec::new() };
+    for ((cell, column), head) in record.iter().zip(columns).zip(heads) {
+        let number = || match cell.parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("line {line}: `{cell}` in the column `{head}` is not a finite number")),
+        };
+        match column {
+            Column::Trajectory => cell.clone_into(&mut row.trajectory),
+            Column::Time => row.time = number()?,
+            Column::State(_) => row.numbers.push(if cell.is_empty() { f64::NAN } else { number()? }),
+        }
+    }
+    Ok(row)
+}
+
+fn trajectory(
+    mechanism: &InterpretedMechanism,
+    start: &State<'_>,
+    rows: &[Row],
+    states: &[usize],
+    measured: &[usize],
+) -> Result<Trajectory, String> {
+    let first = &rows[0];
+    let mut state = [start.coordinates, start.speeds].concat();
+    for (&index, &number) in states.iter().zip(&first.numbers) {
+        if !number.is_nan() {
+            state[index] = number;
+        }
+    }
+    let count = start.coordinates.len();
+    mechanism.normalise(&mut state[..count]).map_err(|error| format!("line {}: {error}", first.line))?;
+    for (before, row) in rows.iter().zip(&rows[1..]) {
+        if row.time <= before.time {
+            return Err(format!("line {}: the time {} does not follow {}", row.line, row.time, before.time));
+        }
+    }
+    if rows.len() < 2 {
+        return Err(format!(
+            "line {}: trajectory {} has one row: give its start and samples",
+            first.line, first.trajectory
+        ));
+    }
+    let place = |index: &usize| states.iter().position(|other| other == index).unwrap_or(0);
+    let places: Vec<usize> = measured.iter().map(place).collect();
+    Ok(Trajectory {
+        name: first.trajectory.clone(),
+        start: first.time,
+        state,
+        times: rows[1..].iter().map(|row| row.time).collect(),
+        samples: DMatrix::from_fn(rows.len() - 1, places.len(), |row, column| {
+            rows[row + 1].numbers[places[column]]
+        }),
+    })
+}

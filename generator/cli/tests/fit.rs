@@ -1,0 +1,92 @@
+//! `hodograph fit`: values from measured motions in a CSV file, and what is wrong with such a file.
+
+use std::fmt::Write as _;
+
+use crate::common::{Run, hodograph, number, root};
+
+/// Heights of a ball that is dropped from h and bounces with e, in closed form.
+fn heights(h: f64, g: f64, e: f64, times: impl Iterator<Item = f64>) -> Vec<(f64, f64)> {
+    let height = |t: f64| {
+        let mut begin = (2.0 * h / g).sqrt();
+        if t < begin {
+            return h - 0.5 * g * t * t;
+        }
+        let mut v = e * g * begin;
+        while t - begin > 2.0 * v / g {
+            begin += 2.0 * v / g;
+            v *= e;
+        }
+        let since = t - begin;
+        v * since - 0.5 * g * since * since
+    };
+    times.map(|t| (t, height(t))).collect()
+}
+
+fn fit(data: &str, more: &[&str]) -> Run {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("drops.csv");
+    std::fs::write(&file, data).unwrap();
+    let path = root().join("simulation/gradients/tests/models/ball_on_plate.mech");
+    let call = ["fit", file.to_str().unwrap(), path.to_str().unwrap(), "--parameter", "a=0"];
+    hodograph(&[&call[..], &["--mu", "0", "--e", "0.7", "--law", "newton"], more].concat(), "")
+}
+
+fn drops() -> String {
+    let mut data = "trajectory,t [s],z [m]\n".to_owned();
+    for (name, h) in [("low", 0.08), ("high", 0.15)] {
+        for (t, z) in heights(h, 9.7, 0.8, (0..30).map(|step| 0.013 * f64::from(step))) {
+            writeln!(data, "{name},{t},{z}").unwrap();
+        }
+    }
+    data
+}
+
+#[test]
+fn gravity_and_restitution_are_found_and_the_mass_is_not() {
+    let run = fit(&drops(), &["--parameters", "g,e,m"]);
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let answer = run.line();
+    assert!((number(&answer["values"]["g"]) - 9.7).abs() < 1e-8, "{answer}");
+    assert!((number(&answer["values"]["e"]) - 0.8).abs() < 1e-9, "{answer}");
+    assert!(
+        answer["errors"]["m"].is_null() && number(&answer["undetermined"][0]["m"]).abs() > 0.99,
+        "{answer}"
+    );
+    assert_eq!(answer["trajectories"], 2);
+    assert_eq!(answer["differences"], 58);
+    // What `simulate` then takes.
+    let arguments: Vec<&str> =
+        answer["arguments"].as_array().unwrap().iter().map(|a| a.as_str().unwrap()).collect();
+    let path = root().join("simulation/gradients/tests/models/ball_on_plate.mech");
+    let call =
+        ["simulate", path.to_str().unwrap(), "--until", "0.1", "--parameter", "a=0", "--format", "csv"];
+    let run = hodograph(&[&call[..], &arguments].concat(), "");
+    assert_eq!(run.code, 0, "{}", run.stderr);
+    let table = fit(&drops(), &["--parameters", "g,e,m", "--bootstrap", "3", "--format", "table"]);
+    assert!(
+        table.stdout.contains("bootstrap") && table.stdout.contains("not determined"),
+        "{}",
+        table.stdout
+    );
+}
+
+#[test]
+fn data_that_are_wrong_are_refused_at_their_place() {
+    for (data, words) in [
+        ("t,z\n0,0.1\n0.1,x\n", "line 3: `x` in the column `z`"),
+        ("t,z\n0,0.1\n0,0.1\n", "line 3: the time 0 does not follow 0"),
+        ("t,z [mm]\n0,100\n0.1,90\n", "the model counts it in m"),
+        ("t,height\n0,0.1\n0.1,0.09\n", "the column `height`"),
+        ("z\n0.1\n0.09\n", "no column `t`"),
+        ("t,z\n0,0.1\n", "one row"),
+        ("t,z,z\n0,0.1,0.1\n", "stands twice"),
+        ("t\n0\n1\n", "no column holds"),
+        ("trajectory,t,z\na,0,0.1\na,0.1,0.1\nb,0,0.1\nb,0.1,0.1\na,0,0.1\n", "began before"),
+    ] {
+        let run = fit(data, &["--parameters", "e"]);
+        assert_eq!(run.code, 2, "{data}: {}", run.stderr);
+        assert!(run.stderr.contains(words), "{data}: {}", run.stderr);
+    }
+    let run = fit(&drops(), &["--parameters", "e", "--error", "u=0.1"]);
+    assert!(run.code == 2 && run.stderr.contains("no column `u`"), "{}", run.stderr);
+}

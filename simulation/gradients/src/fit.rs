@@ -1,0 +1,374 @@
+//! Fits parameters, mu and e to measured motions, by least squares with exact derivatives.
+//!
+//! Theory: docs/theory.md, section 21.
+
+use std::fmt;
+
+use hodograph::{ComponentKind, Mechanism, State, Surface};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::{Options, Simulation};
+use nalgebra::{DMatrix, DVector};
+
+use crate::family::{changed, stated, value_of};
+use crate::{By, GradientError, differentiate};
+
+/// A measured motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    /// its name, for messages
+    pub name: String,
+    /// when it begins, s
+    pub start: f64,
+    /// coordinates and independent speeds at its beginning: they are taken as they are
+    pub state: Vec<f64>,
+    /// times of the samples after the beginning, s, rising
+    pub times: Vec<f64>,
+    /// a row per sample, a column per measured quantity; NaN where nothing was measured
+    pub samples: DMatrix<f64>,
+}
+
+/// What is fitted to what.
+#[derive(Clone, Debug)]
+pub struct FitTask<'a> {
+    /// the motions
+    pub trajectories: &'a [Trajectory],
+    /// the measured quantities: numbers among coordinates, then independent speeds
+    pub measured: &'a [usize],
+    /// by which the differences of each quantity are divided: its error of measurement, or what counts as one
+    pub units: &'a [f64],
+    /// parameters, mu and e
+    pub variables: &'a [By],
+    /// so often trajectories are drawn anew, with replacement, and fitted again
+    pub bootstrap: usize,
+    /// the seed of these draws
+    pub seed: u64,
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// the values, in the order of the variables
+    pub values: Vec<f64>,
+    /// the surfaces of the contacts with these values
+    pub surfaces: Vec<(usize, Surface<f64>)>,
+    /// root of the mean square of the differences, in their units
+    pub rms: f64,
+    /// the number of differences
+    pub differences: usize,
+    /// standard errors from the curvature of the sum of squares, with the errors that the fit leaves
+    pub errors: Vec<f64>,
+    /// correlations of the values
+    pub correlations: DMatrix<f64>,
+    /// directions that the data do not determine: changes of the values, relative to their sizes, that change no difference
+    pub undetermined: Vec<Vec<f64>>,
+    /// standard deviations of the values of the draws; `None` without draws
+    pub spread: Option<Vec<f64>>,
+    /// trajectories without derivatives at the fit; those were formed by differences
+    pub without_derivatives: Vec<String>,
+    /// steps that were made
+    pub steps: usize,
+}
+
+/// Why nothing is fitted.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum FitError {
+    /// A motion cannot be followed at the first values: the trajectory, and why.
+    Motion(String, GradientError),
+    /// The task is wrong.
+    BadRequest(String),
+}
+
+impl fmt::Display for FitError {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Motion(name, error) => write!(out, "trajectory {name}: {error}"),
+            Self::BadRequest(what) => out.write_str(what),
+        }
+    }
+}
+
+impl std::error::Error for FitError {}
+
+/// Steps of the method of Levenberg and Marquardt; in a draw, which begins at the fit.
+const STEPS: usize = 60;
+const DRAWN_STEPS: usize = 8;
+/// Damping: at first, and its factors after a step that was made and one that was not.
+const DAMPING: f64 = 1e-3;
+const LESS: f64 = 0.2;
+const MORE: f64 = 5.0;
+const MOST: f64 = 1e12;
+/// The fit has ended where the sum of squares falls by less than this part.
+const ENOUGH: f64 = 1e-14;
+/// Singular values of the derivatives by relative changes below this part of the greatest: not determined.
+const UNDETERMINED: f64 = 1e-8;
+/// Relative step of differences where there is no derivative.
+const STEP: f64 = 1e-5;
+
+/// Fits the variables, from the values that the mechanism and the options have.
+///
+/// # Errors
+///
+/// [`FitError`]
+pub fn fit(mechanism: &InterpretedMechanism, options: &Options, task: &FitTask<'_>) -> Result<Fit, FitError> {
+    check(mechanism, task)?;
+    let problem = Problem { mechanism, options, task };
+    let first: Result<Vec<f64>, String> =
+        task.variables.iter().map(|&by| value_of(mechanism, options, by)).collect();
+    let first = first.map_err(FitError::BadRequest)?;
+    let all: Vec<usize> = (0..task.trajectories.len()).collect();
+    let (values, here, steps) = problem.minimise(first, &all, STEPS)?;
+    let scale: Vec<f64> = values.iter().map(|value| if *value == 0.0 { 1.0 } else { value.abs() }).collect();
+    let count = here.differences.len();
+    let relative =
+        DMatrix::from_fn(count, values.len(), |row, column| here.by[(row, column)] * scale[column]);
+    let square = here.differences.norm_squared();
+    let decomposed = (relative.transpose() * &relative).symmetric_eigen();
+    let greatest = decomposed.eigenvalues.max().max(f64::MIN_POSITIVE);
+    let least = UNDETERMINED * UNDETERMINED * greatest;
+    let free = count.saturating_sub(values.len()).max(1) as f64;
+    let mut covariance = DMatrix::zeros(values.len(), values.len());
+    let mut undetermined = Vec::new();
+    for (value, vector) in decomposed.eigenvalues.iter().zip(decomposed.eigenvectors.column_iter()) {
+        if *value <= least {
+            undetermined.push(vector.iter().copied().collect::<Vec<f64>>());
+        } else {
+            covariance += vector * vector.transpose() * (square / free / value);
+        }
+    }
+    // What lies in a direction that is not determined has no error.
+    let lost = |place: usize| undetermined.iter().any(|direction| direction[place].abs() > 1e-6);
+    let own = |place: usize| f64::sqrt(covariance[(place, place)]);
+    let errors =
+        (0..values.len()).map(|place| if lost(place) { f64::INFINITY } else { own(place) * scale[place] });
+    let correlations = DMatrix::from_fn(values.len(), values.len(), |row, column| {
+        let product = own(row) * own(column);
+        if product > 0.0 { covariance[(row, column)] / product } else { f64::from(u8::from(row == column)) }
+    });
+    let spread = if task.bootstrap == 0 { None } else { Some(problem.draws(&values)?) };
+    let (_, mut fitted) = problem.at(&values).map_err(FitError::BadRequest)?;
+    stated(mechanism, &mut fitted);
+    Ok(Fit {
+        surfaces: fitted.surfaces,
+        errors: errors.collect(),
+        rms: (square / count.max(1) as f64).sqrt(),
+        differences: count,
+        correlations,
+        undetermined,
+        spread,
+        without_derivatives: here.without,
+        steps,
+        values,
+    })
+}
+
+fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), FitError> {
+    let bad = |what: String| Err(FitError::BadRequest(what));
+    let count = mechanism.count(ComponentKind::Coordinate) + mechanism.count(ComponentKind::Speed);
+    if task.trajectories.is_empty() || task.measured.is_empty() || task.variables.is_empty() {
+        return bad("there is nothing to fit, or nothing to fit to".to_owned());
+    }
+    if task.measured.iter().any(|&index| index >= count) || task.units.len() != task.measured.len() {
+        return bad("a measured quantity does not exist, or has no unit".to_owned());
+    }
+    if let Some(unit) = task.units.iter().find(|unit| !(unit.is_finite() && **unit > 0.0)) {
+        return bad(format!("the unit of a measured quantity is {unit}: it must be positive"));
+    }
+    for trajectory in task.trajectories {
+        let Trajectory { name, state, times, samples, start } = trajectory;
+        let rises = std::iter::once(start).chain(times).zip(times).all(|(before, time)| before < time);
+        if !rises || times.is_empty() {
+            return bad(format!("trajectory {name}: its times must rise, and there must be two at least"));
+        }
+        if samples.nrows() != times.len() || samples.ncols() != task.measured.len() || state.len() != count {
+            return bad(format!("trajectory {name}: its samples or its state have the wrong size"));
+        }
+    }
+    Ok(())
+}
+
+/// What differs at some values.
+struct Differences {
+    differences: DVector<f64>,
+    /// their derivatives by the variables
+    by: DMatrix<f64>,
+    /// trajectories without derivatives
+    without: Vec<String>,
+}
+
+struct Problem<'a> {
+    mechanism: &'a InterpretedMechanism,
+    options: &'a Options,
+    task: &'a FitTask<'a>,
+}
+
+impl Problem<'_> {
+    fn at(&self, values: &[f64]) -> Result<(InterpretedMechanism, Options), String> {
+        let (mut mechanism, mut options) = (self.mechanism.clone(), self.options.clone());
+        for (&by, &value) in self.task.variables.iter().zip(values) {
+            changed(&mut mechanism, &mut options, by, value)?;
+        }
+        Ok((mechanism, options))
+    }
+
+    /// The differences of a trajectory from its motion, in their units.
+    fn differences_of(&self, trajectory: &Trajectory, states: &[Vec<f64>]) -> Vec<f64> {
+        let mut differences = Vec::new();
+        for (row, state) in states.iter().enumerate() {
+            for (column, (&index, unit)) in self.task.measured.iter().zip(self.task.units).enumerate() {
+                let measured = trajectory.samples[(row, column)];
+                if !measured.is_nan() {
+                    differences.push((state[index] - measured) / unit);
+                }
+            }
+        }
+        differences
+    }
+
+    /// The motion alone.
+    fn plain(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
+        let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
+        let (coordinates, speeds) = trajectory.state.split_at(mechanism.count(ComponentKind::Coordinate));
+        let start = State { time: trajectory.start, coordinates, speeds, inputs: &[] };
+        let failed = |error: hodograph_simulation::SimulationError| {
+            FitError::Motion(trajectory.name.clone(), error.into())
+        };
+        let mut simulation = Simulation::new(&mechanism, &start, options).map_err(failed)?;
+        let mut states = Vec::with_capacity(trajectory.times.len());
+        for &time in &trajectory.times {
+            simulation.advance_to(time).map_err(failed)?;
+            states.push([simulation.coordinates(), simulation.speeds()].concat());
+        }
+        Ok(self.differences_of(trajectory, &states))
+    }
+
+    /// The differences of some trajectories at these values, with derivatives.
+    fn evaluate(&self, values: &[f64], places: &[usize]) -> Result<Differences, FitError> {
+        let (mechanism, options) = self.at(values).map_err(FitError::BadRequest)?;
+        let (mut all, mut rows, mut without) = (Vec::new(), Vec::new(), Vec::new());
+        for &place in places {
+            let trajectory = &self.task.trajectories[place];
+            let (coordinates, speeds) = trajectory.state.split_at(mechanism.count(ComponentKind::Coordinate));
+            let start = State { time: trajectory.start, coordinates, speeds, inputs: &[] };
+            let found =
+                differentiate(&mechanism, &start, options.clone(), self.task.variables, &trajectory.times);
+            let found = found.map_err(|error| FitError::Motion(trajectory.name.clone(), error))?;
+            let states: Vec<Vec<f64>> = found.samples.iter().map(|sample| sample.state.clone()).collect();
+            all.extend(self.differences_of(trajectory, &states));
+            if found.undefined.is_some() {
+                without.push(trajectory.name.clone());
+                rows.extend(self.by_differences(values, trajectory)?);
+                continue;
+            }
+            for (row, sample) in found.samples.iter().enumerate() {
+                let Some(by) = &sample.derivative else { continue };
+                for (column, (&index, unit)) in self.task.measured.iter().zip(self.task.units).enumerate() {
+                    if !trajectory.samples[(row, column)].is_nan() {
+                        rows.extend(by.row(index).iter().map(|by| by / unit));
+                    }
+                }
+            }
+        }
+        let by = DMatrix::from_row_slice(all.len(), values.len(), &rows);
+        Ok(Differences { differences: DVector::from_vec(all), by, without })
+    }
+
+    /// Derivatives of the differences of a trajectory by differences of its motion, by rows.
+    fn by_differences(&self, values: &[f64], trajectory: &Trajectory) -> Result<Vec<f64>, FitError> {
+        let mut columns = Vec::with_capacity(values.len());
+        for place in 0..values.len() {
+            let h = STEP * values[place].abs().max(STEP);
+            let moved = |h: f64| {
+                let mut moved = values.to_vec();
+                moved[place] += h;
+                self.plain(&moved, trajectory)
+            };
+            // At the end of a range there is one side only.
+            let (above, below) = (moved(h), moved(-h));
+            let here = || self.plain(values, trajectory);
+            let (above, below, width) = match (above, below) {
+                (Ok(above), Ok(below)) => (above, below, 2.0 * h),
+                (Ok(above), Err(_)) => (above, here()?, h),
+                (Err(_), Ok(below)) => (here()?, below, h),
+                (Err(error), Err(_)) => return Err(error),
+            };
+            columns.push(above.iter().zip(&below).map(|(a, b)| (a - b) / width).collect::<Vec<f64>>());
+        }
+        let rows = columns.first().map_or(0, Vec::len);
+        Ok((0..rows).flat_map(|row| columns.iter().map(move |column| column[row])).collect())
+    }
+
+    /// The method of Levenberg and Marquardt on these trajectories.
+    fn minimise(
+        &self,
+        mut values: Vec<f64>,
+        places: &[usize],
+        steps: usize,
+    ) -> Result<(Vec<f64>, Differences, usize), FitError> {
+        let mut here = self.evaluate(&values, places)?;
+        let mut damping = DAMPING;
+        let mut made = 0;
+        while made < steps {
+            let normal = here.by.transpose() * &here.by;
+            let slope = here.by.transpose() * &here.differences;
+            let square = here.differences.norm_squared();
+            let mut next = None;
+            while damping < MOST {
+                // Relative to the curvature along each variable, so that their units do not matter.
+                let least = normal.diagonal().max() * f64::EPSILON;
+                let damped = DMatrix::from_fn(values.len(), values.len(), |row, column| {
+                    let more = if row == column { damping * normal[(row, row)].max(least) } else { 0.0 };
+                    normal[(row, column)] + more
+                });
+                let step = damped.cholesky().map(|factor| factor.solve(&slope));
+                let trial: Option<Vec<f64>> = step
+                    .map(|step| values.iter().zip(step.iter()).map(|(value, step)| value - step).collect());
+                // Values that are refused, or whose motions cannot be followed, ask for a shorter step.
+                if let Some(trial) = trial
+                    && let Ok(there) = self.evaluate(&trial, places)
+                    && there.differences.norm_squared() < square
+                {
+                    next = Some((trial, there));
+                    break;
+                }
+                damping *= MORE;
+            }
+            let Some((trial, there)) = next else { break };
+            let fallen = square - there.differences.norm_squared();
+            (values, here) = (trial, there);
+            damping = (damping * LESS).max(f64::EPSILON);
+            made += 1;
+            if fallen <= ENOUGH * square {
+                break;
+            }
+        }
+        Ok((values, here, made))
+    }
+
+    /// Standard deviations of the values over draws of the trajectories.
+    fn draws(&self, values: &[f64]) -> Result<Vec<f64>, FitError> {
+        let count = self.task.trajectories.len();
+        let mut state = self.task.seed;
+        // Steele, Lea and Flood's generator SplitMix64.
+        let mut random = || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut word = state;
+            word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            word ^ (word >> 31)
+        };
+        let mut sums = vec![(0.0, 0.0); values.len()];
+        for _ in 0..self.task.bootstrap {
+            let places: Vec<usize> = (0..count).map(|_| (random() % count as u64) as usize).collect();
+            let (found, ..) = self.minimise(values.to_vec(), &places, DRAWN_STEPS)?;
+            for (sum, (found, value)) in sums.iter_mut().zip(found.iter().zip(values)) {
+                let off = found - value;
+                *sum = (sum.0 + off, sum.1 + off * off);
+            }
+        }
+        let n = self.task.bootstrap as f64;
+        let deviation =
+            |(sum, squares): &(f64, f64)| ((squares - sum * sum / n) / (n - 1.0).max(1.0)).max(0.0).sqrt();
+        Ok(sums.iter().map(deviation).collect())
+    }
+}

@@ -1,0 +1,98 @@
+//! Fits to motions that were made with known values.
+
+use hodograph::{Law, Mechanism, State};
+use hodograph_gradients::{By, FitError, FitTask, Trajectory, fit};
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_simulation::Simulation;
+use nalgebra::DMatrix;
+
+use crate::common::{options, read};
+
+/// Throws of the rod with these values of mu, e and the parameters (m, l, g), every 0.02 s: the places and the angle, with
+/// errors of this size that are known.
+fn throws(values: ([f64; 2], [f64; 3]), error: f64) -> Vec<Trajectory> {
+    let mut rod = read("simulation/models/painleve_rod.mech");
+    let ([mu, e], parameters) = values;
+    rod.set_parameter_values(&parameters).unwrap();
+    let starts = [[1.3, 0.7, 1.5, 2.0], [1.4, 1.1, -0.8, -1.0], [1.2, 0.3, 0.6, 3.0], [1.5, -0.4, -1.2, 1.0]];
+    let throw = |(number, [z, q, u1, u3]): (usize, [f64; 4])| {
+        let (coordinates, speeds) = ([0.0, z, q], [u1, 0.0, u3]);
+        let state = State { time: 0.0, coordinates: &coordinates, speeds: &speeds, inputs: &[] };
+        let mut simulation = Simulation::new(&rod, &state, options(mu, e, Law::Poisson)).unwrap();
+        let times: Vec<f64> = (1..=35).map(|step| 0.02 * f64::from(step)).collect();
+        let mut samples = DMatrix::zeros(times.len(), 3);
+        for (row, &time) in times.iter().enumerate() {
+            simulation.advance_to(time).unwrap();
+            for column in 0..3 {
+                let off =
+                    error * (1e3 * (row as f64 + 0.37) * (column as f64 + 1.7) * (number as f64 + 0.9)).sin();
+                samples[(row, column)] = simulation.coordinates()[column] + off;
+            }
+        }
+        let state = [coordinates, speeds].concat();
+        Trajectory { name: format!("throw {number}"), start: 0.0, state, times, samples }
+    };
+    starts.into_iter().enumerate().map(throw).collect()
+}
+
+fn task<'a>(trajectories: &'a [Trajectory], variables: &'a [By], bootstrap: usize) -> FitTask<'a> {
+    FitTask { trajectories, measured: &[0, 1, 2], units: &[1e-3; 3], variables, bootstrap, seed: 1 }
+}
+
+fn rod() -> InterpretedMechanism {
+    read("simulation/models/painleve_rod.mech")
+}
+
+#[test]
+fn values_are_found_again() {
+    let throws = throws(([0.23, 0.61], [1.0, 1.04, 9.7]), 0.0);
+    let variables = [By::Friction(None), By::Restitution(None), By::Parameter(1), By::Parameter(2)];
+    let found = fit(&rod(), &options(0.2, 0.55, Law::Poisson), &task(&throws, &variables, 0)).unwrap();
+    let exact = [0.23, 0.61, 1.04, 9.7];
+    for (found, exact) in found.values.iter().zip(exact) {
+        assert!((found - exact).abs() < 1e-9 * exact, "{found} instead of {exact}");
+    }
+    assert!(found.rms < 1e-6 && found.undetermined.is_empty(), "{found:?}");
+    assert_eq!(found.differences, 4 * 35 * 3);
+    assert!(found.without_derivatives.is_empty(), "{found:?}");
+}
+
+/// The mass of a single body changes nothing of its motion: the fit says so, and finds the rest.
+#[test]
+fn what_is_not_determined_is_told() {
+    let throws = throws(([0.23, 0.61], [1.0, 1.0, 9.81]), 0.0);
+    let variables = [By::Restitution(None), By::Parameter(0)];
+    let found = fit(&rod(), &options(0.23, 0.55, Law::Poisson), &task(&throws, &variables, 0)).unwrap();
+    assert!((found.values[0] - 0.61).abs() < 1e-9);
+    assert_eq!(found.undetermined.len(), 1, "{found:?}");
+    assert!((found.undetermined[0][1].abs() - 1.0).abs() < 1e-6, "{found:?}");
+    assert!(found.errors[1].is_infinite() && found.errors[0].is_finite());
+}
+
+/// With errors of measurement: the values lie within some standard errors, and draws of the trajectories spread alike.
+#[test]
+fn errors_are_those_of_the_data() {
+    let throws = throws(([0.23, 0.61], [1.0, 1.0, 9.81]), 1e-3);
+    let variables = [By::Friction(None), By::Restitution(None)];
+    let found = fit(&rod(), &options(0.2, 0.55, Law::Poisson), &task(&throws, &variables, 12)).unwrap();
+    // The root of the mean square of a sine.
+    assert!((found.rms - 0.5_f64.sqrt()).abs() < 0.05, "{found:?}");
+    for ((value, exact), error) in found.values.iter().zip([0.23, 0.61]).zip(&found.errors) {
+        assert!((value - exact).abs() < 4.0 * error && *error < 1e-2, "{found:?}");
+    }
+    let spread = found.spread.unwrap();
+    for (spread, error) in spread.iter().zip(&found.errors) {
+        assert!(*spread > 0.02 * error && *spread < 20.0 * error, "{spread} {error}");
+    }
+    assert!((found.correlations[(0, 0)] - 1.0).abs() < 1e-12 && found.correlations[(0, 1)].abs() < 1.0);
+}
+
+#[test]
+fn tasks_that_are_wrong_are_refused() {
+    let mut throws = throws(([0.2, 0.5], [1.0, 1.0, 9.81]), 0.0);
+    throws[1].times[3] = 0.0;
+    let found = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &task(&throws, &[By::Friction(None)], 0));
+    assert!(matches!(&found, Err(FitError::BadRequest(what)) if what.contains("throw 1")), "{found:?}");
+    let found = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &task(&throws[..1], &[By::Speed(0)], 0));
+    assert!(matches!(found, Err(FitError::BadRequest(_))), "{found:?}");
+}
