@@ -143,7 +143,7 @@ fn a_block_turns_until_it_sticks() {
     let off = (DMatrix::from_row_slice(1, 5, end.transpose().as_slice()) - &exact).amax();
     assert!(turns == 11.0 && off < 1e-9, "{turns} turns, off by {off:e}: {end} {exact}");
     let half = std::f64::consts::PI * (m / k).sqrt();
-    let last = found.events.iter().filter(|event| event.time.is_some()).next_back().unwrap();
+    let last = found.events.iter().rfind(|event| event.time.is_some()).unwrap();
     assert!((last.event.time - turns * half).abs() < 1e-9);
     let time = last.time.as_ref().unwrap();
     let exact = vector(&[0.0, 0.0, turns * half / (2.0 * m), -turns * half / (2.0 * k), 0.0]);
