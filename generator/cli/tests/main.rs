@@ -35,6 +35,7 @@ mod recordings;
 mod reference;
 mod rolling;
 mod serve;
+mod sketches;
 mod solve;
 mod state;
 mod stated;

@@ -124,6 +124,11 @@ impl<'m> Recording<'m> {
         self.moment(&state, force);
     }
 
+    /// A state by itself, without forces of contacts.
+    pub fn still(&mut self, state: &Borrowed<'_>) {
+        self.moment(state, |_| None);
+    }
+
     /// The state in which an event found the mechanism: curves jump there, instead of rising towards it from
     /// the moment before.
     pub fn before(&mut self, event: &Event, simulation: &Simulation<'_>) {

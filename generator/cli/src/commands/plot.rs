@@ -1,10 +1,11 @@
-//! `hodograph plot`: draws the course of collisions.
+//! `hodograph plot`: draws the course of collisions, and sketches of mechanisms.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use hodograph::{ReducedMatrix, snapshot_at};
+use hodograph::{ComponentKind, ReducedMatrix, snapshot_at};
+use hodograph_animation::{Recording, Setup};
 use hodograph_generator::artifact::place;
 use hodograph_generator::files;
 use hodograph_generator::program::Quantity;
@@ -16,9 +17,9 @@ use crate::json::{Failure, Fields, Json};
 use crate::output;
 use crate::plot::collision::figure;
 use crate::plot::figure::{Figure, Panel};
-use crate::plot::file::Format;
+use crate::plot::file::{Format, picture};
 use crate::plot::trace::{Trace, trace};
-use crate::plot::{conics, portrait};
+use crate::plot::{conics, portrait, sketch};
 use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 
@@ -37,6 +38,10 @@ use crate::stop::{Outcome, Stop};
 /// --figure conics draws Appendix B of the paper, its Fig. 4, for the contact: the ellipse g = 0, the
 /// hyperbola h = 0, a circle of radius mu, and the points A, B, C and D. --figure portrait draws
 /// the hodographs of many directions of approach, a panel for each coefficient of friction.
+///
+/// --sketch draws the mechanism itself in the state: its shapes and grounds, and lines between its points.
+///
+///   hodograph plot --sketch models/shapes/dropped_crate.mech --output crate.svg
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {
@@ -52,13 +57,16 @@ pub struct Arguments {
         long,
         value_name = "NUMBER,..",
         value_delimiter = ',',
-        required = true,
+        required_unless_present = "sketch",
         allow_hyphen_values = true
     )]
     mu: Vec<f64>,
     /// coefficient of restitution, between 0 and 1; `conics` needs none
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, required_unless_present = "figure")]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true, required_unless_present_any = ["figure", "sketch"])]
     e: Option<f64>,
+    /// draw the mechanism instead of a collision
+    #[arg(long, requires = "model", conflicts_with_all = ["mu", "e", "figure", "starts", "contact"])]
+    sketch: bool,
     /// what to draw
     #[arg(long, value_enum, default_value_t = Kind::Course)]
     figure: Kind,
@@ -96,6 +104,14 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if format == Format::Png && arguments.output.is_none() && std::io::stdout().is_terminal() {
         return Err(Stop::Call("a picture is not for a terminal: give --output FILE.png".to_owned()));
     }
+    if let (true, Some(model)) = (arguments.sketch, &arguments.model) {
+        apart(arguments)?;
+        let bytes = sketched(model, arguments, format)?;
+        return match &arguments.output {
+            Some(path) => output::file(path, &bytes),
+            None => output::bytes(&bytes),
+        };
+    }
     let e = match (arguments.figure, arguments.e) {
         (Kind::Conics, None) => 0.0,
         (_, Some(e)) if arguments.figure != Kind::Conics => e,
@@ -108,13 +124,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if arguments.model.is_none() && !arguments.state.is_empty() {
         return Err(Stop::Call("--state and --parameter are those of a model: name one".to_owned()));
     }
-    if let Some(path) = &arguments.output {
-        let mut read = arguments.state.files();
-        if let Some(model) = &arguments.model {
-            read.extend([model.clone(), place::beside(model)]);
-        }
-        output::apart(&[path], &read)?;
-    }
+    apart(arguments)?;
     let Drawn { title, matrix, velocity } = collision(arguments)?;
     let figure = match arguments.figure {
         Kind::Course => course(&format!("{title}e = {e}"), &matrix, velocity, &arguments.mu, e)?,
@@ -141,6 +151,38 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Some(path) => figure.save(path, format),
         None => output::bytes(&figure.bytes(format)?),
     }
+}
+
+/// Refuses to write over what is read.
+fn apart(arguments: &Arguments) -> Outcome {
+    let Some(path) = &arguments.output else { return Ok(()) };
+    let mut read = arguments.state.files();
+    if let Some(model) = &arguments.model {
+        read.extend([model.clone(), place::beside(model)]);
+    }
+    output::apart(&[path], &read)
+}
+
+/// The picture of a mechanism in a state.
+fn sketched(path: &Path, arguments: &Arguments, format: Format) -> Outcome<Vec<u8>> {
+    let machine = derivation::machine(path, &arguments.limits)?;
+    let state = arguments.state.state(&machine)?;
+    let mechanism = machine.interpreted(&state)?;
+    let mut recording = Recording::new(&mechanism, mechanism.model(), &state.to_numeric(), Setup::default());
+    recording.still(&hodograph::State {
+        time: state.time,
+        coordinates: &state.coordinates,
+        speeds: &state.speeds[..hodograph::Mechanism::count(&mechanism, ComponentKind::Speed)],
+        inputs: &state.inputs,
+    });
+    let recorded = recording.finish();
+    for note in &recorded.notes {
+        output::say(format_args!("note: {note}"));
+    }
+    let title = &machine.mechanism.name;
+    let names = recorded.shown.shapes.iter().map(|shape| shape.name.as_str()).collect::<Vec<_>>().join(", ");
+    let what = if names.is_empty() { "lines between its points".to_owned() } else { names };
+    picture(&sketch::sheet(&recorded.shown, 0), format, title, &what)
 }
 
 fn nothing() -> Stop {

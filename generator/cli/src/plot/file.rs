@@ -4,6 +4,7 @@ use std::path::Path;
 
 use clap::ValueEnum;
 
+use super::canvas::Sheet;
 use super::figure::Figure;
 use super::{layout, png, svg};
 use crate::output;
@@ -17,10 +18,7 @@ impl Figure {
     /// The figure is too large for a picture.
     pub fn bytes(&self, format: Format) -> Outcome<Vec<u8>> {
         let sheet = layout::draw(self).map_err(|error| Stop::Fault(format!("cannot draw: {error}")))?;
-        match format {
-            Format::Svg => Ok(svg::write(&sheet, &self.title, &self.description()).into_bytes()),
-            Format::Png => png::write(&sheet).map_err(|error| Stop::Fault(format!("cannot draw {error}"))),
-        }
+        picture(&sheet, format, &self.title, &self.description())
     }
 
     /// Writes a file, whole or not at all.
@@ -30,6 +28,18 @@ impl Figure {
     /// As [`bytes`](Self::bytes), or the file cannot be written.
     pub fn save(&self, path: &Path, format: Format) -> Outcome {
         output::file(path, &self.bytes(format)?)
+    }
+}
+
+/// The bytes of a sheet in a format, with a title and a description where it has room for them.
+///
+/// # Errors
+///
+/// The sheet is too large for a picture.
+pub fn picture(sheet: &Sheet, format: Format, title: &str, description: &str) -> Outcome<Vec<u8>> {
+    match format {
+        Format::Svg => Ok(svg::write(sheet, title, description).into_bytes()),
+        Format::Png => png::write(sheet).map_err(|error| Stop::Fault(format!("cannot draw {error}"))),
     }
 }
 

@@ -17,6 +17,7 @@ mod legend;
 mod png;
 pub mod portrait;
 mod series;
+pub mod sketch;
 pub mod svg;
 #[cfg(test)]
 mod tests;
