@@ -395,6 +395,71 @@ fn spheres_on_solids() {
     }
 }
 
+/// The nearest points of two segments from the middles a_0 and b_0 along unit vectors, and sin^2 of their angle: of
+/// all ends with the other segment, and of the insides, the pair that is nearest.
+fn of_segments([a_0, a]: [V; 2], h: f64, [b_0, b]: [V; 2], k: f64) -> (V, V, f64) {
+    let held =
+        |from: V, along: V, half: f64, p: V| plus(from, along, dot3(sub3(p, from), along).clamp(-half, half));
+    let mut pairs = Vec::new();
+    for sign in [-1.0, 1.0] {
+        let (end, other) = (plus(a_0, a, sign * h), plus(b_0, b, sign * k));
+        pairs.push((end, held(b_0, b, k, end)));
+        pairs.push((held(a_0, a, h, other), other));
+    }
+    // the lines are nearest along their common normal: volumes of parallelepipeds
+    let (normal, d) = (cross3(a, b), sub3(b_0, a_0));
+    let apart = dot3(normal, normal);
+    let (s, t) = (dot3(cross3(d, b), normal) / apart, dot3(cross3(d, a), normal) / apart);
+    if s.abs() < h && t.abs() < k {
+        pairs.push((plus(a_0, a, s), plus(b_0, b, t)));
+    }
+    let nearest =
+        pairs.into_iter().min_by(|(p, q), (r, s)| norm3(sub3(*p, *q)).total_cmp(&norm3(sub3(*r, *s))));
+    let (p, q) = nearest.unwrap();
+    (p, q, apart)
+}
+
+#[test]
+fn capsules_on_capsules() {
+    let shapes = "S { of: A, capsule: [k, 8*k], axis: E.x }, T { of: B, capsule: [2*k, 12*k], axis: F.z }";
+    let m = model(shapes, "S on T");
+    let look = |said: &[Said], pose: &Pose| {
+        let [one] = said else { panic!() };
+        let (p, q, apart) =
+            of_segments([pose.at[0], pose.axes[0][0]], 0.4, [pose.at[1], pose.axes[1][2]], 0.6);
+        let w = sub3(p, q);
+        if norm3(w) < 0.02 {
+            return None;
+        }
+        let n = scaled(w, 1.0 / norm3(w));
+        // places along axes are known to rounding over the square of the angle between them
+        let known = norm3(w) * apart.min(1.0);
+        let off = norm3(sub3(one.normal, n)).max(norm3(sub3(one.point, plus(p, n, -0.1))));
+        Some((one.gap - (norm3(w) - 0.3)).abs().max(off * known))
+    };
+    compare("capsule on capsule", &m, look);
+    // parallel, and nearly so: the distance of the axes, at one of their common places
+    let mut state = State::of(&m);
+    for tilt in [0.0, 1e-14, 1e-10, 1e-7, 1e-5] {
+        for along in [-0.9, -0.3, 0.0, 0.2, 0.7] {
+            state.coordinates.iter_mut().for_each(|q| *q = 0.0);
+            // the first lies along x, the second along its z, turned to x
+            (state.coordinates[0], state.coordinates[1]) = (along, 0.5);
+            state.coordinates[10] = std::f64::consts::FRAC_PI_2 + tilt;
+            let found = said(&m, &state).unwrap();
+            let pose = pose(&m, &state);
+            let (p, q, _) =
+                of_segments([pose.at[0], pose.axes[0][0]], 0.4, [pose.at[1], pose.axes[1][2]], 0.6);
+            let gap = norm3(sub3(p, q)) - 0.3;
+            assert!((found[0].gap - gap).abs() < 1e-12, "{tilt:e} {along}: {} {gap}", found[0].gap);
+            assert!((norm3(found[0].normal) - 1.0).abs() < 1e-12);
+        }
+    }
+    // axes that cross have no direction
+    state.coordinates.iter_mut().for_each(|q| *q = 0.0);
+    assert!(said(&m, &state).is_none());
+}
+
 #[test]
 fn spheres_within_solids() {
     let solids = [

@@ -57,6 +57,7 @@ pub fn contacts((striking, vertices): (Kind, usize), inside: bool, struck: Kind)
         // the vertices of both
         (Rectangle, Rectangle, false) => Some(8),
         (Polytope, Plane | HalfSpace | Surface | Curve, false) => Some(vertices),
+        (Capsule, Capsule, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder | Box | Rectangle | Disc | Torus, false) => Some(1),
         (Sphere, Sphere | Capsule | Cylinder, true) => Some(1),
         (Sphere, Box, true) => Some(6),

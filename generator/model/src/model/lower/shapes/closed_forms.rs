@@ -18,6 +18,7 @@ pub fn touches(first: &Shape, inside: bool, second: &Shape, at: Span) -> Vec<Tou
         (Kind::Curve, _) => corners(first).iter().filter_map(|p| on_height(p, second, 1)).collect(),
         (Kind::Box, true) => in_box(first, second),
         (Kind::Rectangle, _) if first.kind == Kind::Rectangle => faces::between(first, second),
+        (Kind::Capsule, false) if first.kind == Kind::Capsule => vec![on_capsule(first, second, at)],
         (_, false) => vec![on_solid(first, second, at)],
         (_, true) => vec![in_solid(first, second, at)],
     }
@@ -131,6 +132,31 @@ fn on_solid(ball: &Shape, solid: &Shape, at: Span) -> Touch {
     };
     let point = ball.at.plus(opposite(&scaled(radius, &normal)));
     Touch::endless(point, normal, less(norm(&w), away))
+}
+
+/// The square of the angle between the axes of capsules, rad^2, below which they count as parallel: places along
+/// them are not known then, and the distance does not depend on them but for rounding.
+const PARALLEL: (i64, i64) = (1, 1_000_000_000_000);
+
+/// A capsule on another: the nearest points of two segments, each held within its segment and then found again for
+/// the other (section 16.8).
+fn on_capsule(first: &Shape, second: &Shape, at: Span) -> Touch {
+    let ([r, l], [other, length]) = (&first.sizes[..], &second.sizes[..]) else {
+        return on_solid(first, second, at);
+    };
+    let (a, b, d) = (axis_of(first), axis_of(second), first.at.from(&second.at));
+    let (along, d_a, d_b) = (dot(&a, &b), dot(&d, &a), dot(&d, &b));
+    // sin^2 of the angle as the square of a vector: it is exact where the axes are nearly parallel
+    let across = Vector::Cross(Box::new(a.clone()), Box::new(b.clone()));
+    let apart = greater(dot(&across, &across), ratio(PARALLEL.0, PARALLEL.1));
+    let free = quotient(less(product([along.clone(), d_b.clone()]), d_a.clone()), apart, at);
+    let guess = between_bounds(free, &half(l));
+    let there = between_bounds(sum([d_b, product([along.clone(), guess])]), &half(length));
+    let here = between_bounds(less(product([along, there.clone()]), d_a), &half(l));
+    let w = total([d, scaled(here.clone(), &a), opposite(&scaled(there, &b))]);
+    let normal = unit(&w, at);
+    let point = first.at.plus(total([scaled(here, &a), opposite(&scaled(r.clone(), &normal))]));
+    Touch::endless(point, normal, less(norm(&w), sum([r.clone(), other.clone()])))
 }
 
 /// A ball within a sphere, a capsule or a cylinder without ends: w leads from the middle to the ball's centre.
