@@ -45,18 +45,21 @@ impl Limits {
     ) -> Outcome<R> {
         let (sender, receiver) = std::sync::mpsc::channel();
         let worker = std::thread::Builder::new().stack_size(STACK);
+        let limit = Duration::from_secs(self.time_limit);
+        let late = format!("{doing} took more than {} seconds: give more with --time-limit", self.time_limit);
+        let started = Instant::now();
         worker
-            .spawn(move || drop(sender.send(work())))
+            .spawn(move || drop(sender.send((work(), started.elapsed()))))
             .map_err(|error| Stop::Fault(format!("cannot start a thread: {error}")))?;
-        receiver.recv_timeout(Duration::from_secs(self.time_limit)).map_err(|error| match error {
-            RecvTimeoutError::Timeout => Stop::Fault(format!(
-                "{doing} took more than {} seconds: give more with --time-limit",
-                self.time_limit
-            )),
-            RecvTimeoutError::Disconnected => {
-                Stop::Fault(format!("{doing} failed: please report it with the model"))
+        match receiver.recv_timeout(limit) {
+            // a busy machine may wake this thread only after an answer that came too late
+            Ok((_, took)) if took > limit => Err(Stop::Fault(late)),
+            Ok((answer, _)) => Ok(answer),
+            Err(RecvTimeoutError::Timeout) => Err(Stop::Fault(late)),
+            Err(RecvTimeoutError::Disconnected) => {
+                Err(Stop::Fault(format!("{doing} failed: please report it with the model")))
             }
-        })
+        }
     }
 }
 
