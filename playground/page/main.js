@@ -31,6 +31,8 @@ const later = (wait, run) => {
 };
 
 async function begin() {
+  // In a page of the book, which has a heading and models of its own.
+  document.body.classList.toggle("embedded", self !== top);
   const served = watchFile((file) => {
     if (file.fault) return say(file.fault, "error");
     derive(file.derivation || "");

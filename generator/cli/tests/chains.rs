@@ -57,7 +57,7 @@ fn close(what: &str, found: &[f64], expected: &[f64]) {
     }
 }
 
-/// Holds a program to the numeric road at some states.
+/// Holds a program to the numeric evaluation at some states.
 fn agrees(m: &Mechanism, program: &Program) {
     for seed in 1..4 {
         let state = random(m, seed);
@@ -173,7 +173,7 @@ fn imported_joints_of_every_kind_agree() {
 }
 
 /// The bounds of definitions that are squared in others are exact numbers with ever more digits: from some on
-/// they are measured by themselves, and the program is the same to the numeric road.
+/// they are measured by themselves, and the program is the same to the numeric evaluation.
 #[test]
 fn definitions_that_are_squared_agree() {
     let folder = tempfile::tempdir().unwrap();

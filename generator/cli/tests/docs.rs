@@ -49,7 +49,7 @@ fn agree(found: &str, shown: &str) -> bool {
 }
 
 /// Whether the output looks as shown. `..` ends a line early, or stands for any lines.
-fn matches(output: &str, shown: &[String]) -> bool {
+pub fn matches(output: &str, shown: &[String]) -> bool {
     let mut lines = output.lines();
     let mut skipping = false;
     for wanted in shown {

@@ -40,5 +40,6 @@ mod solve;
 mod state;
 mod stated;
 mod structure;
+mod tutorial;
 mod unusual;
 mod writing;

@@ -111,7 +111,7 @@ fn examples() -> Vec<String> {
         .collect()
 }
 
-/// What the language reference shows derives, and computes what the numeric road does.
+/// What the language reference shows derives, and computes what the numeric evaluation does.
 #[test]
 fn examples_of_the_language_reference_agree_with_the_numeric_road() {
     let folder = tempfile::tempdir().unwrap();

@@ -16,8 +16,8 @@ fn block(page: &str, heading: &str, fence: &str) -> String {
     lines.iter().map(|line| format!("{}\n", line.get(indent..).unwrap_or_default())).collect()
 }
 
-/// Runs a command in the crate.
-fn succeeds(command: &mut Command, folder: &Path) {
+/// Runs a command in the crate, and answers what it prints.
+pub fn succeeds(command: &mut Command, folder: &Path) -> String {
     for (key, _) in std::env::vars_os() {
         let key = key.to_string_lossy().into_owned();
         if key.starts_with("CARGO_") && key != "CARGO_HOME" || key == "RUSTFLAGS" {
@@ -26,6 +26,15 @@ fn succeeds(command: &mut Command, folder: &Path) {
     }
     let output = command.current_dir(folder).output().unwrap();
     assert!(output.status.success(), "{command:?}\n{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Cargo's command `what` in a crate of one's own, with what is built for the others of these tests.
+pub fn commanded(what: &str, folder: &Path) -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own_crate");
+    cargo.args([what, "--offline", "--target-dir"]).arg(target).current_dir(folder);
+    cargo
 }
 
 #[test]
@@ -60,7 +69,5 @@ fn half_of_it() {
     std::fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     succeeds(Command::new(env!("CARGO_BIN_EXE_hodograph")).args(["derive", "models/"]), folder);
     assert!(folder.join("models/pendulum.derivation").is_file());
-    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("own_crate");
-    succeeds(Command::new(cargo).args(["test", "--offline", "--target-dir"]).arg(target), folder);
+    succeeds(&mut commanded("test", folder), folder);
 }

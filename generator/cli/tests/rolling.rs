@@ -61,7 +61,7 @@ fn eval(text: &str) -> Run {
     hodograph(&["eval", path.to_str().unwrap()], "")
 }
 
-/// The numbers of the derived equations, which must be those of the numeric road.
+/// The numbers of the derived equations, which must be those of the numeric evaluation.
 fn evaluated(text: &str) -> Value {
     let run = eval(text);
     assert_eq!(run.code, 0, "{text}\n{}", run.stderr);

@@ -25,7 +25,7 @@ pub struct State {
 }
 
 impl State {
-    /// The same for the numeric road of the generator.
+    /// The same for the numeric evaluation of the generator.
     pub fn to_numeric(&self) -> hodograph_generator::numeric::State {
         hodograph_generator::numeric::State {
             parameters: self.parameters.clone(),

@@ -1,4 +1,4 @@
-//! Implements the trait `Contacts` by the numeric road.
+//! Implements the trait `Contacts` by the numeric evaluation.
 
 use std::sync::Arc;
 

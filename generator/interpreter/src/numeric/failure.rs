@@ -1,4 +1,4 @@
-//! Errors of the numeric road, as the traits say them.
+//! Errors of the numeric evaluation, as the traits say them.
 
 use hodograph::StateError;
 use hodograph_model::numeric::{self, Failure};

@@ -1,4 +1,4 @@
-//! Implements the trait `Mechanism` by the numeric road.
+//! Implements the trait `Mechanism` by the numeric evaluation.
 
 use hodograph::generated::{check_length, normalise_quaternions, write};
 use hodograph::nalgebra::{DMatrix, DVector, Matrix3, Vector3};

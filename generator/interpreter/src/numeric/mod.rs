@@ -112,7 +112,7 @@ impl NumericMechanism {
         check_length(state.inputs, self.model.inputs.len(), "inputs")
     }
 
-    /// The state as the numeric road takes it.
+    /// The state as the numeric evaluation takes it.
     fn numbers(&self, state: &State<'_>) -> Result<numeric::State, StateError> {
         self.check(state)?;
         Ok(numeric::State {

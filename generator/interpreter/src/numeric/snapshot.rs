@@ -86,7 +86,7 @@ pub struct Known {
 #[derive(Debug)]
 pub struct Snapshot {
     state: State,
-    /// what the numeric road found
+    /// what the numeric evaluation found
     pub values: Evaluation,
     /// u' without contact forces
     pub accelerations: DVector<f64>,

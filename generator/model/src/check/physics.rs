@@ -44,8 +44,12 @@ fn parts(m: &Mechanism) -> usize {
     m.points.len() + m.frames.len() + m.definitions.len() + m.bodies.len() + m.contacts.len()
 }
 
-/// Runs deeply recursive work on a thread with a large stack; a panic there gives the default value.
+/// Runs deeply recursive work on a thread with a large stack; a panic there gives the default value. A module of
+/// WebAssembly has no threads: it gets its stack when it is linked, and a panic ends it.
 pub(super) fn with_room<T: Default + Send>(look: impl FnOnce() -> T + Send) -> T {
+    if cfg!(target_family = "wasm") {
+        return look();
+    }
     std::thread::scope(|scope| {
         let thread = std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, look);
         match thread.map(|thread| thread.join()) {
