@@ -288,3 +288,21 @@ proptest! {
         answered(text);
     }
 }
+
+/// A frame that turns back by a constant angle is fixed in the body, whatever rounding leaves of their relative
+/// angular velocity.
+#[test]
+fn an_inertia_in_a_frame_that_is_fixed_in_the_body_is_constant() {
+    for step in 1..60 {
+        let angle = f64::from(step) * 0.1;
+        let text = format!(
+            "mechanism Fork; parameters {{ m: kg = 1, J: kg*m^2 = 0.02, c: rad = {angle} }}\n\
+             coordinates {{ q1: rad = 0.3, q2: rad = 0.7, q3: rad = 0.2 }} speeds {{ u1: rad/s = 0.9, u2: rad/s = 1.3, u3: rad/s = 0.4 }}\n\
+             frames {{ A = N.rotate(z, q1); B = A.rotate(y, q2 + c); C = B.rotate(x, q3); D = B.rotate(y, -c); E = C.rotate(y, -c); }}\n\
+             bodies {{ P {{ frame: B, centre: O, mass: m, inertia: [J, 2*J, 2.5*J, 0, 0, J/9] in D }}, \
+             Q {{ frame: C, centre: O, mass: m, inertia: [J, 2*J, 2.5*J, 0, 0, J/9] in E }} }}\n"
+        );
+        let found = check(&Source::file("fork", text.as_str())).diagnostics;
+        assert!(found.is_empty(), "{angle}: {:?}", found.iter().map(|d| &d.message).collect::<Vec<_>>());
+    }
+}

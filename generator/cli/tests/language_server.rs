@@ -366,3 +366,48 @@ fn random_edits_end_where_check_does() {
 fn a_hundred_thousand_random_edits() {
     random_edits(100_000, 500, 7);
 }
+
+/// From a key to its diagnostics, through the protocol: each of the last keys of a text is typed, and its diagnostics
+/// are awaited. Prints the half and the 95th of a hundred.
+///
+/// `cargo test --release -p hodograph-cli --no-default-features --test all -- --ignored --nocapture latency`
+#[test]
+#[ignore = "times are not held on machines that do other work; instructions are, by tests/instructions"]
+fn latency_from_a_key_to_its_diagnostics() {
+    let largest = model("arm_7dof.mech");
+    let many: String = (0..2490)
+        .map(|i| format!("    /// place {i}\n    P{i} = O + {}*l*N.x + q1*N.y;\n", i + 1))
+        .collect();
+    let long = format!(
+        "mechanism Long;\nparameters {{ l: m = 1, m: kg = 1 }}\ncoordinates {{ q1: m }}\nspeeds {{ u1: m/s }}\n\
+         points {{\n{many}}}\nparticles {{ A {{ point: P1, mass: m }} }}\nloads {{ force on P1: 2*m/l*u1^2*N.y; }}\n"
+    );
+    let word = "l".to_owned() + &" + l".repeat(24);
+    for (name, text, before) in
+        [("the largest shipped model", largest.as_str(), "*"), ("5000 lines", long.as_str(), "*l*N.x")]
+    {
+        let mut client = Client::started();
+        client.open(URI, text);
+        client.diagnostics(1);
+        let at = text.len() / 2 + text[text.len() / 2..].find(before).unwrap();
+        let [line, start] = position(text, at);
+        let mut times = Vec::new();
+        for (index, key) in word.chars().enumerate() {
+            let version = index as i64 + 2;
+            let begun = std::time::Instant::now();
+            client.change(version, [line, start + index, line, start + index], &key.to_string());
+            client.diagnostics(version);
+            times.push(begun.elapsed().as_secs_f64() * 1e3);
+        }
+        assert_eq!(client.end(), Some(0));
+        times.sort_by(f64::total_cmp);
+        let part = |part: f64| times[((times.len() - 1) as f64 * part).round() as usize];
+        println!(
+            "{name}, {} lines: {} keys, half within {:.1} ms, 95 of 100 within {:.1} ms",
+            text.lines().count(),
+            times.len(),
+            part(0.5),
+            part(0.95)
+        );
+    }
+}

@@ -1,5 +1,6 @@
-//! Counts the instructions of every routine in `measured` and of every motion in `motions`, and holds them against
-//! `counts.txt`: more than 3 % above it (of a motion 10 %) is an error. With `HODOGRAPH_UPDATE=1` the table is written
+//! Counts the instructions of every routine in `measured`, of every motion in `motions` and of every model that
+//! `typing` types into, and holds them against `counts.txt`: more than 3 % above it (of a motion or of typing 10 %) is
+//! an error. With `HODOGRAPH_UPDATE=1` the table is written
 //! anew instead.
 //!
 //! With the argument `specialised` it prints what collisions that are one routine bring, as a table of a document.
@@ -13,11 +14,13 @@ use std::process::{Command, ExitCode};
 
 /// A routine may take this much more than the table says: compilers and their versions differ a little.
 const SLACK: f64 = 0.03;
-/// A motion may take this much more: the numbers of its steps depend on rounding, which the C library's functions
-/// differ in.
-const SLACK_OF_MOTIONS: f64 = 0.10;
-/// How names of motions begin.
-const MOTION: &str = "motion::";
+/// A whole program may take this much more: the numbers of a motion's steps depend on rounding, which the C library's
+/// functions differ in, and the standard library allocates differently from version to version.
+const SLACK_OF_PROGRAMS: f64 = 0.10;
+/// Programs that are counted as a whole: how their names in the table begin, the package, and the function whose
+/// instructions, with those of all it calls, are counted.
+const PROGRAMS: [(&str, &str, &str); 2] =
+    [("motion::", "motions", "motions::follow*"), ("typing::", "typing", "typing::press*")];
 /// A few instructions are no matter, however short the routine.
 const FEW: f64 = 8.0;
 
@@ -50,7 +53,9 @@ fn main() -> ExitCode {
 fn run() -> Result<bool, String> {
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("counts.txt");
     let (mut counted, in_part) = count()?;
-    counted.extend(motions()?);
+    for program in PROGRAMS {
+        counted.extend(whole(program)?);
+    }
     let stored = std::fs::read_to_string(&table).map_err(|error| format!("{}: {error}", table.display()))?;
     let stored: Counts = stored.lines().filter_map(entry).collect();
     if expectations::are_written_anew() {
@@ -77,16 +82,15 @@ fn run() -> Result<bool, String> {
             continue;
         };
         let more = now - before;
-        let slack = if name.starts_with(MOTION) { SLACK_OF_MOTIONS } else { SLACK };
+        let slack = if program_of(name).is_some() { SLACK_OF_PROGRAMS } else { SLACK };
         if more > FEW && more > slack * before {
             println!("{name}: {now:.0}, {:.1} % above {before:.0}", 100.0 * more / before);
             right = false;
         }
     }
-    for (what, of_motions) in [("routines", false), ("motions", true)] {
+    for (what, program) in [("routines", None), ("motions", Some(0)), ("models typed into", Some(1))] {
         let of = |counts: &Counts| -> Vec<f64> {
-            let all = counts.iter().filter(|(name, _)| name.starts_with(MOTION) == of_motions);
-            all.map(|(_, count)| *count).collect()
+            counts.iter().filter(|(name, _)| program_of(name) == program).map(|(_, count)| *count).collect()
         };
         let (now, before) = (of(&counted), of(&stored));
         let part = 100.0 * now.iter().sum::<f64>() / before.iter().sum::<f64>();
@@ -136,25 +140,30 @@ fn specialised() -> Result<(), String> {
     Ok(())
 }
 
-/// Instructions of the motions.
-fn motions() -> Result<Counts, String> {
-    let program = build("measured", FLAGS, &["measured", "motions"])?.with_file_name("motions");
-    let profile = program.with_file_name("callgrind.motion.out");
+/// Which of the programs that are counted as a whole a name of the table belongs to.
+fn program_of(name: &str) -> Option<usize> {
+    PROGRAMS.iter().position(|(prefix, ..)| name.starts_with(prefix))
+}
+
+/// Instructions of a program with each of the arguments that it offers.
+fn whole((prefix, package, function): (&str, &str, &str)) -> Result<Counts, String> {
+    let program = build("measured", FLAGS, &["measured", "motions", "typing"])?.with_file_name(package);
+    let profile = program.with_file_name("callgrind.whole.out");
     let mut counts = Counts::new();
-    for motion in execute(&mut Command::new(&program))?.lines() {
+    for case in execute(&mut Command::new(&program))?.lines() {
         execute(
             Command::new("valgrind")
-                .args(["--tool=callgrind", "--toggle-collect=motions::follow*"])
+                .args(["--tool=callgrind", &format!("--toggle-collect={function}")])
                 .arg(format!("--callgrind-out-file={}", profile.display()))
                 .arg(&program)
-                .args(motion.split(',')),
+                .args(case.split(',')),
         )?;
         let text =
             std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
         let total = text.lines().find_map(|line| line.strip_prefix("totals: ")?.trim().parse().ok());
         let total: f64 =
-            total.filter(|total| *total > 0.0).ok_or(format!("{motion}: nothing was counted"))?;
-        counts.insert(format!("{MOTION}{}", motion.replace([' ', ','], "_")), total);
+            total.filter(|total| *total > 0.0).ok_or(format!("{case}: nothing was counted"))?;
+        counts.insert(format!("{prefix}{}", case.replace([' ', ','], "_")), total);
     }
     Ok(counts)
 }
@@ -178,7 +187,7 @@ fn build(folder: &str, flags: &str, packages: &[&str]) -> Result<PathBuf, String
 
 /// Instructions of the routines, and the subjects of which not all were counted.
 fn count() -> Result<(Counts, Vec<String>), String> {
-    let measured = build("measured", FLAGS, &["measured", "motions"])?;
+    let measured = build("measured", FLAGS, &["measured", "motions", "typing"])?;
     let subjects = execute(&mut Command::new(&measured))?;
     let (mut counts, mut in_part) = (Counts::new(), Vec::new());
     for subject in subjects.lines() {

@@ -38,6 +38,11 @@ fn turning_inertias(m: &Mechanism, state: &State, at: &Evaluation) -> Vec<bool> 
         let Ok(Some(i)) = numeric::central_inertia(&values, body) else { return false };
         let (a, b) = (at.angular_velocities[frame.0], at.angular_velocities[inertia.frame.0]);
         let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+        // what rounding leaves where both turn alike is no turning
+        let speed = |w: &[f64; 3]| w.iter().fold(0.0_f64, |s, c| s.max(c.abs()));
+        if speed(&[x, y, z]) <= ROUNDING * speed(&a).max(speed(&b)) {
+            return false;
+        }
         let w = [[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]];
         let entry = |a: &[[f64; 3]; 3], b: &[[f64; 3]; 3], r: usize, c: usize| {
             (0..3).map(|k| a[r][k] * b[k][c]).sum::<f64>()
