@@ -306,3 +306,23 @@ fn an_inertia_in_a_frame_that_is_fixed_in_the_body_is_constant() {
         assert!(found.is_empty(), "{angle}: {:?}", found.iter().map(|d| &d.message).collect::<Vec<_>>());
     }
 }
+
+/// A point that stands still because motions cancel is a point of N, whatever rounding leaves of its velocity.
+#[test]
+fn a_point_whose_motions_cancel_stands_still() {
+    for step in 1..60 {
+        let k = f64::from(step) * 0.1;
+        let text = format!(
+            "mechanism Still; parameters {{ m: kg = 1, l: m = 0.7, k: 1 = {k} }} coordinates {{ q1: rad = 0.3, q2: rad = 0.7 }}\n\
+             speeds {{ u1: rad/s = 0.9, u2: rad/s = 1.3 }} frames {{ A = N.rotate(z, q1); B = A.rotate(x, q2); C = A.rotate(x, q2); }}\n\
+             points {{ P = O + l*B.z; Q = P - k*l*A.y; R = Q - l*C.z; S = R + k*l*A.y; T of N = S + l*N.x; }}\n\
+             particles {{ E {{ point: P, mass: m }}, F {{ point: R, mass: m }} }}\n"
+        );
+        let found = check(&Source::file("still", text.as_str())).diagnostics;
+        assert!(
+            found.is_empty(),
+            "{k}: {:?}",
+            found.iter().map(|d| (d.code, &d.message)).collect::<Vec<_>>()
+        );
+    }
+}

@@ -375,9 +375,8 @@ fn a_hundred_thousand_random_edits() {
 #[ignore = "times are not held on machines that do other work; instructions are, by tests/instructions"]
 fn latency_from_a_key_to_its_diagnostics() {
     let largest = model("arm_7dof.mech");
-    let many: String = (0..2490)
-        .map(|i| format!("    /// place {i}\n    P{i} = O + {}*l*N.x + q1*N.y;\n", i + 1))
-        .collect();
+    let many: String =
+        (0..2490).map(|i| format!("    /// place {i}\n    P{i} = O + {}*l*N.x + q1*N.y;\n", i + 1)).collect();
     let long = format!(
         "mechanism Long;\nparameters {{ l: m = 1, m: kg = 1 }}\ncoordinates {{ q1: m }}\nspeeds {{ u1: m/s }}\n\
          points {{\n{many}}}\nparticles {{ A {{ point: P1, mass: m }} }}\nloads {{ force on P1: 2*m/l*u1^2*N.y; }}\n"

@@ -8,6 +8,9 @@ use crate::model::mechanism::*;
 use crate::numeric::Evaluation;
 use crate::numeric::views::{cross3, norm3, sub3};
 
+/// What rounding can leave of a length or a speed beside the greatest of the mechanism.
+const ROUNDING: f64 = 1e-12;
+
 /// Points that are placed on bodies to which they do not belong.
 pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
     let mut out = Vec::new();
@@ -34,7 +37,8 @@ pub(super) fn strangers(m: &Mechanism, seen: &[Seen<'_>]) -> Vec<Diagnostic> {
         let Some(particle) = body else { continue };
         let apart = |at: &Evaluation| {
             let (a, b) = (at.positions[contact.point.0]?, at.positions[particle.centre.0]?);
-            Some(norm3(sub3(a, b)) > 1e-9 * (norm3(a) + norm3(b)))
+            let farthest = at.positions.iter().flatten().map(|p| norm3(*p)).fold(0.0, f64::max);
+            Some(norm3(sub3(a, b)) > (1e-9 * (norm3(a) + norm3(b))).max(ROUNDING * farthest))
         };
         if !seen.is_empty() && seen.iter().all(|seen| apart(&seen.at) == Some(true)) {
             let (p, centre) = (&m.points[contact.point.0].name, &m.points[particle.centre.0].name);
@@ -64,7 +68,9 @@ fn stays_on(m: &Mechanism, at: &Evaluation, frame: FrameId, point: PointId) -> O
         let turned = cross3(turning, arm);
         let slip = sub3(sub3(of_point, of_reference), turned);
         let scale = norm3(of_point) + norm3(of_reference) + norm3(turned);
-        Some(norm3(slip) <= 1e-9 * scale)
+        // what stands still by cancellation has a velocity of rounding
+        let fastest = at.velocities.iter().map(|v| norm3(*v)).fold(0.0, f64::max);
+        Some(norm3(slip) <= (1e-9 * scale).max(ROUNDING * fastest))
     };
     if frame == FrameId::N {
         return with(PointId::O);
