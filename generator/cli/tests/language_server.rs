@@ -381,7 +381,7 @@ fn latency_from_a_key_to_its_diagnostics() {
         "mechanism Long;\nparameters {{ l: m = 1, m: kg = 1 }}\ncoordinates {{ q1: m }}\nspeeds {{ u1: m/s }}\n\
          points {{\n{many}}}\nparticles {{ A {{ point: P1, mass: m }} }}\nloads {{ force on P1: 2*m/l*u1^2*N.y; }}\n"
     );
-    let word = "l".to_owned() + &" + l".repeat(24);
+    let word: String = std::iter::once("l").chain(std::iter::repeat_n(" + l", 24)).collect();
     for (name, text, before) in
         [("the largest shipped model", largest.as_str(), "*"), ("5000 lines", long.as_str(), "*l*N.x")]
     {

@@ -240,7 +240,14 @@ impl Text {
                 }
                 start = i + 1;
             } else if ends {
-                let line = joined(&items[start..=i]);
+                let mut line = joined(&items[start..=i]);
+                // `1.` at the end of a line would be one number
+                if let [.., number, point] = &items[start..=i]
+                    && number.is(TokenKind::Number)
+                    && point.is(TokenKind::Sign('.'))
+                {
+                    line.insert(line.len() - 1, ' ');
+                }
                 // what follows a comment on its line stays there
                 let follows = start > 0 && items[start].breaks == 0 && !items[start - 1].ends_line();
                 match self.lines.last_mut().filter(|_| follows) {

@@ -64,6 +64,18 @@ fn comments_stay_where_they_are() {
     );
 }
 
+/// Between a number and the two points of a range the author may have broken the line.
+#[test]
+fn ranges_stay_ranges() {
+    for range in ["1 .\n. n", "1 . // to\n. n", "1 . /* to */ . n", "1\n. . n", "1 ..\nn"] {
+        let text = format!(
+            "mechanism A;\ncount n = 2;\npart L {{ }}\nfor i in /* all */ {range} {{ use L as l[i](); }}\n"
+        );
+        let once = formatted(&text);
+        assert_eq!(formatted(&once), once, "{text}");
+    }
+}
+
 #[test]
 fn what_cannot_be_parsed_is_left_alone() {
     let error = format(&Source::file("x.mech", "mechanism A;\nframes { A = ; }")).unwrap_err();
