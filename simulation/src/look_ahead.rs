@@ -57,6 +57,8 @@ impl Transition<'_> {
                 break;
             }
             return match self.chosen_at(contacts, &step)? {
+                // Nothing changes: they miss their conditions by what errors of the state may do.
+                Ok(choice) if self.go_on(contacts, &choice) => break,
                 Ok(choice) => {
                     self.begin_from_rest(contacts, &choice)?;
                     self.apply(contacts, &was, &choice);
@@ -154,6 +156,7 @@ impl Transition<'_> {
         let state = State { time, coordinates: q, speeds: u, inputs: &inputs };
         let support = ClosedContacts::loaded(self.mechanism, &state, self.angles, contacts)
             .map_err(|error| self.failure(Failure::State(error)))?;
+        let settled = self.settled_directions(step);
         let slips: Vec<Option<Vector2<f64>>> = contacts
             .iter()
             .enumerate()
@@ -162,13 +165,37 @@ impl Transition<'_> {
                 Phase::Slide(began) => {
                     let slip = support.slip(i);
                     let size = support.velocity_size(i, u).max(support.velocity_size(i, &self.front.scale));
-                    (slip.norm() > NO_SLIP * size && slip.dot(&began) > 0.0).then(|| slip / slip.norm())
+                    let known = settled.iter().find(|(other, _)| *other == contact);
+                    (slip.norm() > NO_SLIP * size && slip.dot(&began) > 0.0)
+                        .then(|| known.map_or_else(|| slip / slip.norm(), |(_, direction)| *direction))
                 }
                 _ => None,
             })
             .collect();
         let friction = self.frictions(contacts, &slips, &support)?;
         Ok(choose(&support, &slips, &friction, &self.forces_before(contacts)))
+    }
+
+    /// Whether these decisions are the modes as they are.
+    fn go_on(&self, contacts: &[usize], choice: &Choice) -> bool {
+        contacts.iter().zip(&choice.decisions).all(|(&contact, decision)| {
+            matches!(
+                (self.front.phases[contact], decision),
+                (Phase::Stick, Decision::Stick) | (Phase::Slide(_), Decision::Slide(_, false))
+            )
+        })
+    }
+
+    /// The contacts whose directions of slip follow from the state, and these directions at the end of a step: those with
+    /// which the conditions of the modes are told.
+    fn settled_directions(&self, step: &Step) -> Vec<(usize, Vector2<f64>)> {
+        let closed = self.closed();
+        if closed.iter().all(Closed::has_own_direction) {
+            return Vec::new();
+        }
+        let Ok(there) = self.motion(&closed).evaluate(step.t + step.h, &step.end) else { return Vec::new() };
+        let settled = closed.iter().zip(&there.holds).filter(|(contact, _)| !contact.has_own_direction());
+        settled.filter_map(|(contact, hold)| Some((contact.contact, hold.direction()?))).collect()
     }
 
     /// Takes back what was said of the modes of contacts at this instant.

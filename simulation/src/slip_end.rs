@@ -3,13 +3,15 @@
 //!
 //! Close to the end only the slip changes: with dt = s dtau, phi' = h(phi) and (ln s)' = g(phi), where g and
 //! h are the tangential accelerations along and across the slip. If phi tends to a direction with g < 0, slip
-//! ends, after a time that these equations give; if g becomes positive, slip grows again and passes zero by.
+//! ends, after a time that these equations give; if g becomes positive, slip grows again and passes zero by. Slip that
+//! turns into a jam (section 17.6) ends there: its impact without collision takes what is left of it.
 
+use hodograph::ContactError;
 use nalgebra::Vector2;
 
 use crate::closed_contacts::ClosedContacts;
 use crate::contact_problem::Wanted;
-use crate::forces::{Hold, forces};
+use crate::forces::{Hold, Lacking, forces};
 use crate::motion::{DIRECTION, Evaluation};
 
 /// What becomes of slip.
@@ -38,23 +40,40 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
     let start = slip.norm();
     let mut holds = holds.to_vec();
     // g and h in a direction.
-    let mut rates = |phi: f64| -> Option<(f64, f64)> {
+    let mut rates = |phi: f64| -> Result<(f64, f64), Lacking> {
         let d = Vector2::new(phi.cos(), phi.sin());
         holds[place] = Hold::Slide(d);
-        let a = forces(support, &holds, mu, None, Wanted::Motion).ok()?.acceleration;
+        let a = forces(support, &holds, mu, None, Wanted::Motion)?.acceleration;
         let a = Vector2::new(a[3 * place + 1], a[3 * place + 2]);
-        Some((a.dot(&d), d.x * a.y - d.y * a.x))
+        Ok((a.dot(&d), d.x * a.y - d.y * a.x))
+    };
+    // Whether it has no rates because it jams.
+    let without = |lacking: Lacking, time: f64| match lacking {
+        Lacking::Contact(at, ContactError::Jam { .. } | ContactError::ImpactWithoutCollision { .. })
+            if at == place && time < within =>
+        {
+            Fate::Ends(time)
+        }
+        _ => Fate::PassesBy,
     };
     let (mut size, mut phi, mut time) = (0.0_f64, slip.y.atan2(slip.x), 0.0);
     for _ in 0..STEPS {
-        let Some((g, h)) = rates(phi) else { return Fate::PassesBy };
+        let (g, h) = match rates(phi) {
+            Ok(rates) => rates,
+            Err(lacking) => return without(lacking, time),
+        };
         // A contact that nearly jams has forces in directions close by alone.
         let turns = std::iter::successors(Some(TURN), |turn| Some(0.1 * turn)).take(LESS);
         let slope = turns.into_iter().find_map(|turn| {
-            let (before, after) = (rates(phi - turn)?, rates(phi + turn)?);
+            let (before, after) = (rates(phi - turn).ok()?, rates(phi + turn).ok()?);
             Some((after.1 - before.1) / (2.0 * turn))
         });
-        let Some(slope) = slope else { return Fate::PassesBy };
+        let Some(slope) = slope else {
+            return without(
+                rates(phi + TURN).err().or(rates(phi - TURN).err()).unwrap_or(Lacking::Common),
+                time,
+            );
+        };
         if size < -16.0 || (slope < 0.0 && h.abs() <= -SETTLED * slope) {
             let end = time - start * size.exp() / g;
             // Rates beside a jam are beyond all bounds, and this method does not follow them.
@@ -66,9 +85,15 @@ pub(crate) fn fate(support: &ClosedContacts, holds: &[Hold], mu: &[f64], place: 
         // Runge and Kutta's method of order 4, in steps short beside all rates: it is not stable in longer
         // ones where the direction settles fast.
         let d = 0.1 / (g.abs() + h.abs() + slope.abs()).max(f64::MIN_POSITIVE);
-        let Some(b) = rates(phi + 0.5 * d * h) else { return Fate::PassesBy };
-        let Some(c) = rates(phi + 0.5 * d * b.1) else { return Fate::PassesBy };
-        let Some(e) = rates(phi + d * c.1) else { return Fate::PassesBy };
+        let mut stage = || {
+            let b = rates(phi + 0.5 * d * h)?;
+            let c = rates(phi + 0.5 * d * b.1)?;
+            Ok((b, c, rates(phi + d * c.1)?))
+        };
+        let (b, c, e) = match stage() {
+            Ok(stages) => stages,
+            Err(lacking) => return without(lacking, time),
+        };
         let s = start * size.exp();
         let half = |g: f64| s * (0.5 * d * g).exp();
         time += d / 6.0 * (s + 2.0 * half(g) + 2.0 * half(b.0) + s * (d * c.0).exp());

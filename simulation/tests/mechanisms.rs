@@ -296,6 +296,7 @@ fn tables_that_tip_go_on_through_their_jams() {
         ("table3", 1.0, 0.0, 50.0, 7.0),
         ("tripod", 1.0, 0.0, 10.0, 2.0),
         ("tripod", 0.6, 0.4, 10.0, 2.0),
+        ("tripod", 1.0, 0.4, 10.0, 2.0),
     ] {
         let mechanism = model(name);
         let end = run(&mechanism, &[("F", push), ("Fy", across)], (mu, e), 2.1);
