@@ -2,6 +2,7 @@
 
 mod closed_forms;
 mod common;
+mod cost;
 mod differences;
 mod fits;
 mod orbits;
