@@ -136,6 +136,67 @@ fn a_machine_of_mjcf_agrees_with_mujoco() {
     }
 }
 
+/// The same arm in URDF, and in SDF with all links and joints in axes of the model.
+#[test]
+fn an_arm_of_sdf_is_that_of_urdf() {
+    let folder = tempfile::tempdir().unwrap();
+    let inertia = [("ixx", 0.3), ("ixy", 0.01), ("ixz", -0.02), ("iyy", 0.2), ("iyz", 0.03), ("izz", 0.15)];
+    let attributes: Vec<String> = inertia.iter().map(|(name, value)| format!("{name}=\"{value}\"")).collect();
+    let elements: Vec<String> =
+        inertia.iter().map(|(name, value)| format!("<{name}>{value}</{name}>")).collect();
+    let urdf_link = |name: &str| {
+        format!(
+            "<link name=\"{name}\"><inertial><origin xyz=\"0.1 0.2 0.3\" rpy=\"0.3 -0.2 0.5\"/><mass value=\"2\"/>\
+             <inertia {}/></inertial></link>",
+            attributes.join(" ")
+        )
+    };
+    let sdf_link = |name: &str, pose: &str| {
+        format!(
+            "<link name=\"{name}\"><pose>{pose}</pose><inertial><pose>0.1 0.2 0.3 0.3 -0.2 0.5</pose><mass>2</mass>\
+             <inertia>{}</inertia></inertial></link>",
+            elements.join("")
+        )
+    };
+    // quarter turns: the places in the model are those of the chain, by hand
+    let urdf = format!(
+        "<robot name=\"arm\"><link name=\"base\"/>{}{}\
+         <joint name=\"hip\" type=\"revolute\"><parent link=\"base\"/><child link=\"upper\"/>\
+         <origin xyz=\"0.5 0 1\" rpy=\"0 0 1.5707963267948966\"/><axis xyz=\"0 0.6 0.8\"/><dynamics damping=\"0.7\"/></joint>\
+         <joint name=\"slide\" type=\"prismatic\"><parent link=\"upper\"/><child link=\"fore\"/>\
+         <origin xyz=\"0.4 0.2 0\" rpy=\"1.5707963267948966 0 0\"/><axis xyz=\"1 0 0\"/></joint></robot>",
+        urdf_link("upper"),
+        urdf_link("fore")
+    );
+    // the hip's x is the model's y, its y the model's -x; slide is at (0.5, 0, 1) + 0.4 y - 0.2 x
+    let sdf = format!(
+        "<sdf version=\"1.9\"><world name=\"w\"><gravity>0 0 -9.80665</gravity><model name=\"arm\"><link name=\"base\"><inertial/></link>{}{}\
+         <joint name=\"weld\" type=\"fixed\"><parent>world</parent><child>base</child></joint>\
+         <joint name=\"hip\" type=\"revolute\"><parent>base</parent><child>upper</child>\
+         <axis><xyz expressed_in=\"__model__\">-0.6 0 0.8</xyz><dynamics><damping>0.7</damping></dynamics></axis></joint>\
+         <joint name=\"slide\" type=\"prismatic\"><pose relative_to=\"upper\">0 0 0 0 0 0</pose><parent>upper</parent>\
+         <child>fore</child><axis><xyz>1 0 0</xyz></axis></joint></model></world></sdf>",
+        sdf_link("upper", "0.5 0 1 0 0 1.5707963267948966"),
+        sdf_link("fore", "0.3 0.4 1 1.5707963267948966 0 1.5707963267948966"),
+    );
+    let answers = [("arm.urdf", urdf), ("arm.sdf", sdf)].map(|(name, text)| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        let model = imported(&path.display().to_string(), &name.replace('.', "_"), &[], folder.path());
+        eval(
+            &model,
+            &json!({"q": {"q_hip": 0.4, "q_slide": -0.3}, "u": {"u_hip": 0.9, "u_slide": -0.7},
+                "inputs": {"tau_hip": 1.5, "tau_slide": -2.5}}),
+        )
+    });
+    for speed in ["u_hip", "u_slide"] {
+        let [one, other] = [0, 1].map(|i: usize| number(&answers[i]["udot"][speed]));
+        assert!((one - other).abs() < 1e-12 * (1.0 + one.abs()), "{speed}: {one} {other}");
+    }
+    let energies = [0, 1].map(|i: usize| number(&answers[i]["kinetic_energy"]));
+    assert!((energies[0] - energies[1]).abs() < 1e-13 && energies[0] > 0.1, "{energies:?}");
+}
+
 /// A state moved along its rates for a time.
 fn moved(state: &Value, answer: &Value, time: f64) -> Value {
     let shift = |values: &Value, rates: &Value| -> Value {

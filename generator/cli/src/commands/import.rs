@@ -20,9 +20,9 @@ const MAX_BYTES: usize = 64 << 20;
 ///   hodograph import robot.urdf > robot.mech
 ///
 /// Joint `hip` becomes coordinate `q_hip`, speed `u_hip` and input `tau_hip`; what no name can have
-/// becomes `_`. Joints of MJCF have the inputs of their actuators, `ctrl_NAME`. In URDF a root link that moves freely has the coordinates q_base_x .. z, the quaternion
-/// q_base_e0 .. e3 and the speeds u_base_x .. z and u_base_rx .. rz along its own axes. What is
-/// ignored is said on standard error.
+/// becomes `_`. Joints of MJCF have the inputs of their actuators, `ctrl_NAME`. In URDF a root link
+/// that moves freely has the coordinates q_base_x .. z, the quaternion q_base_e0 .. e3 and the speeds
+/// u_base_x .. z and u_base_rx .. rz along its own axes. What is ignored is said on standard error.
 #[derive(Clone, Debug, clap::Args)]
 #[command(verbatim_doc_comment)]
 pub struct Arguments {

@@ -25,8 +25,8 @@ impl Chains {
         self.links.push(Link { at, name, inertial: None, collisions: Vec::new() });
     }
 
-    /// A link whose origin lies so in the axes of the joint that carries `link.name`. Returns the name of the link
-    /// that has its axes: where they are not those of the joint, a link of its own is fixed there.
+    /// A link whose origin lies so in the axes of the joint that carries `link.name`. Returns the name of the
+    /// link that has its axes: where they are not those of the joint, a link of its own is fixed there.
     pub fn link(&mut self, link: Link, within: &Pose) -> String {
         if within.is_identity() {
             let name = link.name.clone();

@@ -1,6 +1,5 @@
-//! What a description of a robot says of its links and joints, whatever its format. Those of URDF are read here;
-//! their attributes are checked before (`attributes`): what is missing or no number is reported there, and nothing
-//! here.
+//! What a description of a robot says of its links and joints, whatever its format. Those of URDF are read
+//! here; their attributes are checked before (`attributes`): what is missing or no number is reported there.
 
 use nalgebra::{Matrix3, Vector3};
 use roxmltree::Node;

@@ -1,9 +1,9 @@
 //! Converts a description of a robot (URDF, MJCF or SDF) to the text of a model.
 //!
 //! ```text
-//! URDF -> document  its attributes, checked, its links and joints with their places, the geometry of collisions,
-//!                   and what is not used
-//! MJCF -> mjcf      the same of bodies, whose joints may be several and anywhere: `chains` makes links of them
+//! URDF -> document  its attributes, checked, its links and joints with their places, the geometry of
+//!                   collisions, and what is not used
+//! MJCF -> mjcf      the same of bodies, whose joints may be several and anywhere: `chains` makes links
 //! SDF  -> sdf       the same of links and joints, each in axes of its own
 //!      -> tree      links and joints as a tree, checked
 //!      -> bodies    links that are fixed to a moving link become part of it

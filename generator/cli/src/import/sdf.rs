@@ -1,4 +1,5 @@
-//! Reads SDF, the format of Gazebo: one model, whose links and joints state their places in axes of their choice.
+//! Reads SDF, the format of Gazebo: one model, whose links and joints state their places in axes of their
+//! choice.
 
 use std::collections::HashMap;
 

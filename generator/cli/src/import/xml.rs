@@ -6,8 +6,8 @@ use roxmltree::Document;
 
 use super::lines::Lines;
 
-/// An element has at most so many attributes: descriptions of robots have none with fifty, and to compare each
-/// with each takes time.
+/// An element has at most so many attributes: descriptions of robots have none with fifty, and to compare
+/// each with each takes time.
 const MOST_ATTRIBUTES: usize = 1000;
 
 /// Parses a file.
