@@ -15,6 +15,8 @@ export const PARTS = [
       { file: "docs/sweeps.md" },
       { file: "docs/real-time.md" },
       { file: "docs/derivatives.md" },
+      { file: "docs/orbits.md" },
+      { file: "docs/fits.md" },
     ],
   },
   {

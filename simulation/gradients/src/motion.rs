@@ -455,14 +455,17 @@ impl Carried<'_> {
 
     /// The events at the end of a part.
     fn at_end(&mut self, part: &SmoothPart, next: Option<&SmoothPart>, events: Vec<Event>) {
-        let passed = match (self.motion.undefined.is_some(), &part.ended_by, next) {
+        // A condition that is used up and changes no mode is no event.
+        let goes_on = |next: &SmoothPart| events.is_empty() && kinds(part) == kinds(next);
+        let guard = part.ended_by.as_ref().filter(|guard| {
+            let of_modes = matches!(guard, Guard::NormalForce(_) | Guard::Friction(_));
+            !(of_modes && next.is_some_and(goes_on))
+        });
+        let passed = match (self.motion.undefined.is_some(), guard, next) {
             (true, ..) | (_, Some(Guard::Function(_)), _) => None,
             (_, _, None) => None,
             (false, None, Some(next)) => {
                 // Only what is told of the past may happen here.
-                let kinds = |part: &SmoothPart| -> Vec<(usize, bool)> {
-                    part.closed.iter().map(|closed| (closed.contact, closed.slides.is_some())).collect()
-                };
                 if kinds(part) != kinds(next) {
                     self.lacks(part.end, (None, Reason::ModesChanged));
                 }
@@ -507,4 +510,9 @@ impl Carried<'_> {
         }
         self.field.pass((part, next), &modes, &self.by, events, self.since)
     }
+}
+
+/// The closed contacts of a part, and whether they slide.
+fn kinds(part: &SmoothPart) -> Vec<(usize, bool)> {
+    part.closed.iter().map(|closed| (closed.contact, closed.slides.is_some())).collect()
 }
