@@ -10,21 +10,27 @@ use crate::torques::WithTorques;
 /// Steps of Newton's method at most.
 const STEPS: usize = 4;
 
-/// Brings quaternions to length one and closes loops.
-pub(crate) fn close_loops(
+/// Brings quaternions to length one and takes a few of Newton's steps towards closed loops, from dependent coordinates that
+/// are nearly right. Answers the last change of a coordinate, relative to the greatest coordinate or 1.
+///
+/// # Errors
+///
+/// The mechanism cannot be evaluated there.
+pub fn close_loops(
     mechanism: &dyn Contacts<f64>,
     time: f64,
     coordinates: &mut [f64],
     speeds: &[f64],
     inputs: &[f64],
-) -> Result<(), StateError> {
+) -> Result<f64, StateError> {
     mechanism.normalise(coordinates)?;
     let count = mechanism.count(ComponentKind::DependentCoordinate);
     if count == 0 {
-        return Ok(());
+        return Ok(0.0);
     }
     let places: Vec<usize> = (0..count).filter_map(|index| mechanism.dependent_coordinate(index)).collect();
     let (mut residual, mut jacobian) = (vec![0.0; count], vec![0.0; count * count]);
+    let mut last = 0.0;
     for _ in 0..STEPS {
         let state = State { time, coordinates: &*coordinates, speeds, inputs };
         mechanism.configuration(&state, &mut residual, &mut jacobian)?;
@@ -33,13 +39,13 @@ pub(crate) fn close_loops(
         for (&place, change) in places.iter().zip(change.iter()) {
             coordinates[place] += change;
         }
-        if change.amax()
-            <= 64.0 * f64::EPSILON * coordinates.iter().fold(0.0_f64, |size, q| size.max(q.abs()))
-        {
+        let size = coordinates.iter().fold(0.0_f64, |size, q| size.max(q.abs()));
+        last = change.amax() / size.max(1.0);
+        if change.amax() <= 64.0 * f64::EPSILON * size {
             break;
         }
     }
-    Ok(())
+    Ok(last)
 }
 
 /// A gap that was not closed: the contact, and the gap that is left, m.

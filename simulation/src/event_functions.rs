@@ -13,7 +13,7 @@ use crate::transition::Transition;
 use crate::{ErrorKind, SimulationError};
 
 /// A contact that lifts off is apart where its gap is above this part of the length of the problem.
-const LIFTED: f64 = 5e-11;
+pub(crate) const LIFTED: f64 = 5e-11;
 /// The gap of a contact that leaves, as integral of its rate, is known to this part of the length of the problem.
 const RISEN: f64 = 1e-11;
 /// Coordinates count as no smaller than this part of the length of the problem where rounding is weighed.

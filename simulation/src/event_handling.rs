@@ -95,7 +95,7 @@ impl Transition<'_> {
     }
 
     /// A sliding contact jams: its force grows without bound.
-    fn jammed(&mut self, closed: &[Closed]) -> Result<(), SimulationError> {
+    pub(crate) fn jammed(&mut self, closed: &[Closed]) -> Result<(), SimulationError> {
         let here = self.motion(closed).evaluate(self.front.t, &self.front.y);
         let place = match &here {
             Ok(here) => here.forces.as_ref().and_then(|forces| forces.jams).unwrap_or(0),

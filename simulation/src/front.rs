@@ -16,6 +16,7 @@ const BEGIN: f64 = 5e-3;
 
 /// The state at the end of the last step, after its events.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Front {
     /// time, s
     pub t: f64,
@@ -30,6 +31,7 @@ pub(crate) struct Front {
     /// rate at which the direction of small slip turns where it follows from the state, rad/s
     pub omegas: Vec<Option<f64>>,
     /// how it turned through the last step, where slip was followed as a signed number
+    #[cfg_attr(feature = "serde", serde(skip))]
     pub turnings: Vec<Option<Turning>>,
     /// at which rates that direction turned so far
     pub turned: Vec<Turned>,

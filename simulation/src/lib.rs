@@ -45,6 +45,8 @@ mod event_functions;
 mod event_handling;
 mod event_location;
 mod event_time;
+mod exchange;
+mod exchange_events;
 mod forces;
 mod front;
 mod given_law;
@@ -81,12 +83,16 @@ mod torque_modes;
 mod torques;
 mod transition;
 
+#[cfg(feature = "serde")]
+pub use crate::exchange::Saved;
 pub use crate::{
     contact_law::{ContactLaw, Restitution, Sliding, SpeedFunction},
+    drift::close_loops,
     drive::{Controller, Drive, InputFunction},
     energy::EnergyAccount,
     error::{ErrorKind, SimulationError},
     event::{CollisionRecord, Event, EventKind, Share, SimultaneousCollision},
+    exchange::{Indicator, IndicatorKind},
     given_law::GivenLaw,
     many::{Batch, Case, Outcome, Watch, digest, simulate_many},
     options::{EventFunction, ImpactsAtOnce, Options},

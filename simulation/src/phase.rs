@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, Vector2};
 
 /// How an open contact came to be open.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Leaving {
     /// Its gap is open.
     Apart,
@@ -25,6 +26,7 @@ impl Leaving {
 
 /// What a contact does.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Phase {
     Open(Leaving),
     Stick,

@@ -12,6 +12,7 @@ use crate::torques::WithTorques;
 
 /// Units of a problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Scales {
     /// m
     pub length: f64,

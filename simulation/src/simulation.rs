@@ -30,18 +30,18 @@ pub struct Simulation<'m> {
     angles: Angles,
     /// friction of rolling and spinning
     torques: Vec<Torque>,
-    options: Options,
+    pub(crate) options: Options,
     /// the surfaces of each contact; none where a contact has no gap
     surfaces: Vec<Option<Pair>>,
     start: f64,
-    front: Front,
+    pub(crate) front: Front,
     /// the step that led to the front, and the modes during it
-    step: Option<(Step, Modes)>,
+    pub(crate) step: Option<(Step, Modes)>,
     /// events that were not yet asked for
-    queue: VecDeque<Event>,
+    pub(crate) queue: VecDeque<Event>,
     /// the time asked for, and the state then
-    view: (f64, Vec<f64>),
-    failed: Option<SimulationError>,
+    pub(crate) view: (f64, Vec<f64>),
+    pub(crate) failed: Option<SimulationError>,
     /// the smooth parts, where they are kept
     parts: Option<Parts>,
 }
@@ -131,7 +131,7 @@ impl<'m> Simulation<'m> {
     }
 
     /// A transition from the front.
-    fn transition(&self) -> Transition<'_> {
+    pub(crate) fn transition(&self) -> Transition<'_> {
         Transition {
             mechanism: self.with_torques(),
             angles: &self.angles,
@@ -147,7 +147,7 @@ impl<'m> Simulation<'m> {
 
     /// Makes a transition and takes its front and its events. Of one that fails only the step to its event is
     /// taken, if it came so far.
-    fn take(
+    pub(crate) fn take(
         &mut self,
         change: impl FnOnce(&mut Transition<'_>) -> Result<(), SimulationError>,
     ) -> Result<(), SimulationError> {

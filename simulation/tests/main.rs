@@ -15,6 +15,7 @@ mod edges;
 mod energy_under_poisson;
 mod exact;
 mod examples;
+mod exchange;
 mod faces;
 mod inclines;
 mod ledge;

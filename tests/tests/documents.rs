@@ -102,6 +102,7 @@ fn unsafe_code_stands_where_the_architecture_says() {
     let found = folders_with(&|name| name.ends_with(".rs"), holds);
     let expected = [
         "bindings/casadi/src",
+        "bindings/fmu/src",
         "generator/cli/src/export",
         "generator/editors/acceptance/src",
         "playground/src",

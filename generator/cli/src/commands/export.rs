@@ -2,33 +2,47 @@
 
 use std::path::{Path, PathBuf};
 
+use hodograph::{ComponentKind, Mechanism as _, State};
 use hodograph_generator::emit::{self, Requests};
+use hodograph_generator::format::plain;
 use hodograph_generator::rust_names::snake_case;
+use hodograph_interpreter::InterpretedMechanism;
+use hodograph_interpreter::motion::{self, GivenSurface};
 
 use crate::commands::expand;
 use crate::derivation::{self, Limits};
-use crate::export::{Scalar, files};
+use crate::evaluate::Machine;
+use crate::export::{Scalar, files, fmu};
+use crate::json::Failure;
+use crate::model;
 use crate::output;
 use crate::stop::{Outcome, Stop};
+use crate::surface::{self, SurfaceArguments};
 
-/// Write a mechanism as a library for C: a small crate that builds a static library, and its header
+/// Write a mechanism as a library for C or as a functional mock-up unit (FMI 3.0)
 #[derive(Clone, Debug, clap::Args)]
+#[command(group = clap::ArgGroup::new("form").required(true).args(["c", "fmu"]))]
 pub struct Arguments {
     /// the model file
     model: PathBuf,
-    /// for C (the only language so far)
-    #[arg(long, required = true)]
+    /// for C: a small crate that builds a static and a shared library, and its header
+    #[arg(long)]
     c: bool,
-    /// the folder to write to, which must not exist
-    #[arg(long, short, value_name = "FOLDER")]
+    /// as a functional mock-up unit (FMI 3.0) for model exchange and co-simulation, built here by cargo
+    #[arg(long)]
+    fmu: bool,
+    /// the folder to write to, which must not exist; with --fmu the file
+    #[arg(long, short, value_name = "PATH")]
     output: PathBuf,
     /// numbers are `float` instead of `double`: for processors that have singles only
-    #[arg(long)]
+    #[arg(long, conflicts_with = "fmu")]
     single: bool,
     /// the folder of the package `hodograph`, which the crate depends on [default: the published package of
     /// this tool's version]
     #[arg(long, value_name = "FOLDER")]
     hodograph: Option<PathBuf>,
+    #[command(flatten)]
+    surface: SurfaceArguments,
     #[command(flatten)]
     limits: Limits,
 }
@@ -39,6 +53,28 @@ pub struct Arguments {
 ///
 /// The model has errors or cannot be derived; the folder exists or cannot be written.
 pub fn run(arguments: &Arguments) -> Outcome {
+    if arguments.fmu { unit(arguments) } else { library(arguments) }
+}
+
+/// What a manifest says after the name of a package: its folder, or its published version.
+fn dependency(folder: Option<&Path>, features: &str) -> Outcome<String> {
+    let Some(folder) = folder else {
+        return Ok(format!("{{ version = \"{}\"{features} }}", env!("CARGO_PKG_VERSION")));
+    };
+    if !folder.join("Cargo.toml").is_file() {
+        return Err(Stop::Call(format!(
+            "{} has no Cargo.toml: name the folder of the package `hodograph`",
+            folder.display()
+        )));
+    }
+    let folder = std::fs::canonicalize(folder).map_err(|error| Stop::unreadable(folder, &error))?;
+    match folder.to_str().filter(|path| !path.contains(['\'', '\n'])) {
+        Some(path) => Ok(format!("{{ path = '{path}'{features} }}")),
+        None => Err(Stop::Call(format!("{} cannot stand in a manifest", folder.display()))),
+    }
+}
+
+fn library(arguments: &Arguments) -> Outcome {
     let folder = &arguments.output;
     if folder.symlink_metadata().is_ok() {
         return Err(Stop::Call(format!(
@@ -46,23 +82,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
             folder.display()
         )));
     }
-    let dependency = match &arguments.hodograph {
-        Some(runtime) if !runtime.join("Cargo.toml").is_file() => {
-            return Err(Stop::Call(format!(
-                "{} has no Cargo.toml: name the folder of the package `hodograph`",
-                runtime.display()
-            )));
-        }
-        Some(runtime) => {
-            let runtime =
-                std::fs::canonicalize(runtime).map_err(|error| Stop::unreadable(runtime, &error))?;
-            let Some(path) = runtime.to_str().filter(|path| !path.contains(['\'', '\n'])) else {
-                return Err(Stop::Call(format!("{} cannot stand in a manifest", runtime.display())));
-            };
-            format!("{{ path = '{path}', default-features = false }}")
-        }
-        None => format!("{{ version = \"{}\", default-features = false }}", env!("CARGO_PKG_VERSION")),
-    };
+    let SurfaceArguments { mu, e, law } = &arguments.surface;
+    if mu.is_some() || e.is_some() || law.is_some() {
+        return Err(Stop::Call(
+            "--mu, --e and --law are of --fmu: functions of C take a surface with each call".to_owned(),
+        ));
+    }
+    let dependency = dependency(arguments.hodograph.as_deref(), ", default-features = false")?;
     let scalar = if arguments.single { Scalar::Single } else { Scalar::Double };
     let machine = derivation::machine(&arguments.model, &arguments.limits)?;
     let expanded = expand::module(&machine, Requests::default())?;
@@ -75,4 +101,59 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Path::new(folder).display()
     ));
     Ok(())
+}
+
+fn unit(arguments: &Arguments) -> Outcome {
+    output::check(&arguments.output)?;
+    let runtime = arguments.hodograph.as_deref();
+    let root = runtime.map(|runtime| runtime.join(".."));
+    let own = root.as_ref().map(|root| root.join("bindings/fmu"));
+    let dependencies = [
+        dependency(runtime, ", default-features = false, features = [\"std\"]")?,
+        dependency(own.as_deref(), "")?,
+    ];
+    let model = plain(&model::load(&arguments.model)?.source);
+    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
+    let expanded = expand::module(&machine, Requests::default())?;
+    let mechanism = InterpretedMechanism::new(machine.mechanism.clone(), machine.program.clone())
+        .map_err(|error| Stop::Fault(error.to_string()))?;
+    let surfaces = surfaces(&mechanism, &arguments.surface)?;
+    let bytes = fmu::file(&fmu::Unit {
+        module: &snake_case(&machine.mechanism.name),
+        expanded: &expanded,
+        model: &model,
+        docs: &sentence(&machine),
+        mechanism: &mechanism,
+        max_step: motion::greatest_step(&machine.program, false),
+        surfaces: &surfaces,
+        dependencies,
+        lock: root.map(|root| root.join("Cargo.lock")).filter(|lock| lock.is_file()),
+    })?;
+    output::file(&arguments.output, &bytes)?;
+    output::say(format_args!("{} written", arguments.output.display()));
+    Ok(())
+}
+
+/// The surfaces with which the unit begins: what the options say, else what the model states.
+fn surfaces(
+    mechanism: &InterpretedMechanism,
+    arguments: &SurfaceArguments,
+) -> Outcome<Vec<(usize, hodograph::Surface<f64>)>> {
+    let zeros = |kind| vec![0.0; mechanism.count(kind)];
+    let (mut q, mut u) = (zeros(ComponentKind::Coordinate), zeros(ComponentKind::Speed));
+    let mut inputs = zeros(ComponentKind::Input);
+    mechanism.initial_state(&mut q, &mut u, &mut inputs).map_err(|error| Stop::Fault(error.to_string()))?;
+    let state = State { time: 0.0, coordinates: &q, speeds: &u, inputs: &inputs };
+    let law = arguments.law.as_deref().map(surface::law).transpose()?;
+    let all = GivenSurface { mu: arguments.mu, e: arguments.e, law }.check().map_err(Failure::from)?;
+    let found = motion::surfaces(mechanism, &state, all, &[]).map_err(|error| {
+        Stop::Call(format!("{error}: give --mu, --e and --law, or state its `surface` in the model"))
+    })?;
+    Ok(found.of_contacts)
+}
+
+/// The first sentence of the model's documentation.
+fn sentence(machine: &Machine) -> String {
+    let docs = machine.mechanism.docs.trim();
+    docs.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect::<Vec<_>>().join(" ")
 }

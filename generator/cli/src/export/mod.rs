@@ -1,10 +1,12 @@
-//! A generated module as a library for C: a crate with functions of C's calling convention, and their header.
+//! A generated module as a library for other programs: for C, a crate with functions of C's calling convention and their
+//! header; for tools of simulation, a functional mock-up unit (`fmu`).
 //!
 //! * `module` selects the structs and methods of the generated module that have a form in C, by their types;
 //! * `names` gives names, declarations and conversions of values;
 //! * `header` and `library` write the two sides;
 //! * this file puts the crate together.
 
+pub mod fmu;
 mod header;
 mod library;
 mod module;

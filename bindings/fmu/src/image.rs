@@ -1,0 +1,79 @@
+//! A unit as bytes: its states are saved and serialised so.
+
+use std::sync::Arc;
+
+use hodograph_simulation::Saved;
+use serde::{Deserialize, Serialize};
+
+use crate::instance::{Instance, Kind, Mode, Refusal, refused};
+use crate::settings::{Now, Settings};
+
+/// A unit as bytes.
+#[derive(Serialize, Deserialize)]
+struct Image {
+    kind: Kind,
+    mode: Mode,
+    settings: Settings,
+    now: Now,
+    events: u64,
+    moves: Option<Saved>,
+}
+
+impl Instance {
+    /// Everything that its future depends on, as bytes.
+    ///
+    /// # Errors
+    ///
+    /// There is no memory.
+    pub fn image(&self) -> Result<Vec<u8>, Refusal> {
+        let image = Image {
+            kind: self.kind,
+            mode: self.mode,
+            settings: self.settings.clone(),
+            now: self.now.clone(),
+            events: self.events,
+            moves: self.running.as_ref().map(|running| running.simulation().save()),
+        };
+        postcard::to_allocvec(&image).map_err(|error| Refusal(error.to_string()))
+    }
+
+    /// Takes an image of the same unit back.
+    ///
+    /// # Errors
+    ///
+    /// The bytes are no image of this unit; it stays as it was then.
+    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Refusal> {
+        const OTHER: &str = "these bytes are no state of this unit";
+        let image: Image = postcard::from_bytes(bytes).map_err(|_| Refusal(OTHER.to_owned()))?;
+        let sizes = |now: &Now| (now.coordinates.len(), now.speeds.len(), now.inputs.len());
+        let contacts = |settings: &Settings| -> Vec<usize> {
+            settings.surfaces.iter().map(|surface| surface.0).collect()
+        };
+        let fits = image.kind == self.kind
+            && sizes(&image.now) == sizes(&self.now)
+            && sizes(&image.settings.start) == sizes(&self.now)
+            && image.settings.parameters.len() == self.settings.parameters.len()
+            && contacts(&image.settings) == contacts(&self.settings);
+        if !fits {
+            return refused(OTHER);
+        }
+        let mut other = Self {
+            layout: Arc::clone(&self.layout),
+            mode: image.mode,
+            settings: image.settings,
+            now: image.now.clone(),
+            running: None,
+            events: 0,
+            ..*self
+        };
+        if let Some(saved) = image.moves {
+            let fits = other.running()?.with(|simulation| simulation.restore(saved));
+            if !fits {
+                return refused(OTHER);
+            }
+        }
+        (other.now, other.events) = (image.now, image.events);
+        *self = other;
+        Ok(())
+    }
+}

@@ -1,0 +1,426 @@
+//! A motion that another program drives: it changes the inputs at times of its own choice, or integrates the states itself
+//! and asks for their rates, for the functions whose zeros are events, and for what follows at an event. FMI calls these
+//! co-simulation and model exchange (docs/fmu.md).
+//!
+//! Whoever integrates keeps the modes of the contacts frozen from event to event, as a step of [`Simulation::advance`] does:
+//! the rates are those of the same right-hand side, and what an event changes is decided by the same transitions.
+
+use hodograph::State;
+
+use crate::event_functions::LIFTED;
+use crate::forces::{JAM, margins};
+#[cfg(feature = "serde")]
+use crate::front::Front;
+use crate::motion::{Evaluation, Failure, Motion, WORKS};
+use crate::phase::{Leaving, Phase, mus};
+use crate::torques::Turning;
+use crate::transition::Transition;
+use crate::{ContactForces, ErrorKind, Event, Progress, Simulation, SimulationError};
+
+/// A function whose zero is an event: it is positive while the modes of all contacts last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Indicator {
+    /// number of the contact; `None` of [`IndicatorKind::Jam`]
+    pub contact: Option<usize>,
+    /// what it watches
+    pub kind: IndicatorKind,
+}
+
+/// What an [`Indicator`] watches. Where it watches nothing, as the gap of a closed contact, its value is 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum IndicatorKind {
+    /// gap of an open contact, m; beside a face that ends, the distance from the face where that is more
+    Gap,
+    /// how far a closed contact is from where its face or edge ends, m
+    End,
+    /// normal force of a closed contact, N
+    NormalForce,
+    /// (mu lambda_n)^2 less the square of the friction of a contact that sticks, N^2
+    Friction,
+    /// slip of a sliding contact along the direction that it had last, m/s
+    Slip,
+    /// as `Friction`, of bodies that rolling friction holds
+    RollingFriction,
+    /// as `Slip`, of bodies that roll: the relative angular velocity times the length of the torque
+    Rolling,
+    /// as `Friction`, of bodies that spinning friction holds
+    SpinningFriction,
+    /// as `Slip`, of bodies that turn about the normal
+    Spinning,
+    /// the least f of the sliding contacts, relative to their reduced masses: a contact jams where it vanishes
+    Jam,
+}
+
+impl IndicatorKind {
+    /// A stable lower-case name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Gap => "gap",
+            Self::End => "end",
+            Self::NormalForce => "normal_force",
+            Self::Friction => "friction",
+            Self::Slip => "slip",
+            Self::RollingFriction => "rolling_friction",
+            Self::Rolling => "rolling",
+            Self::SpinningFriction => "spinning_friction",
+            Self::Spinning => "spinning",
+            Self::Jam => "jam",
+        }
+    }
+}
+
+/// A function watched, with the contact or torque by its number among both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Frozen {
+    Gap(usize),
+    End(usize),
+    Normal(usize),
+    Cone(usize),
+    Slip(usize),
+    Jam,
+}
+
+/// Slip below this part of the greatest speeds so far is none yet, after it began.
+const BEGINS: f64 = 1e-11;
+/// A size of speeds beside which every slip against its direction is none.
+const BOUNDLESS: f64 = 1e150;
+
+impl Simulation<'_> {
+    /// As [`Simulation::advance`], but no step goes beyond `until`, so that inputs can be changed there.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::advance`].
+    pub fn advance_exactly(&mut self, until: f64) -> Result<Progress, SimulationError> {
+        let breaks = &mut self.options.breaks;
+        let place = breaks.partition_point(|&time| time < until);
+        let added = until.is_finite() && breaks.get(place) != Some(&until);
+        if added {
+            breaks.insert(place, until);
+        }
+        let progress = self.advance(until);
+        if added {
+            self.options.breaks.remove(place);
+        }
+        progress
+    }
+
+    /// Changes the held inputs at [`Simulation::time`]; [`Simulation::advance_exactly`] led there.
+    ///
+    /// # Errors
+    ///
+    /// The inputs are not finite or not as many as the mechanism has; the motion was followed beyond this time; the contacts
+    /// have no forces under them.
+    pub fn set_inputs(&mut self, inputs: &[f64]) -> Result<(), SimulationError> {
+        let refused = |message: String| Err(self.transition().error(None, ErrorKind::BadInput(message)));
+        if inputs.len() != self.front.held.len() {
+            return refused(format!(
+                "there are {} numbers for {} inputs",
+                inputs.len(),
+                self.front.held.len()
+            ));
+        }
+        if let Some(bad) = inputs.iter().position(|value| !value.is_finite()) {
+            return refused(self.transition().motion(&[]).bad_input(bad, inputs[bad]));
+        }
+        if inputs == self.front.held {
+            return Ok(());
+        }
+        if self.front.t > self.view.0 {
+            return refused(format!("the motion was already followed to t = {}", self.front.t));
+        }
+        let inputs = inputs.to_vec();
+        self.take(|transition| transition.change_inputs(inputs))
+    }
+
+    /// Rates of coordinates, then speeds, in a state, while the modes of the contacts last.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism has no equations of motion there, or its closed contacts have no forces.
+    pub fn rates(&self, state: &State<'_>, rates: &mut [f64]) -> Result<(), SimulationError> {
+        let transition = self.transition();
+        let found = transition.frozen(state).map_err(|failure| transition.failure(failure))?;
+        let count = rates.len().min(found.rates.len() - WORKS);
+        rates[..count].copy_from_slice(&found.rates[..count]);
+        Ok(())
+    }
+
+    /// As [`Simulation::contact_forces`], in a state, while the modes of the contacts last.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::rates`].
+    pub fn contact_forces_in(&self, state: &State<'_>) -> Result<ContactForces, SimulationError> {
+        let transition = self.transition();
+        let closed = transition.closed();
+        let found = transition.frozen(state).map_err(|failure| transition.failure(failure))?;
+        let Some(forces) = found.forces else { return Ok(Vec::new()) };
+        let own = |contact: usize| transition.mechanism.torque(contact).is_none();
+        let forces = closed.iter().enumerate().map(|(place, closed)| (closed.contact, forces.of(place)));
+        Ok(forces.filter(|(contact, _)| own(*contact)).collect())
+    }
+
+    /// The functions whose zeros are events, in the order of their values.
+    pub fn indicators(&self) -> Vec<Indicator> {
+        let transition = self.transition();
+        let kind = |what: Frozen| -> Indicator {
+            let (index, kinds) = match what {
+                Frozen::Gap(index) => (index, [IndicatorKind::Gap; 3]),
+                Frozen::End(index) => (index, [IndicatorKind::End; 3]),
+                Frozen::Normal(index) => (index, [IndicatorKind::NormalForce; 3]),
+                Frozen::Cone(index) => {
+                    use IndicatorKind::{Friction, RollingFriction, SpinningFriction};
+                    (index, [Friction, RollingFriction, SpinningFriction])
+                }
+                Frozen::Slip(index) => {
+                    use IndicatorKind::{Rolling, Slip, Spinning};
+                    (index, [Slip, Rolling, Spinning])
+                }
+                Frozen::Jam => return Indicator { contact: None, kind: IndicatorKind::Jam },
+            };
+            let place = match transition.mechanism.torque(index).map(|torque| torque.turning) {
+                None => 0,
+                Some(Turning::Rolling) => 1,
+                Some(Turning::Spinning) => 2,
+            };
+            Indicator { contact: Some(transition.mechanism.contact(index)), kind: kinds[place] }
+        };
+        transition.frozen_functions().into_iter().map(kind).collect()
+    }
+
+    /// Values of [`Simulation::indicators`] in a state, while the modes of the contacts last.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism cannot be evaluated there.
+    pub fn indicator_values(&self, state: &State<'_>) -> Result<Vec<f64>, SimulationError> {
+        let transition = self.transition();
+        transition.frozen_values(state).map_err(|failure| transition.failure(failure))
+    }
+
+    /// Tells that the integration has come to a state without an event: contacts that leave may be apart now, and slip has
+    /// another direction.
+    ///
+    /// # Errors
+    ///
+    /// The mechanism cannot be evaluated there.
+    pub fn step_completed(&mut self, state: &State<'_>) -> Result<(), SimulationError> {
+        self.take(|transition| {
+            transition.goes_to(state);
+            transition.frozen_modes(state)
+        })
+    }
+
+    /// Decides what happens in a state: contacts whose indicators are not positive strike, slip, stick or lift off as in
+    /// [`Simulation::advance`], and other inputs may change modes. [`Simulation::time`] and the state are then those after
+    /// the events, which are answered.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::advance`].
+    pub fn continue_from(&mut self, state: &State<'_>) -> Result<Vec<Event>, SimulationError> {
+        self.step = None;
+        self.take(|transition| transition.handle_here(state))?;
+        self.view = (self.front.t, self.front.y.clone());
+        Ok(self.queue.drain(..).collect())
+    }
+
+    /// The time at which something happens that no indicator tells: bounces that are lower than the tolerance end.
+    pub fn next_time(&self) -> Option<f64> {
+        self.transition().limit()
+    }
+
+    /// Whether the motion has ended with [`crate::EventKind::Singular`].
+    pub fn has_ended(&self) -> bool {
+        self.front.ended.is_some()
+    }
+}
+
+/// All that the future of a motion depends on, beside its mechanism and its options.
+#[cfg(feature = "serde")]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Saved {
+    front: Front,
+}
+
+#[cfg(feature = "serde")]
+impl Simulation<'_> {
+    /// What [`Simulation::restore`] takes back, at a time to which [`Simulation::advance_exactly`] or
+    /// [`Simulation::continue_from`] led.
+    pub fn save(&self) -> Saved {
+        Saved { front: self.front.clone() }
+    }
+
+    /// Continues as the motion that was saved would have, with the same results. Answers whether it is one of this
+    /// mechanism; nothing changes where it is not.
+    pub fn restore(&mut self, saved: Saved) -> bool {
+        let sizes = |front: &Front| {
+            let contacts = [
+                front.phases.len(),
+                front.forces.len(),
+                front.omegas.len(),
+                front.turned.len(),
+                front.barred.len(),
+            ];
+            (contacts, front.y.len(), front.held.len(), front.scale.len())
+        };
+        let fits = sizes(&saved.front) == sizes(&self.front)
+            && saved.front.t.is_finite()
+            && saved.front.y.iter().chain(&saved.front.held).all(|number| number.is_finite())
+            && saved.front.chatter.iter().all(|(_, contact)| *contact < self.front.phases.len());
+        if !fits {
+            return false;
+        }
+        self.front = saved.front;
+        // How slip turned in the last step is told anew by the next one.
+        self.front.turnings = vec![None; self.front.phases.len()];
+        self.view = (self.front.t, self.front.y.clone());
+        (self.step, self.failed) = (None, None);
+        self.queue.clear();
+        true
+    }
+}
+
+impl Transition<'_> {
+    /// The functions that are watched, whatever the modes are.
+    pub(crate) fn frozen_functions(&self) -> Vec<Frozen> {
+        let mut all = Vec::new();
+        for index in 0..self.front.phases.len() {
+            if self.mechanism.torque(index).is_some() {
+                all.extend([Frozen::Cone(index), Frozen::Slip(index)]);
+            } else if self.surfaces[index].is_some() {
+                all.push(Frozen::Gap(index));
+                if self.ends(index) {
+                    all.push(Frozen::End(index));
+                }
+                all.extend([Frozen::Normal(index), Frozen::Cone(index), Frozen::Slip(index)]);
+            }
+        }
+        if !all.is_empty() {
+            all.push(Frozen::Jam);
+        }
+        all
+    }
+
+    /// All that is known of a state in the modes of the front. Slip against its direction, which an integration meets
+    /// beyond an event, keeps the friction that it had: the rates are smooth there.
+    pub(crate) fn frozen(&self, state: &State<'_>) -> Result<Evaluation, Failure> {
+        let mut closed = self.closed();
+        for contact in &mut closed {
+            // Directions that followed from the state did so in the step that led here.
+            (contact.omega, contact.turning) = (None, None);
+        }
+        let mut y = [state.coordinates, state.speeds].concat();
+        y.resize(y.len() + WORKS, 0.0);
+        let boundless = vec![BOUNDLESS; state.speeds.len()];
+        let motion = Motion { held: state.inputs, scale: &boundless, ..self.motion(&closed) };
+        motion.evaluate(state.time, &y)
+    }
+
+    /// The values of the functions that are watched.
+    pub(crate) fn frozen_values(&self, state: &State<'_>) -> Result<Vec<f64>, Failure> {
+        let closed = self.closed();
+        let all = self.frozen_functions();
+        let place = |index: usize| closed.iter().position(|closed| closed.contact == index);
+        let found = if closed.is_empty() { None } else { Some(self.frozen(state)) };
+        let (mut conditions, mut jam) = (Vec::new(), 1.0);
+        let mut here = None;
+        match found {
+            Some(Ok(evaluation)) => {
+                if let Some(forces) = &evaluation.forces {
+                    conditions = margins(forces, &evaluation.holds, &mus(&closed));
+                    jam = forces.f - JAM;
+                }
+                here = Some(evaluation);
+            }
+            // There are no forces in these modes any more.
+            Some(Err(Failure::Contact(..) | Failure::NoForces)) => jam = -1.0,
+            Some(Err(failure)) => return Err(failure),
+            None => {}
+        }
+        let slip = |index: usize| -> Option<f64> {
+            let (place, here) = (place(index)?, here.as_ref()?);
+            let begins = BEGINS * here.support.velocity_size(place, &self.front.scale);
+            Some(here.support.slip(place).dot(&closed[place].slides?) + begins)
+        };
+        let value = |what: &Frozen| -> Result<f64, Failure> {
+            Ok(match *what {
+                Frozen::Gap(index) => match self.front.phases[index] {
+                    Phase::Open(leaving) => {
+                        let gap = self.mechanism.gap(index, state)?.unwrap_or(1.0);
+                        match leaving {
+                            // One that comes along the surface of its face has no gap but rounding.
+                            Leaving::Apart | Leaving::Near if self.ends(index) => {
+                                (gap - self.low()).max(-self.validity(index, state)?)
+                            }
+                            Leaving::Apart | Leaving::Near => gap,
+                            // What leaves has no gap yet that is more than rounding.
+                            _ => (gap + self.lifted()).max(-self.validity(index, state)?),
+                        }
+                    }
+                    _ => 1.0,
+                },
+                Frozen::End(index) => match place(index) {
+                    Some(_) => self.validity(index, state)?,
+                    None => 1.0,
+                },
+                Frozen::Normal(index) => {
+                    place(index).and_then(|place| conditions.get(place)).map_or(1.0, |margins| margins[0])
+                }
+                Frozen::Cone(index) => {
+                    place(index).and_then(|place| conditions.get(place)).map_or(1.0, |margins| margins[1])
+                }
+                Frozen::Slip(index) => slip(index).unwrap_or(1.0),
+                Frozen::Jam => jam,
+            })
+        };
+        all.iter().map(value).collect()
+    }
+
+    /// The gap from which on a contact that leaves is apart, m.
+    fn lifted(&self) -> f64 {
+        LIFTED * self.front.scales.length
+    }
+
+    /// Takes a state as the front.
+    pub(crate) fn goes_to(&mut self, state: &State<'_>) {
+        let n = state.coordinates.len();
+        self.front.t = state.time;
+        self.front.y[..n].copy_from_slice(state.coordinates);
+        self.front.y[n..n + state.speeds.len()].copy_from_slice(state.speeds);
+        for (scale, speed) in self.front.scale.iter_mut().zip(state.speeds) {
+            *scale = scale.max(speed.abs());
+        }
+        if let Ok(kinetic) = self.mechanism.kinetic_energy(state) {
+            self.front.greatest = self.front.greatest.max(kinetic);
+        }
+    }
+
+    /// Contacts that left are apart once their gaps are open, and slip that goes forward has the direction it has now.
+    fn frozen_modes(&mut self, state: &State<'_>) -> Result<(), SimulationError> {
+        for contact in 0..self.front.phases.len() {
+            if let Phase::Open(Leaving::Bounced | Leaving::Lifted { .. }) = self.front.phases[contact]
+                && self.surfaces[contact].is_some()
+            {
+                let gap = self.mechanism.gap(contact, state);
+                let gap = gap.map_err(|error| self.failure(Failure::State(error)))?.unwrap_or(1.0);
+                if gap > self.lifted() {
+                    self.front.phases[contact] = Phase::Open(Leaving::Apart);
+                }
+            }
+        }
+        let closed = self.closed();
+        if closed.iter().any(|closed| closed.slides.is_some()) {
+            // A state beside a jam may have no forces: directions stay.
+            if let Ok(here) = self.frozen(state) {
+                for (contact, hold) in closed.iter().zip(&here.holds) {
+                    if let Some(direction) = hold.direction() {
+                        self.front.phases[contact.contact] = Phase::Slide(direction);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
