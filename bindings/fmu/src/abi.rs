@@ -131,7 +131,7 @@ pub unsafe fn instantiate(
 ///
 /// # Safety
 ///
-/// As [`on`].
+/// As every call on a unit: it is null, or one that [`instantiate`] gave, not freed, and not in use elsewhere.
 pub unsafe fn not_offered(unit: *mut c_void, name: &str) -> Status {
     // SAFETY: by the condition of this function.
     unsafe { on(unit, |_| Err(Refusal(format!("{name} is not offered by this unit")))) }
