@@ -87,6 +87,10 @@ const made = new Map(pages.map(({ file, title }) => {
   return [file, { ...page, title: title ?? page.title }];
 }));
 
+// Every document is a page.
+for (const name of readdirSync(join(root, "docs")).filter((name) => name.endsWith(".md")))
+  if (!made.has(`docs/${name}`)) faults.push(`docs/${name} stands in no part of book/contents.js`);
+
 // Every link within the book leads to a page, a file or a heading.
 for (const [file, page] of made)
   for (const link of page.links) {
