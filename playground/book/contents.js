@@ -12,6 +12,7 @@ export const PARTS = [
       { file: "docs/contact.md" },
       { file: "bindings/python/README.md", title: "Python" },
       { file: "bindings/casadi/README.md", title: "CasADi" },
+      { file: "docs/fmu.md" },
       { file: "docs/sweeps.md" },
       { file: "docs/real-time.md" },
       { file: "docs/derivatives.md" },
