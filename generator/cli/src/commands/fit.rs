@@ -4,20 +4,16 @@ mod table_of_motions;
 
 use std::path::PathBuf;
 
-use hodograph::{ComponentKind, Mechanism as _, State as Borrowed, Surface};
+use hodograph::{ComponentKind, Mechanism as _, Surface};
 use hodograph_gradients::{By, Fit, FitError, FitTask, fit};
-use hodograph_interpreter::{InterpretedMechanism, motion};
-use hodograph_simulation::Options;
+use hodograph_interpreter::InterpretedMechanism;
 use serde::Serialize;
 
 use self::table_of_motions::Motions;
-use super::simulate::surfaces::{Found, MotionSurfaces};
-use crate::answers::FormArgument;
-use crate::derivation::{self, Limits};
+use super::motion_arguments::MotionArguments;
 use crate::evaluate::report::Named;
 use crate::expression;
 use crate::json::{Failure, Kind};
-use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 use crate::table::{Table, number};
 
@@ -52,16 +48,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NUMBER", default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    state: StateArguments,
-    /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    #[command(flatten)]
-    surfaces: MotionSurfaces,
-    #[command(flatten)]
-    form: FormArgument,
-    #[command(flatten)]
-    limits: Limits,
+    motion: MotionArguments,
 }
 
 /// Runs the command.
@@ -70,34 +57,19 @@ pub struct Arguments {
 ///
 /// [`Stop::Call`] for what is wrong with the data or the options; [`Stop::Fault`] where a motion cannot be followed.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
-    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
-    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
+    let machine = arguments.motion.machine(&arguments.model)?;
     let names: Vec<&str> = arguments.parameters.iter().map(|name| name.trim()).collect();
-    arguments.form.write(
+    arguments.motion.form.write(
         || {
-            let state = arguments.state.state(&machine)?;
+            let state = arguments.motion.state.state(&machine)?;
             let mechanism = machine.interpreted(&state)?;
             let by: Result<Vec<By>, String> = names.iter().map(|name| By::named(&mechanism, name)).collect();
             let by = by.map_err(|message| Failure::new(Kind::UnknownName, message))?;
-            let start = Borrowed {
-                time: state.time,
-                coordinates: &state.coordinates,
-                speeds: &state.speeds,
-                inputs: &state.inputs,
-            };
+            let start = state.borrowed();
             if !state.inputs.is_empty() {
                 return Err(Stop::Fault("motions of mechanisms with inputs are not fitted yet".to_owned()));
             }
-            let Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &start)?;
-            let options = Options {
-                relative_tolerance: tolerance,
-                absolute_tolerance: tolerance,
-                max_step: motion::greatest_step(&machine.program, false),
-                surfaces,
-                laws,
-                ..Options::default()
-            };
+            let options = arguments.motion.options(&machine, &mechanism, &start)?;
             let motions = Motions::read(&arguments.data, &mechanism, &start, &arguments.outputs)?;
             let units = arguments.units(&motions, &mechanism)?;
             let task = FitTask {

@@ -2,22 +2,16 @@
 
 use std::path::PathBuf;
 
-use hodograph::State as Borrowed;
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_gradients::{
     By, EventGradient, GradientError, MotionGradient, Sample, Undefined, differentiate,
 };
-use hodograph_interpreter::motion;
-use hodograph_simulation::Options;
 use nalgebra::DMatrix;
 use serde::Serialize;
 
-use super::simulate::surfaces::{Found, MotionSurfaces};
-use crate::answers::FormArgument;
-use crate::derivation::{self, Limits};
+use super::motion_arguments::MotionArguments;
 use crate::evaluate::report::{Named, named};
 use crate::json::{Failure, Kind};
-use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 use crate::table::{Table, number};
 
@@ -41,16 +35,7 @@ pub struct Arguments {
     #[arg(long, value_name = "TIME,..", value_delimiter = ',', required = true, allow_hyphen_values = true)]
     at: Vec<f64>,
     #[command(flatten)]
-    state: StateArguments,
-    /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    #[command(flatten)]
-    surfaces: MotionSurfaces,
-    #[command(flatten)]
-    form: FormArgument,
-    #[command(flatten)]
-    limits: Limits,
+    motion: MotionArguments,
 }
 
 /// Runs the command.
@@ -59,33 +44,18 @@ pub struct Arguments {
 ///
 /// An error object for what is wrong with the state, the names, the times or the motion.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
-    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
-    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
+    let machine = arguments.motion.machine(&arguments.model)?;
     let by = arguments.by.iter().map(|name| name.trim()).collect();
     let names = Names { model: &machine.mechanism, by };
-    arguments.form.write(
+    arguments.motion.form.write(
         || {
-            let state = arguments.state.state(&machine)?;
+            let state = arguments.motion.state.state(&machine)?;
             let mechanism = machine.interpreted(&state)?;
             let named = |name: &&str| By::named(&mechanism, name);
             let by: Result<Vec<By>, String> = names.by.iter().map(named).collect();
             let by = by.map_err(|message| Failure::new(Kind::UnknownName, message))?;
-            let start = Borrowed {
-                time: state.time,
-                coordinates: &state.coordinates,
-                speeds: &state.speeds,
-                inputs: &state.inputs,
-            };
-            let Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &start)?;
-            let options = Options {
-                relative_tolerance: tolerance,
-                absolute_tolerance: tolerance,
-                max_step: motion::greatest_step(&machine.program, false),
-                surfaces,
-                laws,
-                ..Options::default()
-            };
+            let start = state.borrowed();
+            let options = arguments.motion.options(&machine, &mechanism, &start)?;
             let found = differentiate(&mechanism, &start, options, &by, &arguments.at).map_err(stop)?;
             Ok(names.answer(&found))
         },

@@ -15,6 +15,7 @@ pub mod fmt;
 pub mod gradient;
 pub mod import;
 pub mod lsp;
+mod motion_arguments;
 pub mod new;
 pub mod orbit;
 pub mod plot;

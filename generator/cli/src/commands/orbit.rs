@@ -2,22 +2,18 @@
 
 use std::path::PathBuf;
 
-use hodograph::{ComponentKind, Mechanism as _, State as Borrowed};
+use hodograph::{ComponentKind, Mechanism as _};
 use hodograph_generator::model::mechanism::Mechanism;
 use hodograph_gradients::{
     BranchPoint, By, GradientError, Orbit, OrbitError, Periodic, Return, find_orbit, follow_branch,
 };
-use hodograph_interpreter::{InterpretedMechanism, motion};
-use hodograph_simulation::Options;
+use hodograph_interpreter::InterpretedMechanism;
 use serde::Serialize;
 
-use super::simulate::surfaces::{Found, MotionSurfaces};
-use crate::answers::FormArgument;
-use crate::derivation::{self, Limits};
+use super::motion_arguments::MotionArguments;
 use crate::evaluate::report::{Named, named};
 use crate::expression;
 use crate::json::{Failure, Kind};
-use crate::state_arguments::StateArguments;
 use crate::stop::{Outcome, Stop};
 use crate::table::{Table, number};
 
@@ -54,16 +50,7 @@ pub struct Arguments {
     #[arg(long, value_name = "COUNT", default_value_t = 500)]
     points: usize,
     #[command(flatten)]
-    state: StateArguments,
-    /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
-    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
-    tolerance: Option<f64>,
-    #[command(flatten)]
-    surfaces: MotionSurfaces,
-    #[command(flatten)]
-    form: FormArgument,
-    #[command(flatten)]
-    limits: Limits,
+    motion: MotionArguments,
 }
 
 /// Runs the command.
@@ -72,28 +59,13 @@ pub struct Arguments {
 ///
 /// An error object for what is wrong with the state or the names; [`Stop::Fault`] where no periodic motion is found.
 pub fn run(arguments: &Arguments) -> Outcome {
-    let tolerance = arguments.tolerance.unwrap_or(Options::default().relative_tolerance);
-    motion::check_tolerance(tolerance).map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
-    let machine = derivation::machine(&arguments.model, &arguments.limits)?;
-    arguments.form.write(
+    let machine = arguments.motion.machine(&arguments.model)?;
+    arguments.motion.form.write(
         || {
-            let state = arguments.state.state(&machine)?;
+            let state = arguments.motion.state.state(&machine)?;
             let mechanism = machine.interpreted(&state)?;
-            let start = Borrowed {
-                time: state.time,
-                coordinates: &state.coordinates,
-                speeds: &state.speeds,
-                inputs: &state.inputs,
-            };
-            let Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &start)?;
-            let options = Options {
-                relative_tolerance: tolerance,
-                absolute_tolerance: tolerance,
-                max_step: motion::greatest_step(&machine.program, false),
-                surfaces,
-                laws,
-                ..Options::default()
-            };
+            let start = state.borrowed();
+            let options = arguments.motion.options(&machine, &mechanism, &start)?;
             let periodic = arguments.periodic(&mechanism)?;
             let Some(follow) = &arguments.follow else {
                 let orbit = find_orbit(&mechanism, &start, &options, &periodic, &[]).map_err(stop)?;

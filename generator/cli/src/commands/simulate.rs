@@ -11,7 +11,7 @@ pub mod surfaces;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 
-use hodograph::{ComponentKind, Mechanism as _, State as Borrowed};
+use hodograph::{ComponentKind, Mechanism as _};
 use hodograph_animation::{Span, Watch};
 use hodograph_generator::artifact::place;
 use hodograph_interpreter::{InterpretedMechanism, motion};
@@ -137,7 +137,7 @@ fn simulated(arguments: &Arguments) -> Outcome {
     arguments.pictures.check_times(state.time, until)?;
     let format = arguments.format.unwrap_or(if is_read() { Format::Table } else { Format::Json });
     check_size(&mechanism, until - state.time, step, arguments.pictures.wanted(), format)?;
-    let surfaces::Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &borrowed(&state))?;
+    let surfaces::Found { surfaces, laws } = arguments.surfaces.of(&mechanism, &state.borrowed())?;
     let stiffness = surfaces::stiffnesses(&arguments.stiffness, &mechanism)?;
     if !stiffness.is_empty() && !matches!(arguments.together, TogetherArgument::Lzb) {
         return Err(Stop::Call(
@@ -236,7 +236,7 @@ fn follow(
     pictures: &mut Pictures<'_>,
     progress: &indicatif::ProgressBar,
 ) -> Outcome {
-    let mut simulation = Simulation::new(mechanism, &borrowed(state), options).map_err(fault)?;
+    let mut simulation = Simulation::new(mechanism, &state.borrowed(), options).map_err(fault)?;
     lines.sample(state.time, &state.coordinates, &state.speeds)?;
     lines.energy(simulation.energy().map_err(fault)?);
     pictures.add(&simulation);
@@ -295,16 +295,6 @@ fn bar(start: f64, until: f64, format: Format) -> indicatif::ProgressBar {
     match style {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,
-    }
-}
-
-/// The state as the traits of a mechanism see it.
-fn borrowed(state: &State) -> Borrowed<'_> {
-    Borrowed {
-        time: state.time,
-        coordinates: &state.coordinates,
-        speeds: &state.speeds,
-        inputs: &state.inputs,
     }
 }
 

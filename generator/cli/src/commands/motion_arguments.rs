@@ -1,0 +1,71 @@
+//! What commands that follow a motion again and again ask for: its start, its surfaces and its tolerance.
+
+use std::path::Path;
+
+use hodograph::State as Borrowed;
+use hodograph_interpreter::{InterpretedMechanism, motion};
+use hodograph_simulation::Options;
+
+use super::simulate::surfaces::{Found, MotionSurfaces};
+use crate::answers::FormArgument;
+use crate::derivation::{self, Limits};
+use crate::evaluate::Machine;
+use crate::state_arguments::StateArguments;
+use crate::stop::{Outcome, Stop};
+
+/// The arguments of a motion.
+#[derive(Clone, Debug, clap::Args)]
+pub struct MotionArguments {
+    /// where it begins
+    #[command(flatten)]
+    pub state: StateArguments,
+    /// relative and absolute tolerance of the integration, at least 1e-16 [default: 1e-12]
+    #[arg(long, value_name = "NUMBER", allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    #[command(flatten)]
+    surfaces: MotionSurfaces,
+    /// how the answer is written
+    #[command(flatten)]
+    pub form: FormArgument,
+    #[command(flatten)]
+    limits: Limits,
+}
+
+impl MotionArguments {
+    /// The mechanism of a model.
+    ///
+    /// # Errors
+    ///
+    /// [`Stop::Call`] for the tolerance, and as [`derivation::machine`].
+    pub fn machine(&self, model: &Path) -> Outcome<Machine> {
+        motion::check_tolerance(self.tolerance())
+            .map_err(|error| Stop::Call(format!("--tolerance: {error}")))?;
+        derivation::machine(model, &self.limits)
+    }
+
+    /// How a motion from this start is followed.
+    ///
+    /// # Errors
+    ///
+    /// [`Stop::Call`] where a contact that can close has no surface.
+    pub fn options(
+        &self,
+        machine: &Machine,
+        mechanism: &InterpretedMechanism,
+        start: &Borrowed<'_>,
+    ) -> Outcome<Options> {
+        let Found { surfaces, laws } = self.surfaces.of(mechanism, start)?;
+        Ok(Options {
+            relative_tolerance: self.tolerance(),
+            absolute_tolerance: self.tolerance(),
+            max_step: motion::greatest_step(&machine.program, false),
+            surfaces,
+            laws,
+            ..Options::default()
+        })
+    }
+
+    fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or(Options::default().relative_tolerance)
+    }
+}
