@@ -159,6 +159,7 @@ put("book.js", script.outputFiles[0].text);
 const style =
   read(root, "generator", "model", "src", "page.css") +
   read(root, "simulation", "animation", "page", "style.css") +
+  read(here, "page", "words.css") +
   read(here, "book", "book.css");
 put("book.css", (await esbuild.transform(style, { loader: "css", minify: true })).code);
 copyFileSync(join(dist, "hodograph.html"), join(folder, "play.html"));

@@ -45,6 +45,7 @@ const style = (
   await esbuild.transform(
     read(root, "generator", "model", "src", "page.css") +
       shared("style.css") +
+      read(here, "page", "words.css") +
       read(here, "page", "page.css"),
     { loader: "css", minify: true },
   )
