@@ -50,6 +50,9 @@ pub enum Command {
         /// seconds without sign of life after which an executor's work is given to others
         #[arg(long, default_value_t = 20)]
         patience: u64,
+        /// a directory whose files clients may read, here and on executors; may be given several times [default: none]
+        #[arg(long, value_name = "DIRECTORY")]
+        files: Vec<PathBuf>,
     },
     /// Compute for a scheduler
     Executor {

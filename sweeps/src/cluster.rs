@@ -13,6 +13,7 @@ use ballista_scheduler::scheduler_process::start_server;
 
 use crate::codec::{Logical, Physical};
 use crate::failure::Failure;
+use crate::files::NamedFiles;
 use crate::functions;
 use crate::models::shipped;
 use crate::session;
@@ -30,6 +31,8 @@ pub struct Scheduler {
     pub host: String,
     /// seconds after which an executor without sign of life is given up, and its work done again by others
     pub patience: u64,
+    /// the directories whose files clients may read
+    pub files: Vec<PathBuf>,
 }
 
 /// Runs a scheduler until the process ends.
@@ -38,13 +41,14 @@ pub struct Scheduler {
 ///
 /// An address in use; the engine's.
 pub async fn scheduler(given: &Scheduler) -> Result<(), Failure> {
+    let files = Arc::new(NamedFiles::new(&given.files)?);
     let mut config = SchedulerConfig::default()
         .with_hostname(given.host.clone())
         .with_port(given.listen.port())
         .with_scheduler_policy(TaskSchedulingPolicy::PullStaged)
         .with_no_executors_grace_period_seconds(given.patience.max(30))
         .with_override_config_producer(Arc::new(session::configuration))
-        .with_override_session_builder(Arc::new(session::planner));
+        .with_override_session_builder(Arc::new(move |config| session::planner(config, Arc::clone(&files))));
     config.bind_host = given.listen.ip().to_string();
     config.executor_timeout_seconds = given.patience;
     config.expire_dead_executor_interval_seconds = (given.patience / 3).max(1);

@@ -2,7 +2,7 @@
 //! mechanisms as functions of its columns.
 //!
 //! `docs/sweeps.md` describes the tool `hodograph-sweep`; the files of this package each know one thing, in
-//! the order in which they build on each other: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`,
+//! the order in which they build on each other: `failure`, `stdout`, `models`, `functions`, `rows`, `codec`, `files`,
 //! `session`, `cluster`, `output`, `progress`, `parts`, `run`, `short`, `describe`, `arguments`.
 
 pub mod arguments;
@@ -10,6 +10,7 @@ pub mod cluster;
 mod codec;
 pub mod describe;
 pub mod failure;
+pub mod files;
 pub mod functions;
 pub mod models;
 pub mod output;

@@ -36,20 +36,26 @@ fn act(command: Command) -> Result<(), Failure> {
         },
         Command::Functions { model, name } => stdout::line(describe::functions(&model, name.as_deref())?),
         Command::Verify { files } => verify(&files),
-        Command::Scheduler { listen, host, patience } => {
+        Command::Scheduler { listen, host, patience, files } => {
             let host = host.unwrap_or_else(|| listen.ip().to_string());
-            let given = cluster::Scheduler { listen, host, patience };
+            let given = cluster::Scheduler { listen, host, patience, files };
             runtime(cores(None)?)?.block_on(cluster::scheduler(&given))
         }
         Command::Executor { scheduler, listen, host, cores: given, memory, work } => {
             let threads = cores(given)?;
             let host = host.unwrap_or_else(|| listen.ip().to_string());
+            let own = work.is_none();
             let work = work.unwrap_or_else(|| {
                 std::env::temp_dir().join(format!("hodograph-sweep-{}-{}", listen.port(), std::process::id()))
             });
             let given =
                 cluster::Executor { scheduler, listen, host, cores: threads, memory: memory as u64, work };
-            runtime(threads + 1)?.block_on(cluster::executor(&given))
+            let done = runtime(threads + 1)?.block_on(cluster::executor(&given));
+            if own {
+                // Results that nobody fetches any more.
+                let _ = std::fs::remove_dir_all(&given.work);
+            }
+            done
         }
     }
 }

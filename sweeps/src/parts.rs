@@ -18,12 +18,19 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// The parts of a sweep: the directory is made, or found as an earlier run of the same sweep left it.
+    /// The parts of a sweep: the directory is made, or found as an earlier run of the same sweep left it. `inputs` says what the
+    /// files hold that it reads.
     ///
     /// # Errors
     ///
     /// A directory of another sweep.
-    pub fn open(directory: &Path, count: i64, sql: &str, models: &[PathBuf]) -> Result<Self, Failure> {
+    pub fn open(
+        directory: &Path,
+        count: i64,
+        sql: &str,
+        models: &[PathBuf],
+        inputs: &str,
+    ) -> Result<Self, Failure> {
         std::fs::create_dir_all(directory)
             .map_err(|error| Failure::file(directory, "make the directory", error))?;
         let mut hash = Sha256::new().chain_update(sql);
@@ -32,7 +39,7 @@ impl Parts {
         }
         let hash: String = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
         let text = format!(
-            "hodograph-sweep {}\nsha256 of the query and the models: {hash}\nparts: {count}\n",
+            "hodograph-sweep {}\nsha256 of the query and the models: {hash}\nparts: {count}\n{inputs}",
             env!("CARGO_PKG_VERSION")
         );
         let note = directory.join("sweep.txt");
@@ -40,7 +47,7 @@ impl Parts {
             Ok(found) if found == text => {}
             Ok(_) => {
                 return Err(Failure::Input(format!(
-                    "{} holds parts of another sweep (another query, model, number of parts or version); give another --out, or remove it",
+                    "{} holds parts of another sweep (another query, model, content of a file that it reads, number of parts or version); give another --out, or remove it",
                     directory.display()
                 )));
             }

@@ -7,6 +7,7 @@ use std::sync::atomic::Ordering;
 
 use datafusion::arrow::array::RecordBatch;
 use datafusion::arrow::util::pretty::pretty_format_batches;
+use datafusion::datasource::listing::ListingTableUrl;
 use datafusion::execution::context::SQLOptions;
 use datafusion::logical_expr::LogicalPlan;
 use datafusion::prelude::{ParquetReadOptions, SessionContext};
@@ -14,6 +15,7 @@ use datafusion::sql::parser::{DFParser, Statement};
 use futures::StreamExt;
 
 use crate::failure::Failure;
+use crate::files;
 use crate::functions::check_contacts;
 use crate::output::{self, Digest, Sink};
 use crate::parts::{Parts, row_by_row};
@@ -74,6 +76,8 @@ struct Open {
     context: SessionContext,
     rows: Arc<RowsFunction>,
     query: Statement,
+    /// from where the statements before the query read files
+    places: Vec<ListingTableUrl>,
 }
 
 impl Open {
@@ -83,15 +87,17 @@ impl Open {
         let Some(query) = statements.pop_back() else {
             return Err(Failure::Input("the query is empty".to_owned()));
         };
+        let mut places = Vec::new();
         let tables = SQLOptions::new().with_allow_dml(false).with_allow_statements(false);
         for statement in statements {
             let plan = context.state().statement_to_plan(statement).await?;
             tables.verify_plan(&plan)?;
             check_contacts(&plan)?;
+            places.extend(files::places(&plan)?);
             context.execute_logical_plan(plan).await?;
         }
         rows.calls.store(0, Ordering::Relaxed);
-        Ok(Open { context, rows, query })
+        Ok(Open { context, rows, query, places })
     }
 
     async fn plan(&self) -> Result<LogicalPlan, Failure> {
@@ -226,7 +232,10 @@ async fn in_parts(
         row_by_row(&plan)?;
     }
     let total = open.rows.total.load(Ordering::Relaxed) as u64;
-    let parts = Parts::open(&directory, count, &sweep.sql, &sweep.setup.models)?;
+    let mut places = files::places(&plan)?;
+    places.extend_from_slice(&open.places);
+    let inputs = files::contents(&places)?;
+    let parts = Parts::open(&directory, count, &sweep.sql, &sweep.setup.models, &inputs)?;
     let progress = Progress::new(total, sweep.quiet);
     let rows_before = |index: i64| (u128::from(total) * index as u128 / count as u128) as u64;
     let (mut skipped, mut told) = (0, 0);
@@ -263,7 +272,7 @@ async fn in_parts(
     let Some(query) = DFParser::parse_sql(&query)?.pop_back() else {
         return Err(Failure::Input("the query of --merge is empty".to_owned()));
     };
-    let merge = Open { context, rows, query };
+    let merge = Open { context, rows, query, places: Vec::new() };
     let merged = merge.answer(merge.plan().await?, out, summary).await?;
     Ok((if out.is_some() { merged } else { digest }, total - skipped))
 }

@@ -14,6 +14,7 @@ use datafusion::prelude::{SessionConfig, SessionContext};
 
 use crate::codec::{Logical, Physical};
 use crate::failure::Failure;
+use crate::files::NamedFiles;
 use crate::functions;
 use crate::models::{Model, shipped};
 use crate::rows::RowsFunction;
@@ -91,15 +92,20 @@ pub fn state(
     Ok(state)
 }
 
-/// A state of the scheduler, which plans the queries of all clients.
+/// A state of the scheduler, which plans the queries of all clients; they may read these files.
 ///
 /// # Errors
 ///
 /// The engine's.
-pub fn planner(config: SessionConfig) -> datafusion::common::Result<SessionState> {
-    let state = state(config, 1 << 30, shipped())?;
+pub fn planner(config: SessionConfig, files: Arc<NamedFiles>) -> datafusion::common::Result<SessionState> {
+    let mut state = state(config, 1 << 30, shipped())?;
+    // A statement in a client's text makes no table of a file of this machine.
+    state.table_factories_mut().clear();
     let rules = ballista_default_optimizer_rules();
-    Ok(SessionStateBuilder::new_from_existing(state).with_optimizer_rules(rules).build())
+    Ok(SessionStateBuilder::new_from_existing(state)
+        .with_optimizer_rules(rules)
+        .with_analyzer_rule(files)
+        .build())
 }
 
 impl Setup {

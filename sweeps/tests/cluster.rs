@@ -9,7 +9,7 @@ use std::path::Path;
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
-use common::{collisions, digest, succeeds, tool};
+use common::{collisions, digest, fails, run, succeeds, tool};
 
 /// A process that ends with the test.
 struct Process(Child);
@@ -45,9 +45,10 @@ fn start(home: &Path, arguments: &[&str], ready: &str) -> Process {
     Process(child)
 }
 
-fn cluster(home: &Path) -> (String, Process, Vec<Process>) {
+fn cluster(home: &Path, files: &[&str]) -> (String, Process, Vec<Process>) {
     let scheduler = format!("127.0.0.1:{}", free_port());
-    let first = start(home, &["scheduler", "--listen", &scheduler, "--patience", "6"], "listens");
+    let arguments = [&["scheduler", "--listen", &scheduler, "--patience", "6"], files].concat();
+    let first = start(home, &arguments, "listens");
     let begun = Instant::now();
     while std::net::TcpStream::connect(&scheduler).is_err() {
         assert!(begun.elapsed() < Duration::from_secs(60), "the scheduler does not listen");
@@ -70,7 +71,7 @@ fn three_engines_give_the_same_bits() {
     let embedded = succeeds(home.path(), &["run", "--sql", &sql]);
     let in_process = succeeds(home.path(), &["run", "--in-process", "--sql", &sql]);
     assert_eq!(digest(&in_process), digest(&embedded));
-    let (scheduler, _first, _executors) = cluster(home.path());
+    let (scheduler, _first, _executors) = cluster(home.path(), &[]);
     let distributed = succeeds(home.path(), &["run", "--cluster", &scheduler, "--sql", &sql]);
     assert_eq!(digest(&distributed), digest(&embedded));
     // rows through Parquet, a model that the executors have not, and parts
@@ -95,7 +96,7 @@ fn an_executor_killed_half_way_loses_nothing() {
         std::env::var("HODOGRAPH_SWEEP_ROWS").ok().and_then(|rows| rows.parse().ok()).unwrap_or(1_000_000);
     let sql = collisions(rows);
     let embedded = succeeds(home.path(), &["run", "--quiet", "--sql", &sql]);
-    let (scheduler, _first, mut executors) = cluster(home.path());
+    let (scheduler, _first, mut executors) = cluster(home.path(), &[]);
     let asked = tool()
         .args(["run", "--quiet", "--cluster", &scheduler, "--sql", &sql])
         .current_dir(home.path())
@@ -117,6 +118,68 @@ fn an_executor_killed_half_way_loses_nothing() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(digest(&String::from_utf8_lossy(&output.stdout)), digest(&embedded));
     let _ = std::fs::remove_dir_all(work);
+}
+
+/// Clients read the files of named directories only, whatever statement asks for them.
+#[test]
+fn clients_read_named_files_only() {
+    let home = tempfile::tempdir().unwrap();
+    for folder in ["open", "closed"] {
+        std::fs::create_dir(home.path().join(folder)).unwrap();
+        std::fs::write(home.path().join(folder).join("data.csv"), "a\n1\n2\n").unwrap();
+    }
+    let (scheduler, _first, _executors) = cluster(home.path(), &["--files", "open"]);
+    let ask = |sql: &str| run(home.path(), &["run", "--quiet", "--cluster", &scheduler, "--sql", sql]);
+    let query = |path: &str| format!("SELECT sum(a) AS s FROM '{path}'");
+    let own = succeeds(home.path(), &["run", "--quiet", "--sql", &query("open/data.csv")]);
+    let allowed = ask(&query("open/data.csv"));
+    assert!(allowed.status.success(), "{}", String::from_utf8_lossy(&allowed.stderr));
+    assert_eq!(digest(&String::from_utf8_lossy(&allowed.stdout)), digest(&own));
+    let external = "CREATE EXTERNAL TABLE t (a VARCHAR) STORED AS CSV LOCATION '/etc/passwd' OPTIONS ('format.has_header' 'false');
+        SELECT * FROM t";
+    let inside = format!("SELECT i FROM rows(3) WHERE i IN ({})", query("closed/data.csv"));
+    for sql in [external, &query("closed/data.csv"), &query("open/../closed/data.csv"), &inside] {
+        let refused = ask(sql);
+        let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+        assert!(!refused.status.success() && said.contains("does not let clients read"), "{sql}: {said}");
+        assert!(!String::from_utf8_lossy(&refused.stdout).contains("root"), "{sql}");
+    }
+    let said = fails(home.path(), &["scheduler", "--files", "nowhere"], 1);
+    assert!(said.contains("nowhere"), "{said}");
+}
+
+/// An executor whose directory nobody named takes it away when it ends.
+#[cfg(unix)]
+#[test]
+fn an_executor_leaves_nothing_in_the_temporary_directory() {
+    let home = tempfile::tempdir().unwrap();
+    let scheduler = format!("127.0.0.1:{}", free_port());
+    let _first = start(home.path(), &["scheduler", "--listen", &scheduler], "listens");
+    while std::net::TcpStream::connect(&scheduler).is_err() {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let temporary = home.path().join("temporary");
+    std::fs::create_dir(&temporary).unwrap();
+    let listen = format!("127.0.0.1:{}", free_port());
+    let mut executor = tool()
+        .args(["executor", "--scheduler", &scheduler, "--listen", &listen, "--cores", "1"])
+        .env("TMPDIR", &temporary)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let entries = || std::fs::read_dir(&temporary).unwrap().count();
+    let begun = Instant::now();
+    while entries() == 0 {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the executor makes no directory");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let sql = collisions(20_000);
+    succeeds(home.path(), &["run", "--quiet", "--cluster", &scheduler, "--sql", &sql]);
+    let killed = std::process::Command::new("kill").args(["-TERM", &executor.id().to_string()]).status();
+    assert!(killed.unwrap().success());
+    executor.wait().unwrap();
+    assert_eq!(entries(), 0);
 }
 
 /// How many files there are under a directory.

@@ -82,6 +82,31 @@ fn an_interrupted_sweep_goes_on() {
     );
 }
 
+/// A sweep goes on with the files that it began with: one that holds something else meanwhile is refused, whether the query
+/// reads it itself or a statement before it does. One that was only touched is the same.
+#[test]
+fn a_sweep_goes_on_with_the_files_that_it_began_with() {
+    let home = tempfile::tempdir().unwrap();
+    let data = home.path().join("data.csv");
+    let direct = "SELECT i, (SELECT sum(a) FROM 'data.csv') AS s FROM rows(100)";
+    let before =
+        "CREATE TABLE d AS SELECT * FROM 'data.csv'; SELECT i, (SELECT sum(a) FROM d) AS s FROM rows(100)";
+    for (place, sql) in [direct, before].into_iter().enumerate() {
+        fs::write(&data, "a\n1\n2\n").unwrap();
+        let out = format!("rows-{place}.parquet");
+        fs::write(home.path().join("merge.sql"), "SELECT sum(s) AS s FROM parts").unwrap();
+        let arguments = ["run", "--sql", sql, "--parts", "4", "--merge", "merge.sql", "--out", &out];
+        let first = succeeds(home.path(), &arguments);
+        fs::remove_file(home.path().join(format!("{out}.parts/part-000002.parquet"))).unwrap();
+        fs::write(&data, "a\n1\n2\n").unwrap();
+        assert_eq!(digest(&succeeds(home.path(), &arguments)), digest(&first));
+        fs::remove_file(home.path().join(format!("{out}.parts/part-000002.parquet"))).unwrap();
+        fs::write(&data, "a\n1\n3\n").unwrap();
+        let said = fails(home.path(), &arguments, 2);
+        assert!(said.contains("content of a file that it reads"), "{said}");
+    }
+}
+
 #[test]
 fn parts_of_a_query_over_several_rows_need_a_merge() {
     let home = tempfile::tempdir().unwrap();
