@@ -142,6 +142,14 @@ impl<'a> WithTorques<'a> {
         }
     }
 
+    /// As [`Contacts::validity`]; torques have none.
+    pub fn validity(&self, contact: usize, state: &State<'_>) -> Result<Option<f64>, StateError> {
+        match self.torque(contact) {
+            Some(_) => Ok(None),
+            None => self.mechanism.validity(contact, state),
+        }
+    }
+
     /// As [`Contacts::contact_velocity`]; of a torque that of its rotation.
     pub fn contact_velocity(&self, contact: usize, state: &State<'_>) -> Result<Vector3<f64>, StateError> {
         let Some(torque) = self.torque(contact) else {

@@ -6,9 +6,11 @@ use std::path::{Path, PathBuf};
 use crate::common::root;
 
 /// Packages whose tests are one program, and their folders.
-const PACKAGES: [(&str, &str); 5] = [
+const PACKAGES: [(&str, &str); 7] = [
     ("hodograph", "runtime"),
     ("hodograph-simulation", "simulation"),
+    ("hodograph-gradients", "simulation/gradients"),
+    ("hodograph-fmu", "bindings/fmu"),
     ("hodograph-generator", "generator"),
     ("hodograph-cli", "generator/cli"),
     ("hodograph-tests", "tests"),
