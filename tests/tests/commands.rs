@@ -30,7 +30,8 @@ fn every_file_of_tests_is_compiled() {
     for (package, folder) in PACKAGES {
         let folder = root().join(folder).join("tests");
         let main = read(&folder.join("main.rs"));
-        for path in files(&folder) {
+        let rust = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "rs");
+        for path in files(&folder).into_iter().filter(rust) {
             let stem = path.file_stem().expect("a stem").to_string_lossy();
             let listed = main.lines().any(|line| line == format!("mod {stem};"));
             assert!(listed || stem == "main", "{package}: `mod {stem};` is missing in tests/main.rs");
