@@ -174,6 +174,12 @@ fn check(mechanism: &InterpretedMechanism, task: &FitTask<'_>) -> Result<(), Fit
     if let Some(unit) = task.units.iter().find(|unit| !(unit.is_finite() && **unit > 0.0)) {
         return bad(format!("the unit of a measured quantity is {unit}: it must be positive"));
     }
+    if task.bootstrap > 0 && task.trajectories.len() < 2 {
+        return bad("a bootstrap draws among trajectories: it needs two at least".to_owned());
+    }
+    if task.trajectories.iter().all(|trajectory| trajectory.samples.iter().all(|value| value.is_nan())) {
+        return bad("no value was measured after the first row of a trajectory".to_owned());
+    }
     for trajectory in task.trajectories {
         let Trajectory { name, state, times, samples, start } = trajectory;
         let rises = std::iter::once(start).chain(times).zip(times).all(|(before, time)| before < time);

@@ -95,4 +95,10 @@ fn tasks_that_are_wrong_are_refused() {
     assert!(matches!(&found, Err(FitError::BadRequest(what)) if what.contains("throw 1")), "{found:?}");
     let found = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &task(&throws[..1], &[By::Speed(0)], 0));
     assert!(matches!(found, Err(FitError::BadRequest(_))), "{found:?}");
+    // one trajectory has no spread, and cells that are all empty say nothing
+    let found = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &task(&throws[..1], &[By::Friction(None)], 5));
+    assert!(matches!(&found, Err(FitError::BadRequest(what)) if what.contains("bootstrap")), "{found:?}");
+    throws[0].samples.fill(f64::NAN);
+    let found = fit(&rod(), &options(0.2, 0.5, Law::Poisson), &task(&throws[..1], &[By::Friction(None)], 0));
+    assert!(matches!(&found, Err(FitError::BadRequest(what)) if what.contains("no value")), "{found:?}");
 }
