@@ -13,7 +13,7 @@ const executablePath =
   named || ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"].find(existsSync);
 const WIDTHS = [1280, 768, 390];
 /** Compressed, in bytes: of the module, and of the folder with the editor. A change that needs more says so here. */
-const MOST = { module: 690_000, folder: 825_000 };
+const MOST = { module: 705_000, folder: 838_000 };
 const kinds = { html: "text/html", css: "text/css", js: "text/javascript", wasm: "application/wasm" };
 
 let browser;

@@ -87,6 +87,13 @@ pub fn write(
         let collisions = &document.links[tree.links[here].index].collisions;
         collisions.iter().for_each(|collision| writer.shape(here, collision));
     }
+    if writer.out.shapes.len() > 1 {
+        notes.push(
+            "solids become shapes, but no contacts: state those that may meet under `contacts`, as in \
+             `foot_floor { foot_shape on floor_shape }`"
+                .to_owned(),
+        );
+    }
     let mut problems = Vec::new();
     for contact in &options.contacts {
         writer.contact(contact, &mut problems);
