@@ -161,8 +161,7 @@ fn whole((prefix, package, function): (&str, &str, &str)) -> Result<Counts, Stri
         let text =
             std::fs::read_to_string(&profile).map_err(|error| format!("{}: {error}", profile.display()))?;
         let total = text.lines().find_map(|line| line.strip_prefix("totals: ")?.trim().parse().ok());
-        let total: f64 =
-            total.filter(|total| *total > 0.0).ok_or(format!("{case}: nothing was counted"))?;
+        let total: f64 = total.filter(|total| *total > 0.0).ok_or(format!("{case}: nothing was counted"))?;
         counts.insert(format!("{prefix}{}", case.replace([' ', ','], "_")), total);
     }
     Ok(counts)

@@ -9,18 +9,17 @@ const COUNTED: [(&str, &str); 3] = [
     ("whipple_bicycle", include_str!("../../../../models/whipple_bicycle.mech")),
     ("arm_7dof", include_str!("../../../../models/arm_7dof.mech")),
 ];
-/// What is typed at the end of the model's first comment, and then into an expression.
-const WORDS: [(&str, &str); 2] = [("\n", " again"), ("N.x", "*1")];
-
 fn main() -> Result<(), String> {
     let Some(name) = std::env::args().nth(1) else {
         COUNTED.iter().for_each(|(name, _)| println!("{name}"));
         return Ok(());
     };
     let (_, text) = COUNTED.iter().find(|(known, _)| *known == name).ok_or("there is no such model")?;
+    // at the end of the first comment, and into the last product
+    let places = [(text.find('\n'), " again"), (text.rfind('*').map(|at| at + 1), "1*")];
     let mut said = 0;
-    for (place, word) in WORDS {
-        let at = text.find(place).ok_or("the model has no such place")? + place.trim_end().len();
+    for (place, word) in places {
+        let at = place.ok_or("the model has no such place")?;
         for keys in 1..=word.len() {
             said += press([&text[..at], &word[..keys], &text[at..]].concat());
         }
