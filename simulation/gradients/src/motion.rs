@@ -3,6 +3,7 @@
 //! Theory: docs/theory.md, section 19.
 
 use std::fmt;
+use std::ops::Range;
 
 use hodograph::{ComponentKind, Contacts, Mechanism, State, Surface};
 use hodograph_interpreter::InterpretedMechanism;
@@ -38,12 +39,12 @@ pub struct MotionGradient {
     pub undefined: Option<Undefined>,
 }
 
-/// The state at a time.
+/// The state at a time, after the events there.
 #[derive(Clone, Debug)]
 pub struct Sample {
     /// s
     pub time: f64,
-    /// coordinates and independent speeds
+    /// coordinates and independent speeds: those of the simulation, whether or not there are derivatives
     pub state: Vec<f64>,
     /// their derivatives at this time; `None` where the motion is not differentiable
     pub derivative: Option<DMatrix<f64>>,
@@ -135,9 +136,14 @@ pub(crate) fn carried(
     let end = times.last().copied().unwrap_or(start.time);
     let mut simulation = Simulation::new(mechanism, start, options)?;
     simulation.keep_parts();
-    let mut events = simulation.advance_to(end)?;
-    let mut parts = simulation.take_parts();
-    if parts.last().is_none_or(|part| part.end <= end) {
+    let (mut events, mut parts, mut samples) = (Vec::new(), Vec::new(), Vec::new());
+    for &time in times {
+        events.extend(simulation.advance_to(time)?);
+        parts.extend(simulation.take_parts());
+        let state = [simulation.coordinates(), simulation.speeds()].concat();
+        samples.push(Sample { time, state, derivative: None });
+    }
+    if parts.last().is_none_or(|part: &SmoothPart| part.end <= end) {
         // Events at the end need the motion after them.
         simulation.advance_to(end.next_up())?;
         parts.extend(simulation.take_parts());
@@ -149,9 +155,9 @@ pub(crate) fn carried(
         field,
         tolerances,
         since: start.time,
-        motion: MotionGradient { by: by.to_vec(), events: Vec::new(), samples: Vec::new(), undefined: None },
+        motion: MotionGradient { by: by.to_vec(), events: Vec::new(), samples, undefined: None },
     };
-    carried.follow((start, how), &parts, events, times);
+    carried.follow((start.time, how), &parts, events, end);
     Ok(carried.motion)
 }
 
@@ -266,18 +272,12 @@ struct Carried<'m> {
 }
 
 impl Carried<'_> {
-    fn follow(
-        &mut self,
-        (start, how): (&State<'_>, Start),
-        parts: &[SmoothPart],
-        events: Vec<Event>,
-        times: &[f64],
-    ) {
+    fn follow(&mut self, (start, how): (f64, Start), parts: &[SmoothPart], events: Vec<Event>, end: f64) {
         let mut events = events.into_iter().peekable();
         let at_once = |time: f64| move |event: &Event| event.time <= time;
-        let first: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(start.time))).collect();
+        let first: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(start))).collect();
         if let Err(lacking) = self.begin(how, parts, &first) {
-            self.lacks(start.time, lacking);
+            self.lacks(start, lacking);
         }
         let known = self.motion.undefined.is_none().then(|| self.matrix(&self.by));
         self.motion.events.extend(first.into_iter().map(|event| EventGradient {
@@ -286,26 +286,25 @@ impl Carried<'_> {
             before: known.clone(),
             after: known.clone(),
         }));
-        let end = times.last().copied().unwrap_or(start.time);
-        let mut times = times.iter().copied().peekable();
-        let mut state = start.coordinates.to_vec();
-        state.extend_from_slice(start.speeds);
-        while times.next_if(|time| *time <= start.time).is_some() {
-            self.sample(start.time, &state);
-        }
+        let mut sampled = self.sample(0, start);
         for (index, part) in parts.iter().enumerate() {
             if part.start >= end {
                 break;
             }
-            let samples: Vec<f64> = std::iter::from_fn(|| times.next_if(|time| *time <= part.end)).collect();
-            if let Err(why) = self.through(part, &samples, end) {
-                self.lacks(part.start, (None, why));
+            let rest = &self.motion.samples[sampled..];
+            let within = sampled..sampled + rest.iter().take_while(|sample| sample.time < part.end).count();
+            sampled = within.end;
+            if self.motion.undefined.is_none()
+                && let Err((time, why)) = self.through(part, within, end)
+            {
+                self.lacks(time, (None, why));
             }
             if part.end > end {
                 break;
             }
             let here: Vec<Event> = std::iter::from_fn(|| events.next_if(at_once(part.end))).collect();
             self.at_end(part, parts.get(index + 1), here);
+            sampled = self.sample(sampled, part.end);
         }
     }
 
@@ -356,56 +355,60 @@ impl Carried<'_> {
         DMatrix::from_fn(by.len() / k, k - 1, |row, column| by[row * k + column])
     }
 
-    fn sample(&mut self, time: f64, state: &[f64]) {
-        let derivative = self.motion.undefined.is_none().then(|| self.matrix(&self.by));
-        self.motion.samples.push(Sample { time, state: state.to_vec(), derivative });
+    /// Gives the samples up to a time their derivatives, from that with the number `from` on; the number of the next one.
+    fn sample(&mut self, from: usize, time: f64) -> usize {
+        let due = self.motion.samples[from..].iter().take_while(|sample| sample.time <= time).count();
+        if self.motion.undefined.is_none() {
+            let by = self.matrix(&self.by);
+            for sample in &mut self.motion.samples[from..from + due] {
+                sample.derivative = Some(by.clone());
+            }
+        }
+        from + due
     }
 
-    /// Carries the derivatives through a part up to `end`, by the samples asked for.
-    fn through(&mut self, part: &SmoothPart, samples: &[f64], end: f64) -> Result<(), Reason> {
+    /// Carries the derivatives through a part, and gives them to the samples within it; or says from when on it cannot. The
+    /// part is integrated anew with them, and must agree with the motion.
+    fn through(&mut self, part: &SmoothPart, samples: Range<usize>, end: f64) -> Result<(), (f64, Reason)> {
         let modes = modes(part);
         let count = part.first.len();
         let mut y = part.first.clone();
         y.extend_from_slice(&self.by);
-        let mut failed = None;
         let mut now = part.start;
-        let stops = samples.iter().map(|time| (*time, true)).chain([(part.end.min(end), false)]);
-        for (time, wanted) in stops {
-            let defined = self.motion.undefined.is_none() && failed.is_none();
-            let done = match &part.ended_by {
-                Some(Guard::Slip(_)) => self.straight(part, &modes, time - now, &mut y),
-                _ => self.integrate(part, &modes, defined, (now, time), &mut y),
-            };
-            if let Err(why) = done {
-                failed.get_or_insert(why);
-                self.lacks(part.start, (None, failed.clone().unwrap_or(Reason::ModesChanged)));
-            }
+        for index in samples {
+            let time = self.motion.samples[index].time;
+            self.carry(part, &modes, (now, time), &mut y).map_err(|why| (now, why))?;
+            agree(&y[..count], &self.motion.samples[index].state).map_err(|why| (now, why))?;
+            self.motion.samples[index].derivative = Some(self.matrix(&y[count..]));
             now = time;
-            self.by.copy_from_slice(&y[count..]);
-            if wanted {
-                let state = y[..count].to_vec();
-                self.sample(time, &state);
-            }
         }
-        if let Some(why) = failed {
-            return Err(why);
+        self.carry(part, &modes, (now, part.end.min(end)), &mut y).map_err(|why| (now, why))?;
+        if part.end <= end {
+            agree(&y[..count], &part.last).map_err(|why| (now, why))?;
         }
-        if part.end <= end && self.motion.undefined.is_none() {
-            let size = part.last.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
-            let off = y.iter().zip(&part.last).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
-            if off > SAME {
-                return Err(Reason::Inaccurate(off));
-            }
-        }
+        self.by.copy_from_slice(&y[count..]);
         Ok(())
     }
 
-    /// The variational equations from a time to another; the state alone where there are no derivatives any more.
+    /// State and derivatives from a time to another within a part.
+    fn carry(
+        &self,
+        part: &SmoothPart,
+        modes: &[Mode],
+        (from, to): (f64, f64),
+        y: &mut [f64],
+    ) -> Result<(), Reason> {
+        match &part.ended_by {
+            Some(Guard::Slip(_)) => self.straight(part, modes, to - from, y),
+            _ => self.integrate(part, modes, (from, to), y),
+        }
+    }
+
+    /// The variational equations from a time to another.
     fn integrate(
         &self,
         part: &SmoothPart,
         modes: &[Mode],
-        defined: bool,
         (from, to): (f64, f64),
         y: &mut [f64],
     ) -> Result<(), Reason> {
@@ -417,11 +420,7 @@ impl Carried<'_> {
             match self.field.moving(modes, &at) {
                 Ok(moving) => {
                     rates[..count].copy_from_slice(&moving.rates);
-                    if defined {
-                        rates[count..].copy_from_slice(&moving.rates_by);
-                    } else {
-                        rates[count..].fill(0.0);
-                    }
+                    rates[count..].copy_from_slice(&moving.rates_by);
                 }
                 Err(why) => {
                     failed.get_or_insert(why);
@@ -509,6 +508,18 @@ impl Carried<'_> {
             }
         }
         self.field.pass((part, next), &modes, &self.by, events, self.since)
+    }
+}
+
+/// Whether a state that was integrated anew is that of the motion.
+fn agree(found: &[f64], expected: &[f64]) -> Result<(), Reason> {
+    let size = expected.iter().fold(1.0_f64, |size, value| size.max(value.abs()));
+    let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
+    // what is no number agrees with nothing
+    if off <= SAME && found.iter().all(|value| value.is_finite()) {
+        Ok(())
+    } else {
+        Err(Reason::Inaccurate(off))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use hodograph::{Law, State};
 use hodograph_gradients::{By, GradientError, Reason, differentiate};
-use hodograph_simulation::{ContactLaw, Options};
+use hodograph_simulation::{ContactLaw, Options, Simulation};
 
 use crate::common::{Task, options, read};
 
@@ -21,6 +21,30 @@ fn a_level_cube_has_no_derivative_from_its_impact_on() {
     assert!((why.time - (2.0 * (0.3_f64 - 0.0524) / 9.81).sqrt()).abs() < 1e-12);
     assert!(found.samples[0].derivative.is_some() && found.samples[1].derivative.is_none());
     assert!(why.to_string().contains("several contacts"), "{why}");
+}
+
+/// Where there is no derivative the states are still those of the motion, also where its forces are not unique: the cube
+/// comes to rest on four corners. The states and the events are those of a simulation that is asked for nothing else.
+#[test]
+fn states_without_derivatives_are_those_of_the_motion() {
+    for q in [[0.0, 0.0, 0.3, 1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.1, 1.0, 0.02, -0.01, 0.0]] {
+        let mut task = cube(q, [0.4, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        hodograph::Mechanism::normalise(&task.mechanism.clone(), &mut task.q).unwrap();
+        let times = [0.1, 0.25, 0.5, 0.8, 2.0];
+        let found = task.differentiate(&[By::Friction(None), By::Speed(0)], &times);
+        assert!(found.undefined.is_some());
+        let start = State { time: 0.0, coordinates: &task.q, speeds: &task.u, inputs: &[] };
+        let mut motion =
+            Simulation::new(&task.mechanism, &start, options(task.mu, task.e, task.law)).unwrap();
+        let mut events = 0;
+        for (sample, time) in found.samples.iter().zip(times) {
+            events += motion.advance_to(time).unwrap().len();
+            let state = [motion.coordinates(), motion.speeds()].concat();
+            let off = sample.state.iter().zip(&state).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-9, "{off} at {time}: {:?} {state:?}", sample.state);
+        }
+        assert_eq!((found.samples.len(), found.events.len()), (times.len(), events));
+    }
 }
 
 /// A corner that strikes without slip: friction acts against slip that is not there, whatever its direction.
