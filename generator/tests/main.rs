@@ -9,9 +9,11 @@ mod errors_page;
 mod expansion;
 #[path = "../../tests/tests/common/expectations.rs"]
 mod expectations;
+mod imports;
 mod kept_configurations;
 mod language;
 mod language_page;
+mod masses_of_shapes;
 mod mistakes;
 mod mistakes_of_a_cart;
 mod mistakes_of_other_kinds;

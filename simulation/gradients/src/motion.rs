@@ -454,7 +454,7 @@ impl Carried<'_> {
 
     /// The events at the end of a part.
     fn at_end(&mut self, part: &SmoothPart, next: Option<&SmoothPart>, events: Vec<Event>) {
-        // A condition that is used up and changes no mode is no event.
+        // Where a normal force or the friction comes to its limit, and all contacts go on as they were, nothing happens.
         let goes_on = |next: &SmoothPart| events.is_empty() && kinds(part) == kinds(next);
         let guard = part.ended_by.as_ref().filter(|guard| {
             let of_modes = matches!(guard, Guard::NormalForce(_) | Guard::Friction(_));
